@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -29,7 +30,8 @@ Document parse(std::string_view bytes, const std::string& operand) {
 }
 
 Document read(const std::string& operand) {
-    return parse(operand == "-" ? readStdin() : readAll(operand), operand);
+    return operand == "-" ? parse(readStdin(), operand)
+                          : readDocument(operand, ImportOptions(), sceneSchemas());
 }
 
 bool hasPlaced(const Document& document, const std::vector<std::string>& keywords) {
@@ -291,8 +293,11 @@ std::vector<Document> parseInputs(const InputRequest& request) {
 }
 
 template <typename T>
-void append(std::vector<T>& to, const std::vector<T>& from) {
-    to.insert(to.end(), from.begin(), from.end());
+void append(std::vector<T>& to, std::vector<T>&& from) {
+    if (to.empty())
+        to = std::move(from);
+    else
+        to.insert(to.end(), std::move_iterator(from.begin()), std::move_iterator(from.end()));
 }
 
 /// Layouts alone: the first that names its environment brings it along.
@@ -342,19 +347,20 @@ Document readInputs(const InputRequest& request) {
     });
     Document joined;
     joined.kind = documents.front().kind;
-    std::vector<Record> environment;  // before layouts are applied
+    const bool checks_digests = request.compiles && !request.any_environment &&
+                                documents.back().kind == DocumentKind::Layout;
+    std::vector<Record> environment;  // before layouts are applied, where that is asked for
     for (Document& document : documents) {
-        append(joined.history, document.history);
-        append(joined.notes, document.notes);
-        append(joined.warnings, document.warnings);
-        append(joined.sources, document.sources);
+        append(joined.history, std::move(document.history));
+        append(joined.notes, std::move(document.notes));
+        append(joined.warnings, std::move(document.warnings));
+        append(joined.sources, std::move(document.sources));
         if (document.kind == DocumentKind::Layout) {
-            if (request.compiles && !environment.empty() && !request.any_environment)
-                checkDigest(document, environment, "the environment given");
+            if (!environment.empty()) checkDigest(document, environment, "the environment given");
             joined.records = joinRecords(joined.records, document.records);
         } else {
-            append(joined.records, document.records);
-            environment = joined.records;
+            append(joined.records, std::move(document.records));
+            if (checks_digests) environment = joined.records;
         }
     }
     checkIds(joined.records);

@@ -24,6 +24,7 @@ double atMostQuarter(double wanted, double extent) { return std::min(wanted, ext
 
 void addLegs(Body& body, const Standing& thing, double leg, double top, Material material) {
     const double x = thing.length / 2, y = thing.width / 2;
+    body.prisms.reserve(body.prisms.size() + 4);
     for (const Point2 low :
          {Point2{-x, -y}, Point2{x - leg, -y}, Point2{x - leg, y - leg}, Point2{-x, y - leg}})
         body.prisms.push_back(

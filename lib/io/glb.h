@@ -2,6 +2,7 @@
 // lib/io: file formats of others, and the compiled form. Uses plan and what is below it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,5 +22,11 @@ bool glbHasRecords(std::string_view bytes);
 /// further than needed; what is only drawn is not read. O(records + meshes). \throws FormatError
 /// for truncated, foreign ("no ispace records") or damaged files
 Document readGlb(std::string_view bytes, const std::string& name, const Schemas& schemas);
+
+/// The same of a file, of which only what is needed is read: its beginning, and the views of the
+/// records and of the meshes that they name. Nothing where it is no regular file, no sound binary
+/// glTF or has no records of ours, which readers of all its bytes tell.
+/// \throws FormatError as readGlb; std::system_error
+std::optional<Document> readGlbFile(const std::string& file, const Schemas& schemas);
 
 }  // namespace ispace

@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <deque>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "base/read_fence.h"
 #include "io/glb.h"
 #include "io/input.h"
+#include "io/side_files.h"
 #include "model/glb_file.h"
 #include "record/text.h"
 
@@ -117,20 +126,44 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
     bool has_views_ = false;
 };
 
+/// Where the binary data of a file are.
+class GlbData {
+  public:
+    virtual ~GlbData() = default;
+    [[nodiscard]] virtual std::uint64_t size() const = 0;
+    /// \pre the range lies within; the result stays as long as this
+    [[nodiscard]] virtual std::string_view read(std::uint64_t offset, std::size_t length) = 0;
+};
+
+class DataInMemory final : public GlbData {
+  public:
+    explicit DataInMemory(std::string_view bytes) : bytes_(bytes) {}
+    [[nodiscard]] std::uint64_t size() const override { return bytes_.size(); }
+    [[nodiscard]] std::string_view read(std::uint64_t offset, std::size_t length) override {
+        return bytes_.substr(offset, length);
+    }
+
+  private:
+    std::string_view bytes_;
+};
+
 /// A file that has records, and what its buffer views hold.
 class Glb {
   public:
-    Glb(std::string_view bytes, const std::string& name) : name_(name) {
-        if (!isGlb(bytes)) failFile(name, "not a binary glTF file: wanted `glTF` at its beginning");
-        const GlbChunks chunks = glbChunks(bytes, name);
-        binary_ = chunks.binary;
-        if (!finder_.read(chunks.json))
+    /// \param json as much of it as says where the records are
+    Glb(std::string_view json, std::unique_ptr<GlbData> data, const std::string& name)
+        : name_(name), data_(std::move(data)), is_sound_(finder_.read(json)) {}
+    Glb(const GlbChunks& chunks, const std::string& name)
+        : Glb(chunks.json, std::make_unique<DataInMemory>(chunks.binary), name) {
+        if (!is_sound_)
             failFile(name, "damaged: bad JSON at byte " + std::to_string(finder_.error_position) +
                                " of its chunk");
     }
 
+    /// False if what was given of the JSON has errors or is too little.
+    [[nodiscard]] bool isSound() const { return is_sound_; }
     [[nodiscard]] bool hasRecords() const { return finder_.records.has_value(); }
-    [[nodiscard]] std::string_view records() const {
+    [[nodiscard]] std::string_view records() {
         return viewOf(*finder_.records, "extras.ispace", "the records lie");
     }
 
@@ -151,16 +184,16 @@ class Glb {
 
   private:
     [[nodiscard]] std::string_view viewOf(std::uint64_t index, const std::string& key,
-                                          const std::string& content) const {
+                                          const std::string& content) {
         if (index >= finder_.views.size())
             failFile(name_, "damaged: " + key + " names none of the " +
                                 std::to_string(finder_.views.size()) + " buffer views");
         const Finder::View& view = finder_.views[index];
-        if (view.buffer != 0 || view.offset > binary_.size() ||
-            view.length > binary_.size() - view.offset)
+        if (view.buffer != 0 || view.offset > data_->size() ||
+            view.length > data_->size() - view.offset)
             failFile(name_, "damaged: " + content + " outside of its " +
-                                std::to_string(binary_.size()) + " bytes of data");
-        return binary_.substr(view.offset, view.length);
+                                std::to_string(data_->size()) + " bytes of data");
+        return data_->read(view.offset, view.length);
     }
 
     /// Copies a view of three numbers each.
@@ -172,7 +205,7 @@ class Glb {
                                 " bytes of a mesh, wanted 12 each for points and triangles");
         // Else a file could have many times its size of meshes.
         taken_ += bytes.size();
-        if (taken_ > binary_.size()) failFile(name_, "damaged: its meshes overlap");
+        if (taken_ > data_->size()) failFile(name_, "damaged: its meshes overlap");
         out.resize(bytes.size() / sizeof out[0]);
         if (!out.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
     }
@@ -202,8 +235,9 @@ class Glb {
     }
 
     const std::string& name_;
-    std::string_view binary_;
     Finder finder_;
+    std::unique_ptr<GlbData> data_;
+    bool is_sound_;
     std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
     std::size_t taken_ = 0;  ///< bytes of meshes that were read
 };
@@ -212,23 +246,125 @@ class Glb {
 
 bool isGlb(std::string_view bytes) { return bytes.starts_with("glTF"); }
 
+namespace {
+
+Glb glbOf(std::string_view bytes, const std::string& name) {
+    if (!isGlb(bytes)) failFile(name, "not a binary glTF file: wanted `glTF` at its beginning");
+    return {glbChunks(bytes, name), name};
+}
+
+Document documentOf(Glb& glb, const std::string& name, const Schemas& schemas) {
+    Document document = readRecordText(glb.records(), name, schemas);
+    glb.attachMeshes(document.records);
+    return document;
+}
+
+/// Reads ranges of an open file.
+class FileRanges {
+  public:
+    explicit FileRanges(RegularFile file, std::string name)
+        : file_(std::move(file)), name_(std::move(name)) {}
+    [[nodiscard]] std::uint64_t size() const { return file_.size; }
+    [[nodiscard]] const std::string& name() const { return name_; }
+    /// What there is of a range. \throws std::system_error
+    [[nodiscard]] std::string read(std::uint64_t offset, std::size_t length) const {
+        std::string bytes(offset < size() ? std::min<std::uint64_t>(length, size() - offset) : 0,
+                          '\0');
+        for (std::size_t done = 0; done < bytes.size();) {
+            const ssize_t count = ::pread(file_.file.fd(), bytes.data() + done, bytes.size() - done,
+                                          static_cast<off_t>(offset + done));
+            if (count < 0 && errno == EINTR) continue;
+            if (count < 0) throw std::system_error(errno, std::generic_category(), name_);
+            if (count == 0) bytes.resize(done);  // somebody has cut it
+            done += static_cast<std::size_t>(count);
+        }
+        return bytes;
+    }
+
+  private:
+    RegularFile file_;
+    std::string name_;
+};
+
+/// Where the data of a file are that is JSON and binary data and nothing else.
+struct GlbSpan {
+    std::uint64_t json_end = 0, binary = 0, binary_size = 0;
+};
+
+constexpr std::size_t kGlbHead = 20, kChunkHead = 8;  // of the file with its first chunk; of others
+
+std::optional<GlbSpan> spanOf(const FileRanges& file, std::string_view head) {
+    const auto word = [](std::string_view bytes, std::size_t index) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, bytes.data() + sizeof(value) * index, sizeof(value));
+        return value;
+    };
+    if (head.size() < kGlbHead || word(head, 1) != 2 || word(head, 2) != file.size() ||
+        head.substr(16, 4) != "JSON")
+        return std::nullopt;
+    GlbSpan span;
+    span.json_end = kGlbHead + std::uint64_t{word(head, 3)};
+    const std::string next = file.read(span.json_end, kChunkHead);
+    if (next.size() < kChunkHead || next.substr(4) != std::string_view("BIN\0", 4))
+        return std::nullopt;
+    span.binary = span.json_end + kChunkHead;
+    span.binary_size = word(next, 0);
+    if (span.binary + span.binary_size != file.size()) return std::nullopt;
+    return span;
+}
+
+class DataInFile final : public GlbData {
+  public:
+    DataInFile(FileRanges file, std::uint64_t offset, std::uint64_t size)
+        : file_(std::move(file)), offset_(offset), size_(size) {}
+    [[nodiscard]] std::uint64_t size() const override { return size_; }
+    [[nodiscard]] std::string_view read(std::uint64_t offset, std::size_t length) override {
+        parts_.push_back(file_.read(offset_ + offset, length));
+        if (parts_.back().size() < length) failFile(file_.name(), "truncated while it was read");
+        return parts_.back();
+    }
+
+  private:
+    FileRanges file_;
+    std::uint64_t offset_, size_;
+    std::deque<std::string> parts_;  // what was read, each staying where it is
+};
+
+}  // namespace
+
 bool glbHasRecords(std::string_view bytes) {
     try {
-        return Glb(bytes, "").hasRecords();
+        return glbOf(bytes, "").hasRecords();
     } catch (const FormatError&) {
         return true;  // for readGlb to explain
     }
 }
 
 Document readGlb(std::string_view bytes, const std::string& name, const Schemas& schemas) {
-    Glb glb(bytes, name);
+    Glb glb = glbOf(bytes, name);
     if (!glb.hasRecords())
         failFile(name,
                  "no ispace records in this glTF file: compile the environment with `envc … -o "
                  "room.glb`");
-    Document document = readRecordText(glb.records(), name, schemas);
-    glb.attachMeshes(document.records);
-    return document;
+    return documentOf(glb, name, schemas);
+}
+
+std::optional<Document> readGlbFile(const std::string& file, const Schemas& schemas) {
+    std::error_code ignored;
+    if (!mayBeRead(file) || !std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
+    FileRanges ranges(openRegular(file), file);
+    if (!isGlb(ranges.read(0, kGlbHead))) return std::nullopt;
+    // The JSON of ours begins with what is wanted; a mesh of a file takes some hundred bytes.
+    constexpr std::size_t kBeginning = 1 << 16;
+    const std::string head = ranges.read(0, kBeginning);
+    const auto span = spanOf(ranges, head);
+    if (!span) return std::nullopt;
+    const std::string_view json =
+        std::string_view(head).substr(kGlbHead, span->json_end - kGlbHead);
+    Glb glb(json, std::make_unique<DataInFile>(std::move(ranges), span->binary, span->binary_size),
+            file);
+    if (!glb.isSound() || !glb.hasRecords()) return std::nullopt;
+    return documentOf(glb, file, schemas);
 }
 
 }  // namespace ispace

@@ -2,17 +2,21 @@
 #include "io/glb.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "env/mesh.h"
+#include "io/input.h"
 #include "io/test_glb.h"
 #include "layout/schemas.h"
 #include "record/text.h"
@@ -305,6 +309,49 @@ TEST(Glb, StopsReadingWhereTheRecordsAreFound) {
     }
     EXPECT_NE(errorOf(container(view.substr(0, 20) + "]]", text)).find("bad JSON"),
               std::string::npos);
+}
+
+/// What comes of reading: the records, or the error.
+template <typename Read>
+std::string outcomeOf(Read read) {
+    try {
+        return writeRecordText(read());
+    } catch (const FormatError& error) {
+        return error.what();
+    }
+}
+
+/// Of a file only parts are read, but the same comes of it, damaged or not.
+TEST(Glb, AFileIsReadAsItsBytesAre) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("glb-" + std::to_string(::getpid()));
+    std::filesystem::create_directory(folder);
+    const std::string file = folder / "room.glb";
+    std::string long_room = kRoom;
+    for (int i = 0; i < 3000; ++i) long_room += "desk at=" + std::to_string(i) + ",5\n";
+    const std::string glb = compiled(kRoom), long_glb = compiled(long_room);
+    std::vector<std::string> all = {
+        glb,
+        long_glb,
+        long_glb.substr(0, long_glb.size() / 2),
+        glb.substr(0, 15),
+        glb + "x",
+        container(R"({"extras":{"ispace":1},"bufferViews":[{}]})", ""),
+        container(R"({"x":")" + std::string(70000, 'x') +
+                      R"(","extras":{"ispace":0},"bufferViews":[{"byteLength":7}]})",
+                  "#env 1\n")};
+    std::mt19937_64 random(3);
+    for (int i = 0; i < 300; ++i) {
+        all.push_back(glb);
+        char& byte = all.back()[random() % 700];
+        byte = static_cast<char>(byte ^ static_cast<char>(1U << (random() % 8)));
+    }
+    for (const std::string& bytes : all) {
+        writeAll(file, bytes);
+        EXPECT_EQ(outcomeOf([&] { return readDocument(file, {}, sceneSchemas()); }),
+                  outcomeOf([&] { return parseDocument(bytes, file, {}, sceneSchemas()); }));
+    }
+    std::filesystem::remove_all(folder);
 }
 
 TEST(Glb, TellsItsOwnFilesFromMeshesOfOthers) {

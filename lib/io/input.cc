@@ -244,6 +244,10 @@ void loadFiles(Document& document, const std::string& operand) {
 
 Document readDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas) {
+    if (auto document = operand == "-" ? std::nullopt : readGlbFile(operand, schemas)) {
+        if (options.load_files) loadFiles(*document, operand);
+        return std::move(*document);
+    }
     return parseDocument(readAll(operand), operand, options, schemas);
 }
 

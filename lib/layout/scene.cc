@@ -2,9 +2,11 @@
 #include "layout/scene.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -59,6 +61,8 @@ bool isCarrier(const Record& record) {
 constexpr double kEyes = 0.94;
 
 Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids) {
+    const auto is_carried = [](const Record& record) { return record.has("on"); };
+    if (std::none_of(records.begin(), records.end(), is_carried)) return;
     std::size_t robots = 0, people = 0;
     for (std::size_t i = 0; i < records.size(); ++i) {
         const bool is_human = records[i].keyword() == "human";
@@ -231,13 +235,21 @@ Scene makeScene(std::vector<Record> records, const Scene* before, std::string di
 std::vector<Record> joinRecords(const std::vector<Record>& environment,
                                 const std::vector<Record>& layout) {
     std::vector<Record> joined = environment;
-    std::map<std::string, std::size_t> places;
-    for (std::size_t i = 0; i < joined.size(); ++i)
-        if (std::string id = joined[i].writtenId(); !id.empty()) places.emplace(std::move(id), i);
+    // Where the first of the environment with an id of the layout is, which has few.
+    constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
+    std::unordered_map<std::string, std::size_t> places;
+    for (const Record& record : layout)
+        if (std::string id = record.writtenId(); !id.empty())
+            places.emplace(std::move(id), kNowhere);
+    for (std::size_t i = 0; !places.empty() && i < joined.size(); ++i) {
+        if (!joined[i].has("id")) continue;
+        const auto place = places.find(joined[i].text("id"));
+        if (place != places.end() && place->second == kNowhere) place->second = i;
+    }
     for (const Record& record : layout) {
         const std::string id = record.writtenId();
-        const auto place = id.empty() ? places.end() : places.find(id);
-        if (place == places.end()) {
+        const auto place = places.find(id);
+        if (place == places.end() || place->second == kNowhere) {
             joined.push_back(record);
             continue;
         }

@@ -33,6 +33,8 @@ GlbChunks glbChunks(std::string_view bytes, const std::string& name);
 /// Writes the container: JSON, and the parts one after another as its binary data.
 /// \throws FormatError for more than 2 GiB, which some readers take for a negative length
 std::string glbContainer(std::string_view json, std::span<const std::string_view> parts);
+/// The same of JSON in pieces, each of which is let go of once it is in the file.
+std::string glbContainer(std::vector<std::string> json, std::span<const std::string_view> parts);
 
 /// glTF's (X, Y, Z) are our (x, z, -y).
 std::array<double, 3> gltfAxes(Vec3 v);

@@ -125,13 +125,13 @@ void envc(const EnvcOptions& options) {
     limitThreads(options.common.threads);
     claimOutputs(options.common);
     if (format != nullptr) claimOutput(besideOf(options), std::string(format->beside_role));
-    const Document document = readModel(options);
-    if (format != nullptr && format->write_records != nullptr)
-        convert(options, document);
-    else
-        compile(options, document);
+    Document document = readModel(options);
     std::vector<std::string> files = options.inputs;
     files.insert(files.end(), document.sources.begin(), document.sources.end());
+    if (format != nullptr && format->write_records != nullptr)
+        convert(options, std::move(document));
+    else
+        compile(options, std::move(document));
     writeDependencies(options.common, files);
 }
 
