@@ -172,7 +172,7 @@ void PartFile::readHead() {
         }
         const std::string_view key = takeUpTo(words, ' ');
         if (!readField(head_, key, words))
-            refuse("bad line `" + excerpt(std::string(key)) + "` in the header of a part", line);
+            refuse("bad line " + excerpt(key) + " in the header of a part", line);
     }
     if (head_.job.tool.empty()) refuse("its header names no tool");
 }
@@ -236,7 +236,7 @@ std::string PartFile::bytes(std::size_t record) const {
     const Entry& entry = records_[record];
     std::string bytes;
     if (!readRecord(entry, bytes))
-        refuse("damaged: record `" + excerpt(entry.name) + "` at byte " + std::to_string(entry.at) +
+        refuse("damaged: record " + excerpt(entry.name) + " at byte " + std::to_string(entry.at) +
                " is not what was written; delete it and run shard " + head_.shard.text() +
                " again");
     return bytes;
