@@ -29,7 +29,8 @@ constexpr Topic kScan{RosType::LaserScan, "scan"}, kPoints{RosType::PointCloud2,
     kDepth{RosType::Image, "depth/image_rect"},
     kDepthInfo{RosType::CameraInfo, "depth/camera_info"},
     kImage{RosType::CompressedImage, "image_raw/compressed"},
-    kImageInfo{RosType::CameraInfo, "camera_info"}, kPosition{RosType::PointStamped, "position"};
+    kImageInfo{RosType::CameraInfo, "camera_info"}, kPosition{RosType::PointStamped, "position"},
+    kOdometry{RosType::Odometry, "odom"};
 
 bool isPinhole(const Ranger& ranger) { return ranger.projection == Projection::Pinhole; }
 
@@ -48,6 +49,18 @@ std::vector<Topic> topicsOf(const Sensor& sensor) {
         return {kImage, kImageInfo};
     }
     return {kPosition};
+}
+
+/// In nanoseconds; ROS counts seconds in 31 bits. \param who for messages
+std::uint64_t rosTime(double seconds, const std::string& who) {
+    constexpr double kMost = 2147483647, kSecond = 1e9;
+    if (!(seconds >= 0 && seconds <= kMost))
+        throw FormatError({"", 0, 0,
+                           who + " is read at t=" + formatDouble(seconds) +
+                               ", and times of ROS go from 0 to " + formatDouble(kMost)});
+    const double whole = std::floor(seconds);
+    return static_cast<std::uint64_t>(whole) * 1'000'000'000U +
+           static_cast<std::uint64_t>(std::llround((seconds - whole) * kSecond));
 }
 
 /// Appends the messages of one reading.
@@ -136,16 +149,8 @@ class Messages {
                           message);
     }
 
-    /// ROS counts seconds in 31 bits.
     [[nodiscard]] std::uint64_t nanoseconds(double seconds) const {
-        constexpr double kMost = 2147483647, kSecond = 1e9;
-        if (!(seconds >= 0 && seconds <= kMost))
-            throw FormatError({"", 0, 0,
-                               sensor_.id + " is read at t=" + formatDouble(seconds) +
-                                   ", and times of ROS go from 0 to " + formatDouble(kMost)});
-        const double whole = std::floor(seconds);
-        return static_cast<std::uint64_t>(whole) * 1'000'000'000U +
-               static_cast<std::uint64_t>(std::llround((seconds - whole) * kSecond));
+        return rosTime(seconds, sensor_.id);
     }
 
     std::string& out_;
@@ -157,8 +162,8 @@ class Messages {
 
 class McapStream final : public ReadingStream {
   public:
-    McapStream(ByteSink write, std::vector<McapChannel> channels)
-        : file_(std::move(write), "ros2", "cdr", rosSchemas(), std::move(channels)) {}
+    McapStream(ByteSink write, std::vector<McapChannel> channels, McapCompression compression)
+        : file_(std::move(write), "ros2", "cdr", rosSchemas(), std::move(channels), compression) {}
     void write(std::string_view appended) override { file_.add(appended); }
     void finish() override { file_.finish(); }
 
@@ -166,42 +171,100 @@ class McapStream final : public ReadingStream {
     McapWriter file_;
 };
 
+/// Somebody in a recorded run, as topics and frames have them.
+struct Member {
+    std::string name, odometry;  ///< the frames
+    std::uint16_t channel = 0;   ///< of a robot's odometry
+};
+
+/// Where the frame of a robot's odometry is, by where the robot is in both.
+Pose2 odometryFrame(const Pose2& robot, const Pose2& odometry) {
+    const Angle heading = robot.heading - odometry.heading;
+    const Vec2 way = Pose2{{}, heading} * (odometry.position - Point2{});
+    return {robot.position - way, heading};
+}
+
+Pose3 onFloor(const Pose2& pose) {
+    return {{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
+}
+
 class Mcap final : public FormatBase {
   public:
     Mcap(const Sensors& sensors, FormatOptions options)
         : FormatBase(sensors, std::move(options), ".mcap") {
         channels_.push_back({static_cast<std::uint16_t>(RosType::TFMessage), "/tf"});
-        std::map<std::string, std::string> taken{{std::string(kWorldFrame), "the world's frame"},
-                                                 {"tf", "the topic of poses"}};
         for (const Sensor& one : sensors.read) {
-            names_.push_back(rosName(one.id));
-            const auto [other, is_new] = taken.emplace(names_.back(), one.id);
-            if (!is_new)
-                throw UsageError("mcap: ROS would call " + one.id + " " + names_.back() +
-                                 ", as it does " + other->second +
-                                 "; choose sensors with --select, or give them other ids");
+            names_.push_back(takeName(rosName(one.id), one.id));
             first_.push_back(static_cast<std::uint16_t>(channels_.size()));
-            for (const Topic& topic : topicsOf(one))
-                channels_.push_back({static_cast<std::uint16_t>(topic.type),
-                                     "/" + names_.back() + "/" + topic.name});
+            for (const Topic& topic : topicsOf(one)) addChannel(names_.back(), topic);
             if (channels_.size() > std::numeric_limits<std::uint16_t>::max())
                 throw UsageError("mcap has 65535 channels, which " +
                                  std::to_string(sensors.read.size()) +
                                  " sensors exceed; choose sensors with --select");
         }
+        for (const RunMember& one : options_.members) addMember(one);
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
         Messages messages(out, names_[index], first_[index], sensor(index));
         std::visit([&](const auto& one) { messages.add(one); }, reading);
     }
+    void appendMoment(std::string& out, std::uint32_t sequence, double time,
+                      std::span<const RunState> states) const override {
+        std::vector<RosTransform> transforms;
+        std::string odometries;
+        for (const RunState& state : states) {
+            const std::uint64_t now = rosTime(time, options_.members[state.who].id);
+            const Member& one = members_[state.who];
+            if (!state.odometry) {
+                transforms.push_back({{now, kWorldFrame}, one.name, onFloor(state.pose)});
+                continue;
+            }
+            const Pose2 frame = odometryFrame(state.pose, *state.odometry);
+            transforms.push_back({{now, kWorldFrame}, one.odometry, onFloor(frame)});
+            transforms.push_back({{now, one.odometry}, one.name, onFloor(*state.odometry)});
+            appendMcapMessage(odometries, one.channel, sequence, now,
+                              odometryMessage({now, one.odometry}, one.name, *state.odometry,
+                                              {state.speed, state.sidespeed, state.rotspeed}));
+        }
+        if (transforms.empty()) return;
+        const std::uint64_t now = transforms.front().header.nanoseconds;
+        appendMcapMessage(out, 0, sequence, now, transformsMessage(transforms));
+        out += odometries;
+    }
     [[nodiscard]] std::unique_ptr<ReadingStream> stream(ByteSink write) const override {
-        return std::make_unique<McapStream>(std::move(write), channels_);
+        return std::make_unique<McapStream>(std::move(write), channels_, options_.compression);
     }
     [[nodiscard]] bool isPlain() const override { return false; }
     [[nodiscard]] bool isBinary() const override { return true; }
 
   private:
+    /// \throws UsageError if another id has the same name
+    std::string takeName(std::string name, const std::string& id) {
+        const auto [other, is_new] = taken_.emplace(name, id);
+        if (!is_new)
+            throw UsageError("mcap: ROS would call " + id + " " + name + ", as it does " +
+                             other->second +
+                             "; choose sensors with --select, or give them other ids");
+        return name;
+    }
+    void addChannel(const std::string& name, const Topic& topic) {
+        channels_.push_back(
+            {static_cast<std::uint16_t>(topic.type), "/" + name + "/" + topic.name});
+    }
+    void addMember(const RunMember& one) {
+        Member member{takeName(rosName(one.id), one.id), "", 0};
+        if (!one.is_person) {
+            member.odometry = takeName(member.name + "_odom", one.id + "'s odometry");
+            member.channel = static_cast<std::uint16_t>(channels_.size());
+            addChannel(member.name, kOdometry);
+        }
+        members_.push_back(std::move(member));
+    }
+
+    std::map<std::string, std::string> taken_{{std::string(kWorldFrame), "the world's frame"},
+                                              {"tf", "the topic of poses"}};
     std::vector<McapChannel> channels_;
+    std::vector<Member> members_;
     std::vector<std::string> names_;  ///< of each sensor, as topics and frames have it
     std::vector<std::uint16_t> first_;
 };

@@ -26,8 +26,11 @@ struct McapChannel {
 void appendMcapMessage(std::string& out, std::uint16_t channel, std::uint32_t sequence,
                        std::uint64_t nanoseconds, std::string_view message);
 
-/// Writes an MCAP file (mcap.dev, version 0) piece by piece: chunks without compression, each with
-/// an index of its messages, then a summary with statistics; CRCs everywhere. Equal messages give
+/// How the chunks of a file are packed.
+enum class McapCompression { None, Zstd };
+
+/// Writes an MCAP file (mcap.dev, version 0) piece by piece: chunks, each with an index of its
+/// messages, then a summary with statistics; CRCs everywhere. Equal messages give
 /// equal bytes, however they are handed over. Memory: one chunk, and some 100 bytes for each that
 /// was written.
 ///
@@ -36,7 +39,8 @@ class McapWriter {
   public:
     /// \param encoding of the messages, "cdr"
     McapWriter(ByteSink write, std::string_view profile, std::string_view encoding,
-               std::vector<McapSchema> schemas, std::vector<McapChannel> channels);
+               std::vector<McapSchema> schemas, std::vector<McapChannel> channels,
+               McapCompression compression = McapCompression::None);
 
     /// Whole records of appendMcapMessage(), one behind another.
     void add(std::string_view messages);
@@ -46,13 +50,15 @@ class McapWriter {
   private:
     using IndexEntry = std::pair<std::uint64_t, std::uint64_t>;
     struct ChunkIndex {
-        std::uint64_t first = 0, last = 0, at = 0, length = 0, index_length = 0, size = 0;
+        std::uint64_t first = 0, last = 0, at = 0, length = 0, index_length = 0, size = 0,
+                      packed_size = 0;
         std::vector<std::pair<std::uint16_t, std::uint64_t>> indices;
     };
 
     void put(std::string_view bytes);
     void addOne(std::string_view record);
     void finishChunk();
+    [[nodiscard]] std::string_view compressionName() const;
     [[nodiscard]] std::string schemaRecords() const;
     [[nodiscard]] std::string channelRecords() const;
     [[nodiscard]] std::string statisticsRecord() const;
@@ -62,6 +68,7 @@ class McapWriter {
     std::string encoding_;
     std::vector<McapSchema> schemas_;
     std::vector<McapChannel> channels_;
+    McapCompression compression_;
     std::uint64_t at_ = 0;
     std::uint32_t crc_ = 0;
 

@@ -5,12 +5,15 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/byte_sink.h"
 #include "base/program.h"
+#include "layout/run_reader.h"
+#include "sense/mcap_writer.h"
 #include "sense/point_cloud.h"
 #include "sense/reading.h"
 #include "sense/reading_picture.h"
@@ -41,6 +44,10 @@ class ReadingFormat {
     [[nodiscard]] virtual std::string header() const { return ""; }
     /// Appends a reading of a sensor (in Sensors::read): its bytes, or what stream() makes them of.
     virtual void append(std::string& out, std::size_t sensor, const Reading& reading) const = 0;
+    /// Appends where everybody in a recorded run is at a moment of it, and what robots believe, in
+    /// formats that have words for it. \param states of FormatOptions::members
+    virtual void appendMoment(std::string& /*out*/, std::uint32_t /*sequence*/, double /*time*/,
+                              std::span<const RunState> /*states*/) const {}
     /// One file of many readings: header(), and what append() made of each, unless a format says
     /// otherwise. The format outlives the stream.
     [[nodiscard]] virtual std::unique_ptr<ReadingStream> stream(ByteSink write) const;
@@ -64,15 +71,17 @@ class ReadingFormat {
 struct FormatOptions {
     History history;
     std::uint64_t seed = 0;
-    Coordinates coordinates = Coordinates::World;  ///< of points: csv, pcd, ply
-    Encoding encoding = Encoding::Binary;          ///< of pcd and ply
-    double depth_per_metre = 1000;                 ///< of png
-    bool color = true;                             ///< of png: a picture for people, too
-    std::optional<DepthSpectrum> spectrum;         ///< of that picture
-    int map_pixels = 800;                          ///< of png: side of an obstacle map
+    Coordinates coordinates = Coordinates::World;         ///< of points: csv, pcd, ply
+    Encoding encoding = Encoding::Binary;                 ///< of pcd and ply
+    double depth_per_metre = 1000;                        ///< of png
+    bool color = true;                                    ///< of png: a picture for people, too
+    std::optional<DepthSpectrum> spectrum;                ///< of that picture
+    int map_pixels = 800;                                 ///< of png: side of an obstacle map
+    McapCompression compression = McapCompression::None;  ///< of mcap
     /// Of png and jpeg: pictures have these files beside them; the table of labels needs the scene.
     bool labels = false, depths = false;
     const Scene* scene = nullptr;
+    std::vector<RunMember> members = {};  ///< everybody in a recorded run
 };
 
 /// Names of the formats.

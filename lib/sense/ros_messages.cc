@@ -195,4 +195,16 @@ std::string pointMessage(const RosHeader& header, Point3 point) {
     return CdrWriter().put(header).put(point.x).put(point.y).put(point.z).take();
 }
 
+std::string odometryMessage(const RosHeader& header, std::string_view child, const Pose2& pose,
+                            const RosTwist& twist) {
+    constexpr std::array<double, 36> kUnknown{};
+    CdrWriter out;
+    out.put(header).put(child).put(pose.position.x).put(pose.position.y).put(0.0);
+    putRotation(out, Eigen::Quaterniond(turnAbout(2, pose.heading)));
+    out.array(std::span<const double>(kUnknown));
+    out.put(twist.forward).put(twist.left).put(0.0);
+    out.put(0.0).put(0.0).put(twist.turn.radians());
+    return out.array(std::span<const double>(kUnknown)).take();
+}
+
 }  // namespace ispace

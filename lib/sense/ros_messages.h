@@ -24,7 +24,8 @@ enum class RosType : std::uint16_t {
     Image,
     CompressedImage,
     CameraInfo,
-    PointStamped
+    PointStamped,
+    Odometry
 };
 
 /// Their definitions with all they contain (`ros2msg`).
@@ -64,5 +65,13 @@ std::string cameraInfoMessage(const RosHeader& header, const Ranger& ranger);
 /// \pre no mirror, for which ROS has no model
 std::string cameraInfoMessage(const RosHeader& header, const Camera& camera);
 std::string pointMessage(const RosHeader& header, Point3 point);
+/// How something moves, seen from itself: ahead and to the left in m/s, and its turn a second.
+struct RosTwist {
+    double forward = 0, left = 0;
+    Angle turn;
+};
+/// Where `child` believes to be in the frame of the header. Covariances are 0: unknown.
+std::string odometryMessage(const RosHeader& header, std::string_view child, const Pose2& pose,
+                            const RosTwist& twist);
 
 }  // namespace ispace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads an MCAP file with Foxglove's libraries and holds its messages against the readings of the same
-// scan as JSON lines: node read_mcap.js FILE.mcap FILE.jsonl
+// scan as JSON lines: node read_mcap.js FILE.mcap FILE.jsonl [SCANS [RUN]]
+// SCANS are those of a sweep. RUN is the folder of a recorded run, whose robots and people have to be where
+// its tables say.
 // Prints what it read, a line for each topic. Exit status: 0 all is equal, 1 something differs.
 'use strict';
 
@@ -10,6 +12,11 @@ const { McapIndexedReader, McapStreamReader } = require('@mcap/core');
 const { parse } = require('@foxglove/rosmsg');
 const { MessageReader } = require('@foxglove/rosmsg2-serialization');
 const { crc32 } = require('@foxglove/crc');
+const fzstd = require('fzstd');
+
+const decompressHandlers = {
+  zstd: (bytes, size) => fzstd.decompress(bytes, new Uint8Array(Number(size))),
+};
 
 /// Decodes messages by the schemas that the file brings.
 class Decoder {
@@ -31,7 +38,7 @@ async function readIndexed(bytes) {
     size: async () => BigInt(bytes.length),
     read: async (offset, size) => bytes.subarray(Number(offset), Number(offset + size)),
   };
-  const reader = await McapIndexedReader.Initialize({ readable });
+  const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers });
   assert.strictEqual(reader.header.profile, 'ros2');
   const decoder = new Decoder();
   const messages = [];
@@ -59,7 +66,7 @@ async function readIndexed(bytes) {
 
 /// The same file read from front to back, without its index.
 function readStreamed(bytes) {
-  const reader = new McapStreamReader({ validateCrcs: true });
+  const reader = new McapStreamReader({ validateCrcs: true, decompressHandlers });
   // In pieces, as from a pipe.
   const piece = 65521;
   let count = 0;
@@ -180,6 +187,71 @@ function checkSwept(line, cloud) {
   });
 }
 
+/// Lines of a table as objects, by `t id`.
+function tableOf(file) {
+  const [head, ...lines] = fs.readFileSync(file, 'utf8').trim().split('\n');
+  const keys = head.split(',');
+  return new Map(lines.map((line) => {
+    const words = line.split(',');
+    const row = Object.fromEntries(keys.map((key, i) => [key, key === 'id' ? words[i] : Number(words[i])]));
+    return [`${Math.round(row.t * 1e9)} ${row.id}`, row];
+  }));
+}
+
+/// A row's pose as a matrix that takes points of the body to the table's frame.
+const flat = (x, y, turn) => [
+  [Math.cos(turn), -Math.sin(turn), x], [Math.sin(turn), Math.cos(turn), y], [0, 0, 1]];
+const ofRow = (row) => flat(row.x, row.y, (row.heading_deg * Math.PI) / 180);
+const ofQuaternion = ({ x, y, z }, q) => {
+  close(z, 0, 'height');
+  close(q.x, 0, 'level');
+  close(q.y, 0, 'level');
+  return flat(x, y, 2 * Math.atan2(q.z, q.w));
+};
+const times = (a, b) => a.map((row) => b[0].map((_, k) => row.reduce((sum, v, j) => sum + v * b[j][k], 0)));
+function same(a, b, what) {
+  a.forEach((row, i) => row.forEach((v, k) => close(v, b[i][k], what)));
+}
+
+/// \return how many poses of robots, their odometry and people were compared
+function checkRun(folder, messages) {
+  const table = (name) => (fs.existsSync(`${folder}/${name}`) ? tableOf(`${folder}/${name}`) : new Map());
+  const [robots, odometry, people] = ['robots.csv', 'odometry.csv', 'people.csv'].map(table);
+  const counts = [0, 0, 0];
+  for (const { topic, time, content } of messages) {
+    const own = (rows, id) => {
+      const row = rows.get(`${time} ${id}`);
+      assert(row, `${id} is not in the run at ${time}`);
+      return row;
+    };
+    const odom = /^\/(.*)\/odom$/.exec(topic);
+    if (odom) {
+      const believed = own(odometry, odom[1]);
+      const row = own(robots, odom[1]);
+      assert.deepStrictEqual([content.header.frame_id, content.child_frame_id], [`${odom[1]}_odom`, odom[1]]);
+      same(ofQuaternion(content.pose.pose.position, content.pose.pose.orientation), ofRow(believed), 'odometry');
+      close(content.twist.twist.linear.x, row.speed, 'speed');
+      close(content.twist.twist.angular.z, (row.rotspeed_deg * Math.PI) / 180, 'turn');
+      ++counts[1];
+    }
+    if (topic !== '/tf') continue;
+    const frames = new Map(content.transforms.map((each) => [each.child_frame_id,
+      { parent: each.header.frame_id, at: each.transform }]));
+    const inMap = (frame) => {
+      const { parent, at } = frames.get(frame);
+      const pose = ofQuaternion(at.translation, at.rotation);
+      return parent === 'map' ? pose : times(inMap(parent), pose);
+    };
+    for (const id of frames.keys()) {
+      const rows = [robots, people].findIndex((each) => each.has(`${time} ${id}`));
+      if (rows < 0) continue;
+      same(inMap(id), ofRow([robots, people][rows].get(`${time} ${id}`)), id);
+      ++counts[2 * rows];
+    }
+  }
+  return counts;
+}
+
 async function main() {
   const bytes = fs.readFileSync(process.argv[2]);
   const { reader, messages } = await readIndexed(bytes);
@@ -232,6 +304,7 @@ async function main() {
     }
   }
   console.log(`compared ${compared}`);
+  if (process.argv[5]) console.log(`robots, odometry, people ${checkRun(process.argv[5], messages).join(' ')}`);
   for (const topic of [...topics.keys()].sort()) console.log(`${topic} ${topics.get(topic)}`);
 }
 

@@ -55,16 +55,41 @@ scan square.env --poses way.txt --model laser,spin=10 --motion -o way.jsonl
 read_mcap way.mcap way.jsonl >read
 grep -qx '/laser1/scan 10' read && grep -qx '/tf 20' read || fail "$(cat read)"
 
-# A recorded run.
+# Chunks that zstd packed hold the same, and less of it; none has them, and no other format.
+scan square.env all.3dm --frames 3 -o packed.mcap --compression zstd
+read_mcap packed.mcap all.jsonl 3 | cmp - <(read_mcap all.mcap all.jsonl 3) || fail "packed chunks hold something else"
+[ "$(stat -c %s packed.mcap)" -lt $(($(stat -c %s all.mcap) / 2)) ] || fail "nothing is packed: $(stat -c '%n %s' ./*.mcap)"
+scan square.env all.3dm --select front* --noise --frames 3000 --to mcap --compression zstd -j 1 >packed1.mcap
+scan square.env all.3dm --select front* --noise --frames 3000 --to mcap --compression zstd -j 2 | cmp - packed1.mcap
+scan square.env all.3dm --frames 3 -o plain.mcap --compression none
+cmp plain.mcap all.mcap
+expect_error 2 scan square.env all.3dm --to jsonl --compression zstd
+printf 'damaged' | dd of=packed.mcap bs=1 seek=20000 conv=notrunc 2>dd.err
+if read_mcap packed.mcap all.jsonl 3 >/dev/null 2>&1; then fail "self-test: a damaged chunk passes"; fi
+
+# A recorded run: its scans, and where robots, who may be wrong about it, and people were.
 cp "$scenes"/ispace.env .
-printf '#3dm 1\nrobot id=r1 model=pioneer-2dx at=0,-1 path=1,-1\nlaser id=l1 on=r1 range=8\n' >run.3dm
-simrun ispace.env run.3dm --clock fast --until 2 --record run >/dev/null
+printf '#3dm 1\nrobot id=r1 model=pioneer-2dx at=0,-1 heading=90 path=0,1 odometry_noise=0.05,0.1,0.1,0.05
+robot id=r2 model=pioneer-2dx at=1.5,-1\nlaser id=l1 on=r1 range=8\nhuman id=h1 at=1,1 walk=wander\n' >run.3dm
+simrun ispace.env run.3dm --clock fast --noise --until 2 --record run >/dev/null
 scan --run run -o run.mcap
 scan --run run -o run.jsonl
-read_mcap run.mcap run.jsonl >read
+read_mcap run.mcap run.jsonl 1 run >read
 scans=$(grep -c '"ranges"' run.jsonl)
 [ "$scans" -gt 10 ] || fail "too few scans: $scans"
 grep -qx "/l1/scan $scans" read || fail "$(cat read)"
+# Every 0.02 s from 0 on.
+grep -qx "robots, odometry, people 202 202 101" read || fail "$(cat read)"
+grep -qx "/r1/odom 101" read || fail "$(cat read)"
+sed 's/^\(1.5,r1,\)[^,]*/\13/' run/robots.csv >other.csv
+mkdir other
+mv other.csv other/robots.csv
+cp run/odometry.csv run/people.csv other
+if read_mcap run.mcap run.jsonl 1 other >/dev/null 2>&1; then fail "self-test: a robot elsewhere passes"; fi
+# Without odometry the robots' poses are all there is.
+rm run/odometry.csv
+scan --run run -o bare.mcap
+read_mcap bare.mcap run.jsonl 1 run | grep -qx "robots, odometry, people 202 0 101" || fail "poses without odometry"
 
 # Nothing was read, one beam, and a folder of files.
 scan square.env --poses /dev/null --model laser -o none.mcap

@@ -58,6 +58,7 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     o.noise = noise_.value_or(false);
     o.color = color_.value_or(true);
     o.encoding = encoding_ == "ascii" ? Encoding::Ascii : Encoding::Binary;
+    if (compression_ == "zstd") o.compression = McapCompression::Zstd;
     o.coordinates = coordinates_ == "sensor" ? Coordinates::Sensor : Coordinates::World;
     o.photo.light = light_ == "lamps" ? Illumination::Lamps
                     : light_ == "sky" ? Illumination::Sky
@@ -97,6 +98,8 @@ void ScanCommand::declare() {
                  "frame of the points in csv, pcd and ply (default world)", Enters::History);
     line_.choice("--encoding", encoding_, {"binary", "ascii"},
                  "encoding of pcd and ply (default binary)", Enters::History);
+    line_.choice("--compression", compression_, {"none", "zstd"},
+                 "mcap: how its chunks are packed (default none)", Enters::History);
     constexpr double kMaxScale = 1e6;
     line_.parsed(
         "--depth-scale", "N",
@@ -185,6 +188,8 @@ void ScanCommand::check() {
             throw UsageError("--size: an obstacle map is a square of " + std::to_string(kLeast) +
                              " to " + std::to_string(kMost) + " pixels a side");
     }
+    if (line_.given("--compression") && o.format != "mcap")
+        throw UsageError("--compression is about mcap, and --to says " + o.format);
     if (line_.given("--layers") && o.format != "png" && o.format != "jpeg")
         throw UsageError("--layers are files beside pictures in png or jpeg, and --to says " +
                          o.format);

@@ -9,6 +9,7 @@
 #include "cli/command_line.h"
 #include "cli/common_options.h"
 #include "scan/views.h"
+#include "sense/mcap_writer.h"
 #include "sense/photo.h"
 #include "sense/point_cloud.h"
 #include "sense/reading_picture.h"
@@ -31,6 +32,7 @@ struct ScanToolOptions {
     bool color = true;
     std::optional<DepthSpectrum> spectrum;
     int map_pixels = 800;
+    McapCompression compression = McapCompression::None;
     std::optional<PictureSize> picture_size;
     ViewToolOptions view;
     double celsius = 20;
@@ -56,7 +58,7 @@ class ScanCommand : public ToolCommand<ScanToolOptions> {
     void checkBatch() const;
 
     std::optional<bool> noise_, color_, sensor_bodies_;
-    std::string to_, encoding_, coordinates_, light_;
+    std::string to_, encoding_, coordinates_, light_, compression_;
 };
 
 }  // namespace ispace

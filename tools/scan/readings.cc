@@ -232,6 +232,7 @@ FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input)
             .color = options.color,
             .spectrum = options.spectrum,
             .map_pixels = options.map_pixels,
+            .compression = options.compression,
             .labels = options.photo.labels,
             .depths = options.photo.depths,
             .scene = &input.scene};

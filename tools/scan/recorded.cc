@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <deque>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -73,6 +76,41 @@ class RecordedOdometry {
     bool has_next_ = false;
 };
 
+/// Everybody in a run, those who come later, too.
+std::vector<RunMember> membersOf(const std::string& folder) {
+    RunReader run(folder);
+    while (run.next()) {
+    }
+    return run.who();
+}
+
+/// Writes where everybody is, up to the times of the readings, to a stream of a format.
+class RecordedMoments {
+  public:
+    RecordedMoments(const std::string& folder, const ReadingFormat& format, ReadingStream& stream)
+        : run_(folder), format_(format), stream_(stream), has_next_(run_.next()) {}
+
+    void writeUntil(double time) {
+        for (; has_next_ && run_.time() <= time; has_next_ = run_.next()) {
+            // Readers interpolate; steps are often a few milliseconds.
+            constexpr double kInterval = 0.02, kRounding = 1e-9;
+            if (run_.time() + kRounding < due_) continue;
+            due_ = run_.time() + kInterval;
+            std::string text;
+            format_.appendMoment(text, count_++, run_.time(), run_.states());
+            stream_.write(text);
+        }
+    }
+
+  private:
+    RunReader run_;
+    const ReadingFormat& format_;
+    ReadingStream& stream_;
+    double due_ = 0;
+    std::uint32_t count_ = 0;
+    bool has_next_;
+};
+
 Sensors recordedLasers(const ScanToolOptions& options, const Scene& scene) {
     Sensors lasers = sensorsOf(scene, options.select);
     std::erase_if(lasers.read, [](const Sensor& sensor) { return !sensor.is<Laser>(); });
@@ -96,7 +134,10 @@ void writeRecorded(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
     const SceneInput input = sceneOf(options);
     const Sensors lasers = recordedLasers(options, input.scene);
-    const auto format = makeFormat(options.format, lasers, formatOptions(command, input));
+    FormatOptions how = formatOptions(command, input);
+    const bool wants_moments = options.format == "mcap";
+    if (wants_moments) how.members = membersOf(options.view.run);
+    const auto format = makeFormat(options.format, lasers, std::move(how));
     if (!format->isStream())
         throw UsageError(
             "--run: " + options.format +
@@ -110,6 +151,8 @@ void writeRecorded(const ScanCommand& command) {
     const bool wants_odometry = options.format == "carmen";
     OutputFile output(options.common.output);
     const auto stream = format->stream([&output](auto bytes) { output.write(bytes); });
+    std::optional<RecordedMoments> moments;
+    if (wants_moments) moments.emplace(options.view.run, *format, *stream);
     std::int64_t count = 0;
     while (const auto found = scans.next()) {
         const auto laser =
@@ -131,16 +174,19 @@ void writeRecorded(const ScanCommand& command) {
             const auto robot = odometry.poseOf(laser->mount->robot, scan.time);
             if (robot) scan.pose = mountedPose(*robot, laser->mount->robot_from_sensor);
         }
+        if (moments) moments->writeUntil(scan.time);
         std::string text;
         format->append(text, static_cast<std::size_t>(laser - lasers.read.begin()),
                        std::vector<Scan>{std::move(scan)});
         stream->write(text);
         ++count;
     }
+    if (moments) moments->writeUntil(std::numeric_limits<double>::infinity());
     stream->finish();
     output.commit();
     std::vector<std::string> files = filesOf(input);
     files.push_back(name);
+    if (wants_moments) files.push_back(RecordedFiles(options.view.run).robots);
     writeDependencies(options.common, files);
     talk(options.common, "scan", std::to_string(count) + " scans written");
 }
