@@ -16,6 +16,7 @@
 #include "render/render.h"
 #include "scan/options.h"
 #include "view/contact_sheet.h"
+#include "view/encode_ahead.h"
 #include "view/run_record.h"
 
 namespace ispace {
@@ -72,7 +73,8 @@ class PictureFiles {
     PictureFiles(const ScanToolOptions& options, int frames)
         : output_(options.common.output),
           set_(OutputSet::of(output_)),
-          is_jpeg_(options.format == "jpeg") {
+          is_jpeg_(options.format == "jpeg"),
+          files_([this](const Image& image) { return encoded(image); }, writeFile) {
         std::vector<std::string> names;
         for (const ViewSpec& view : options.view.views) names.push_back(view.name);
         if (set_) {
@@ -88,7 +90,7 @@ class PictureFiles {
         }
     }
 
-    void write(const std::vector<ViewSpec>& views, int frame, const DrawView& draw) const {
+    void write(const std::vector<ViewSpec>& views, int frame, const DrawView& draw) {
         std::vector<PictureSize> sizes;
         sizes.reserve(views.size());
         for (const ViewSpec& view : views) sizes.push_back(draw.sizeOf(view));
@@ -98,21 +100,26 @@ class PictureFiles {
         for (std::size_t i = 0; i < views.size(); ++i) {
             Image image = draw.draw(views[i], set_ ? sizes[i] : sheet.sizeOf(i));
             if (set_)
-                writeFile(set_->fileOf(views[i].name, frame, ending()), image);
+                files_.add(set_->fileOf(views[i].name, frame, ending()), std::move(image));
             else
                 images.push_back(std::move(image));
             // A camera's picture is the camera's (thesis, fig. 3.15).
             names.push_back(views[i].mode == ViewMode::Camera ? views[i].id : views[i].name);
         }
-        if (!set_) writeFile(output_, sheet.draw(images, names));
+        if (!set_) writeFile(output_, encoded(sheet.draw(images, names)));
     }
+    /// After the last one.
+    void finish() { files_.finish(); }
 
   private:
     [[nodiscard]] std::string ending() const { return is_jpeg_ ? ".jpg" : ".png"; }
 
-    void writeFile(const std::string& name, const Image& image) const {
+    [[nodiscard]] std::string encoded(const Image& image) const {
+        return is_jpeg_ ? jpegOf(image) : pngOfShades(image.width, image.height, image.pixels);
+    }
+    static void writeFile(const std::string& name, const std::string& bytes) {
         OutputFile file(name);
-        file.write(is_jpeg_ ? jpegOf(image) : pngOfShades(image.width, image.height, image.pixels));
+        file.write(bytes);
         file.commit();
     }
 
@@ -128,6 +135,7 @@ class PictureFiles {
     std::string output_;
     std::optional<OutputSet> set_;
     bool is_jpeg_;
+    EncodeAhead files_;
 };
 
 /// What clients did to the world of a run before a time.
@@ -211,7 +219,7 @@ void takeViews(const ScanCommand& command) {
     for (const ViewSpec& view : views)
         if (const std::string phrase = standpointWarning(view, scene); !phrase.empty())
             warn(options.common, "scan", phrase);
-    const PictureFiles pictures(options, frames);
+    PictureFiles pictures(options, frames);
     const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
     const std::int64_t count = frames * static_cast<std::int64_t>(views.size());
     progress->begin("pictures", count);
@@ -231,6 +239,7 @@ void takeViews(const ScanCommand& command) {
         drawing.viewers = viewersOf(views, scene);
         pictures.write(views, frame, {options, scene, drawing, *progress});
     }
+    pictures.finish();
     progress->end();
     if (run && !changes->failure().empty()) warn(options.common, "scan", changes->failure());
     const std::vector<std::string> textures = textureFiles(scene);

@@ -9,6 +9,7 @@
 #include "base/number.h"
 #include "cli/outputs.h"
 #include "layout/run_reader.h"
+#include "view/encode_ahead.h"
 #include "view/run_picture.h"
 
 namespace ispace {
@@ -65,9 +66,12 @@ std::int64_t writePictures(const SimrunOptions& options, const OutputSet& files,
                            RunPicture& picture) {
     const std::string name = "run";
     files.prepare({name}, true, {".png"});
-    return takeFilm(options, picture, [&](const Image& image, int frame) {
-        writeAll(files.fileOf(name, frame, ".png"), encodePng(image));
+    EncodeAhead pictures(encodePng, writeAll);
+    const std::int64_t count = takeFilm(options, picture, [&](const Image& image, int frame) {
+        pictures.add(files.fileOf(name, frame, ".png"), image);
     });
+    pictures.finish();
+    return count;
 }
 
 }  // namespace
