@@ -238,35 +238,46 @@ def _same_file(one: str, other: str) -> bool:
 
 
 class _Write:
-    """Collects small pieces, so that 10 000 lines are few writes."""
+    """Collects small pieces, so that 10 000 lines are few writes. Errors name the file."""
 
-    def __init__(self, descriptor: int) -> None:
+    def __init__(self, descriptor: int, name: str) -> None:
         self._file = os.fdopen(descriptor, "wb", 1 << 16)
+        self._name = name
 
     def __call__(self, data: bytes) -> None:
-        self._file.write(data)
+        with self._named():
+            self._file.write(data)
 
     def close(self) -> None:
-        self._file.close()
+        with self._named():
+            self._file.close()
+
+    @contextlib.contextmanager
+    def _named(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            error.filename = self._name
+            raise
 
 
 @contextlib.contextmanager
 def _output(path: str) -> Iterator[_Write]:
     """Standard output, or a file beside its target that gets its name at the end."""
     if path == "-":
-        write = _Write(os.dup(1))
+        write = _Write(os.dup(1), "stdout")
         yield write
         write.close()
         return
     if os.path.exists(path) and not os.path.isfile(path):  # /dev/null and its like
-        write = _Write(os.open(path, os.O_WRONLY))
+        write = _Write(os.open(path, os.O_WRONLY), path)
         yield write
         write.close()
         return
     target = os.path.realpath(path)
     descriptor, beside = tempfile.mkstemp(prefix=".ispace.tmp.", dir=os.path.dirname(target))
     try:
-        write = _Write(descriptor)
+        write = _Write(descriptor, path)
         yield write
         mask = os.umask(0)
         os.umask(mask)

@@ -88,9 +88,10 @@ def _read(row: Row, path: str, suffix: str) -> None:
 
 def _read_layout(row: Row, path: str, prefix: str) -> None:
     with open(path, encoding="utf-8") as file:
-        lines = file.read().splitlines()
-    if not lines or not lines[0].startswith("#3dm "):
+        text = file.read()
+    if not text.startswith("#3dm ") or not text.endswith("\n"):  # cut off
         raise ValueError
+    lines = text.splitlines()
     for line in lines[1:]:
         if not line.startswith("# "):
             break

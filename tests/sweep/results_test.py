@@ -136,9 +136,10 @@ def gaps(folder):
     same("a foreign report", ("1", "7", "1", "", "x", "true", 'a,"b'),
          tuple(row[key] for key in ("count", "results.count", "nested.deep.0", "nested.deep.1", "nested.deep.2",
                                     "flag", "text")))
-    folder.write(FIRST + ".3dm", "#env 1\n")
-    folder.sweep("join", status=1)
-    check(folder.talk.startswith(f"ispace-sweep: {FIRST}.3dm: error: not what .3dm files hold"), folder.talk)
+    for text in ("#env 1\n", "#3dm 1\n# arrange room.gl", "#3dm 1"):
+        folder.write(FIRST + ".3dm", text)
+        folder.sweep("join", status=1)
+        check(folder.talk.startswith(f"ispace-sweep: {FIRST}.3dm: error: not what .3dm files hold"), folder.talk)
     for suffix, text in kept.items():
         folder.write(FIRST + suffix, text)
     folder.sweep("join", text=TEXT.replace("axes:", "folder: elsewhere\naxes:"), status=1)
