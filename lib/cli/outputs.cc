@@ -310,6 +310,11 @@ std::string OutputSet::stem(const std::string& id, int frame) const {
     return out;
 }
 
+bool isStdout(const std::string& output) {
+    return output == "-" || output == "/dev/stdout" || output == "/dev/fd/1" ||
+           output == "/proc/self/fd/1";
+}
+
 bool isStream(const std::string& operand) {
     // What is open already has a name, too; behind it may be a regular file.
     if (operand == "-" || operand.starts_with("/dev/std") || operand.starts_with("/dev/fd/") ||

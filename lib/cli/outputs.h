@@ -79,6 +79,8 @@ class OutputSet {
     std::string suffix_;   // of the pattern, with its dot
 };
 
+/// True for "-" and the other names of standard output.
+bool isStdout(const std::string& output);
 /// True for "-" and for what is a stream by another name: /dev/stdin, <(…), a named pipe.
 bool isStream(const std::string& operand);
 

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cli/common_options.h"
+#include "cli/outputs.h"
 #include "place/curve.h"
 #include "record/schema.h"
 
@@ -367,7 +368,7 @@ void ArrangeCommand::settleFiles() const {
     for (const auto& [name, file] : {std::pair("--curve", &options_.curve_file),
                                      {"--trace", &options_.trace_file},
                                      {"--export-mps", &options_.mps_file}})
-        if (*file == "-" || *file == "/dev/stdout" || *file == "/dev/fd/1")
+        if (isStdout(*file))
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
     if (!options_.curve_file.empty()) (void)outputFormat({}, options_.curve_file, curveFormats());
 }

@@ -90,7 +90,7 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
                 throw UsageError(std::string(option) + " is about the map: give -o FILE");
         return;
     }
-    if (o.common.output == "-")
+    if (isStdout(o.common.output))
         throw UsageError("the report goes to stdout: give the map a file (-o map.png)");
     std::vector<SuffixOf> suffixes;
     for (const CoverageFormat& format : coverageFormats()) {
@@ -141,7 +141,7 @@ void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string
 }
 
 void checkReport(const CoverageToolOptions& o) {
-    if (o.report == "-")
+    if (isStdout(o.report))
         throw UsageError("the report goes to stdout anyway: give --report a file, or --json alone");
     static_cast<void>(outputFormat({}, o.report, {"json"}));  // refuses another suffix
 }
@@ -223,6 +223,9 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         o.requirements.push_back(parseRequirement(text));
     if (line.given("--junit") && o.requirements.empty())
         throw UsageError("--junit writes what became of requirements: give --require");
+    // Of many scenes the reports may go to a file.
+    if (isStdout(o.junit) && (o.batch.empty() || isStdout(o.common.output)))
+        throw UsageError("the report goes to stdout: give --junit a file");
     if (o.batch.empty())
         checkOne(line, o, words.to);
     else
