@@ -2,6 +2,7 @@
 #include "base/part_file.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -280,9 +281,24 @@ std::string numberList(const std::vector<int>& numbers) {
 
 }  // namespace
 
+namespace {
+
+/// Each part stays open; as many files as the process may ask for, if fewer are allowed now.
+void allowFiles(std::size_t count) {
+    constexpr rlim_t kOthers = 64;
+    const rlim_t wanted = count + kOthers;
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return;
+    limit.rlim_cur = std::min(wanted, limit.rlim_max);
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+}  // namespace
+
 std::vector<PartFile> openParts(std::span<const std::string> files, std::string_view tool) {
     std::vector<PartFile> parts;
     Diagnostics findings;
+    allowFiles(files.size());
     for (const std::string& file : files) {
         noteInput(file);
         PartFile part(file);

@@ -139,6 +139,16 @@ grep -q 'done already' err || fail "$(cat err)"
 scan "$room" "$layout" --frames 8 --shard 1/2 --resume -o r.part
 [ "$(stat -c %i r.part)" != "$before" ] || fail "the part of another job was kept"
 
+# More parts than files may be open at first; and than may be at all.
+mkdir parts
+for i in $(seq 90); do scan "$room" "$layout" --frames 90 --shard "$i/90" -o "parts/$i.part"; done
+scan "$room" "$layout" --frames 90 -o single
+(ulimit -S -n 40 && scan --merge parts/*.part -o whole)
+expect_same whole single "90 parts with 40 files"
+status=0
+(ulimit -n 40 && scan --merge parts/*.part -o none) 2>err || status=$?
+[ "$status" -eq 1 ] && grep -q 'part: error: Too many open files' err || fail "status $status: $(cat err)"
+
 small_disk
 "${noisy[@]}" --frames 2000 -o single
 expect_status 1 "${noisy[@]}" --frames 2000 --resume -o disk/scans.jsonl
