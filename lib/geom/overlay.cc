@@ -181,7 +181,7 @@ std::vector<lattice::Edge> latticeEdges(const ChordCurves& curves, std::size_t l
                                         lattice::PointTable& table) {
     std::vector<lattice::Edge> edges;
     edges.reserve(curves.vertices.size() + walls.size());
-    table.reserve(4 * curves.vertices.size() + 2 * walls.size());
+    table.reserve(curves.vertices.size() + 2 * walls.size());
     std::size_t begin = 0;
     for (const std::size_t end : curves.ends) {
         if (begin == end) continue;
@@ -310,7 +310,7 @@ class Overlay::Maker {
 
 Overlay::Overlay(std::span<const Layer> layers, std::span<const Segment2> walls,
                  const Coarse& coarse) {
-    const ChordCurves curves(layers);
+    ChordCurves curves(layers);
     const Lattice lattice(curves.box);
     unit_ = lattice.unit();
     if (unit_ == 0) return;
@@ -318,6 +318,7 @@ Overlay::Overlay(std::span<const Layer> layers, std::span<const Segment2> walls,
     lattice::PointTable table;
     lattice::SetStore sets(layers.size());
     std::vector<lattice::Edge> edges = latticeEdges(curves, layers.size(), walls, lattice, table);
+    curves.vertices = {};
     edges = merged(std::move(edges), table.points(), sets);
     Maker maker(*this, curves, coarse);
     lattice::forEachPart(layers, std::move(edges), std::move(table), sets, 0,

@@ -82,6 +82,7 @@ class SetStore {
     explicit SetStore(const SetStore* base)
         : base_(base), empty_(base->empty_), offset_(base->size()), first_(1) {}
     [[nodiscard]] Index emptySet() const { return empty_; }
+    [[nodiscard]] bool isOwn(Index set) const { return set >= offset_; }
     [[nodiscard]] std::span<const Index> operator[](Index set) const {
         if (set < offset_) return (*base_)[set];
         const std::size_t own = set - offset_;

@@ -5,6 +5,9 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <limits>
+#include <memory>
+#include <numeric>
 #include <utility>
 
 namespace ispace::lattice {
@@ -12,9 +15,115 @@ namespace ispace::lattice {
 namespace {
 
 /// Ends of edges in a strip: the fewer, the more often edges are looked at that lie in several.
-constexpr std::size_t kQuick = 4096;
+constexpr std::size_t kQuick = 2048;
 /// Strips in which an edge lies, on average, at most.
 constexpr std::size_t kMostStrips = 6;
+
+/// Edges that are led through ends together: about as long and at about the same place, in x.
+struct Bundle {
+    std::vector<Index> edges;
+    std::vector<Edge> pieces;
+    std::unique_ptr<SetStore> sets;
+};
+
+/// merged(ledThroughEnds()): many edges lie along each other at walls, and through the ends of all,
+/// but their pieces are few. So they are merged where they are made, and then all together.
+class EndRouter {
+  public:
+    EndRouter(const std::vector<Edge>& edges, const std::vector<Point>& points, SetStore& sets)
+        : edges_(edges), points_(points), sets_(sets), by_x_(points.size()) {
+        std::iota(by_x_.begin(), by_x_.end(), Index{0});
+        std::sort(by_x_.begin(), by_x_.end(),
+                  [&](Index i, Index k) { return points[i].x < points[k].x; });
+    }
+
+    std::vector<Edge> run() {
+        divide();
+        tbb::parallel_for(std::size_t{0}, bundles_.size(),
+                          [this](std::size_t i) { lead(bundles_[i]); });
+        std::vector<Edge> pieces;
+        std::vector<Index> layers;
+        for (Bundle& bundle : bundles_) {
+            for (Edge& piece : bundle.pieces) {
+                if (bundle.sets->isOwn(piece.set)) {
+                    const std::span<const Index> set = (*bundle.sets)[piece.set];
+                    layers.assign(set.begin(), set.end());
+                    piece.set = sets_.addOdd(layers);
+                }
+                pieces.push_back(piece);
+            }
+            bundle = Bundle();
+        }
+        bundles_.clear();
+        return merged(std::move(pieces), points_, sets_);
+    }
+
+  private:
+    void divide() {
+        std::vector<std::int32_t> from;  // first columns of strips
+        for (std::size_t i = 0; i < by_x_.size(); i += kQuick) from.push_back(points_[by_x_[i]].x);
+        const auto strip_at = [&](Index point) {
+            const auto next = std::upper_bound(from.begin(), from.end(), points_[point].x);
+            return static_cast<std::size_t>(next - from.begin()) - 1;
+        };
+        // Bundles of edges that lie in two neighbours of the strips, then of these in fours, and
+        // so on.
+        for (Index i = 0; i < edges_.size(); ++i) {
+            std::size_t first = strip_at(edges_[i].from), last = strip_at(edges_[i].to);
+            std::size_t begin = 0;
+            for (std::size_t count = from.size(); last - first > 1; count = count / 4 + 1) {
+                begin += count;
+                first /= 4;
+                last /= 4;
+            }
+            if (begin + first >= bundles_.size()) bundles_.resize(begin + first + 1);
+            bundles_[begin + first].edges.push_back(i);
+        }
+    }
+
+    void lead(Bundle& bundle) const {
+        if (bundle.edges.empty()) return;
+        std::int32_t low = std::numeric_limits<std::int32_t>::max(), high = -low;
+        for (const Index i : bundle.edges) {
+            low = std::min(low, points_[edges_[i].from].x - kReach);
+            high = std::max(high, points_[edges_[i].to].x + kReach);
+        }
+        const auto first = std::partition_point(by_x_.begin(), by_x_.end(),
+                                                [&](Index i) { return points_[i].x < low; });
+        const auto last =
+            std::partition_point(first, by_x_.end(), [&](Index i) { return points_[i].x <= high; });
+        // In the order of their numbers, so that nothing depends on how edges are bundled.
+        std::vector<Index> numbers(first, last);
+        std::sort(numbers.begin(), numbers.end());
+        const auto number_of = [&](Index point) {
+            return static_cast<Index>(std::lower_bound(numbers.begin(), numbers.end(), point) -
+                                      numbers.begin());
+        };
+        std::vector<Point> points;
+        points.reserve(numbers.size());
+        for (const Index i : numbers) points.push_back(points_[i]);
+        std::vector<Edge> edges;
+        edges.reserve(bundle.edges.size());
+        for (const Index i : bundle.edges) {
+            edges.push_back(edges_[i]);
+            edges.back().from = number_of(edges_[i].from);
+            edges.back().to = number_of(edges_[i].to);
+        }
+        bundle.sets = std::make_unique<SetStore>(&sets_);
+        bundle.pieces = merged(ledThroughEnds(edges, points), points, *bundle.sets);
+        bundle.pieces.shrink_to_fit();  // there may have been a hundred times as many
+        for (Edge& piece : bundle.pieces) {
+            piece.from = numbers[piece.from];
+            piece.to = numbers[piece.to];
+        }
+    }
+
+    const std::vector<Edge>& edges_;
+    const std::vector<Point>& points_;
+    SetStore& sets_;
+    std::vector<Index> by_x_;  // numbers of points
+    std::vector<Bundle> bundles_;
+};
 
 /// A piece of an edge from one strip to another.
 struct Crossing {
@@ -203,7 +312,11 @@ class Sweep {
 
 void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTable table,
                  SetStore& sets, std::size_t at_least, const PartVisitor& visit) {
-    edges = merged(ledThroughEnds(edges, table.points()), table.points(), sets);
+    if (table.points().size() < 2 * kQuick)
+        edges = merged(ledThroughEnds(edges, table.points()), table.points(), sets);
+    else
+        tbb::this_task_arena::isolate(
+            [&] { edges = EndRouter(edges, table.points(), sets).run(); });
     std::size_t ends = at_least == 0 ? kQuick : at_least;
     Sweep sweep(layers, edges, table.points(), sets);
     bool is_divided = false;

@@ -48,25 +48,34 @@ Drawing drawingOf(std::size_t layers) {
     return drawing;
 }
 
-/// All edges with their labels, sorted, and the number of parts they came in.
+void addLines(const Part& part, std::vector<Line>& lines) {
+    const auto placeOf = [&part](Index i) { return Place{part.points[i].x, part.points[i].y}; };
+    const auto labelOf = [](const LayerLabel& l) { return Label{l.count, l.numbers, l.marks}; };
+    for (std::size_t i = 0; i < part.edges.size(); ++i) {
+        const Edge& e = part.edges[i];
+        lines.emplace_back(placeOf(e.from), placeOf(e.to), labelOf(part.labels[i].left),
+                           labelOf(part.labels[i].right), e.circle, e.is_wall);
+    }
+}
+
+/// All edges with their labels, sorted.
+std::vector<Line> linesOf(const Part& part) {
+    std::vector<Line> lines;
+    addLines(part, lines);
+    std::sort(lines.begin(), lines.end());
+    return lines;
+}
+
+/// The same of all parts, and their number.
 std::pair<std::vector<Line>, std::size_t> linesOf(const Drawing& drawing, std::size_t at_least) {
     SetStore sets(drawing.layers.size());
     std::vector<Line> lines;
     std::size_t parts = 0;
-    const auto labelOf = [](const LayerLabel& l) { return Label{l.count, l.numbers, l.marks}; };
     forEachPart(drawing.layers, merged(drawing.edges, drawing.table.points(), sets), drawing.table,
                 sets, at_least, [&](Part part) {
                     return [&, part = std::move(part)] {
                         ++parts;
-                        const auto placeOf = [&part](Index i) {
-                            return Place{part.points[i].x, part.points[i].y};
-                        };
-                        for (std::size_t i = 0; i < part.edges.size(); ++i) {
-                            const Edge& e = part.edges[i];
-                            lines.emplace_back(placeOf(e.from), placeOf(e.to),
-                                               labelOf(part.labels[i].left),
-                                               labelOf(part.labels[i].right), e.circle, e.is_wall);
-                        }
+                        addLines(part, lines);
                     };
                 });
     std::sort(lines.begin(), lines.end());
@@ -149,6 +158,41 @@ TEST(OverlayStrips, CornersAtTheEndsOfStrips) {
         drawing.addWall({x, 0}, {x, 7 * k - 100});
     }
     EXPECT_GT(expectSameInStrips(drawing), 4U);
+}
+
+// Enough to be led through ends in bundles, too: views along common walls, level, upright and
+// slanted, with ends of their own on them or a step beside, short and long.
+TEST(OverlayStrips, ManyEdgesAlongCommonWalls) {
+    std::mt19937_64 random(23);
+    std::uniform_int_distribution<std::int32_t> at(0, 20'000), wall(0, 7), beside(-1, 1),
+        size(1, 3000);
+    Drawing drawing = drawingOf(2500);
+    for (Index i = 0; i < 2500; ++i) {
+        const std::int32_t x = at(random), w = 2500 * wall(random),
+                           long_or_not = i % 9 == 0 ? 5 : 1;
+        const std::int32_t from = x + beside(random), to = x + long_or_not * size(random) + 2;
+        const std::int32_t deep = size(random);
+        if (i % 3 == 0)
+            drawing.addCurve(i, {{from, w + beside(random)}, {to, w}, {to, w + deep}});
+        else if (i % 3 == 1)
+            drawing.addCurve(i, {{w, from}, {w + beside(random), to}, {w - deep, to}});
+        else  // along y = w + x / 5
+            drawing.addCurve(i, {{from - from % 5, w + from / 5},
+                                 {to - to % 5, w + to / 5},
+                                 {to, w + to / 5 + deep}});
+    }
+    drawing.addWall({-10, 2500}, {30'000, 2500});
+    const auto [lines, strips] = linesOf(drawing, 0);
+    EXPECT_GT(strips, 2U);
+
+    SetStore sets(drawing.layers.size());
+    PointTable table = drawing.table;
+    const std::vector<Edge> edges =
+        snapRounded(merged(drawing.edges, table.points(), sets), table, sets);
+    const Part whole{table.points(), edges, labelsOf(drawing.layers, table.points(), edges, sets),
+                     true};
+    EXPECT_GT(whole.edges.size(), 50'000U);
+    EXPECT_EQ(lines, linesOf(whole));
 }
 
 TEST(OverlayStrips, NothingAndVerticalLines) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The coverage tool as a process, on compiled rooms of three sizes with few sensors and many, and
-// what of that is measuring.
+// what of that is measuring; and with very many, by how many edges part what they see.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +10,8 @@
 #include "bench_scenes.h"
 #include "bench_table.h"
 #include "cover/map.h"
+#include "cover/sight.h"
+#include "geom/overlay.h"
 #include "io/glb.h"
 #include "layout/schemas.h"
 #include "record/text.h"
@@ -105,6 +107,32 @@ void measure(benchmark::State& state, const Case& test, const std::string& folde
                    bench::cell(1e3 * fine.wall, 0, 8) + bench::cell(1e3 * drawn.wall, 0, 8));
 }
 
+/// Edges between the faces into which the views of all sensors part the floor.
+std::size_t edgesOf(const Case& test) {
+    const Sight sight(test.scene.environment, 0);
+    std::vector<Layer> layers;
+    for (const Sensor& sensor : test.scene.sensors)
+        layers.push_back({.curves = *sight.regionOf(sensor),
+                          .number = static_cast<std::int64_t>(layers.size()) + 1});
+    std::size_t sides = 0;
+    forEachArea(layers, [&sides](const LayerLabel&, double) { ++sides; });
+    return sides / 2;
+}
+
+void measureMany(benchmark::State& state, const Case& test) {
+    const double edges = static_cast<double>(edgesOf(test)) / 1e6;
+    bench::Spent one, two;
+    for (auto _ : state) {
+        one.keepQuicker(bench::runTool(words(test, {"-j", "1", "--grid", "100"}), "/dev/null"));
+        two.keepQuicker(bench::runTool(words(test, {"-j", "2", "--grid", "100"}), "/dev/null"));
+        state.SetIterationTime(one.wall);
+    }
+    state.SetLabel(bench::leftCell(test.name, 24) + bench::cell(edges, 2, 8) +
+                   bench::cell(one.processor, 2, 9) + bench::cell(one.processor / edges, 2, 9) +
+                   bench::cell(one.wall, 2, 8) + bench::cell(two.wall, 2, 8) +
+                   bench::cell(one.memory, 0, 8));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -124,8 +152,22 @@ int main(int argc, char** argv) {
             ->Iterations(kRounds)
             ->UseManualTime();
     }
+    std::vector<Case> crowded;
+    for (const std::size_t sensors : {std::size_t{1000}, std::size_t{3000}, std::size_t{10000}})
+        crowded.push_back(makeCase(8, 6, sensors, folder));
+    for (const Case& test : crowded)
+        benchmark::RegisterBenchmark(("crowded/" + test.name).c_str(),
+                                     [&test](benchmark::State& state) { measureMany(state, test); })
+            ->Iterations(1)
+            ->UseManualTime();
     bench::TableReporter table(
-        {{"coverage", "Whole runs of coverage on 100 x 100 cells, " + std::string(kModel) +
+        {{"crowded",
+          "Whole runs with very many sensors, without a map: edges between what they see "
+          "(millions),\n"
+          "processor seconds with -j 1, those of a million edges, seconds of wall time with -j 1\n"
+          "and 2, and megabytes\n"
+          "                           edges      cpu  an edge    -j 1    -j 2      MB"},
+         {"coverage", "Whole runs of coverage on 100 x 100 cells, " + std::string(kModel) +
                           "; milliseconds\n"
                           "                           lines   cells + exact   -j 1    -j 2  1000^2 "
                           "    map"}});
