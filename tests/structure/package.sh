@@ -38,6 +38,7 @@ for page in man1/ispace.1 man1/ispace-sweep.1 man5/ispace-env.5 man5/ispace-3dm.
 done
 if found=$(grep -rlF -e "$source_dir" -e "$binary_dir" root); then fail "the build's path is in $found"; fi
 dpkg-deb -f one/ispace_*.deb Recommends | grep -q 'libopencv-imgcodecs' || fail "OpenCV's pictures are not recommended"
+dpkg-deb -f one/ispace_*.deb Depends | grep -q 'libcairo2' || fail "Cairo, which a module links, is not needed"
 if dpkg-deb -f one/ispace_*.deb Depends | grep imgcodecs; then fail "OpenCV's pictures are needed"; fi
 
 export PATH=$scratch/root/usr/bin:/usr/bin:/bin
