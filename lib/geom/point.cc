@@ -56,7 +56,11 @@ double tan(Angle angle) {
 }
 
 Angle wrapped(Angle angle) {
-    const double rest = std::remainder(angle.degrees(), 360.0);  // in [-180, 180]
+    // What remainder() gives, faster for less than two turns: the differences are exact.
+    const double degrees = angle.degrees();
+    if (degrees > -180 && degrees <= 180) return angle;
+    if (degrees > 180 && degrees <= 540) return Angle::degrees(degrees - 360);
+    const double rest = std::remainder(degrees, 360.0);  // in [-180, 180]
     return Angle::degrees(rest <= -180 ? 180 : rest);
 }
 

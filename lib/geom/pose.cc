@@ -11,7 +11,7 @@ namespace ispace {
 Point2 Pose2::operator*(Point2 local) const { return position + *this * Vec2{local.x, local.y}; }
 
 Vec2 Pose2::operator*(Vec2 local) const {
-    const double c = cos(heading), s = sin(heading);
+    const auto [c, s] = cosSin(heading);
     return {c * local.x - s * local.y, s * local.x + c * local.y};
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/scan.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -29,6 +30,22 @@ const Directions& Beams::at(const Pose3& pose) {
 }
 
 namespace {
+
+/// Turns level directions, each by an angle of its own.
+ISPACE_SIMD_CLONES void turnLevel(const double* x, const double* y, const double* cos,
+                                  const double* sin, std::size_t count, double* out_x,
+                                  double* out_y) {
+    for (std::size_t k = 0; k < count; ++k) {
+        out_x[k] = cos[k] * x[k] - sin[k] * y[k];
+        out_y[k] = sin[k] * x[k] + cos[k] * y[k];
+    }
+}
+
+void turnEach(const Directions& local, const BeamFrames& frames, Directions& out) {
+    turnLevel(local.x.data(), local.y.data(), frames.cos.data(), frames.sin.data(), local.size(),
+              out.x.data(), out.y.data());
+    std::fill(out.z.begin(), out.z.end(), 0.0);
+}
 
 /// Turns directions in the plane of the sensor into the world.
 ISPACE_SIMD_CLONES void turn(const double* x, const double* y, std::size_t count, Vec3 forward,
@@ -85,6 +102,21 @@ void LaserCaster::cast(Scan& scan) {
 }
 
 void LaserCaster::cast(Scan& scan, std::span<const BeamsAmong> parts) {
+    castWith(scan, [&] {
+        if (errors_.empty() && scan.beam_poses.empty())
+            castFrom(scan.pose, scan.ranges, parts);
+        else
+            castApart(scan, parts);
+    });
+}
+
+void LaserCaster::cast(Scan& scan, const BeamFrames& frames, std::span<const BeamsAmong> parts) {
+    castWith(scan, [&] { castLevel(scan, frames, parts); });
+}
+
+/// What makes readings of ranges, which `cast` sets.
+template <typename Cast>
+void LaserCaster::castWith(Scan& scan, Cast cast) {
     const Laser& laser = sensor_->as<Laser>();
     const auto count = static_cast<std::size_t>(laser.beams);
     scan.ranges.resize(count);
@@ -97,14 +129,25 @@ void LaserCaster::cast(Scan& scan, std::span<const BeamsAmong> parts) {
     cosines_.resize(noisy && laser.noise.dropsByIncidence() ? count : 0);
     errors_.resize(noisy && laser.noise.angle_sigma > Angle() ? count : 0);
     if (!errors_.empty()) bearingErrors(laser.noise, key, errors_);
-    if (errors_.empty() && scan.beam_poses.empty())
-        castFrom(scan.pose, scan.ranges, parts);
-    else
-        castApart(scan, parts);
+    cast();
     // Surfaces in the blind zone give no return, and hide what lies behind them all the same.
     addNoise(noisy ? laser.noise : RangeNoise(), laser.min_range, laser.max_range, key, cosines_,
              scan.ranges);
 }
+
+/// Rays of which each has a place of its own.
+struct LaserCaster::RaysApart {
+    Directions directions;
+    std::vector<Point3> origins;
+
+    /// Of this thread, which reads many scans: kept for its memory.
+    static RaysApart& ofThread(std::size_t count) {
+        thread_local RaysApart rays;
+        rays.directions.resize(count);
+        rays.origins.resize(count);
+        return rays;
+    }
+};
 
 namespace {
 
@@ -113,22 +156,23 @@ std::span<float> valuesOf(std::span<float> values, const BeamsAmong& part) {
     return values.empty() ? values : values.subspan(part.begin, part.end - part.begin);
 }
 
-}  // namespace
-
-const Directions& LaserCaster::partOf(const Directions& all, const BeamsAmong& part) {
+const Directions& partOf(const Directions& all, const BeamsAmong& part) {
     if (part.begin == 0 && part.end == all.size()) return all;
+    thread_local Directions some;  // kept for its memory
     const auto copy = [&part](const std::vector<double>& from, std::vector<double>& to) {
         to.assign(from.begin() + static_cast<std::ptrdiff_t>(part.begin),
                   from.begin() + static_cast<std::ptrdiff_t>(part.end));
     };
-    copy(all.x, part_.x);
-    copy(all.y, part_.y);
-    copy(all.z, part_.z);
-    part_.arc = all.arc;
-    if (part_.arc)
-        part_.arc->first = part_.arc->first + static_cast<double>(part.begin) * part_.arc->step;
-    return part_;
+    copy(all.x, some.x);
+    copy(all.y, some.y);
+    copy(all.z, some.z);
+    some.arc = all.arc;
+    if (some.arc)
+        some.arc->first = some.arc->first + static_cast<double>(part.begin) * some.arc->step;
+    return some;
 }
+
+}  // namespace
 
 void LaserCaster::castFrom(const Pose3& pose, std::span<float> ranges,
                            std::span<const BeamsAmong> parts) {
@@ -140,33 +184,56 @@ void LaserCaster::castFrom(const Pose3& pose, std::span<float> ranges,
                              valuesOf(ranges, part), valuesOf(cosines_, part));
 }
 
+/// With its error.
+Vec2 LaserCaster::localBeam(std::size_t beam) const {
+    const Directions& local = beams_.local();
+    const Vec2 exact{local.x[beam], local.y[beam]};
+    if (errors_.empty()) return exact;
+    const auto [c, s] = cosSin(Angle::radians(static_cast<double>(errors_[beam])));
+    return {c * exact.x - s * exact.y, s * exact.x + c * exact.y};
+}
+
 /// Each beam by itself: it has a place or an error of its own.
 void LaserCaster::castApart(Scan& scan, std::span<const BeamsAmong> parts) {
-    const Laser& laser = sensor_->as<Laser>();
     const std::size_t count = scan.ranges.size();
-    apart_.resize(count);
-    origins_.resize(count);
+    RaysApart& rays = RaysApart::ofThread(count);
     bool level = true;
     Frame3 frame;
     for (std::size_t k = 0; k < count; ++k) {
         const Pose3& pose = scan.poseAt(k);
         if (k == 0 || !scan.beam_poses.empty()) frame = Frame3(pose);
-        Vec2 beam = beams_.local(k);
-        if (!errors_.empty()) {
-            const auto [c, s] = cosSin(Angle::radians(static_cast<double>(errors_[k])));
-            beam = {c * beam.x - s * beam.y, s * beam.x + c * beam.y};
-        }
-        apart_.set(k, frame * Vec3{beam.x, beam.y, 0});
-        origins_[k] = pose.position;
+        const Vec2 beam = localBeam(k);
+        rays.directions.set(k, frame * Vec3{beam.x, beam.y, 0});
+        rays.origins[k] = pose.position;
         level = level && pose.isLevel() && pose.position.z == scan.pose.position.z;
     }
-    const RayWorld& world = level ? worlds_->at(scan.pose) : worlds_->mesh();
-    world.cast(origins_, apart_, laser.max_range, scan.ranges, cosines_);
+    castRays(level ? worlds_->at(scan.pose) : worlds_->mesh(), rays, scan, parts);
+}
+
+void LaserCaster::castLevel(Scan& scan, const BeamFrames& frames,
+                            std::span<const BeamsAmong> parts) {
+    const std::size_t count = scan.ranges.size();
+    RaysApart& rays = RaysApart::ofThread(count);
+    if (errors_.empty())
+        turnEach(beams_.local(), frames, rays.directions);
+    else
+        for (std::size_t k = 0; k < count; ++k) {
+            const Vec2 beam = localBeam(k);
+            const double c = frames.cos[k], s = frames.sin[k];
+            rays.directions.set(k, {c * beam.x - s * beam.y, s * beam.x + c * beam.y, 0});
+        }
+    for (std::size_t k = 0; k < count; ++k)
+        rays.origins[k] = {frames.x[k], frames.y[k], scan.pose.position.z};
+    castRays(worlds_->at(scan.pose), rays, scan, parts);
+}
+
+void LaserCaster::castRays(const RayWorld& world, const RaysApart& rays, Scan& scan,
+                           std::span<const BeamsAmong> parts) {
+    const double far = sensor_->as<Laser>().max_range;
+    world.cast(rays.origins, rays.directions, far, scan.ranges, cosines_);
     for (const BeamsAmong& part : parts)
-        part.bodies->shorten(
-            std::span<const Point3>(origins_).subspan(part.begin, part.end - part.begin),
-            partOf(apart_, part), laser.max_range, own_, valuesOf(scan.ranges, part),
-            valuesOf(cosines_, part));
+        part.bodies->shorten(rays.origins, rays.directions, part.begin, part.end, far, own_,
+                             scan.ranges, cosines_);
 }
 
 double sliceArea(const Laser& laser, std::span<const float> ranges) {

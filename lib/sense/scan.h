@@ -40,8 +40,8 @@ class Beams {
     Beams(const Laser& laser, bool turns);
     /// Unit vectors of all beams in the world frame; valid until the next call.
     const Directions& at(const Pose3& pose);
-    /// Unit vector of a beam in the sensor's frame.
-    [[nodiscard]] Vec2 local(std::size_t beam) const { return {local_.x[beam], local_.y[beam]}; }
+    /// Unit vectors in the sensor's frame.
+    [[nodiscard]] const Directions& local() const { return local_; }
 
   private:
     void point(const Pose3& pose);
@@ -65,6 +65,16 @@ struct BeamsAmong {
     const MovingBodies* bodies = nullptr;
 };
 
+/// Where the beams of a level laser leave if it moves during the scan, one array per component:
+/// each beam's place, and unit vectors along the laser's headings.
+struct BeamFrames {
+    std::vector<double> x, y, cos, sin;
+
+    void resize(std::size_t count) {
+        for (auto* const values : {&x, &y, &cos, &sin}) values->resize(count);
+    }
+};
+
 /// Takes scans of one laser, keeping its memory and what can be computed once. Not thread-safe: use
 /// one per thread or per sensor. Results do not depend on earlier scans.
 class LaserCaster {
@@ -78,11 +88,20 @@ class LaserCaster {
     void cast(Scan& scan);
     /// The same while bodies move. \pre `parts` hold each beam once
     void cast(Scan& scan, std::span<const BeamsAmong> parts);
+    /// The same for a laser that stays level at its height, in place of beam_poses.
+    /// \pre `frames` has one for each beam
+    void cast(Scan& scan, const BeamFrames& frames, std::span<const BeamsAmong> parts);
 
   private:
+    template <typename Cast>
+    void castWith(Scan& scan, Cast cast);
     void castFrom(const Pose3& pose, std::span<float> ranges, std::span<const BeamsAmong> parts);
     void castApart(Scan& scan, std::span<const BeamsAmong> parts);
-    const Directions& partOf(const Directions& all, const BeamsAmong& part);
+    void castLevel(Scan& scan, const BeamFrames& frames, std::span<const BeamsAmong> parts);
+    struct RaysApart;
+    void castRays(const RayWorld& world, const RaysApart& rays, Scan& scan,
+                  std::span<const BeamsAmong> parts);
+    [[nodiscard]] Vec2 localBeam(std::size_t beam) const;
 
     const Worlds* worlds_;
     const MovingBodies* bodies_;
@@ -91,8 +110,6 @@ class LaserCaster {
     std::uint64_t id_hash_;
     std::uint32_t own_;
     Beams beams_;
-    Directions apart_, part_;
-    std::vector<Point3> origins_;
     std::vector<float> cosines_, errors_;
 };
 

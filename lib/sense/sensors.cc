@@ -87,17 +87,33 @@ MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t o
     return body;
 }
 
+bool isAtSome(const MovingBody& body, std::span<const double> heights) {
+    return heights.empty() || std::any_of(heights.begin(), heights.end(), [&body](double z) {
+               return body.bottom <= z && z <= body.top;
+           });
+}
+
+void addHumanBodies(double height, const Pose2& pose, std::uint32_t owner, Angle swing,
+                    std::span<const double> heights, std::vector<MovingBody>& bodies) {
+    const auto [c, s] = cosSin(pose.heading);
+    for (const Upright& part : humanUprights(height, swing)) {
+        const Vec2 way{c * part.center.x - s * part.center.y,
+                       s * part.center.x + c * part.center.y};
+        const MovingBody body{.pose = {pose.position + way, pose.heading},
+                              .half_length = part.half_length,
+                              .half_width = part.half_width,
+                              .radius = part.radius,
+                              .bottom = part.bottom,
+                              .top = part.top,
+                              .owner = owner};
+        if (isAtSome(body, heights)) bodies.push_back(body);
+    }
+}
+
 std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner,
                                     Angle swing) {
     std::vector<MovingBody> bodies;
-    for (const Upright& part : humanUprights(height, swing))
-        bodies.push_back({.pose = {pose * part.center, pose.heading},
-                          .half_length = part.half_length,
-                          .half_width = part.half_width,
-                          .radius = part.radius,
-                          .bottom = part.bottom,
-                          .top = part.top,
-                          .owner = owner});
+    addHumanBodies(height, pose, owner, swing, {}, bodies);
     return bodies;
 }
 

@@ -47,5 +47,10 @@ MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t o
 /// A person's legs, trunk, arms and head; `swing` as of humanBodyOf.
 std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner,
                                     Angle swing = {});
+/// True if one of these heights passes the body; also if there are none.
+bool isAtSome(const MovingBody& body, std::span<const double> heights);
+/// Adds those of them that isAtSome() of these heights.
+void addHumanBodies(double height, const Pose2& pose, std::uint32_t owner, Angle swing,
+                    std::span<const double> heights, std::vector<MovingBody>& bodies);
 
 }  // namespace ispace

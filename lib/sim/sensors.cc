@@ -81,6 +81,7 @@ SensorReader::SensorReader(const Scene& scene, const Options& options)
         casters_[i].emplace(worlds_, bodies_, *sensor, sensor->mount.has_value(), options_);
     }
     if (count > 0) trail_ = Trail(*std::max_element(durations_.begin(), durations_.end()));
+    spin_heights_ = spinHeights();
     if (has_cameras) photographer_ = std::make_unique<Photographer>(scene, photoOptionsOf(options));
     for (const Placed& placed : scene.placed)
         if (scene.records[placed.record].keyword() == "human")
@@ -125,16 +126,13 @@ void SensorReader::follow(const SensorReader& before,
 }
 
 void SensorReader::jumped() {
-    moved_ = true;
+    moved();
     floor_.forgetPlaces();
 }
 
 void SensorReader::read(SimTime time, const Movers& movers) {
     floor_.follow(movers);
-    if (trail_.isKept()) {
-        updateBodies(movers);
-        trail_.add(time, movers, std::exchange(trail_moved_, false), bodies_);
-    }
+    if (trail_.isKept()) trail_.add(time, movers, std::exchange(trail_moved_, false));
     latest_.clear();
     for (std::size_t i = 0; i < due_.size(); ++i) {
         if (due_[i] <= time && is_heavy_[i] == 0) latest_.push_back(i);
@@ -158,10 +156,15 @@ void SensorReader::readLatest(SimTime time, const Movers& movers) {
                       [&](std::size_t k) { measure(latest_[k], time); });
 }
 
+/// Where it sits on its carrier, in the carrier's frame.
+Pose3 SensorReader::mountOf(const Sensor& sensor) const {
+    if (sensor.mount) return sensor.mount->robot_from_sensor;
+    return localPose(people_starts_[sensor.person.value()], sensor.pose);
+}
+
 Pose3 SensorReader::poseOn(const Sensor& sensor, const Pose2& carrier) const {
-    if (sensor.mount) return mountedPose(carrier, sensor.mount->robot_from_sensor);
-    const Pose2& start = people_starts_[sensor.person.value()];
-    return carrier == start ? sensor.pose : mountedPose(carrier, localPose(start, sensor.pose));
+    if (sensor.person && carrier == people_starts_[*sensor.person]) return sensor.pose;
+    return mountedPose(carrier, mountOf(sensor));
 }
 
 Pose3 SensorReader::poseOf(const Sensor& sensor, const Movers& movers) const {
@@ -184,7 +187,7 @@ void SensorReader::update(SimTime time, const Movers& movers) {
         const bool sweeps = laser != nullptr && laser->sweep != SweepAxis::None;
         if (sensor->mount || sensor->person || sweeps)
             reading.pose = durations_[i] > SimTime(0)
-                               ? poseOf(*sensor, Trail::Walk(trail_, reading.time))
+                               ? poseOf(*sensor, Trail::Walk(trail_, reading.time), 0)
                                : poseOf(*sensor, movers);
         if (laser != nullptr) {
             if (sweeps)
@@ -199,6 +202,7 @@ void SensorReader::update(SimTime time, const Movers& movers) {
         }
     }
     updateBodies(movers);
+    makeTrailBodies();
     if (pictures) movePictures(movers);
     if (!hears) return;
     worlds_.prepareMesh(Surfaces::Solid);
@@ -211,23 +215,24 @@ void SensorReader::update(SimTime time, const Movers& movers) {
 }
 
 void SensorReader::updateBodies(const Movers& movers) {
-    if (!std::exchange(moved_, false)) return;
-    pictures_moved_ = trail_moved_ = true;
-    setBodies(Places(movers), bodies_);
+    if (std::exchange(moved_, false)) setBodies(Places(movers), {}, bodies_);
 }
 
-void SensorReader::setBodies(const Places& places, MovingBodies& bodies) {
-    body_list_.clear();
-    for (std::size_t i = 0; i < places.robots.size(); ++i)
-        body_list_.push_back(
-            robotBody(scene_->robots[i].model, places.robots[i], static_cast<std::uint32_t>(i)));
-    for (std::size_t i = 0; i < places.people.size(); ++i) {
-        const auto parts =
-            humanBodies(scene_->people[i].height, places.people[i],
-                        kFirstPerson + static_cast<std::uint32_t>(i), places.swings[i]);
-        body_list_.insert(body_list_.end(), parts.begin(), parts.end());
+void SensorReader::setBodies(const Places& places, std::span<const double> heights,
+                             MovingBodies& bodies) const {
+    // Kept for its memory.
+    thread_local std::vector<MovingBody> list;
+    list.clear();
+    for (std::size_t i = 0; i < places.robots.size(); ++i) {
+        const MovingBody robot =
+            robotBody(scene_->robots[i].model, places.robots[i], static_cast<std::uint32_t>(i));
+        if (isAtSome(robot, heights)) list.push_back(robot);
     }
-    bodies.rebuild(body_list_);
+    for (std::size_t i = 0; i < places.people.size(); ++i)
+        addHumanBodies(scene_->people[i].height, places.people[i],
+                       kFirstPerson + static_cast<std::uint32_t>(i), places.swings[i], heights,
+                       list);
+    bodies.rebuild(list);
 }
 
 void SensorReader::movePictures(const Movers& movers) {
@@ -274,7 +279,6 @@ void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime /*tim
     scan.time = seconds(reading.time);
     if (durations_[sensor] == SimTime(0)) return casters_[sensor]->cast(scan);
     sweep(laser, sensor);
-    casters_[sensor]->cast(scan, parts_[sensor]);
 }
 
 void SensorReader::measure(const Ranger& /*ranger*/, std::size_t sensor, SimTime time) {

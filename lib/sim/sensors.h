@@ -52,7 +52,7 @@ class SensorReader {
     void follow(const SensorReader& before, const std::unordered_set<std::string_view>& stayers,
                 const Movers& movers);
     /// Says that robots or people have moved.
-    void moved() { moved_ = true; }
+    void moved() { moved_ = trail_moved_ = pictures_moved_ = true; }
     /// They were put elsewhere, so nobody passed a gate on the way.
     void jumped();
 
@@ -91,15 +91,26 @@ class SensorReader {
     void update(SimTime time, const Movers& movers);
     void updateBodies(const Movers& movers);
     void movePictures(const Movers& movers);
-    void setBodies(const Places& places, MovingBodies& bodies);
+    [[nodiscard]] std::vector<double> spinHeights() const;
+    void makeTrailBodies();
+    /// \param heights those of all level rays that will meet them; empty: rays go everywhere
+    void setBodies(const Places& places, std::span<const double> heights,
+                   MovingBodies& bodies) const;
     void followTrail(const SensorReader& before,
                      const std::unordered_set<std::string_view>& stayers, const Movers& movers);
     static SimTime durationOf(const Laser& laser, SimTime step);
     [[nodiscard]] SimTime beginOf(std::size_t sensor, SimTime time) const;
     [[nodiscard]] Pose3 poseOf(const Sensor& sensor, const Movers& movers) const;
-    [[nodiscard]] Pose3 poseOf(const Sensor& sensor, const Trail::Walk& walk) const;
+    [[nodiscard]] Pose3 poseOf(const Sensor& sensor, const Trail::Walk& walk, double later) const;
     [[nodiscard]] Pose3 poseOn(const Sensor& sensor, const Pose2& carrier) const;
+    [[nodiscard]] Pose3 mountOf(const Sensor& sensor) const;
+    static const Pose2& carrierIn(const Places& places, const Sensor& sensor);
+    class BeamOrder;
     void sweep(const Laser& laser, std::size_t sensor);
+    template <typename Visit>
+    void forEachLeg(const BeamOrder& order, std::size_t sensor, Visit visit);
+    void sweepInSpace(const Laser& laser, std::size_t sensor);
+    bool sweepLevel(const Laser& laser, std::size_t sensor, BeamFrames& frames);
     void measure(std::size_t sensor, SimTime time);
     void measure(const Laser& laser, std::size_t sensor, SimTime time);
     void measure(const Ranger& ranger, std::size_t sensor, SimTime time);
@@ -128,9 +139,9 @@ class SensorReader {
     bool moved_ = true;                           // since the bodies were made
     bool pictures_moved_ = true;                  // since those of pictures were
     bool trail_moved_ = true;                     // since the trail's last moment
-    std::vector<MovingBody> body_list_;
     MovingBodies bodies_;
     Trail trail_;                                 // for scans that take a while
+    std::vector<double> spin_heights_;            // of their rays, if all are level; else empty
     std::vector<std::vector<BeamsAmong>> parts_;  // of each laser's last scan; kept for the memory
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "sim/arc_way.h"
 #include "sim/sensors.h"
 
 namespace ispace {
@@ -13,7 +14,44 @@ namespace {
 /// The next step at or after a time.
 SimTime atStep(SimTime time, SimTime step) { return (time + step - SimTime(1)) / step * step; }
 
+void join(std::vector<BeamsAmong>& parts, const BeamsAmong& part) {
+    if (part.begin == part.end) return;
+    if (parts.empty() || parts.back().bodies != part.bodies) return parts.push_back(part);
+    parts.back().begin = std::min(parts.back().begin, part.begin);
+    parts.back().end = std::max(parts.back().end, part.end);
+}
+
 }  // namespace
+
+/// The beams of a laser as they are measured: in the order of their bearings, or the other way
+/// round.
+class SensorReader::BeamOrder {
+  public:
+    explicit BeamOrder(const Laser& laser)
+        : count_(static_cast<std::size_t>(laser.beams)),
+          forwards_(laser.spin > 0),
+          seconds_(laser.step.degrees() / (360 * std::fabs(laser.spin))) {}
+
+    /// Seconds from the first beam to the one that is measured as number n.
+    [[nodiscard]] double timeOf(std::size_t n) const { return static_cast<double>(n) * seconds_; }
+    /// Seconds from a beam to the next one of the laser's, below 0 if that comes earlier.
+    [[nodiscard]] double step() const { return forwards_ ? seconds_ : -seconds_; }
+    [[nodiscard]] std::size_t count() const { return count_; }
+    /// Those measured as numbers begin to before end.
+    [[nodiscard]] BeamsAmong beams(std::size_t begin, std::size_t end,
+                                   const MovingBodies& bodies) const {
+        return forwards_ ? BeamsAmong{begin, end, &bodies}
+                         : BeamsAmong{count_ - end, count_ - begin, &bodies};
+    }
+    /// The beam that is measured as number n, and the other way round.
+    [[nodiscard]] std::size_t beam(std::size_t n) const { return forwards_ ? n : count_ - 1 - n; }
+    [[nodiscard]] double timeOfBeam(std::size_t beam) const { return timeOf(this->beam(beam)); }
+
+  private:
+    std::size_t count_;
+    bool forwards_;
+    double seconds_;  // from beam to beam
+};
 
 /// Up to the step at or after its last beam.
 SimTime SensorReader::durationOf(const Laser& laser, SimTime step) {
@@ -29,9 +67,40 @@ SimTime SensorReader::beginOf(std::size_t sensor, SimTime time) const {
     return atStep(periods_[sensor].begin(period), step_);
 }
 
-Pose3 SensorReader::poseOf(const Sensor& sensor, const Trail::Walk& walk) const {
-    if (sensor.mount) return poseOn(sensor, walk.robot(sensor.mount->robot));
-    return sensor.person ? poseOn(sensor, walk.person(*sensor.person)) : sensor.pose;
+const Pose2& SensorReader::carrierIn(const Places& places, const Sensor& sensor) {
+    return sensor.mount ? places.robots[sensor.mount->robot] : places.people[sensor.person.value()];
+}
+
+Pose3 SensorReader::poseOf(const Sensor& sensor, const Trail::Walk& walk, double later) const {
+    if (!sensor.mount && !sensor.person) return sensor.pose;
+    const ArcWay way(carrierIn(walk.from(), sensor), carrierIn(walk.to(), sensor));
+    return poseOn(sensor, way.at(walk.share().at(later)));
+}
+
+/// Nothing where some of these lasers do not stay level.
+std::vector<double> SensorReader::spinHeights() const {
+    std::vector<double> heights;
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+        if (durations_[i] == SimTime(0)) continue;
+        const Sensor& sensor = *sensors_[i].sensor();
+        if (sensor.as<Laser>().sweep != SweepAxis::None || !sensor.pose.isLevel()) return {};
+        heights.push_back(sensor.pose.position.z);
+    }
+    std::sort(heights.begin(), heights.end());
+    heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+    return heights;
+}
+
+/// Of the moments in which scans were measured that are due.
+void SensorReader::makeTrailBodies() {
+    std::optional<SimTime> since;
+    for (const std::size_t i : latest_)
+        if (durations_[i] > SimTime(0))
+            since = std::min(since.value_or(SimTime::max()), readings_[i].time);
+    if (!since || trail_.isStillSince(*since)) return;
+    trail_.makeBodies(*since, [this](const Places& places, MovingBodies& bodies) {
+        setBodies(places, spin_heights_, bodies);
+    });
 }
 
 void SensorReader::followTrail(const SensorReader& before,
@@ -50,39 +119,95 @@ void SensorReader::followTrail(const SensorReader& before,
         return found;
     };
     trail_.goOn(before.trail_, indices(scene_->robots, before.scene_->robots),
-                indices(scene_->people, before.scene_->people), Places(movers),
-                [this](const Places& places, MovingBodies& bodies) { setBodies(places, bodies); });
+                indices(scene_->people, before.scene_->people), Places(movers));
 }
 
-/// Where each beam leaves, and among whom.
+/// Measures beam after beam.
 void SensorReader::sweep(const Laser& laser, std::size_t sensor) {
     SensorReading& reading = readings_[sensor];
     Scan& scan = std::get<Scan>(reading.value);
-    const auto count = static_cast<std::size_t>(laser.beams);
+    LaserCaster& caster = *casters_[sensor];
     std::vector<BeamsAmong>& parts = parts_[sensor];
     scan.beam_poses.clear();
-    if (laser.sweep == SweepAxis::None && trail_.isStillSince(reading.time)) {
-        parts.assign({{0, count, &bodies_}});
-        return;
+    const bool sweeps = laser.sweep != SweepAxis::None;
+    if (!sweeps && trail_.isStillSince(reading.time)) {
+        parts.assign({{0, static_cast<std::size_t>(laser.beams), &bodies_}});
+        return caster.cast(scan, parts);
     }
+    if (sweeps || !scan.pose.isLevel()) {
+        sweepInSpace(laser, sensor);
+        return caster.cast(scan, parts);
+    }
+    // Kept for its memory: threads read many scans.
+    thread_local BeamFrames frames;
+    if (sweepLevel(laser, sensor, frames))
+        caster.cast(scan, frames, parts);
+    else
+        caster.cast(scan, parts);
+}
+
+/// Calls visit(walk, begin, end) for each leg and its beams, and notes among whom they are.
+template <typename Visit>
+void SensorReader::forEachLeg(const BeamOrder& order, std::size_t sensor, Visit visit) {
+    std::vector<BeamsAmong>& parts = parts_[sensor];
     parts.clear();
-    scan.beam_poses.resize(count);
-    bool moves = false;
-    Trail::Walk walk(trail_, reading.time);
-    for (std::size_t n = 0; n < count; ++n) {
-        const std::size_t beam = laser.spin > 0 ? n : count - 1 - n;
-        const double later = laser.timeOf(static_cast<int>(beam));
-        walk.to(later);
-        const Pose3 pose = sweptPose(laser, poseOf(*sensors_[sensor].sensor(), walk),
-                                     scan.number + later * laser.rate);
-        moves = moves || pose != scan.pose;
-        scan.beam_poses[beam] = pose;
-        const MovingBodies* const bodies = &walk.bodies();
-        if (parts.empty() || parts.back().bodies != bodies) parts.push_back({beam, beam, bodies});
-        parts.back().begin = std::min(parts.back().begin, beam);
-        parts.back().end = std::max(parts.back().end, beam + 1);
+    Trail::Walk walk(trail_, readings_[sensor].time);
+    constexpr double kHalf = 0.5;
+    for (std::size_t begin = 0; begin < order.count();) {
+        walk.to(order.timeOf(begin));
+        const auto share = walk.share();
+        const double end_time = walk.end();
+        std::size_t middle = begin;
+        while (middle < order.count() && order.timeOf(middle) <= end_time &&
+               share.at(order.timeOf(middle)) <= kHalf)
+            ++middle;
+        std::size_t end = middle;
+        while (end < order.count() && order.timeOf(end) <= end_time) ++end;
+        join(parts, order.beams(begin, middle, walk.bodies(0)));
+        join(parts, order.beams(middle, end, walk.bodies(1)));
+        visit(walk, begin, end);
+        begin = end;
     }
+}
+
+/// Sets the pose of each beam, if they differ.
+void SensorReader::sweepInSpace(const Laser& laser, std::size_t sensor) {
+    Scan& scan = std::get<Scan>(readings_[sensor].value);
+    const BeamOrder order(laser);
+    scan.beam_poses.resize(order.count());
+    bool moves = false;
+    forEachLeg(order, sensor, [&](const Trail::Walk& walk, std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            const double later = order.timeOf(n);
+            const Pose3 pose = sweptPose(laser, poseOf(*sensors_[sensor].sensor(), walk, later),
+                                         scan.number + later * laser.rate);
+            moves = moves || pose != scan.pose;
+            scan.beam_poses[order.beam(n)] = pose;
+        }
+    });
     if (!moves) scan.beam_poses.clear();
+}
+
+/// Sets where beams leave that stay level; false if that is one place, and `frames` says nothing.
+bool SensorReader::sweepLevel(const Laser& laser, std::size_t sensor, BeamFrames& frames) {
+    const Sensor& placed = *sensors_[sensor].sensor();
+    const bool is_carried = placed.mount || placed.person;
+    const BeamOrder order(laser);
+    if (is_carried) frames.resize(order.count());
+    const Pose3 on = is_carried ? mountOf(placed) : Pose3();
+    const Pose2 mount{on.position.onFloor(), on.heading};
+    bool moves = false;
+    forEachLeg(order, sensor, [&](const Trail::Walk& walk, std::size_t begin, std::size_t end) {
+        if (!is_carried) return;
+        const Pose2& from = carrierIn(walk.from(), placed);
+        const Pose2& to = carrierIn(walk.to(), placed);
+        moves = moves || from != to;
+        const auto share = walk.share();
+        const BeamsAmong beams = order.beams(begin, end, bodies_);
+        ArcWay(from, to).carry(mount, share.at(order.timeOfBeam(beams.begin)),
+                               order.step() * share.rate, beams.begin, beams.end, frames);
+    });
+    return moves;
 }
 
 }  // namespace ispace

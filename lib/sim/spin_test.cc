@@ -8,6 +8,7 @@
 #include <map>
 
 #include "layout/test_layout.h"
+#include "sim/arc_way.h"
 #include "sim/trail.h"
 #include "sim/world.h"
 
@@ -76,25 +77,6 @@ TEST(Spin, TowardsAWallAtConstantSpeed) {
         const double exact = rangeInRoom(place, unitVector(Angle::degrees(k - 90)));
         EXPECT_NEAR(scan.ranges[static_cast<std::size_t>(k)], exact, 1e-6) << k;
     }
-}
-
-TEST(Spin, AnArcIsFollowedWithinAStep) {
-    // Half a metre a second and a turn in four, in steps of a tenth of a second.
-    const Pose2 from{{1, 2}, Angle::degrees(30)};
-    const auto on_arc = [&](double t) {
-        const double radius = 0.5 / (std::acos(-1) / 2);
-        const Angle heading = from.heading + t * Angle::degrees(90);
-        return Pose2{{1 + radius * (sin(heading) - sin(from.heading)),
-                      2 - radius * (cos(heading) - cos(from.heading))},
-                     heading};
-    };
-    for (double share = 0; share <= 1; share += 0.125) {
-        const Pose2 found = poseBetween(from, on_arc(0.1), share);
-        EXPECT_NEAR(found.position.x, on_arc(0.1 * share).position.x, 1e-12);
-        EXPECT_NEAR(found.position.y, on_arc(0.1 * share).position.y, 1e-12);
-        EXPECT_NEAR(found.heading.degrees(), on_arc(0.1 * share).heading.degrees(), 1e-12);
-    }
-    EXPECT_EQ(poseBetween(from, on_arc(0.1), 1), on_arc(0.1));
 }
 
 TEST(Spin, AScanIsReadWithItsLastBeamAndHasTheTimeOfTheFirst) {
@@ -235,21 +217,21 @@ TEST(Trail, ALongOneStaysSmall) {
     std::vector<Motion> robots(1);
     for (int i = 0; i <= 200'000; ++i) {
         robots[0].pose.position.x = i * 1e-3;
-        trail.add(milliseconds(i), {robots, {}, {}}, true, MovingBodies());
+        trail.add(milliseconds(i), {robots, {}, {}}, true);
     }
     EXPECT_LE(trail.size(), 2U * 4096 + 3);
     Trail::Walk walk(trail, milliseconds(100'000));
     for (double later = 0; later <= 100; later += 0.37) {
         walk.to(later);
-        EXPECT_NEAR(walk.robot(0).position.x, 100 + later, 1e-9);
+        const ArcWay way(walk.from().robots[0], walk.to().robots[0]);
+        EXPECT_NEAR(way.at(walk.share().at(later)).position.x, 100 + later, 1e-9);
     }
 }
 
 TEST(Trail, StandsWhereNothingMoves) {
     Trail trail(milliseconds(100));
     std::vector<Motion> robots(1);
-    for (int i = 0; i <= 100; ++i)
-        trail.add(milliseconds(i), {robots, {}, {}}, i == 50, MovingBodies());
+    for (int i = 0; i <= 100; ++i) trail.add(milliseconds(i), {robots, {}, {}}, i == 50);
     EXPECT_TRUE(trail.isStillSince(milliseconds(50)));
     EXPECT_FALSE(trail.isStillSince(milliseconds(49)));
 }

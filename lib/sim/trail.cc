@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/trail.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace ispace {
@@ -10,8 +12,10 @@ namespace ispace {
 namespace {
 
 /// Shortest time between two moments of which both are kept.
-SimTime spacingOf(SimTime length, std::size_t bodies) {
+SimTime spacingOf(SimTime length, const Movers& movers) {
     constexpr std::size_t kMostBodies = std::size_t{1} << 19U;
+    constexpr std::size_t kPartsOfPerson = 16;
+    const std::size_t bodies = movers.robots.size() + kPartsOfPerson * movers.people.size();
     const auto moments = std::clamp<std::size_t>(kMostBodies / (bodies + 1), 16, 4096);
     return length / static_cast<SimTime::rep>(moments);
 }
@@ -25,35 +29,21 @@ Places::Places(const Movers& movers) : swings(movers.swings.begin(), movers.swin
     for (const Motion& motion : movers.people) people.push_back(motion.pose);
 }
 
-Pose2 poseBetween(const Pose2& from, const Pose2& to, double share) {
-    if (from == to || share == 1) return to;
-    constexpr double kStraight = 1e-6;
-    const Vec2 chord = to.position - from.position;
-    const Angle turn = wrapped(to.heading - from.heading);
-    const double half = 0.5 * turn.radians();
-    const double part =
-        std::abs(half) < kStraight ? share : std::sin(share * half) / std::sin(half);
-    const auto [c, s] = cosSin(0.5 * (share - 1) * turn);
-    const Vec2 way{c * chord.x - s * chord.y, s * chord.x + c * chord.y};
-    return {from.position + part * way, wrapped(from.heading + share * turn)};
-}
-
-void Trail::add(SimTime time, const Movers& movers, bool moved, const MovingBodies& bodies) {
+void Trail::add(SimTime time, const Movers& movers, bool moved) {
     if (!isKept()) return;
-    std::shared_ptr<const Moment> moment;
+    std::shared_ptr<Moment> moment;
     if (!moved && !entries_.empty()) moment = entries_.back().moment;
     while (!entries_.empty() && entries_.back().time >= time) entries_.pop_back();
     // The newest one is always kept.
     if (entries_.size() > 1 &&
-        entries_[entries_.size() - 2].time + spacingOf(length_, bodies.bodies().size()) > time)
+        entries_[entries_.size() - 2].time + spacingOf(length_, movers) > time)
         entries_.pop_back();
-    if (!moment) moment = std::make_shared<const Moment>(Moment{Places(movers), bodies});
+    if (!moment) moment = std::make_shared<Moment>(Moment{Places(movers)});
     entries_.push_back({time, std::move(moment)});
     while (entries_.size() > 1 && entries_[1].time + length_ <= time) entries_.pop_front();
 }
 
-void Trail::goOn(const Trail& before, Indices robots, Indices people, const Places& now,
-                 const SetBodies& set_bodies) {
+void Trail::goOn(const Trail& before, Indices robots, Indices people, const Places& now) {
     entries_.clear();
     if (!isKept()) return;
     const Moment* last = nullptr;
@@ -64,7 +54,7 @@ void Trail::goOn(const Trail& before, Indices robots, Indices people, const Plac
         }
         last = entry.moment.get();
         const Places& was = last->places;
-        auto moment = std::make_shared<Moment>(Moment{now, {}});
+        auto moment = std::make_shared<Moment>(Moment{now});
         for (std::size_t i = 0; i < robots.size(); ++i)
             if (robots[i]) moment->places.robots[i] = was.robots[*robots[i]];
         for (std::size_t i = 0; i < people.size(); ++i) {
@@ -72,9 +62,19 @@ void Trail::goOn(const Trail& before, Indices robots, Indices people, const Plac
             moment->places.people[i] = was.people[*people[i]];
             moment->places.swings[i] = was.swings[*people[i]];
         }
-        set_bodies(moment->places, moment->bodies);
         entries_.push_back({entry.time, std::move(moment)});
     }
+}
+
+void Trail::makeBodies(SimTime since, const SetBodies& set_bodies) {
+    std::vector<Moment*> bare;
+    for (std::size_t i = entries_.size(); i-- > 0;) {
+        Moment& moment = *entries_[i].moment;
+        if (!std::exchange(moment.has_bodies, true)) bare.push_back(&moment);
+        if (entries_[i].time <= since) break;
+    }
+    tbb::parallel_for(std::size_t{0}, bare.size(),
+                      [&](std::size_t i) { set_bodies(bare[i]->places, bare[i]->bodies); });
 }
 
 bool Trail::isStillSince(SimTime time) const {
@@ -98,28 +98,22 @@ void Trail::Walk::to(double later) {
     const std::size_t count = trail_->entries_.size();
     while (after_ < count && secondsTo(after_) < later) ++after_;
     before_ = after_ == 0 ? 0 : after_ - 1;
-    share_ = 0;
-    if (after_ == 0 || after_ >= count) return;
-    const double from = secondsTo(before_);
-    share_ = (later - from) / (secondsTo(after_) - from);
 }
 
-Pose2 Trail::Walk::robot(std::size_t index) const {
-    const Pose2& from = trail_->entries_[before_].moment->places.robots[index];
-    if (share_ == 0) return from;
-    return poseBetween(from, trail_->entries_[after_].moment->places.robots[index], share_);
+double Trail::Walk::end() const {
+    return after_ < trail_->entries_.size() ? secondsTo(after_)
+                                            : std::numeric_limits<double>::infinity();
 }
 
-Pose2 Trail::Walk::person(std::size_t index) const {
-    const Pose2& from = trail_->entries_[before_].moment->places.people[index];
-    if (share_ == 0) return from;
-    return poseBetween(from, trail_->entries_[after_].moment->places.people[index], share_);
+Trail::Walk::Share Trail::Walk::share() const {
+    if (before_ == last()) return {};
+    const double from = secondsTo(before_), rate = 1 / (secondsTo(after_) - from);
+    return {-from * rate, rate};
 }
 
-const MovingBodies& Trail::Walk::bodies() const {
+const MovingBodies& Trail::Walk::bodies(double share) const {
     constexpr double kHalf = 0.5;
-    const std::size_t entry = share_ > kHalf ? after_ : before_;
-    return trail_->entries_[entry].moment->bodies;
+    return trail_->entries_[share > kHalf ? last() : before_].moment->bodies;
 }
 
 }  // namespace ispace

@@ -30,7 +30,7 @@ struct Places {
 /// first of these everything counts as having stood.
 ///
 /// From step to step a carrier goes along an arc and turns evenly, which is how robots move at
-/// constant speeds. A trail has a place for each step, or fewer where memory would run out: some
+/// constant speeds. A trail has a moment for each step, or fewer where memory would run out: some
 /// 2^19 bodies are kept.
 class Trail {
   public:
@@ -40,56 +40,75 @@ class Trail {
     [[nodiscard]] bool isKept() const { return length_ > SimTime(0); }
     /// After a step, or once more after it. \param moved false: all are where they were at the last
     /// call
-    void add(SimTime time, const Movers& movers, bool moved, const MovingBodies& bodies);
+    void add(SimTime time, const Movers& movers, bool moved);
     /// Nothing is known of the steps before the next one.
     void clear() { entries_.clear(); }
     /// Goes on from that of another scene. `robots` and `people` have for each of this scene's its
     /// index in the other one, or nothing: then it counts as having stood where it is now.
     using Indices = std::span<const std::optional<std::size_t>>;
+    void goOn(const Trail& before, Indices robots, Indices people, const Places& now);
+
     using SetBodies = std::function<void(const Places& places, MovingBodies& bodies)>;
-    void goOn(const Trail& before, Indices robots, Indices people, const Places& now,
-              const SetBodies& set_bodies);
+    /// Makes the bodies that a walk from this time on asks for, in parallel.
+    void makeBodies(SimTime since, const SetBodies& set_bodies);
 
     /// Moments kept.
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
     /// True if nobody has moved since.
     [[nodiscard]] bool isStillSince(SimTime time) const;
 
-    /// Looks at moments one after another, from a beginning on.
+    /// Goes from moment to moment, from a beginning on: a leg begins behind one, and ends with the
+    /// next one. Behind the last moment there is one leg more, without end; who looks there, or
+    /// before the first moment, finds all standing.
     class Walk {
       public:
+        /// \pre the trail is not empty
         Walk(const Trail& trail, SimTime begin);
-        /// Goes to some seconds after the beginning. \pre not before those of the last call
+        /// Goes on to the leg of some seconds after the beginning. \pre not before those of the
+        /// last call
         void to(double later);
-        [[nodiscard]] Pose2 robot(std::size_t index) const;
-        [[nodiscard]] Pose2 person(std::size_t index) const;
-        /// The bodies of the nearest step. \pre the trail is not empty
-        [[nodiscard]] const MovingBodies& bodies() const;
+        /// Seconds after the beginning when the leg ends.
+        [[nodiscard]] double end() const;
+        /// The share of the leg that is over some seconds after the beginning: first + later *
+        /// rate.
+        struct Share {
+            double first = 0, rate = 0;
+            [[nodiscard]] double at(double later) const { return first + later * rate; }
+        };
+        [[nodiscard]] Share share() const;
+        /// Where the leg begins and ends.
+        [[nodiscard]] const Places& from() const { return placesAt(before_); }
+        [[nodiscard]] const Places& to() const { return placesAt(last()); }
+        /// The bodies of the nearest moment, for a share of the leg. \pre they are made
+        [[nodiscard]] const MovingBodies& bodies(double share) const;
 
       private:
         [[nodiscard]] double secondsTo(std::size_t entry) const;
+        [[nodiscard]] const Places& placesAt(std::size_t entry) const {
+            return trail_->entries_[entry].moment->places;
+        }
+        [[nodiscard]] std::size_t last() const {
+            return after_ < trail_->entries_.size() ? after_ : before_;
+        }
 
         const Trail* trail_;
         SimTime begin_;
         std::size_t before_ = 0, after_ = 0;  // entries
-        double share_ = 0;                    // of the way between them
     };
 
   private:
     struct Moment {
         Places places;
-        MovingBodies bodies;
+        MovingBodies bodies = {};
+        bool has_bodies = false;
     };
     struct Entry {
         SimTime time;
-        std::shared_ptr<const Moment> moment;  // the same until somebody moves
+        std::shared_ptr<Moment> moment;  // the same until somebody moves
     };
 
     SimTime length_;
     std::deque<Entry> entries_;
 };
-
-/// A share of the way from one pose to another, along an arc.
-Pose2 poseBetween(const Pose2& from, const Pose2& to, double share);
 
 }  // namespace ispace

@@ -137,7 +137,7 @@ TEST(BodyPicture, CosinesOfFacesAndRounds) {
         float range = kNoReturn, found = -1;
         bodies.shorten(origin, one, 10, kNobody, {&range, 1}, {&found, 1});
         float moved = kNoReturn, again = -1;
-        bodies.shorten({&origin, 1}, one, 10, kNobody, {&moved, 1}, {&again, 1});
+        bodies.shorten({&origin, 1}, one, 0, 1, 10, kNobody, {&moved, 1}, {&again, 1});
         EXPECT_EQ(moved, range);
         EXPECT_EQ(again, found);
         const RayGrid grid{way, {1, 0, 0}, {0, 1, 0}, 1, 1};
@@ -175,13 +175,18 @@ TEST(MovingBodies, OriginsOfEachRay) {
         directions.resize(100);
         std::vector<Point3> origins;
         for (std::size_t k = 0; k < 100; ++k) {
-            const Vec3 way{any(random), any(random), round % 2 == 0 ? 0 : 0.3 * any(random)};
+            Vec3 way{any(random), any(random), round % 2 == 0 ? 0 : 0.3 * any(random)};
+            // Of those that turn, most pass by both sides of all rays together.
+            const Vec2 turned =
+                unitVector(Angle::degrees(0.7 * static_cast<double>(k) + 7 * round));
+            if (round % 4 >= 2) way = {turned.x, turned.y, way.z};
             directions.set(k, (1 / length(way)) * way);
             origins.push_back({0.01 * static_cast<double>(k), 0.3, 0.5});
         }
         std::vector<float> ranges(100, kNoReturn), cosines(100, 1);
-        bodies.shorten(origins, directions, 4, kNobody, ranges, cosines);
-        for (std::size_t k = 0; k < 100; ++k) {
+        const std::size_t begin = round % 3, end = 100 - begin;
+        bodies.shorten(origins, directions, begin, end, 4, kNobody, ranges, cosines);
+        for (std::size_t k = begin; k < end; ++k) {
             float range = kNoReturn, cosine = 1;
             const Vec3 d = directions[k];
             bodies.shorten(origins[k], Directions{{d.x}, {d.y}, {d.z}}, 4, kNobody, {&range, 1},

@@ -7,13 +7,14 @@
 #include <utility>
 
 #include "trace/body_arc.h"
+#include "trace/body_pencil.h"
 #include "trace/body_rays.h"
 #include "trace/rays.h"
 
 namespace ispace {
 
 double MovingBody::reach() const {
-    return radius > 0 ? radius : std::hypot(half_length, half_width);
+    return radius > 0 ? radius : std::sqrt(half_length * half_length + half_width * half_width);
 }
 
 double MovingBody::meet(Point3 origin, Vec3 direction) const {
@@ -95,7 +96,11 @@ void MovingBodies::index() {
     double reach = 0;
     for (const MovingBody& body : bodies_) {
         places_.push_back(body.pose.position);
-        extents_.push_back({cosSin(body.pose.heading), body.reach()});
+        // The parts of a person face the same way.
+        const bool is_alike =
+            !extents_.empty() && body.pose.heading == bodies_[extents_.size() - 1].pose.heading;
+        extents_.push_back(
+            {is_alike ? extents_.back().axes : cosSin(body.pose.heading), body.reach()});
         reach = std::max(reach, extents_.back().reach);
     }
     grid_.rebuild(places_, reach);
@@ -119,30 +124,19 @@ void MovingBodies::shorten(Point3 origin, const Directions& directions, double m
 }
 
 void MovingBodies::shorten(std::span<const Point3> origins, const Directions& directions,
-                           double max_range, std::uint32_t own, std::span<float> ranges,
-                           std::span<float> cosines) const {
+                           std::size_t begin, std::size_t end, double max_range, std::uint32_t own,
+                           std::span<float> ranges, std::span<float> cosines) const {
     assert(directions.size() == ranges.size() && origins.size() == ranges.size());
-    if (ranges.empty() || grid_.empty()) return;
-    const double far = max_range * (1 + kFarSlack);
-    Box2 box;
-    std::vector<Vec2> flat(ranges.size());
-    for (std::size_t k = 0; k < ranges.size(); ++k) {
-        const Point2 origin = origins[k].onFloor();
-        flat[k] = {directions.x[k], directions.y[k]};
-        box.add(origin);
-        box.add(origin + far * flat[k]);
+    assert(begin <= end && end <= ranges.size());
+    if (grid_.empty()) return;
+    const ShortenedRanges shortened(max_range, ranges, cosines);
+    for (; begin < end; begin += BodyPencil::kMost) {
+        BodyPencil pencil(origins, directions, begin, std::min(begin + BodyPencil::kMost, end),
+                          max_range, shortened);
+        grid_.forEachRun(pencil.box(), {}, [&](std::size_t first, std::size_t last) {
+            pencil.meet(table_, first, last, own, bodies_, extents_);
+        });
     }
-    ShortenedRanges shortened(max_range, ranges, cosines);
-    grid_.forEachNear(box, [&](std::size_t i) {
-        if (bodies_[i].owner == own) return;
-        // Most rays pass by the circle about it: flat directions are at most 1 long.
-        const double near = extents_[i].reach + kFarSlack * (extents_[i].reach + far);
-        for (std::size_t k = 0; k < ranges.size(); ++k) {
-            if (std::fabs(cross(places_[i] - origins[k].onFloor(), flat[k])) > near) continue;
-            const BodyFrom from(bodies_[i], extents_[i].axes, origins[k]);
-            shortened.shorten(k, from.meet(directions[k]), 1);
-        }
-    });
 }
 
 void MovingBodies::shorten(Point3 origin, const RayGrid& grid, double most, std::uint32_t own,

@@ -96,9 +96,11 @@ class MovingBodies {
     /// \pre directions.size() == ranges.size()
     void shorten(Point3 origin, const Directions& directions, double max_range, std::uint32_t own,
                  std::span<float> ranges, std::span<float> cosines = {}) const;
-    /// The same with an origin for each ray.
-    void shorten(std::span<const Point3> origins, const Directions& directions, double max_range,
-                 std::uint32_t own, std::span<float> ranges, std::span<float> cosines = {}) const;
+    /// The same with an origin for each ray, of rays `begin` to before `end` alone. Fastest for
+    /// neighbours that leave near each other.
+    void shorten(std::span<const Point3> origins, const Directions& directions, std::size_t begin,
+                 std::size_t end, double max_range, std::uint32_t own, std::span<float> ranges,
+                 std::span<float> cosines = {}) const;
     /// The same for a picture, whose ranges are multiples of its rays' vectors; visits only pixels
     /// near a body.
     void shorten(Point3 origin, const RayGrid& grid, double most, std::uint32_t own,

@@ -69,6 +69,25 @@ Scene hallOfPeople(std::size_t count) {
     return scene;
 }
 
+/// Robots and people who wander about that hall; each robot has a laser whose beam spins.
+Scene spinningLasers(std::size_t count) {
+    Scene scene = bench::sceneOfText("#env 1\nispace size=50,50\n");
+    const DeviceCatalogue devices = bench::devices();
+    const RobotModel model = withParameters(RobotModel(), *devices.find("pioneer-2dx"));
+    scene.robots = testing::crowd(scene.environment, model, count, 0.1, 1);
+    testing::addPeople(scene, count, 0.1, 1);
+    for (PlacedRobot& robot : scene.robots) robot.course.wander = true;
+    for (PlacedPerson& person : scene.people) person.course.wander = true;
+    testing::mountLasers(scene, bench::laserOfModel("urg-04lx"));
+    return scene;
+}
+
+/// The same, each scan at one moment.
+Scene atOnce(Scene scene) {
+    for (Sensor& sensor : scene.sensors) sensor.as<Laser>().spin = 0;
+    return scene;
+}
+
 void simulateASecond(World& world, bool by_scans) {
     for (int i = 0; i < kStepsASecond; ++i) {
         if (by_scans) testing::wander(world);
@@ -116,6 +135,29 @@ void run(benchmark::State& state, const Scene& scene, const Case& of) {
     state.counters["cpu_s_per_sim_s"] = (processorSeconds() - before) / seconds;
 }
 
+/// What it costs that the beams of a scan follow one another, in turn with scans of one moment.
+void runSpinning(benchmark::State& state) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
+    const Scene spinning = spinningLasers(static_cast<std::size_t>(state.range(0)));
+    const Scene still = atOnce(spinning);
+    World spins(spinning, kStep), stands(still, kStep);
+    for (World* world : {&spins, &stands}) simulateASecond(*world, false);
+    double with_spin = 0, without = 0;
+    const auto time = [](World& world) {
+        const double before = processorSeconds();
+        simulateASecond(world, false);
+        return processorSeconds() - before;
+    };
+    for (auto _ : state) {
+        with_spin += time(spins);
+        without += time(stands);
+    }
+    const auto seconds = static_cast<double>(state.iterations());
+    state.counters["cpu_s_per_sim_s"] = with_spin / seconds;
+    state.counters["at_once"] = without / seconds;
+    state.counters["ratio"] = with_spin / without;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -144,6 +186,9 @@ int main(int argc, char** argv) {
             ->UseRealTime()
             ->Unit(benchmark::kMillisecond);
     }
+    benchmark::RegisterBenchmark("sim_rate/hall/spinning", runSpinning)
+        ->Arg(100)
+        ->Unit(benchmark::kMillisecond);
     benchmark::RunSpecifiedBenchmarks();
     return 0;
 }
