@@ -27,7 +27,7 @@ DeviceHost::Change DeviceHost::change(std::span<const std::string> assignments) 
     // Nobody shows a token here.
     if (!state_->mayChange() || !state_->limits().token.empty()) return Change::Refused;
     const WallTime began = steady_clock::now();
-    if (!state_->changes().mayBegin(began)) return Change::Later;
+    if (state_->isMaking() || !state_->changes().mayBegin(began)) return Change::Later;
     Change result = Change::Done;
     try {
         std::vector<Edit> edits;

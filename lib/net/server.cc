@@ -49,13 +49,19 @@ struct Server::Data {
         : simulation(the_simulation),
           limits(the_limits),
           state(the_simulation, the_limits),
-          acceptor(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }) {}
-    ~Data() { closeAll(); }
+          acceptor(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }) {
+        state.makeAside([this] { asio::post(io, [] {}); });
+    }
+    ~Data() {
+        state.endAside();
+        closeAll();
+    }
 
     void welcome(tcp::socket socket);
     bool makeRoom();
     void stepped();
     [[nodiscard]] WallTime nextTurn() const;
+    [[nodiscard]] std::chrono::nanoseconds turn() const;
     void serveClients();
     void sleepUntil(WallTime time);
     void relieve();
@@ -139,13 +145,25 @@ void Server::Data::stepped() {
 WallTime Server::Data::nextTurn() const {
     WallTime next = has_news ? next_news : WallTime::max();
     for (const auto& connection : connections) {
-        if (connection->waitsToChange()) next = std::min(next, state.changes().next());
+        if (connection->waitsToChange() && !state.isMaking())
+            next = std::min(next, state.changes().next());
         if (limits.watchdog.count() > 0 && connection->watched())
             next = std::min(next, connection->heard() + limits.watchdog);
     }
     for (const DevicePort& device : devices)
-        if (device.waitsToChange()) next = std::min(next, state.changes().next());
+        if (device.waitsToChange() && !state.isMaking())
+            next = std::min(next, state.changes().next());
     return next;
+}
+
+/// Of the world: a single step where it may have to wait for the frames of that step.
+std::chrono::nanoseconds Server::Data::turn() const {
+    const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay();
+    if (!may_hold || (serving == 0 && !web)) return kTurn;
+    const auto sensors = simulation.world().sensors();
+    const bool has_heavy = std::any_of(sensors.begin(), sensors.end(),
+                                       [](const RunSensor& sensor) { return sensor.isHeavy(); });
+    return has_heavy ? std::chrono::nanoseconds(0) : kTurn;
 }
 
 /// Runs handlers that are ready, for one turn at most, or until the world's next step is due.
@@ -154,8 +172,10 @@ void Server::Data::serveClients() {
     WallTime end = now + kTurn;
     if (const auto due = simulation.due()) end = std::min(end, std::max(*due, now + kShortTurn));
     while (io.poll_one() > 0 && steady_clock::now() < end) continue;
+    const bool has_made = state.collect();
     for (const auto& connection : connections)
-        if (connection->waiting()) connection->proceed();
+        if (has_made || connection->waiting()) connection->proceed();
+    if (web && has_made) web->stepped();
     if (web) web->serve();
     for (DevicePort& device : devices) device.serve(steady_clock::now());
     has_news = state.hasNews() || has_news;
@@ -266,7 +286,8 @@ void Server::run() {
     while (!simulation.finished()) {
         data.serveClients();
         // Last before sleeping: what clients asked for decides for how long.
-        auto next = simulation.run(steady_clock::now(), kTurn);
+        std::optional<WallTime> next;
+        if (!data.state.holdsWorld()) next = simulation.run(steady_clock::now(), data.turn());
         if (simulation.finished()) break;
         if (const WallTime turn = data.nextTurn(); turn < WallTime::max())
             next = std::min(next.value_or(turn), turn);

@@ -114,17 +114,71 @@ bool ServerState::hasNews() {
 std::shared_ptr<const std::string> ServerState::scan(std::size_t sensor, const ReplyForm& form) {
     World& world = simulation_->world();
     const SensorReading& reading = world.take(sensor);
-    std::vector<Text>& forms = texts_[sensor];
-    auto text = std::find_if(forms.begin(), forms.end(),
-                             [&form](const Text& known) { return known.form == form; });
-    if (text == forms.end()) {
-        forms.push_back({form, -1, nullptr});
-        text = forms.end() - 1;
-    }
-    if (text->seq == reading.seq && text->bytes) return text->bytes;
+    Text& text = textOf(sensor, form);
+    if (text.seq == reading.seq && text.bytes) return text.bytes;
     auto bytes = counted(scanText(world.sensors()[sensor], reading, form));
-    keep(*text, reading.seq, bytes);
+    keep(text, reading.seq, bytes);
     return bytes;
+}
+
+ServerState::Text& ServerState::textOf(std::size_t sensor, const ReplyForm& form) {
+    std::vector<Text>& forms = texts_[sensor];
+    const auto found = std::find_if(forms.begin(), forms.end(),
+                                    [&form](const Text& known) { return known.form == form; });
+    return found != forms.end() ? *found : forms.emplace_back(Text{form, -1, nullptr});
+}
+
+bool ServerState::holdsWorld() const {
+    return isMaking() &&
+           (simulation_->clock().kind != Clock::Kind::Real || simulation_->isReplay());
+}
+
+std::shared_ptr<const ServerState::Asked> ServerState::ask(std::size_t sensor,
+                                                           const ReplyForm& form) {
+    World& world = simulation_->world();
+    const bool may_wait =
+        workshop_ && world.sensors()[sensor].isHeavy() && !simulation_->isRecorded();
+    const std::int64_t seq = world.period(sensor);
+    const bool is_taken = world.isTaken(sensor);
+    const Text& text = textOf(sensor, form);
+    if (!may_wait || (is_taken && text.seq == seq && text.bytes))
+        return std::make_shared<const Asked>(Asked{scan(sensor, form)});
+    Making making{sensor, seq, form, std::make_shared<Asked>(), nullptr};
+    for (const Making& other : makings_) {
+        if (other.sensor != sensor || other.seq != seq) continue;
+        if (other.form == form) return other.asked;
+        making.reading = other.reading;
+    }
+    std::function<SensorReading()> take;
+    if (!making.reading && is_taken) {
+        making.reading = std::make_shared<SensorReading>(world.reading(sensor));
+    } else if (!making.reading) {
+        making.reading = std::make_shared<SensorReading>();
+        take = world.takeLater(sensor);
+    }
+    makings_.push_back(making);
+    make(making, std::move(take));
+    return making.asked;
+}
+
+/// Jobs are done in order: later ones find the reading of the first.
+void ServerState::make(const Making& making, std::function<SensorReading()> take) {
+    World& world = simulation_->world();
+    const auto text = std::make_shared<std::string>();
+    const bool takes = take != nullptr;
+    workshop_->give(
+        {[making, text, take = std::move(take), &sensor = world.sensors()[making.sensor]] {
+             if (take) *making.reading = take();
+             *text = scanText(sensor, *making.reading, making.form);
+         },
+         [this, making, text, takes](const std::exception_ptr& failure) {
+             std::erase_if(makings_,
+                           [&](const Making& other) { return other.asked == making.asked; });
+             if (failure) std::rethrow_exception(failure);
+             if (takes) simulation_->world().put(making.sensor, *making.reading);
+             making.asked->bytes = counted(std::move(*text));
+             keep(textOf(making.sensor, making.form), making.seq, making.asked->bytes);
+         }});
 }
 
 std::shared_ptr<const std::string> ServerState::counted(std::string text) const {

@@ -15,6 +15,7 @@
 
 #include "net/sensor_text.h"
 #include "net/server.h"
+#include "net/workshop.h"
 #include "sim/simulation.h"
 #include "sim/world.h"
 #include "sim/world_editor.h"
@@ -139,6 +140,27 @@ class ServerState {
     /// The newest reading of a sensor as scanText writes it, of a heavy one taken now if need be;
     /// all readers share one string. \throws FormatError as scanText does
     std::shared_ptr<const std::string> scan(std::size_t sensor, const ReplyForm& form);
+    /// A text that was asked for.
+    struct Asked {
+        std::shared_ptr<const std::string> bytes;  ///< null until it is made
+    };
+    /// The same as scan(). Of a heavy sensor, it is made in another thread if makeAside() was
+    /// called: as the sensor sees the world now.
+    std::shared_ptr<const Asked> ask(std::size_t sensor, const ReplyForm& form);
+    /// Lets another thread make what takes long. It calls `wake` when something is ready for
+    /// collect().
+    void makeAside(std::function<void()> wake) { workshop_.emplace(std::move(wake)); }
+    void endAside() { workshop_.reset(); }
+    /// Something is being made, for which the world must not be changed.
+    [[nodiscard]] bool isMaking() const { return workshop_ && workshop_->open() > 0; }
+    /// The world must not go on either: it takes the same steps however long that lasts.
+    [[nodiscard]] bool holdsWorld() const;
+    /// Completes what was asked for and is ready. \returns false if nothing is
+    bool collect() { return workshop_ && workshop_->collect(); }
+    /// Waits for all that was asked for.
+    void collectAll() {
+        if (workshop_) workshop_->collectAll();
+    }
     /// Bytes of outdated scans that connections still have to send.
     [[nodiscard]] std::size_t staleBytes() const { return *alive_ - kept_; }
 
@@ -148,8 +170,18 @@ class ServerState {
         std::int64_t seq = -1;
         std::shared_ptr<const std::string> bytes;
     };
+    /// A text that is being made.
+    struct Making {
+        std::size_t sensor;
+        std::int64_t seq;
+        ReplyForm form;
+        std::shared_ptr<Asked> asked;
+        std::shared_ptr<SensorReading> reading;  // once the first job of this sensor is done
+    };
     [[nodiscard]] std::shared_ptr<const std::string> counted(std::string text) const;
+    [[nodiscard]] Text& textOf(std::size_t sensor, const ReplyForm& form);
     void keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string> bytes);
+    void make(const Making& making, std::function<SensorReading()> take);
 
     Simulation* simulation_;
     ServerLimits limits_;
@@ -165,6 +197,8 @@ class ServerState {
     std::size_t kept_ = 0;                  // bytes in texts_
     // Bytes of all texts that somebody has; it outlives them.
     std::shared_ptr<std::size_t> alive_ = std::make_shared<std::size_t>(0);
+    std::vector<Making> makings_;
+    std::optional<Workshop> workshop_;  // the last: its jobs are about the others
 };
 
 }  // namespace ispace

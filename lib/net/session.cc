@@ -157,6 +157,7 @@ void Session::tooLong(std::size_t limit) {
 
 void Session::stepped(bool has_room) {
     sync();
+    receiveAsked();
     tellEnds();
     if (has_room) tellEvents();
     if (every_ > 0) streamSensor();
@@ -168,8 +169,7 @@ void Session::stepped(bool has_room) {
 
 void Session::proceed() {
     stepped();
-    if (!change_.empty() && state_->changes().mayBegin(std::chrono::steady_clock::now()))
-        carryOut(std::exchange(change_, {}));
+    if (!change_.empty() && mayChangeNow()) carryOut(std::exchange(change_, {}));
 }
 
 void Session::silent() {
@@ -183,6 +183,7 @@ void Session::finish() {
     sync();
     if (!running_.empty()) world().command(subject_, {Verb::Stop, 0});
     if (!std::exchange(change_, {}).empty()) error(405, {"the run has ended"});
+    if (wanted_ || coming_) state_->collectAll();
     stepped();
 }
 
@@ -292,6 +293,7 @@ void Session::lose() {
     running_.clear();
     every_ = 0;
     scan_.reset();
+    coming_.reset();
 }
 
 /// Gives up what the client holds.
@@ -304,6 +306,8 @@ void Session::leave() {
     running_.clear();
     every_ = 0;
     scan_.reset();
+    wanted_.reset();
+    coming_.reset();
 }
 
 void Session::tellEnds() {

@@ -46,8 +46,11 @@ class Session {
     /// Ends what is under way, at the end of the run, and says so.
     void finish();
 
-    /// True while a STEP or a change of the world is under way; later requests wait for its answer.
-    [[nodiscard]] bool waiting() const { return steps_ != nullptr || !change_.empty(); }
+    /// True while a STEP, a change of the world or a picture is under way; later requests wait for
+    /// its answer.
+    [[nodiscard]] bool waiting() const {
+        return steps_ != nullptr || !change_.empty() || wanted_ || coming_;
+    }
     [[nodiscard]] bool hasRole() const { return role_ != Role::None; }
     /// True if that is a change that waits for its turn.
     [[nodiscard]] bool waitsToChange() const { return !change_.empty(); }
@@ -90,6 +93,8 @@ class Session {
     void tellEvents();
     void answerStep();
     void sendPendingScan();
+    void sendReading(std::size_t sensor, const ReplyForm& form);
+    void receiveAsked();
 
     void token(Words words);
     void takeRobot(Words words);
@@ -121,6 +126,7 @@ class Session {
     void step(Words words);
     void shutdown(Words words);
     void change(Words words);
+    [[nodiscard]] bool mayChangeNow() const;
     void carryOut(std::string_view line);
     void events(Words words);
     void mark(Words words);
@@ -141,6 +147,8 @@ class Session {
     ReplyForm form_;
     bool is_stale_ = false;  // there is a newer one than that to be sent
     std::shared_ptr<const std::string> scan_;
+    // What is being made: a reading to be answered, and one of the stream.
+    std::shared_ptr<const ServerState::Asked> wanted_, coming_;
     std::shared_ptr<const StepQueue::Ticket> steps_;  // of a STEP to be answered
     std::string change_;                              // a request that has to wait its turn
     EventKinds events_;                               // that are told

@@ -178,10 +178,14 @@ void Session::change(Words words) {
     const std::string_view line(
         words.front().data(),
         static_cast<std::size_t>(last.data() + last.size() - words.front().data()));
-    if (state_->changes().mayBegin(std::chrono::steady_clock::now()))
+    if (mayChangeNow())
         carryOut(line);
     else
         change_ = line;
+}
+
+bool Session::mayChangeNow() const {
+    return !state_->isMaking() && state_->changes().mayBegin(std::chrono::steady_clock::now());
 }
 
 void Session::carryOut(std::string_view line) {

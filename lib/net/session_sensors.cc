@@ -68,7 +68,18 @@ void Session::scanOfRobot(Words words) {
                            sensor.model<Laser>() != nullptr ? "LASER " : "SENSOR ", words[1]});
     ReplyForm form = defaultForm(sensor);
     form.binary = false;
-    out_ += *state_->scan(*found, form);
+    sendReading(*found, form);
+}
+
+/// Now, or when it is made.
+void Session::sendReading(std::size_t sensor, const ReplyForm& form) {
+    wanted_ = state_->ask(sensor, form);
+    receiveAsked();
+}
+
+void Session::receiveAsked() {
+    if (wanted_ && wanted_->bytes) out_ += *std::exchange(wanted_, nullptr)->bytes;
+    if (coming_ && coming_->bytes) scan_ = std::exchange(coming_, nullptr)->bytes;
 }
 
 void Session::sonar(Words /*words*/) {
@@ -105,7 +116,7 @@ void Session::bumper(Words /*words*/) {
 
 void Session::scan(Words /*words*/) {
     sendPendingScan();
-    out_ += *state_->scan(subject_, form_);
+    sendReading(subject_, form_);
 }
 
 void Session::stream(Words words) {
@@ -125,7 +136,7 @@ void Session::stream(Words words) {
 }
 
 /// Looks whether a new reading is to be sent. A heavy one is not even taken while the one before it
-/// waits for a slow reader.
+/// is made, or waits for a slow reader.
 void Session::streamSensor() {
     const std::int64_t seq = world().period(subject_);
     if (seq != seq_ && seq % every_ == 0) {
@@ -133,8 +144,9 @@ void Session::streamSensor() {
         form.stream = true;
         if (scan_ && world().sensors()[subject_].isHeavy())
             is_stale_ = true;
-        else
-            scan_ = state_->scan(subject_, form);
+        else if (!coming_)
+            coming_ = state_->ask(subject_, form);
+        receiveAsked();
     }
     seq_ = seq;
 }
@@ -144,7 +156,9 @@ std::shared_ptr<const std::string> Session::takeScan() {
     if (scan_ && is_stale_) {
         ReplyForm form = form_;
         form.stream = true;
-        scan_ = state_->scan(subject_, form);
+        scan_ = nullptr;
+        coming_ = state_->ask(subject_, form);
+        receiveAsked();
     }
     is_stale_ = false;
     return std::exchange(scan_, nullptr);
@@ -152,7 +166,15 @@ std::shared_ptr<const std::string> Session::takeScan() {
 
 /// A scan that was due before a request is sent before its answer.
 void Session::sendPendingScan() {
-    if (scan_) out_ += *takeScan();
+    if (!scan_) return;
+    auto scan = takeScan();
+    if (coming_) {
+        // Only of one who read nothing for long.
+        state_->collectAll();
+        receiveAsked();
+        scan = std::exchange(scan_, nullptr);
+    }
+    if (scan) out_ += *scan;
 }
 
 void Session::stopStream(Words /*words*/) {

@@ -113,6 +113,8 @@ void Session::seek(Words words) {
         return error(416, {excerpt(words[1]), " is no time in seconds from 0 on"});
     if (!mayAskFor(words.front())) return;
     state_->steps().cut();
+    // It is about the world as it is now.
+    state_->collectAll();
     try {
         simulation.seek(*time, std::chrono::steady_clock::now());
     } catch (const FormatError& failure) {

@@ -16,10 +16,9 @@ namespace ispace {
 
 namespace {
 
-int frameOf(std::int64_t number) {
-    constexpr std::int64_t kLast = std::numeric_limits<int>::max();
-    return static_cast<int>(std::min(number, kLast));
-}
+/// Sensors that are read together: enough for other threads to gain by it, few enough for those who
+/// wait meanwhile.
+constexpr std::size_t kBlock = 64;
 
 /// A pose on a carrier, in the carrier's frame.
 Pose3 localPose(const Pose2& carrier, const Pose3& pose) {
@@ -44,6 +43,11 @@ PhotoOptions photoOptionsOf(const SensorReader::Options& options) {
 }
 
 }  // namespace
+
+int SensorReader::frameOf(std::int64_t number) {
+    constexpr std::int64_t kLast = std::numeric_limits<int>::max();
+    return static_cast<int>(std::min(number, kLast));
+}
 
 SensorReader::SensorReader(const Scene& scene, const Options& options)
     : scene_(&scene),
@@ -130,7 +134,8 @@ void SensorReader::jumped() {
     floor_.forgetPlaces();
 }
 
-void SensorReader::read(SimTime time, const Movers& movers) {
+void SensorReader::begin(SimTime time, const Movers& movers) {
+    finish();
     floor_.follow(movers);
     if (trail_.isKept()) trail_.add(time, movers, std::exchange(trail_moved_, false));
     latest_.clear();
@@ -138,22 +143,41 @@ void SensorReader::read(SimTime time, const Movers& movers) {
         if (due_[i] <= time && is_heavy_[i] == 0) latest_.push_back(i);
     }
     if (latest_.empty()) return;
-    readLatest(time, movers);
+    update(latest_, time, movers);
+    unread_ = latest_;
+    unread_time_ = time;
+    next_block_ = 0;
+    unread_blocks_ = (unread_.size() + kBlock - 1) / kBlock;
+    is_read_.assign(unread_blocks_, 0);
 }
 
-void SensorReader::take(std::size_t sensor, SimTime time, const Movers& movers) {
-    if (due_[sensor] > time) return;
-    const auto others = std::exchange(latest_, {sensor});
-    readLatest(time, movers);
-    // Read in this step like the others.
-    latest_.insert(latest_.begin(), others.begin(), others.end());
-    std::sort(latest_.begin(), latest_.end());
+void SensorReader::readBlock(std::size_t block) {
+    if (std::exchange(is_read_[block], 1) != 0) return;
+    --unread_blocks_;
+    tbb::parallel_for(block * kBlock, std::min((block + 1) * kBlock, unread_.size()),
+                      [&](std::size_t k) { measure(unread_[k], unread_time_); });
 }
 
-void SensorReader::readLatest(SimTime time, const Movers& movers) {
-    update(time, movers);
-    tbb::parallel_for(std::size_t{0}, latest_.size(),
-                      [&](std::size_t k) { measure(latest_[k], time); });
+/// With those of its block, which other threads then read.
+void SensorReader::complete(std::size_t sensor) {
+    const auto found = std::lower_bound(unread_.begin(), unread_.end(), sensor);
+    if (found != unread_.end() && *found == sensor)
+        readBlock(static_cast<std::size_t>(found - unread_.begin()) / kBlock);
+}
+
+bool SensorReader::readSome(std::chrono::steady_clock::time_point until) {
+    while (unread_blocks_ > 0) {
+        readBlock(next_block_++);
+        if (std::chrono::steady_clock::now() >= until) break;
+    }
+    return unread_blocks_ == 0;
+}
+
+void SensorReader::finish() {
+    if (std::exchange(unread_blocks_, 0) == 0) return;
+    tbb::parallel_for(std::size_t{0}, unread_.size(), [&](std::size_t k) {
+        if (is_read_[k / kBlock] == 0) measure(unread_[k], unread_time_);
+    });
 }
 
 /// Where it sits on its carrier, in the carrier's frame.
@@ -173,9 +197,9 @@ Pose3 SensorReader::poseOf(const Sensor& sensor, const Movers& movers) const {
 }
 
 /// All that does not depend on rays: times, poses, bodies.
-void SensorReader::update(SimTime time, const Movers& movers) {
-    bool hears = false, pictures = false;
-    for (const std::size_t i : latest_) {
+void SensorReader::update(std::span<const std::size_t> due, SimTime time, const Movers& movers) {
+    bool hears = false;
+    for (const std::size_t i : due) {
         SensorReading& reading = readings_[i];
         reading.time = beginOf(i, time);
         reading.seq = periods_[i].newest(reading.time);
@@ -193,17 +217,12 @@ void SensorReader::update(SimTime time, const Movers& movers) {
             if (sweeps)
                 reading.pose = sweptPose(*laser, reading.pose,
                                          static_cast<double>(reading.seq % laser->scans()));
-        } else if (sensor->is<Ranger>()) {
-            worlds_.prepareMesh();
-        } else if (sensor->is<Camera>()) {
-            pictures = true;
         } else {
             hears = true;
         }
     }
     updateBodies(movers);
-    makeTrailBodies();
-    if (pictures) movePictures(movers);
+    makeTrailBodies(due);
     if (!hears) return;
     worlds_.prepareMesh(Surfaces::Solid);
     std::size_t receiver = 0, tag = 0;
@@ -215,7 +234,9 @@ void SensorReader::update(SimTime time, const Movers& movers) {
 }
 
 void SensorReader::updateBodies(const Movers& movers) {
-    if (std::exchange(moved_, false)) setBodies(Places(movers), {}, bodies_);
+    if (!std::exchange(moved_, false)) return;
+    setBodies(Places(movers), {}, bodies_);
+    kept_bodies_.reset();
 }
 
 void SensorReader::setBodies(const Places& places, std::span<const double> heights,
@@ -233,27 +254,6 @@ void SensorReader::setBodies(const Places& places, std::span<const double> heigh
                        kFirstPerson + static_cast<std::uint32_t>(i), places.swings[i], heights,
                        list);
     bodies.rebuild(list);
-}
-
-void SensorReader::movePictures(const Movers& movers) {
-    if (!std::exchange(pictures_moved_, false)) return;
-    std::vector<Pose3> poses;
-    std::size_t person = 0;
-    for (const Placed& placed : scene_->placed) {
-        const std::string& keyword = scene_->records[placed.record].keyword();
-        Pose3 pose = placed.pose;
-        if (sensorKind(keyword) != nullptr) {
-            pose = poseOf(scene_->sensors[placed.index], movers);
-        } else if (keyword == "robot" || keyword == "human") {
-            const Motion& motion =
-                keyword == "robot" ? movers.robots[placed.index] : movers.people[person++];
-            pose.position.x = motion.pose.position.x;
-            pose.position.y = motion.pose.position.y;
-            pose.heading = motion.pose.heading;
-        }
-        poses.push_back(pose);
-    }
-    photographer_->moveTo(poses, movers.swings);
 }
 
 void SensorReader::measure(std::size_t sensor, SimTime time) {
@@ -279,22 +279,6 @@ void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime /*tim
     scan.time = seconds(reading.time);
     if (durations_[sensor] == SimTime(0)) return casters_[sensor]->cast(scan);
     sweep(laser, sensor);
-}
-
-void SensorReader::measure(const Ranger& /*ranger*/, std::size_t sensor, SimTime time) {
-    SensorReading& reading = readings_[sensor];
-    DepthFrame frame = castDepth(worlds_.mesh(), bodies_, *sensors_[sensor].sensor(), reading.pose,
-                                 frameOf(reading.seq), options_);
-    frame.time = seconds(time);
-    reading.value = std::move(frame);
-}
-
-void SensorReader::measure(const Camera& /*camera*/, std::size_t sensor, SimTime time) {
-    SensorReading& reading = readings_[sensor];
-    Photo photo =
-        photographer_->take(*sensors_[sensor].sensor(), reading.pose, frameOf(reading.seq));
-    photo.time = seconds(time);
-    reading.value = std::move(photo);
 }
 
 void SensorReader::measure(const Tag& /*tag*/, std::size_t sensor, SimTime time) {

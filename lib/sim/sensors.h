@@ -2,9 +2,12 @@
 // Private to lib/sim.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -40,15 +43,26 @@ class SensorReader {
 
     /// After each step: follows those who move, and reads what is due, in parallel. Heavy
     /// sensors are left out.
-    void read(SimTime time, const Movers& movers);
+    void read(SimTime time, const Movers& movers) {
+        begin(time, movers);
+        finish();
+    }
+    /// The same, but what is due is read later: by readSome(), or each when reading() is asked for.
+    /// It is as it would be now, whatever movers do until then.
+    void begin(SimTime time, const Movers& movers);
+    /// Reads until all is read, or about until then. \returns true if all is read
+    bool readSome(std::chrono::steady_clock::time_point until);
+    void finish();
     /// After a step that nobody looks at: what is due is read after a later one.
     void pass(const Movers& movers) {
+        finish();
         latest_.clear();
         floor_.follow(movers);
         trail_.clear();
     }
     /// Before the first reading in another scene: those that stay as they are keep their last
     /// reading, and gates their counts; scans that have begun go on. \param movers of this scene
+    /// \pre all of `before` is read
     void follow(const SensorReader& before, const std::unordered_set<std::string_view>& stayers,
                 const Movers& movers);
     /// Says that robots or people have moved.
@@ -58,7 +72,8 @@ class SensorReader {
 
     /// Sensors in the order of the scene, as they start; then mats, then gates.
     [[nodiscard]] const std::vector<RunSensor>& sensors() const { return sensors_; }
-    [[nodiscard]] const SensorReading& reading(std::size_t sensor) const {
+    [[nodiscard]] const SensorReading& reading(std::size_t sensor) {
+        if (unread_blocks_ > 0) complete(sensor);
         return readings_[sensor];
     }
     /// Those read last, ascending.
@@ -67,8 +82,16 @@ class SensorReader {
     [[nodiscard]] std::int64_t period(std::size_t sensor, SimTime time) const {
         return is_heavy_[sensor] == 0 ? readings_[sensor].seq : periods_[sensor].newest(time);
     }
-    /// Reads a heavy sensor now if it was not read in its newest period.
+    /// True unless it is heavy and was not read in its newest period.
+    [[nodiscard]] bool isTaken(std::size_t sensor, SimTime time) const {
+        return due_[sensor] > time || is_heavy_[sensor] == 0;
+    }
+    /// Reads a heavy sensor now if it is not taken.
     void take(std::size_t sensor, SimTime time, const Movers& movers);
+    /// The same in two parts: see World::takeLater.
+    std::function<SensorReading()> takeLater(std::size_t sensor, SimTime time,
+                                             const Movers& movers);
+    void put(std::size_t sensor, SensorReading reading);
 
     [[nodiscard]] const FloorSensors& floor() const { return floor_; }
     /// The bodies of robots and people where they are.
@@ -87,12 +110,19 @@ class SensorReader {
     [[nodiscard]] std::size_t matOf(std::size_t sensor) const {
         return gateOf(sensor) + floor_.mats().size();
     }
-    void readLatest(SimTime time, const Movers& movers);
-    void update(SimTime time, const Movers& movers);
+    void complete(std::size_t sensor);
+    void readBlock(std::size_t block);
+    void update(std::span<const std::size_t> due, SimTime time, const Movers& movers);
     void updateBodies(const Movers& movers);
-    void movePictures(const Movers& movers);
+    struct Stage;
+    std::shared_ptr<const Stage> stage(const Movers& movers);
+    [[nodiscard]] SensorReading begun(std::size_t sensor, SimTime time, const Movers& movers) const;
+    void photograph(const Sensor& camera, const std::shared_ptr<const Stage>& stage,
+                    SensorReading& reading);
+    void senseDepth(const Sensor& ranger, const MovingBodies& bodies, SensorReading& reading) const;
+    static int frameOf(std::int64_t number);
     [[nodiscard]] std::vector<double> spinHeights() const;
-    void makeTrailBodies();
+    void makeTrailBodies(std::span<const std::size_t> due);
     /// \param heights those of all level rays that will meet them; empty: rays go everywhere
     void setBodies(const Places& places, std::span<const double> heights,
                    MovingBodies& bodies) const;
@@ -113,8 +143,9 @@ class SensorReader {
     bool sweepLevel(const Laser& laser, std::size_t sensor, BeamFrames& frames);
     void measure(std::size_t sensor, SimTime time);
     void measure(const Laser& laser, std::size_t sensor, SimTime time);
-    void measure(const Ranger& ranger, std::size_t sensor, SimTime time);
-    void measure(const Camera& camera, std::size_t sensor, SimTime time);
+    // These are taken.
+    void measure(const Ranger& /*ranger*/, std::size_t /*sensor*/, SimTime /*time*/) {}
+    void measure(const Camera& /*camera*/, std::size_t /*sensor*/, SimTime /*time*/) {}
     void measure(const Tag& tag, std::size_t sensor, SimTime time);
     void measure(const Receiver& receiver, std::size_t sensor, SimTime time);
 
@@ -132,13 +163,23 @@ class SensorReader {
     std::vector<SensorReading> readings_;
     std::vector<std::optional<LaserCaster>> casters_;  // of lasers
     std::vector<std::size_t> latest_;
+    // What is due and still to be read, ascending, at the time of the step; in blocks, of which
+    // some are read already.
+    std::vector<std::size_t> unread_;
+    std::vector<char> is_read_;  // of blocks
+    std::size_t unread_blocks_ = 0, next_block_ = 0;
+    SimTime unread_time_{};
     // Those that hear, and those that are heard, where they are; made when one of them is read.
     std::vector<Sensor> receivers_, tags_;
     std::vector<Pose2> people_starts_;
-    std::unique_ptr<Photographer> photographer_;  // if there are cameras
-    bool moved_ = true;                           // since the bodies were made
-    bool pictures_moved_ = true;                  // since those of pictures were
-    bool trail_moved_ = true;                     // since the trail's last moment
+    std::unique_ptr<Photographer> photographer_;       // if there are cameras
+    std::mutex photographing_;                         // of it
+    std::shared_ptr<const Stage> photographed_;        // as it was moved last
+    std::shared_ptr<const Stage> stage_;               // as all are, if it was asked for
+    std::shared_ptr<const MovingBodies> kept_bodies_;  // those of now, likewise
+    bool moved_ = true;                                // since the bodies were made
+    bool pictures_moved_ = true;                       // since those of pictures were
+    bool trail_moved_ = true;                          // since the trail's last moment
     MovingBodies bodies_;
     Trail trail_;                                 // for scans that take a while
     std::vector<double> spin_heights_;            // of their rays, if all are level; else empty

@@ -92,9 +92,9 @@ std::vector<double> SensorReader::spinHeights() const {
 }
 
 /// Of the moments in which scans were measured that are due.
-void SensorReader::makeTrailBodies() {
+void SensorReader::makeTrailBodies(std::span<const std::size_t> due) {
     std::optional<SimTime> since;
-    for (const std::size_t i : latest_)
+    for (const std::size_t i : due)
         if (durations_[i] > SimTime(0))
             since = std::min(since.value_or(SimTime::max()), readings_[i].time);
     if (!since || trail_.isStillSince(*since)) return;

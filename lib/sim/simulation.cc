@@ -134,8 +134,10 @@ void Simulation::seek(SimTime time, WallTime now) {
 void Simulation::step() {
     if (replay_ != nullptr)
         replay_->step(*world_);
-    else
+    else if (recorder_ != nullptr)
         world_->step();
+    else
+        world_->stepUnread();
     events_.stepped();
     // Before the next commands: one of motion would wipe out the stall flag of this step.
     if (recorder_ != nullptr) recorder_->record(*world_);
@@ -197,14 +199,18 @@ std::optional<WallTime> Simulation::runDue(WallTime now, nanoseconds budget) {
     const bool follows = clock_.kind == Clock::Kind::Real;
     if (follows && !started_) startAt(now);
     if (follows && !paused_) forgive(now);
-    const auto began = steady_clock::now();
+    const auto end = steady_clock::now() + budget;
+    // What the last step left, though the next one may be due.
+    if (!world_->readSome(end)) return now;
     while (isDue(now)) {
         if (paused_)
             --owed_;
         else if (follows)
             noteLateness();
         step();
-        if (steady_clock::now() - began >= budget) break;
+        if (finished_) break;
+        if (!world_->readSome(end)) return now;
+        if (steady_clock::now() >= end) break;
     }
     if (isDue(now)) return now;
     if (finished_) return std::nullopt;

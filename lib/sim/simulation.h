@@ -59,6 +59,7 @@ class Simulation {
 
     /// Records every step from now on. The recorder must outlive the last one.
     void recordWith(Recorder& recorder) { recorder_ = &recorder; }
+    [[nodiscard]] bool isRecorded() const { return recorder_ != nullptr; }
 
     /// Takes the steps of a record instead of simulating. At its end the run ends; or, if it is to
     /// hold, it pauses and goes on serving the last moment. \pre the replay outlives the last step
@@ -100,9 +101,9 @@ class Simulation {
     [[nodiscard]] bool finished() const { return finished_; }
 
     /// Takes the steps that are due, for about `budget` of wall time (one step at least, if one is
-    /// due). With the clock Real a lag of more than a quarter of a second is forgiven: time then
-    /// goes slower, instead of faster later. \returns when to call again; nothing: only once told
-    /// to step or resume
+    /// due, or a part of reading its sensors). With the clock Real a lag of more than a quarter of
+    /// a second is forgiven: time then goes slower, instead of faster later. \returns when to call
+    /// again; nothing: only once told to step or resume
     std::optional<WallTime> run(WallTime now, std::chrono::nanoseconds budget);
     /// When the next step is due by the clock Real; nothing with others, or while paused.
     [[nodiscard]] std::optional<WallTime> due() const;

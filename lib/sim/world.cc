@@ -103,6 +103,18 @@ const SensorReading& World::take(std::size_t sensor) {
     return reading(sensor);
 }
 
+bool World::isTaken(std::size_t sensor) const {
+    return data_->sensors.isTaken(sensor, data_->time);
+}
+
+std::function<SensorReading()> World::takeLater(std::size_t sensor) {
+    return data_->sensors.takeLater(sensor, data_->time, data_->where());
+}
+
+void World::put(std::size_t sensor, SensorReading reading) {
+    data_->sensors.put(sensor, std::move(reading));
+}
+
 std::vector<float> World::sonar(std::size_t robot) {
     Data& data = *data_;
     const RobotModel& model = data.movers[robot].model;
@@ -221,13 +233,17 @@ void World::steer(std::size_t robot, const WheelOrder& order) {
 Scan World::look(const Sensor& laser) { return data_->sensors.look(laser, data_->where()); }
 
 void World::change(Scene scene, std::span<const std::string> placed) {
+    data_->sensors.finish();
     auto stayers = stayersOf(*data_->scene, scene);
     for (const std::string& id : placed) stayers.erase(id);
     keepInPlace(scene, stayers, data_->places());
     data_ = data_->next(std::move(scene), stayers);
 }
 
-void World::restart(Scene scene) { data_ = data_->next(std::move(scene), {}); }
+void World::restart(Scene scene) {
+    data_->sensors.finish();
+    data_ = data_->next(std::move(scene), {});
+}
 
 void World::stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions,
                    std::span<const std::optional<Pose2>> odometries) {
@@ -256,12 +272,23 @@ void World::rewind() {
 }
 
 void World::step() {
+    stepUnread();
+    data_->sensors.finish();
+}
+
+void World::stepUnread() {
     Data& data = *data_;
+    // Sensors first look at what is moved now.
+    data.sensors.finish();
     data.begin();
     data.proposeAll();
     data.settle();
     data.apply();
-    data.sensors.read(data.time, data.where());
+    data.sensors.begin(data.time, data.where());
+}
+
+bool World::readSome(std::chrono::steady_clock::time_point until) {
+    return data_->sensors.readSome(until);
 }
 
 }  // namespace ispace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -134,6 +136,14 @@ class World {
     /// reading(), after reading a heavy sensor now if it was not in its newest period. Pictures and
     /// depth frames are only taken this way.
     const SensorReading& take(std::size_t sensor);
+    /// True unless take() had to read it now.
+    [[nodiscard]] bool isTaken(std::size_t sensor) const;
+    /// take() in two parts, for those who have somebody else to serve meanwhile: the function that
+    /// this returns reads the sensor as it is now, in any thread and while the world goes on, but
+    /// not while or after it is changed. Then put() makes that its reading.
+    /// \pre it is heavy
+    std::function<SensorReading()> takeLater(std::size_t sensor);
+    void put(std::size_t sensor, SensorReading reading);
     /// What the sonars of a robot measure now, in the order of its model: metres, +infinity without
     /// an echo. See robot_sensors.h.
     [[nodiscard]] std::vector<float> sonar(std::size_t robot);
@@ -158,6 +168,12 @@ class World {
     [[nodiscard]] Scan look(const Sensor& laser);
 
     void step();
+    /// The same, but sensors are read by readSome(), or each with others when reading() asks for
+    /// it: for those who have somebody else to serve meanwhile. Readings do not depend on it.
+    void stepUnread();
+    /// Reads sensors that are due since the last step until all are, or about until then.
+    /// \returns true if all are read
+    bool readSome(std::chrono::steady_clock::time_point until);
     /// A step in which everybody gets where a record says, instead of where commands lead: `states`
     /// are those after it, by index of movers(), and `odometries` what robots then believe, where
     /// that is known. \pre as many states as movers(), and odometries as robots() or none

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Clients of a running world, each of whom asks for a scan of 181 beams as soon as it has the one
-// before: scans a second in all, and how long one takes.
+// before: scans a second in all, and how long one takes. And how long a client waits for its STATUS
+// while the server is at work for others.
 #include <benchmark/benchmark.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <pthread.h>
 #include <sys/epoll.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -20,6 +22,7 @@
 #include <vector>
 
 #include "bench_scenes.h"
+#include "crowd.h"
 #include "net/server.h"
 
 namespace {
@@ -37,9 +40,8 @@ constexpr std::size_t kBeams = 181;
 /// A world in real time and its server, in a thread.
 class Running {
   public:
-    Running()
-        : scene_(bench::sceneOfText("#env 1\nispace size=8,6\ncube at=2,1 size=0.5\n"
-                                    "laser id=l1 at=0,0 fov=180 step=1 range=8 rate=10\n")),
+    explicit Running(Scene scene)
+        : scene_(std::move(scene)),
           world_(scene_, std::chrono::milliseconds(5)),
           simulation_(world_, {}, {Clock::Kind::Real, 1}, {}),
           server_(simulation_, parseEndpoint("127.0.0.1:0"), limits()),
@@ -51,6 +53,14 @@ class Running {
     Running(const Running&) = delete;
     Running& operator=(const Running&) = delete;
     [[nodiscard]] std::uint16_t port() const { return server_.port(); }
+    /// Processor time of the server's thread.
+    [[nodiscard]] double work() {
+        clockid_t clock{};
+        timespec time{};
+        ::pthread_getcpuclockid(thread_.native_handle(), &clock);
+        ::clock_gettime(clock, &time);
+        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    }
 
   private:
     static ServerLimits limits() {
@@ -65,18 +75,23 @@ class Running {
     std::thread thread_;
 };
 
+int connectedTo(std::uint16_t port) {
+    const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const int yes = 1;
+    ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+    if (::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+        fail("connect");
+    return socket;
+}
+
 /// One that asks, and waits for the whole answer.
 class Asker {
   public:
-    Asker(std::uint16_t port, bool binary) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_port = htons(port);
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        const int yes = 1;
-        ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-        if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-            fail("connect");
+    Asker(std::uint16_t port, bool binary) : socket_(connectedTo(port)) {
         send(binary ? "LASER l1\nBINARY on\n" : "LASER l1\nBINARY off\n");
         for (int lines = 0; lines < 3;) {
             char c = 0;
@@ -128,8 +143,15 @@ class Asker {
     std::string answer_;
 };
 
+/// Milliseconds of what is so far from the least. \pre sorted
+double shareOf(const std::vector<double>& seconds, double share) {
+    return seconds[static_cast<std::size_t>(share * static_cast<double>(seconds.size() - 1))] * 1e3;
+}
+
 void serve(benchmark::State& state, bool binary) {
-    Running running;
+    Running running(
+        bench::sceneOfText("#env 1\nispace size=8,6\ncube at=2,1 size=0.5\n"
+                           "laser id=l1 at=0,0 fov=180 step=1 range=8 rate=10\n"));
     std::vector<std::unique_ptr<Asker>> askers;
     const int poll = ::epoll_create1(0);
     for (std::int64_t i = 0; i < state.range(0); ++i) {
@@ -159,11 +181,88 @@ void serve(benchmark::State& state, bool binary) {
     ::close(poll);
     state.SetItemsProcessed(state.iterations() * kAnswers);
     std::sort(took.begin(), took.end());
-    const auto at = [&took](double share) {
-        return took[static_cast<std::size_t>(share * static_cast<double>(took.size() - 1))] * 1e3;
+    state.counters["p50_ms"] = shareOf(took, 0.5);
+    state.counters["p99_ms"] = shareOf(took, 0.99);
+}
+
+/// A thousand robots that wander about an office, each with a laser.
+Scene manyRobots() {
+    Scene scene = bench::officeScene(12, 10);
+    const RobotModel model = withParameters(RobotModel(), *bench::devices().find("pioneer-2dx"));
+    scene.robots = testing::crowd(scene.environment, model, 1000, 0.1, 1);
+    for (PlacedRobot& robot : scene.robots) robot.course.wander = true;
+    Laser laser;
+    laser.max_range = 8;
+    testing::mountLasers(scene, laser);
+    return scene;
+}
+
+/// A robot in a room with cameras.
+Scene cameras() {
+    return bench::sceneOfText(
+        "#env 1\nispace size=8,6\ncube at=2,1 size=0.5\ndesk at=-2,1\n"
+        "robot id=r1 at=0,0\ncamera id=c1 at=-3.5,0,2 tilt=-20\n");
+}
+
+/// One that reads whatever comes, in a thread.
+class Listener {
+  public:
+    Listener(std::uint16_t port, std::string_view requests)
+        : socket_(connectedTo(port)), thread_([this] {
+              std::array<char, 65536> block;
+              while (::recv(socket_, block.data(), block.size(), 0) > 0) continue;
+          }) {
+        if (::send(socket_, requests.data(), requests.size(), MSG_NOSIGNAL) < 0) fail("send");
+    }
+    ~Listener() {
+        ::shutdown(socket_, SHUT_RDWR);
+        thread_.join();
+        ::close(socket_);
+    }
+    Listener(const Listener&) = delete;
+    Listener& operator=(const Listener&) = delete;
+
+  private:
+    int socket_;
+    std::thread thread_;
+};
+
+/// How long STATUS takes, asked for now and then while `others` keep the server at work, and how
+/// much of that its thread was at work itself: what it takes where no other program has the
+/// processor.
+void askStatus(benchmark::State& state, const Scene& scene, std::string_view others) {
+    Running running(scene);
+    const Listener listener(running.port(), others);
+    const int socket = connectedTo(running.port());
+    const auto read_lines = [socket](int lines) {
+        std::array<char, 4096> block;
+        while (lines > 0) {
+            const auto got = ::recv(socket, block.data(), block.size(), 0);
+            if (got <= 0) fail("recv");
+            lines -= static_cast<int>(std::count(block.data(), block.data() + got, '\n'));
+        }
     };
-    state.counters["p50_ms"] = at(0.5);
-    state.counters["p99_ms"] = at(0.99);
+    constexpr std::string_view kBegin = "ROBOT r1\n", kAsk = "STATUS\n";
+    if (::send(socket, kBegin.data(), kBegin.size(), MSG_NOSIGNAL) < 0) fail("send");
+    read_lines(2);
+    std::vector<double> took, worked;
+    for (auto _ : state) {
+        for (int i = 0; i < 200; ++i) {
+            std::this_thread::sleep_for(std::chrono::microseconds(1700));
+            const auto begin = steady_clock::now();
+            const double before = running.work();
+            if (::send(socket, kAsk.data(), kAsk.size(), MSG_NOSIGNAL) < 0) fail("send");
+            read_lines(1);
+            worked.push_back(running.work() - before);
+            took.push_back(std::chrono::duration<double>(steady_clock::now() - begin).count());
+        }
+    }
+    ::close(socket);
+    for (auto* const times : {&took, &worked}) std::sort(times->begin(), times->end());
+    state.counters["p50_ms"] = shareOf(took, 0.5);
+    state.counters["p99_ms"] = shareOf(took, 0.99);
+    state.counters["own_p99_ms"] = shareOf(worked, 0.99);
+    state.counters["own_most_ms"] = shareOf(worked, 1);
 }
 
 }  // namespace
@@ -184,6 +283,14 @@ int main(int argc, char** argv) {
             ->Arg(1000)
             ->UseRealTime()
             ->Unit(benchmark::kMillisecond);
+    const auto status = [](const char* name, Scene (*scene)(), const char* others) {
+        benchmark::RegisterBenchmark(
+            name, [=](benchmark::State& state) { askStatus(state, scene(), others); })
+            ->UseRealTime()
+            ->Unit(benchmark::kMillisecond);
+    };
+    status("server_rate/status/1000_robots", manyRobots, "WORLD\n");
+    status("server_rate/status/pictures", cameras, "SENSOR c1\nSTREAM\n");
     benchmark::RunSpecifiedBenchmarks();
     return 0;
 }

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/net.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace ispace {
+
+/// A thread for what takes so long that clients would notice: jobs are done one after another, in
+/// the order they were given.
+class Workshop {
+  public:
+    /// \param wake is called by that thread when a job is done
+    explicit Workshop(std::function<void()> wake);
+    /// Waits for the job that is being done, and drops the others.
+    ~Workshop();
+    Workshop(const Workshop&) = delete;
+    Workshop& operator=(const Workshop&) = delete;
+
+    struct Job {
+        std::function<void()> work;  ///< in the thread of the workshop
+        /// In that of the owner, with what `work` threw, or null. It may throw that again.
+        std::function<void(const std::exception_ptr& failure)> deliver;
+    };
+    void give(Job job);
+    /// Jobs that were given and not delivered.
+    [[nodiscard]] std::size_t open() const { return open_; }
+    /// Delivers those that are done. \returns false if there were none
+    bool collect();
+    /// Waits for all, and delivers them.
+    void collectAll();
+
+  private:
+    void run();
+
+    std::function<void()> wake_;
+    std::size_t open_ = 0;  // of the owner alone
+    std::mutex mutex_;      // of what follows
+    std::condition_variable changed_;
+    std::deque<Job> waiting_;
+    struct Done {
+        Job job;
+        std::exception_ptr failure;
+    };
+    std::vector<Done> done_;
+    bool ends_ = false;
+    std::thread thread_;  // the last: it uses the others
+};
+
+}  // namespace ispace
