@@ -16,6 +16,8 @@ namespace {
 
 /// Ends of edges in a strip: the fewer, the more often edges are looked at that lie in several.
 constexpr std::size_t kQuick = 2048;
+/// With fewer layers than this not many edges lie along each other, and bundles do not pay.
+constexpr std::size_t kManyLayers = 256;
 /// Strips in which an edge lies, on average, at most.
 constexpr std::size_t kMostStrips = 6;
 
@@ -312,7 +314,7 @@ class Sweep {
 
 void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTable table,
                  SetStore& sets, std::size_t at_least, const PartVisitor& visit) {
-    if (table.points().size() < 2 * kQuick)
+    if (layers.size() < kManyLayers || table.points().size() < 2 * kQuick)
         edges = merged(ledThroughEnds(edges, table.points()), table.points(), sets);
     else
         tbb::this_task_arena::isolate(
