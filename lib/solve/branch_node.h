@@ -85,7 +85,7 @@ struct SplitNode {
 /// Branches on a node: splits the list of one group into candidates that see much the same as a
 /// pivot and the rest, with one child for each number of sensors from the first part. Strong
 /// branching (Applegate, Bixby, Chvatal & Cook 1995) picks the split whose children promise the
-/// smallest tree after a few steps of their bounds.
+/// smallest tree after a few steps of the bounds of their core.
 ///
 /// Deterministic, unless progress says stop: then any split will do.
 /// \param relaxed of the node before it was cut down, the same groups and lists, with the
@@ -103,6 +103,9 @@ struct OpenGroup {
     std::vector<std::uint32_t> list;  ///< candidates of the reduced problem, ascending
 };
 
+/// The core of a node: 1 for the candidates that are part of it, by group and place in its list.
+using NodeCore = std::vector<std::vector<char>>;
+
 /// The Lagrangian relaxation of a node of the search tree: from each group its best candidates.
 class NodeRelaxation {
   public:
@@ -116,6 +119,11 @@ class NodeRelaxation {
 
     /// The bound for these multipliers; the members below refer to the last call.
     std::uint64_t evaluate(const std::vector<std::uint32_t>& multipliers);
+    /// The same as if there were the candidates of the working sites alone: quick, and at most what
+    /// evaluate() gives.
+    std::uint64_t evaluateWorking(const std::vector<std::uint32_t>& multipliers);
+    /// After evaluate(): the sites of the best reduced costs join the working ones.
+    void widen();
     [[nodiscard]] const std::vector<float>& cover() const { return cover_; }
     /// The best of all groups, as named in the reduced problem.
     [[nodiscard]] std::vector<Choice> chosen() const;
@@ -126,6 +134,10 @@ class NodeRelaxation {
     std::vector<Choice> takeForced(std::uint64_t cut);
     /// Upper bound of the solutions that the two have excluded, at most their cut.
     [[nodiscard]] std::uint64_t ruledOut() const { return ruled_out_; }
+
+    /// After evaluate(): the most promising candidates, about `size` in all, and those that have
+    /// been chosen.
+    [[nodiscard]] NodeCore core(std::size_t size) const;
 
     /// Updates the running frequency with which each candidate is chosen.
     void count(float part);
@@ -141,15 +153,21 @@ class NodeRelaxation {
   private:
     void settle(const std::vector<Choice>& chosen);
     void findSites();
-    void weigh(const std::vector<std::uint32_t>& multipliers);
+    using PerKind = std::vector<std::vector<std::uint32_t>>;
+    void weigh(const std::vector<std::uint32_t>& multipliers, const PerKind& sites);
+    [[nodiscard]] std::vector<std::uint32_t> mostPromising(const OpenGroup& group,
+                                                           std::size_t count) const;
+    std::uint64_t findBest(const std::vector<std::uint32_t>& multipliers, bool is_all);
     void setCover();
 
     ReducedProblem problem_;
     std::vector<OpenGroup> groups_;
-    std::vector<std::vector<std::uint32_t>> sites_;          // per kind, to be weighed
-    std::vector<std::vector<std::uint32_t>> reduced_costs_;  // per kind and candidate
-    std::vector<std::vector<std::uint32_t>> top_;  // per group: the best, one more than wanted
-    std::vector<std::vector<float>> frequencies_;  // per group, beside its list
+    PerKind sites_, working_sites_;                    // to be weighed
+    std::vector<std::vector<char>> is_working_;        // per kind and site
+    PerKind reduced_costs_;                            // by candidate
+    std::vector<std::vector<std::uint32_t>> working_;  // per group: candidates of working sites
+    std::vector<std::vector<std::uint32_t>> top_;      // per group: the best, one more than wanted
+    std::vector<std::vector<float>> frequencies_;      // per group, beside its list
     std::vector<std::uint32_t> cell_costs_;
     std::vector<float> cover_;
     std::uint64_t bound_ = 0, ruled_out_ = 0;

@@ -36,7 +36,7 @@ SplitNode splitOf(BranchNode& node, std::uint64_t cut) {
     SilentProgress progress;
     NodeRelaxation relaxed(node);
     MultiplierSearch search(relaxed.problem().weights, relaxed.start(node),
-                            static_cast<double>(cut), kWarmFactor);
+                            static_cast<double>(cut), kWarmPace);
     node.bound = relaxed.evaluate(search.trial());
     for (int trial = 0; trial < 20; ++trial) {
         search.report(static_cast<double>(relaxed.evaluate(search.trial())), relaxed.cover());

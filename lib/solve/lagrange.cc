@@ -225,7 +225,8 @@ Bound lagrangianBound(const Problem& problem, const std::vector<Choice>& near,
     const std::size_t sensors = root.counts().total();
     const std::size_t working = std::clamp<std::size_t>(64 * sensors, 128, 512);
     progress.begin("bounding", limits.rounds);
-    MultiplierSearch search(cells.weights, bound.multipliers, static_cast<double>(cut));
+    MultiplierSearch search(cells.weights, bound.multipliers, static_cast<double>(cut),
+                            limits.pace);
     std::vector<std::uint64_t> leasts;  // after each round
     for (int round = 0; round <= limits.rounds && !progress.stopped(); ++round) {
         const std::uint64_t now = root.evaluate(round == 0 ? search.trial() : search.best(), true);
@@ -244,7 +245,8 @@ Bound lagrangianBound(const Problem& problem, const std::vector<Choice>& near,
         // Slower than this it leads nowhere.
         const std::size_t done = leasts.size();
         if (done > kRoundsBack && leasts.back() < cells.most(problem.totalWeight()) &&
-            (leasts[done - 1 - kRoundsBack] - leasts.back()) * 20 < leasts.back() - cut)
+            static_cast<double>(leasts[done - 1 - kRoundsBack] - leasts.back()) <
+                limits.stall * static_cast<double>(leasts.back() - cut))
             break;
         root.widen(working);
         for (int trial = 0; trial < kTrials; ++trial) {

@@ -87,6 +87,9 @@ struct LagrangeLimits {
     std::uint64_t cut = 0;
     double gap = 0;   ///< ends once (bound - cut) / bound is at most this
     int rounds = 24;  ///< maximum number of passes over all candidates
+    /// Ends once four rounds gain less than this part of the distance between bound and cut.
+    double stall = 0.05;
+    SearchPace pace = SearchPace();
 };
 
 /// Upper bound of max sum w_i y_i subject to required y_i <= achieved_i + sum_j m_j a_ij x_j and

@@ -43,15 +43,15 @@ void NodeRelaxation::settle(const std::vector<Choice>& chosen) {
 
 void NodeRelaxation::findSites() {
     sites_.assign(problem_.kinds.size(), {});
-    for (const OpenGroup& group : groups_) {
-        const CandidateSet& set = *problem_.kinds[group.kind].candidates;
-        auto& sites = sites_[group.kind];
-        for (const std::uint32_t i : group.list)
-            sites.push_back(static_cast<std::uint32_t>(set.siteOf(i)));
-    }
-    for (auto& sites : sites_) {
-        std::sort(sites.begin(), sites.end());
-        sites.erase(std::unique(sites.begin(), sites.end()), sites.end());
+    for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
+        const CandidateSet& set = *problem_.kinds[k].candidates;
+        std::vector<char> is_open(set.sites(), 0);
+        for (const OpenGroup& group : groups_) {
+            if (group.kind != k) continue;
+            for (const std::uint32_t i : group.list) is_open[set.siteOf(i)] = 1;
+        }
+        for (std::uint32_t site = 0; site < is_open.size(); ++site)
+            if (is_open[site] != 0) sites_[k].push_back(site);
     }
 }
 
@@ -62,11 +62,11 @@ std::vector<std::uint32_t> NodeRelaxation::start(const BranchNode& node) const {
     return multipliers;
 }
 
-void NodeRelaxation::weigh(const std::vector<std::uint32_t>& multipliers) {
+void NodeRelaxation::weigh(const std::vector<std::uint32_t>& multipliers, const PerKind& sites) {
     WeightSums reduced_costs;
     std::uint32_t last_multiplicity = 0;
     for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
-        if (sites_[k].empty()) continue;
+        if (sites[k].empty()) continue;
         const ReducedProblem::OfKind& kind = problem_.kinds[k];
         if (kind.multiplicity != last_multiplicity) {
             cell_costs_.resize(multipliers.size());
@@ -77,10 +77,10 @@ void NodeRelaxation::weigh(const std::vector<std::uint32_t>& multipliers) {
         }
         // The node's own work is shared out, too: there may be few nodes, but large ones.
         constexpr std::size_t kGrain = 256;
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites_[k].size(), kGrain),
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites[k].size(), kGrain),
                           [&](const tbb::blocked_range<std::size_t>& some) {
                               for (std::size_t i = some.begin(); i < some.end(); ++i) {
-                                  const std::uint32_t site = sites_[k][i];
+                                  const std::uint32_t site = sites[k][i];
                                   const std::size_t first = kind.candidates->firstOf(site);
                                   const std::size_t end = kind.candidates->firstOf(site + 1);
                                   kind.candidates->weighSite(
@@ -92,7 +92,52 @@ void NodeRelaxation::weigh(const std::vector<std::uint32_t>& multipliers) {
 }
 
 std::uint64_t NodeRelaxation::evaluate(const std::vector<std::uint32_t>& multipliers) {
-    weigh(multipliers);
+    weigh(multipliers, sites_);
+    return findBest(multipliers, true);
+}
+
+std::uint64_t NodeRelaxation::evaluateWorking(const std::vector<std::uint32_t>& multipliers) {
+    weigh(multipliers, working_sites_);
+    return findBest(multipliers, false);
+}
+
+/// The candidates of a group with the best reduced costs.
+std::vector<std::uint32_t> NodeRelaxation::mostPromising(const OpenGroup& group,
+                                                         std::size_t count) const {
+    const std::vector<std::uint32_t>& reduced_costs = reduced_costs_[group.kind];
+    std::vector<std::uint32_t> best(std::min(count, group.list.size()));
+    std::partial_sort_copy(group.list.begin(), group.list.end(), best.begin(), best.end(),
+                           [&](std::uint32_t a, std::uint32_t b) {
+                               return reduced_costs[a] != reduced_costs[b]
+                                          ? reduced_costs[a] > reduced_costs[b]
+                                          : a < b;
+                           });
+    return best;
+}
+
+void NodeRelaxation::widen() {
+    constexpr std::size_t kLeast = 24, kPerSensor = 8;
+    if (is_working_.empty())
+        for (const auto& kind : problem_.kinds)
+            is_working_.emplace_back(kind.candidates->sites(), 0);
+    for (const OpenGroup& group : groups_) {
+        const CandidateSet& set = *problem_.kinds[group.kind].candidates;
+        for (const std::uint32_t i : mostPromising(group, kLeast + kPerSensor * group.count))
+            is_working_[group.kind][set.siteOf(i)] = 1;
+    }
+    working_sites_.assign(sites_.size(), {});
+    for (std::size_t k = 0; k < sites_.size(); ++k)
+        for (const std::uint32_t site : sites_[k])
+            if (is_working_[k][site] != 0) working_sites_[k].push_back(site);
+    working_.assign(groups_.size(), {});
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        const CandidateSet& set = *problem_.kinds[groups_[g].kind].candidates;
+        for (const std::uint32_t i : groups_[g].list)
+            if (is_working_[groups_[g].kind][set.siteOf(i)] != 0) working_[g].push_back(i);
+    }
+}
+
+std::uint64_t NodeRelaxation::findBest(const std::vector<std::uint32_t>& multipliers, bool is_all) {
     bound_ = problem_.settled;
     for (std::size_t i = 0; i < multipliers.size(); ++i)
         bound_ += problem_.weights[i] - multipliers[i];
@@ -103,9 +148,9 @@ std::uint64_t NodeRelaxation::evaluate(const std::vector<std::uint32_t>& multipl
             return reduced_costs[a] != reduced_costs[b] ? reduced_costs[a] > reduced_costs[b]
                                                         : a < b;
         };
-        top_[g].resize(std::min(group.count + 1, group.list.size()));
-        std::partial_sort_copy(group.list.begin(), group.list.end(), top_[g].begin(), top_[g].end(),
-                               is_better);
+        const std::vector<std::uint32_t>& list = is_all ? group.list : working_[g];
+        top_[g].resize(std::min(group.count + 1, list.size()));
+        std::partial_sort_copy(list.begin(), list.end(), top_[g].begin(), top_[g].end(), is_better);
         for (std::size_t n = 0; n < std::min(group.count, top_[g].size()); ++n)
             bound_ += reduced_costs[top_[g][n]];
     }
@@ -186,6 +231,26 @@ std::vector<Choice> NodeRelaxation::takeForced(std::uint64_t cut) {
     return forced;
 }
 
+NodeCore NodeRelaxation::core(std::size_t size) const {
+    constexpr std::size_t kLeast = 16;
+    constexpr float kRare = 1e-3F;
+    std::size_t sensors = 0;
+    for (const OpenGroup& group : groups_) sensors += group.count;
+    NodeCore is_core;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        const OpenGroup& group = groups_[g];
+        std::vector<char>& own = is_core.emplace_back(group.list.size(), 0);
+        const std::size_t part = size * group.count / std::max<std::size_t>(sensors, 1);
+        for (const std::uint32_t i : mostPromising(group, kLeast + part)) {
+            const auto at = std::lower_bound(group.list.begin(), group.list.end(), i);
+            own[static_cast<std::size_t>(at - group.list.begin())] = 1;
+        }
+        for (std::size_t i = 0; i < own.size(); ++i)
+            if (frequencies_[g][i] > kRare) own[i] = 1;
+    }
+    return is_core;
+}
+
 void NodeRelaxation::count(float part) {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         for (float& frequency : frequencies_[g]) frequency *= 1.0F - part;
@@ -201,13 +266,13 @@ void NodeRelaxation::count(float part) {
 std::vector<float> NodeRelaxation::likeness(std::size_t group, std::uint32_t pivot,
                                             const std::vector<std::uint32_t>& multipliers) {
     const OpenGroup& own = groups_[group];
-    weigh(multipliers);
+    weigh(multipliers, sites_);
     const std::vector<std::uint32_t> sizes = reduced_costs_[own.kind];
     std::vector<std::uint32_t> seen(multipliers.size(), 0);
     problem_.kinds[own.kind].candidates->forEachRun(pivot, [&](const CellRun& run) {
         for (std::uint32_t i = run.first; i < run.end; ++i) seen[i] = multipliers[i];
     });
-    weigh(seen);
+    weigh(seen, sites_);
     std::vector<float> likeness;
     likeness.reserve(own.list.size());
     for (const std::uint32_t i : own.list) {

@@ -183,13 +183,16 @@ struct Lack {
 };
 ISPACE_SIMD_CLONES Lack lackOf(const std::uint32_t* weights, const std::uint32_t* at,
                                const float* average, const float* cover, std::size_t cells) {
+    constexpr float kFar = std::numeric_limits<float>::max();
     float average_lanes[kLanes] = {}, fresh_lanes[kLanes] = {}, both_lanes[kLanes] = {};
     const std::size_t whole = cells / kLanes * kLanes;
+    // Selections, no branches: only these vectorise.
     const auto add = [&](std::size_t i, std::size_t lane) {
+        const float least = at[i] == 0 ? 0.0F : -kFar, most = at[i] == weights[i] ? 0.0F : kFar;
         const float old = 1.0F - average[i], fresh = 1.0F - cover[i];
-        const bool is_top = at[i] == weights[i], is_bottom = at[i] == 0;
-        const float old_free = (is_top && old > 0) || (is_bottom && old < 0) ? 0.0F : old;
-        const float fresh_free = (is_top && fresh > 0) || (is_bottom && fresh < 0) ? 0.0F : fresh;
+        const float old_up = old < least ? least : old, fresh_up = fresh < least ? least : fresh;
+        const float old_free = old_up > most ? most : old_up;
+        const float fresh_free = fresh_up > most ? most : fresh_up;
         average_lanes[lane] += old_free * old_free;
         fresh_lanes[lane] += fresh_free * fresh_free;
         both_lanes[lane] += old_free * fresh_free;
@@ -219,8 +222,13 @@ ISPACE_SIMD_CLONES void move(const std::uint32_t* weights, const std::uint32_t* 
 }  // namespace
 
 MultiplierSearch::MultiplierSearch(std::span<const std::uint32_t> weights,
-                                   std::vector<std::uint32_t> start, double target, double factor)
-    : weights_(weights), target_(target), factor_(factor), trial_(std::move(start)) {}
+                                   std::vector<std::uint32_t> start, double target,
+                                   const SearchPace& pace)
+    : weights_(weights),
+      target_(target),
+      pace_(pace),
+      factor_(pace.factor),
+      trial_(std::move(start)) {}
 
 void MultiplierSearch::restart(double bound, std::span<const float> cover) {
     bound_ = bound;
@@ -230,8 +238,7 @@ void MultiplierSearch::restart(double bound, std::span<const float> cover) {
 }
 
 void MultiplierSearch::report(double bound, std::span<const float> cover) {
-    if (is_first_) {
-        is_first_ = false;
+    if (best_.empty()) {
         bound_ = bound;
         best_ = trial_;
         average_.assign(cover.begin(), cover.end());
@@ -244,7 +251,7 @@ void MultiplierSearch::report(double bound, std::span<const float> cover) {
     const double along = static_cast<double>(lack.average) - static_cast<double>(lack.both);
     const double across = along + static_cast<double>(lack.fresh) - static_cast<double>(lack.both);
     const double part = across > 0 ? along / across : 0.0;
-    part_ = std::clamp(part, mixing_ / 10, mixing_);
+    part_ = std::clamp(part, mixing_ * pace_.least_part, mixing_);
     mix(average_.data(), cover.data(), static_cast<float>(part_), cover.size());
     if (bound < bound_) {
         if (lack.both > 0) factor_ = std::min(factor_ * 1.2, 2.0);
@@ -255,7 +262,17 @@ void MultiplierSearch::report(double bound, std::span<const float> cover) {
         factor_ *= 0.66;
         failures_ = 0;
     }
+    settle();
     step();
+}
+
+void MultiplierSearch::settle() {
+    constexpr double kLittle = 0.02;  // of the distance to the target
+    constexpr double kLess = 0.7, kLeast = 0.005;
+    if (pace_.patience == 0 || ++reports_ % pace_.patience != 0) return;
+    if (settled_ - bound_ < kLittle * (bound_ - target_))
+        mixing_ = std::max(mixing_ * kLess, kLeast);
+    settled_ = bound_;
 }
 
 void MultiplierSearch::step() {

@@ -88,9 +88,21 @@ class CountChoice {
     std::vector<std::vector<std::size_t>> ways_;
 };
 
-/// The first factor of a MultiplierSearch whose start is nearly as good as can be: a longer step
-/// only leads away.
-constexpr double kWarmFactor = 0.5;
+/// How a MultiplierSearch goes about it.
+struct SearchPace {
+    /// Of the first step: 1 leads to the target if the bound were a plane.
+    double factor = 1;
+    /// The least part that a new subgradient has in the average, relative to the most it may have.
+    double least_part = 0.1;
+    /// After so many trials with next to no gain new subgradients have less part: the average
+    /// settles. 0: never.
+    int patience = 0;
+};
+/// For some hundreds of trials: comes nearer to the lowest bound.
+constexpr SearchPace kLongPace = {.factor = 1, .least_part = 0.4, .patience = 10};
+/// For some tens of trials from a start that is nearly as good as can be: a longer step only leads
+/// away.
+constexpr SearchPace kWarmPace = {.factor = 0.5, .least_part = 0.1, .patience = 0};
 
 /// Searches for the Lagrange multipliers with the lowest bound, trial by trial: the volume
 /// algorithm (Barahona & Anbil 2000), a subgradient method that steps from the best multipliers so
@@ -101,12 +113,13 @@ class MultiplierSearch {
     /// \param weights of the cells: the multipliers are from 0 to these
     /// \param start the first trial
     /// \param target a value that the bound will not pass, or about
-    /// \param factor of the first step: 1 leads to the target if the bound were a plane
     MultiplierSearch(std::span<const std::uint32_t> weights, std::vector<std::uint32_t> start,
-                     double target, double factor = 1);
+                     double target, const SearchPace& pace = SearchPace());
 
     [[nodiscard]] const std::vector<std::uint32_t>& trial() const { return trial_; }
     [[nodiscard]] const std::vector<std::uint32_t>& best() const { return best_; }
+    /// The lowest bound reported; infinite before the first report.
+    [[nodiscard]] double bound() const { return bound_; }
     /// What the trial gave, and the next trial.
     /// \param cover fraction of each cell's need that the best sensors meet
     void report(double bound, std::span<const float> cover);
@@ -117,14 +130,15 @@ class MultiplierSearch {
     [[nodiscard]] double part() const { return part_; }
 
   private:
+    void settle();
     void step();
 
     std::span<const std::uint32_t> weights_;
     double target_;
-    double bound_ = 0;
-    bool is_first_ = true;
+    SearchPace pace_;
+    double bound_ = std::numeric_limits<double>::infinity(), settled_ = bound_;
     double factor_, mixing_ = 0.2, part_ = 1;
-    int failures_ = 0;
+    int failures_ = 0, reports_ = 0;
     std::vector<std::uint32_t> trial_, best_;
     std::vector<float> average_;  // of cover
 };

@@ -28,7 +28,9 @@ LagrangeLimits limitsOf(const SearchOptions& options) {
             limits.gap = std::max(kSmallGap, options.gap);
             break;
         case Optimizer::Exact:
-            limits.gap = options.gap;
+            // The tree begins from these multipliers, and each of its nodes costs more than a
+            // round.
+            limits = {.gap = options.gap, .rounds = 40, .stall = 0.0125, .pace = kLongPace};
             break;
     }
     return limits;
