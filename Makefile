@@ -12,7 +12,7 @@ configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev
 build = cmake --build $(1) -j $(JOBS)
 
 .NOTPARALLEL:
-.PHONY: all help deps demo experiments check races bench fuzz format lint install package package-check clean
+.PHONY: all help deps demo experiments check sanitized races bench fuzz format lint install package package-check clean
 
 all: $(BUILD)/configured
 	$(call build,$(BUILD))
@@ -22,7 +22,8 @@ help:
 	@echo "make deps        install the Debian packages of packages.txt"
 	@echo "make demo        deps, build, and run the pipeline on a furnished room"
 	@echo "make experiments deps, build, and run the thesis' experiments: one report beside its figures"
-	@echo "make check       deps, build, formatting, sanitizers, races, all tests"
+	@echo "make check       deps, build, formatting, all tests"
+	@echo "make sanitized   deps, build with AddressSanitizer and UBSan, unit and golden tests"
 	@echo "make races       deps, build with ThreadSanitizer, tests of what runs in threads"
 	@echo "make bench       deps, build, benchmarks"
 	@echo "make fuzz        deps, build with Clang, fuzz each reader for FUZZ_SECONDS=$(FUZZ_SECONDS)"
@@ -52,12 +53,15 @@ experiments:
 check:
 	@.ci/deps build experiments package check
 	@.ci/format --check
-	@$(MAKE) --no-print-directory all $(SANITIZED)/configured
+	@$(MAKE) --no-print-directory all
 	@.ci/validator $(BUILD)/npm
+	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-label-summary --progress
+
+sanitized:
+	@.ci/deps build check
+	@$(MAKE) --no-print-directory $(SANITIZED)/configured
 	$(call build,$(SANITIZED))
 	@.ci/sanitized $(SANITIZED) $(JOBS)
-	@$(MAKE) --no-print-directory races
-	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-label-summary --progress
 
 races:
 	@.ci/deps build check
