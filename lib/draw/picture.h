@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/draw: one retained picture with PNG, SVG and PDF behind it. Uses raster; a module links Cairo.
+// lib/draw: one retained picture with PNG, SVG and PDF behind it. Uses raster; a module links
+// Cairo.
 #pragma once
 
 #include <cstddef>

@@ -81,9 +81,8 @@ class Builder {
   public:
     void takeRecords(std::span<const Record> records, std::span<const std::string> ids) {
         elements_.reserve(static_cast<std::size_t>(
-            std::count_if(records.begin(), records.end(), [](const Record& record) {
-                return record.schema().isEnvironment();
-            })));
+            std::count_if(records.begin(), records.end(),
+                          [](const Record& record) { return record.schema().isEnvironment(); })));
         for (std::size_t i = 0; i < records.size(); ++i) {
             if (records[i].schema().isEnvironment()) takeRecord(records[i], ids[i]);
         }

@@ -71,7 +71,8 @@ class Overlay {
     explicit Overlay(std::span<const Layer> layers, std::span<const Segment2> walls = {})
         : Overlay(layers, walls, Coarse()) {}
     /// Memory for the edges that are kept and for those of some strips.
-    /// \throws FormatError (without a place) for outlines that cross by the ten million in one strip
+    /// \throws FormatError (without a place) for outlines that cross by the ten million in one
+    /// strip
     Overlay(std::span<const Layer> layers, std::span<const Segment2> walls, const Coarse& coarse);
 
     /// Edges between faces of different labels, in an order that depends only on the input.

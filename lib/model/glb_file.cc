@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <span>
 
-
 namespace ispace {
 
 namespace {

@@ -187,10 +187,10 @@ void* moduleFunction(const char* function, const std::string& format, const std:
     std::string error;
     void* const found = moduleSymbol("pictures.so", function, error);
     if (found != nullptr) return found;
-    throw FormatError(Diagnostic{displayName(name), 0, 0,
-                                 "a " + format +
-                                     " picture needs OpenCV (Debian: libopencv-imgcodecs406): " +
-                                     printable(error) + hint});
+    throw FormatError(Diagnostic{
+        displayName(name), 0, 0,
+        "a " + format +
+            " picture needs OpenCV (Debian: libopencv-imgcodecs406): " + printable(error) + hint});
 }
 
 PictureDecoder& decoder(const std::string& format, const std::string& name) {
