@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "net/workshop.h"
 
+#include <tbb/global_control.h>
+
+#include <system_error>
 #include <utility>
 
 namespace ispace {
 
-Workshop::Workshop(std::function<void()> wake)
-    : wake_(std::move(wake)), thread_([this] { run(); }) {}
+Workshop::Workshop(std::function<void()> wake) : wake_(std::move(wake)) {}
 
 Workshop::~Workshop() {
     {
@@ -15,11 +17,34 @@ Workshop::~Workshop() {
         waiting_.clear();
     }
     changed_.notify_all();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
+}
+
+/// Starts it if that has not been done.
+bool Workshop::hasThread() {
+    if (thread_.joinable() || is_refused_) return !is_refused_;
+    using Control = tbb::global_control;
+    is_refused_ = Control::active_value(Control::max_allowed_parallelism) < 2;
+    if (is_refused_) return false;
+    try {
+        thread_ = std::thread([this] { run(); });
+    } catch (const std::system_error&) {
+        is_refused_ = true;
+    }
+    return !is_refused_;
 }
 
 void Workshop::give(Job job) {
     ++open_;
+    if (!hasThread()) {
+        Done done = doneNow(std::move(job));
+        {
+            const std::lock_guard lock(mutex_);
+            done_.push_back(std::move(done));
+        }
+        wake_();
+        return;
+    }
     {
         const std::lock_guard lock(mutex_);
         waiting_.push_back(std::move(job));
@@ -48,19 +73,25 @@ void Workshop::collectAll() {
     }
 }
 
+Workshop::Done Workshop::doneNow(Job job) {
+    Done done{std::move(job), nullptr};
+    try {
+        done.job.work();
+    } catch (...) {
+        done.failure = std::current_exception();
+    }
+    return done;
+}
+
 void Workshop::run() {
     std::unique_lock lock(mutex_);
     while (true) {
         changed_.wait(lock, [this] { return ends_ || !waiting_.empty(); });
         if (ends_) return;
-        Done done{std::move(waiting_.front()), nullptr};
+        Job job = std::move(waiting_.front());
         waiting_.pop_front();
         lock.unlock();
-        try {
-            done.job.work();
-        } catch (...) {
-            done.failure = std::current_exception();
-        }
+        Done done = doneNow(std::move(job));
         lock.lock();
         done_.push_back(std::move(done));
         changed_.notify_all();

@@ -14,7 +14,8 @@
 namespace ispace {
 
 /// A thread for what takes so long that clients would notice: jobs are done one after another, in
-/// the order they were given.
+/// the order they were given. It begins with the first job. Where only one thread is allowed (TBB's
+/// limit), or the system refuses another, the owner's thread does each job as it is given.
 class Workshop {
   public:
     /// \param wake is called by that thread when a job is done
@@ -38,6 +39,12 @@ class Workshop {
     void collectAll();
 
   private:
+    struct Done {
+        Job job;
+        std::exception_ptr failure;
+    };
+    [[nodiscard]] static Done doneNow(Job job);
+    [[nodiscard]] bool hasThread();
     void run();
 
     std::function<void()> wake_;
@@ -45,13 +52,10 @@ class Workshop {
     std::mutex mutex_;      // of what follows
     std::condition_variable changed_;
     std::deque<Job> waiting_;
-    struct Done {
-        Job job;
-        std::exception_ptr failure;
-    };
     std::vector<Done> done_;
     bool ends_ = false;
-    std::thread thread_;  // the last: it uses the others
+    bool is_refused_ = false;  // of the owner alone
+    std::thread thread_;       // the last: it uses the others
 };
 
 }  // namespace ispace

@@ -2,6 +2,7 @@
 #include "net/workshop.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <atomic>
 #include <stdexcept>
@@ -10,7 +11,10 @@
 namespace ispace {
 namespace {
 
+using Control = tbb::global_control;
+
 TEST(Workshop, DoesJobsInOrderInAnotherThread) {
+    const Control two(Control::max_allowed_parallelism, 2);
     std::atomic<int> wakes = 0;
     Workshop workshop([&wakes] { ++wakes; });
     std::string worked, delivered;
@@ -59,7 +63,29 @@ TEST(Workshop, GivesJobsWhileDelivering) {
     EXPECT_EQ(left, 0);
 }
 
+TEST(Workshop, DoesJobsItselfWhereNoOtherThreadIsAllowed) {
+    const Control one(Control::max_allowed_parallelism, 1);
+    int wakes = 0, delivered = 0;
+    Workshop workshop([&wakes] { ++wakes; });
+    const auto owner = std::this_thread::get_id();
+    workshop.give({[owner] {
+                       EXPECT_EQ(std::this_thread::get_id(), owner);
+                       throw std::runtime_error("no paper");
+                   },
+                   [&delivered](const std::exception_ptr& failure) {
+                       EXPECT_TRUE(failure);
+                       ++delivered;
+                   }});
+    EXPECT_EQ(workshop.open(), 1U);
+    EXPECT_EQ(delivered, 0);
+    EXPECT_EQ(wakes, 1);
+    EXPECT_TRUE(workshop.collect());
+    EXPECT_EQ(delivered, 1);
+    EXPECT_EQ(workshop.open(), 0U);
+}
+
 TEST(Workshop, DropsWhatIsNotBegun) {
+    const Control two(Control::max_allowed_parallelism, 2);
     std::atomic<bool> begun = false, may_end = false;
     std::atomic<int> worked = 0;
     {
