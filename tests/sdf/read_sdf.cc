@@ -116,10 +116,11 @@ int main(int argc, char** argv) {
     }
     sdf::setFindCallback([&](const std::string& uri) {
         const std::string scheme = "model://";
-        for (int i = 2; i < argc; ++i)
-            if (const std::string path = std::string(argv[i]) + '/' + uri.substr(scheme.size());
-                uri.rfind(scheme, 0) == 0 && std::filesystem::exists(path))
-                return path;
+        if (uri.rfind(scheme, 0) != 0) return std::string();
+        for (int i = 2; i < argc; ++i) {
+            std::string path = std::string(argv[i]) + '/' + uri.substr(scheme.size());
+            if (std::filesystem::exists(path)) return path;
+        }
         return std::string();
     });
     sdf::Root root;
