@@ -7,34 +7,23 @@ namespace ispace {
 
 namespace {
 
-/// sin(x) / x by the square of x, to rounding up to a quarter turn.
-ISPACE_INLINE double sineOver(double square) {
-    double sum = 1.0 / 51090942171709440000.0;
-    sum = 1.0 / 121645100408832000.0 - square * sum;
-    sum = 1.0 / 355687428096000.0 - square * sum;
-    sum = 1.0 / 1307674368000.0 - square * sum;
-    sum = 1.0 / 6227020800.0 - square * sum;
-    sum = 1.0 / 39916800.0 - square * sum;
-    sum = 1.0 / 362880.0 - square * sum;
-    sum = 1.0 / 5040.0 - square * sum;
-    sum = 1.0 / 120.0 - square * sum;
-    sum = 1.0 / 6.0 - square * sum;
-    return 1.0 - square * sum;
+/// 1/first - square * (1/second - square * (1/third - ...)).
+ISPACE_INLINE double series(double /*square*/, double last) { return 1.0 / last; }
+template <typename... Others>
+ISPACE_INLINE double series(double square, double first, Others... others) {
+    return 1.0 / first - square * series(square, others...);
 }
 
-/// cos(x) alike.
+/// sin(x) / x by the square of x, to rounding up to a quarter turn: factorials of odd numbers.
+ISPACE_INLINE double sineOver(double square) {
+    return series(square, 1.0, 6.0, 120.0, 5040.0, 362880.0, 39916800.0, 6227020800.0,
+                  1307674368000.0, 355687428096000.0, 121645100408832000.0, 51090942171709440000.0);
+}
+
+/// cos(x) alike: of even ones.
 ISPACE_INLINE double cosine(double square) {
-    double sum = 1.0 / 2432902008176640000.0;
-    sum = 1.0 / 6402373705728000.0 - square * sum;
-    sum = 1.0 / 20922789888000.0 - square * sum;
-    sum = 1.0 / 87178291200.0 - square * sum;
-    sum = 1.0 / 479001600.0 - square * sum;
-    sum = 1.0 / 3628800.0 - square * sum;
-    sum = 1.0 / 40320.0 - square * sum;
-    sum = 1.0 / 720.0 - square * sum;
-    sum = 1.0 / 24.0 - square * sum;
-    sum = 1.0 / 2.0 - square * sum;
-    return 1.0 - square * sum;
+    return series(square, 1.0, 2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0, 87178291200.0,
+                  20922789888000.0, 6402373705728000.0, 2432902008176640000.0);
 }
 
 /// An arc from its beginning on.

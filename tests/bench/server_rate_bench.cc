@@ -227,9 +227,8 @@ class Listener {
     std::thread thread_;
 };
 
-/// How long STATUS takes, asked for now and then while `others` keep the server at work, and how
-/// much of that its thread was at work itself: what it takes where no other program has the
-/// processor.
+/// How long STATUS takes while `others` keep the server at work, and how much of that its thread
+/// was at work itself: what it takes where no other program has the processor.
 void askStatus(benchmark::State& state, const Scene& scene, std::string_view others) {
     Running running(scene);
     const Listener listener(running.port(), others);
