@@ -233,6 +233,7 @@ void Browser::listen() {
 }
 
 void Browser::received() {
+    if (!session_) return;  // it came after the goodbye
     const auto data = in_.cdata();
     std::string_view lines(static_cast<const char*>(data.data()), data.size());
     while (!lines.empty()) {

@@ -197,6 +197,24 @@ TEST(WebSocket, SaysGoodbyeAtTheEndOfTheRun) {
     end.join();
 }
 
+/// Pages ask for the next frame as soon as they have drawn one: so for one after the last, too.
+TEST(WebSocket, WhatIsAskedAfterTheGoodbyeHarmsNobody) {
+    for (int i = 0; i < 20; ++i) {
+        WebRunning server;
+        Browser page(server);
+        page.take("");
+        std::thread end([&] { server.stop(); });
+        std::string last;
+        for (std::string message; !message.starts_with("close") && message != "reset";
+             last = message) {
+            message = page.receive();
+            if (message.starts_with("{")) page.send("FRAME\nROBOT r1");
+        }
+        EXPECT_EQ(last, "close 1001");
+        end.join();
+    }
+}
+
 TEST(WebSocket, GarbageHarmsNobody) {
     const WebRunning server;
     for (const char* garbage : {"\0\xff\xfe\x80garbage\r\n\r\n", "GET / HTTP/9.9\r\n\r\n",
