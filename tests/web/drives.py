@@ -21,10 +21,11 @@ def drives_by_keys(run, page):
     actions = ActionChains(page.browser)
     actions.key_down(Keys.ARROW_UP).perform()
     eventually("r1 moves", lambda: pose(run, "r1")[0] > start[0] + 0.2)
-    check(page.facts()["speed"] > 0, "the page does not show its speed")
+    eventually("the page shows its speed", lambda: page.facts()["speed"] > 0)
     ActionChains(page.browser).key_up(Keys.ARROW_UP).perform()
     eventually("r1 stops", lambda: page.facts()["speed"] == 0)
-    check(abs(page.facts()["x"] - pose(run, "r1")[0]) < 0.002, "the page shows another place")
+    eventually("the page shows its place",
+               lambda: abs(page.facts()["x"] - pose(run, "r1")[0]) < 0.002)
     heading = page.facts()["heading"]
     ActionChains(page.browser).key_down(Keys.ARROW_LEFT).perform()
     eventually("r1 turns left", lambda: page.facts()["heading"] > heading + 10)
@@ -53,14 +54,15 @@ def near(found, wanted, most):
 
 
 def drags_a_goal(run, page):
-    """Followed, the robot is in the middle: from there its goal is dragged."""
+    """Followed, the robot is in the middle: from there its goal is dragged, back where it came from,
+    as how far it drove depends on how fast the browser is."""
     follows(page)
     x, y = pose(run, "r1")
     ActionChains(page.browser).move_to_element(page.part("map")).click_and_hold().move_by_offset(
-        60, 20).move_by_offset(60, 20).release().perform()
+        -40, 20).move_by_offset(-40, 20).release().perform()
     eventually("r1 has arrived", lambda: "r1 has arrived" in page.log())
     after = pose(run, "r1")
-    check(after[0] > x + 0.5 and after[1] < y - 0.1, f"from {x, y} it went to {after}")
+    check(after[0] < x - 0.5 and after[1] < y - 0.1, f"from {x, y} it went to {after}")
     width, height = page.map_size()
     eventually("r1 is in the middle still",
                lambda: near(page.centers("#0072b2"), (width / 2, height / 2), 3))
@@ -98,6 +100,7 @@ def zooms(page):
     page.click("scans")
     def walls():
         return page.colors().get("#24292f", 0)
+    page.settle()
     fit = walls()
     for _ in range(3):
         page.click("farther")
