@@ -83,13 +83,16 @@ class Windows {
 /// A query in a large mesh, in which branches are unpredictable and a misprediction costs more than
 /// a step. So all windows advance in turn, one triangle each, without branches: the steps are
 /// independent and overlap. The result is that of Expansion, to the last bit.
+/// kBounded: some line may lie beyond the range; windows end at edges that lie beyond it as a
+/// whole.
+template <bool kBounded>
 class BreadthFirst {
   public:
     using Index = std::uint32_t;
 
     /// \param search decides turns and writes edges
     BreadthFirst(const Portal* portals, Point2 viewpoint, double farthest,
-                 Expansion<false, false>& search)
+                 Expansion<kBounded, false>& search)
         : portals_(portals),
           viewpoint_(viewpoint),
           sure_(errorOfTurns(farthest)),
@@ -99,7 +102,7 @@ class BreadthFirst {
     /// Through an edge of a triangle that holds the viewpoint. Edges follow each other
     /// counter-clockwise.
     void throughEdge(Index edge) {
-        const Index target = portals_[beforeOf(edge)].right;
+        const Index target = within(portals_[beforeOf(edge)].right);
         windows_.append({search_.wayTo(nextOf(edge)), nextOf(edge), 0, target});
         if (isPortal(target) != 0) windows_.wait(windows_.count() - 1);
         left_corner_ = beforeOf(edge);
@@ -120,6 +123,12 @@ class BreadthFirst {
     /// 1 or 0.
     static Index isPortal(Index target) { return target >> 31 ^ 1; }
     static_assert(Portal::kBlocked == Index{1} << 31 && Portal::kFree >> 31 == 1);
+
+    /// The target, or kFree if that is a portal beyond the range.
+    [[nodiscard]] Index within(Index target) const {
+        return kBounded && isPortal(target) != 0 && search_.isBeyond(target) ? Portal::kFree
+                                                                             : target;
+    }
 
     template <Index kBatch>
     void advance(Windows::State& s) const;
@@ -142,18 +151,20 @@ class BreadthFirst {
     const Portal* portals_;
     Point2 viewpoint_;
     double sure_;  // no cross product of two ways is wrong by more
-    Expansion<false, false>& search_;
+    Expansion<kBounded, false>& search_;
     Index left_corner_ = 0;  // of the last window
     Windows windows_;
 };
 
 /// Advances kBatch waiting windows by one triangle each. All reads come before all writes, so that
 /// no load waits for a store.
+template <bool kBounded>
 template <std::uint32_t kBatch>
-ISPACE_INLINE void BreadthFirst::advance(Windows::State& s) const {
+ISPACE_INLINE void BreadthFirst<kBounded>::advance(Windows::State& s) const {
     Index here[kBatch], entered[kBatch], next[kBatch];
     double x[kBatch], y[kBatch], from_right[kBatch], from_left[kBatch];
-    bool is_sure = true;
+    bool is_far[kBatch];
+    bool is_sure = true, any_is_far = false;
 #pragma GCC unroll 4
     for (Index i = 0; i < kBatch; ++i) {
         here[i] = s.queue[(s.head + i) & s.mask];
@@ -166,6 +177,8 @@ ISPACE_INLINE void BreadthFirst::advance(Windows::State& s) const {
         y[i] = portal.corner.y - viewpoint_.y;
         from_right[i] = window.right.x * y[i] - window.right.y * x[i];
         from_left[i] = beyond.right.x * y[i] - beyond.right.y * x[i];
+        is_far[i] = kBounded && search_.isFar({x[i], y[i]});
+        any_is_far |= is_far[i];
         is_sure &= std::min(std::abs(from_right[i]), std::abs(from_left[i])) > sure_;
     }
     s.head += kBatch;
@@ -175,14 +188,16 @@ ISPACE_INLINE void BreadthFirst::advance(Windows::State& s) const {
             from_left[i] = search_.turn(s.windows[next[i]].corner, entered[i]);
         }
     }
-#pragma GCC unroll 4
-    for (Index i = 0; i < kBatch; ++i) {
+    // Which way to go.
+    const auto proceed = [&](Index i, auto within) {
         const Portal& portal = portals_[entered[i]];
         const Index goes_right = from_right[i] > 0, goes_left = from_left[i] < 0;
         const Index splits = goes_right & goes_left;
-        const Index left = portal.left, target = left ^ ((left ^ portal.right) & -goes_right);
+        Index left = portal.left, target = left ^ ((left ^ portal.right) & -goes_right);
         prefetch(portals_, target);
         prefetch(portals_, left);
+        within(target);
+        within(left);
         Window& window = s.windows[here[i]];
         window.target = target;
         window.next = next[i] ^ ((next[i] ^ s.count) & -splits);
@@ -197,7 +212,16 @@ ISPACE_INLINE void BreadthFirst::advance(Windows::State& s) const {
         s.queue[s.tail & s.mask] = s.count;
         s.tail += splits & isPortal(left);
         s.count += splits;
+    };
+    if (kBounded && any_is_far) {
+        for (Index i = 0; i < kBatch; ++i)
+            proceed(i, [&](Index& target) {
+                if (is_far[i]) target = within(target);
+            });
+        return;
     }
+#pragma GCC unroll 4
+    for (Index i = 0; i < kBatch; ++i) proceed(i, [](Index&) {});
 }
 
 }  // namespace ispace

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
@@ -29,9 +30,11 @@ namespace {
 
 using Index = std::uint32_t;
 
-/// From this number of triangles on, BreadthFirst is faster: in smaller meshes branches are
-/// predicted well. Measured.
+/// From these numbers of triangles on, in all and within the range, BreadthFirst is faster: in
+/// smaller meshes branches are predicted well, and short views are over before it gets going.
+/// Measured.
 constexpr std::size_t kManyTriangles = 1000;
+constexpr double kManyWithinRange = 600;
 
 double square(double x) { return x * x; }
 double squaredLength(Vec2 v) { return dot(v, v); }
@@ -100,6 +103,14 @@ void expandFromOutside(const SightMesh& mesh, Point2 viewpoint, Search& search) 
     search.out().addFree(before, end);
 }
 
+/// Whether BreadthFirst is faster up to this range.
+bool isInBreadth(const SightMesh& mesh, double range) {
+    // There are about as many cells as triangles.
+    const double per_area = mesh.columns_per_metre * mesh.rows_per_metre;
+    return mesh.portals.size() >= 3 * kManyTriangles &&
+           std::numbers::pi * square(range) * per_area >= kManyWithinRange;
+}
+
 /// False only if nothing within kRayEpsilon of p lies outside of its triangle or on its boundary.
 bool isNearEdge(const SightMesh& mesh, Point2 p, Index triangle) {
     const std::size_t portal = std::size_t{3} * triangle;
@@ -146,10 +157,12 @@ ISPACE_INLINE void queryInside(const Query& query) {
 }
 
 /// Same result as Expansion. No clones: they gain nothing here.
+template <bool kBounded>
 void queryInBreadth(const Query& query) {
-    Expansion<false, false> search(query.mesh.portals.data(), query.viewpoint, query.range,
-                                   query.farthest, {}, query.edges);
-    BreadthFirst breadth(query.mesh.portals.data(), query.viewpoint, query.farthest, search);
+    Expansion<kBounded, false> search(query.mesh.portals.data(), query.viewpoint, query.range,
+                                      query.farthest, {}, query.edges);
+    BreadthFirst<kBounded> breadth(query.mesh.portals.data(), query.viewpoint, query.farthest,
+                                   search);
     expandAround(query.mesh, query.triangle, breadth);
     breadth.run();
     search.out().finish();
@@ -231,12 +244,14 @@ void VisibilityMap::queryLines(Point2 viewpoint, double max_range, VisibleRegion
     const Query query{mesh, viewpoint, triangle, range, farthest, transparent, region.edges};
     if (touches)
         queryInside<true, true>(query);
+    else if (bounded && isInBreadth(mesh, range))
+        queryInBreadth<true>(query);
     else if (bounded)
         queryBounded(query);
     else if (mesh.portals.size() < 3 * kManyTriangles)
         queryFreely(query);
     else
-        queryInBreadth(query);
+        queryInBreadth<false>(query);
 }
 
 VisibleRegion VisibilityMap::query(Point2 viewpoint, double max_range) const {

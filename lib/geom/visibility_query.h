@@ -212,6 +212,11 @@ class Expansion {
         return static_cast<int>(orientation(viewpoint_, portals_[a].corner, portals_[b].corner));
     }
 
+    /// Whether a corner lies beyond the range, and whether all of an edge does: then both of its
+    /// ends do.
+    [[nodiscard]] bool isFar(Vec2 way) const { return squaredLength(way) > squared_range_; }
+    [[nodiscard]] bool isBeyond(Index edge) const;
+
   private:
     static double square(double x) { return x * x; }
     static double squaredLength(Vec2 v) { return dot(v, v); }
@@ -235,7 +240,6 @@ class Expansion {
         return is_transparent ? portals_[edge].behind : target;
     }
 
-    [[nodiscard]] bool isBeyond(Index edge) const;
     void stopWithinRange(Index line, const Segment2& wall, Pair shares, const Vec2& right,
                          const Vec2& left);
 
@@ -257,11 +261,11 @@ void Expansion<kBounded, kTouches>::run() {
         const Limit right{next.corner, next.right};
         Limit left{next.left_vertex, next.left};
         // Whether the end points of the edge may both lie beyond the range.
-        bool may_be_beyond = kBounded && squaredLength(right.way) > squared_range_;
+        bool may_be_beyond = kBounded && isFar(right.way);
         while (target < Portal::kBlocked && !(may_be_beyond && isBeyond(target))) {
             const Portal& portal = portals_[target];
             const Limit corner{target, portal.corner - viewpoint_};
-            if (kBounded) may_be_beyond = squaredLength(corner.way) > squared_range_;
+            if (kBounded) may_be_beyond = isFar(corner.way);
             // Both possible targets.
             prefetch(portals_, portal.left);
             prefetch(portals_, portal.right);
@@ -286,7 +290,6 @@ void Expansion<kBounded, kTouches>::run() {
     }
 }
 
-/// Whether all of an edge lies beyond the range.
 template <bool kBounded, bool kTouches>
 bool Expansion<kBounded, kTouches>::isBeyond(Index edge) const {
     const Vec2 a = wayTo(nextOf(edge)), b = wayTo(beforeOf(edge)), along = b - a;

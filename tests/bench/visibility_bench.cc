@@ -30,7 +30,7 @@ namespace {
 using namespace ispace;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kShortRange = 4, kLongRange = 30;  // metres
+constexpr double kShortRange = 4, kMiddleRange = 8, kLongRange = 30;  // metres
 constexpr std::size_t kViewpoints = 2000;
 constexpr int kRounds = 8;
 
@@ -123,7 +123,7 @@ void measure(benchmark::State& state, const Case& test) {
     bench::Contest contest;
     VisibleRegion region;
     std::size_t ends = 0, seen = 0;
-    for (const double range : {kInfinity, kShortRange, kLongRange}) {
+    for (const double range : {kInfinity, kShortRange, kMiddleRange, kLongRange}) {
         contest.add([&, range] {
             ends = 0;
             for (const Point2 p : test.viewpoints) {
@@ -149,17 +149,18 @@ void measure(benchmark::State& state, const Case& test) {
     const auto lines = static_cast<double>(test.lines.size());
     state.counters["whole"] = rate(0);
     state.counters["short"] = rate(1);
-    state.counters["long"] = rate(2);
+    state.counters["middle"] = rate(2);
+    state.counters["long"] = rate(3);
     std::string row = bench::leftCell(test.name, 14) + bench::cell(lines, 0, 8) +
                       bench::cell(static_cast<double>(seen) / count, 1, 7) +
                       bench::cell(1e3 * test.build_seconds, 1, 9) +
                       bench::cell(rate(0) / 1e3, 0, 9) + bench::cell(rate(1) / 1e3, 0, 9) +
-                      bench::cell(rate(2) / 1e3, 0, 9);
+                      bench::cell(rate(2) / 1e3, 0, 9) + bench::cell(rate(3) / 1e3, 0, 9);
     if (test.cgal != nullptr) {
-        state.counters["cgal"] = rate(3);
-        row.append(bench::cell(rate(3) / 1e3, 1, 9))
-            .append(bench::cell(rate(0) / rate(3), 1, 8))
-            .append(bench::cell(rate(1) / rate(3), 1, 8));
+        state.counters["cgal"] = rate(4);
+        row.append(bench::cell(rate(4) / 1e3, 1, 9))
+            .append(bench::cell(rate(0) / rate(4), 1, 8))
+            .append(bench::cell(rate(1) / rate(4), 1, 8));
     }
     state.SetLabel(row + bench::cell(others.cores(), 1, 8));
 }
@@ -277,7 +278,8 @@ int main(int argc, char** argv) {
     const auto heading = [](const std::string& what) {
         return what + ", thousand regions a second, one thread\n" + bench::leftCell("plan", 14) +
                bench::cell("lines", 8) + bench::cell("ends", 7) + bench::cell("build ms", 9) +
-               bench::cell("whole", 9) + bench::cell("4 m", 9);
+               bench::cell("whole", 9) + bench::cell("4 m", 9) + bench::cell("8 m", 9) +
+               bench::cell("30 m", 9);
     };
     bench::TableReporter reporter(
         {{"plans", heading("Plans (vertices/holes, or names)") + bench::cell("CGAL", 9) +
