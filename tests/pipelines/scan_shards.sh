@@ -118,7 +118,7 @@ grep -q 'the parts hold jsonl' err || fail "$(cat err)"
 # A run that goes on: from any byte that a kill or a full disk left there.
 "${still[@]}" -o single
 "${noisy[@]}" --frames 100000000 --resume -o big.jsonl 2>/dev/null & job=$!
-sleep 0.5
+for _ in $(seq 2000); do [ -s big.jsonl.resume ] && break; sleep 0.02; done
 kill -9 $job
 wait $job 2>/dev/null || true
 [ -s big.jsonl.resume ] && [ ! -e big.jsonl ] || fail "nothing is left to go on from"
