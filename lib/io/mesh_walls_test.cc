@@ -36,7 +36,7 @@ class Boxes {
         return *this;
     }
     [[nodiscard]] std::string write(const std::string& name) const {
-        std::string path = ::testing::TempDir() + name;
+        std::string path = ::testing::TempDir() + std::to_string(::getpid()) + name;
         writeAll(path, text_);
         return path;
     }
@@ -136,7 +136,7 @@ TEST(Ifc, LayersAndHeight) {
 
 TEST(Ifc, RefusesWhatIsDamaged) {
     const std::string whole = readAll(kFlat);
-    const std::string path = ::testing::TempDir() + "damaged.ifc";
+    const std::string path = ::testing::TempDir() + std::to_string(::getpid()) + "damaged.ifc";
     const auto error_of = [&](const std::string& bytes) {
         writeAll(path, bytes);
         return errorsOf([&] { readIfc(bytes, path, {}, sceneSchemas()); });

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -10,13 +11,18 @@
 namespace ispace {
 namespace {
 
-std::string tokenIn(const std::string& text) {
-    const std::string file = ::testing::TempDir() + "token";
-    writeAll(file, text);
-    return readToken(file);
-}
+/// A file; tests run beside each other, each in a process of its own.
+class Token : public ::testing::Test {
+  protected:
+    ~Token() override { ::unlink(file_.c_str()); }
+    std::string tokenIn(const std::string& text) const {
+        writeAll(file_, text);
+        return readToken(file_);
+    }
+    const std::string file_ = ::testing::TempDir() + "token." + std::to_string(::getpid());
+};
 
-TEST(Token, IsTheFirstLine) {
+TEST_F(Token, IsTheFirstLine) {
     EXPECT_EQ(tokenIn("s3cret\n"), "s3cret");
     EXPECT_EQ(tokenIn("s3cret"), "s3cret");
     EXPECT_EQ(tokenIn("s3cret\r\nmore\n"), "s3cret");
@@ -26,16 +32,15 @@ TEST(Token, IsTheFirstLine) {
     EXPECT_THROW(readToken("/nowhere/token"), std::system_error);
 }
 
-TEST(Token, FilesOfOthers) {
-    const std::string file = ::testing::TempDir() + "token";
-    writeAll(file, "x\n");
-    ::chmod(file.c_str(), 0644);
-    EXPECT_TRUE(isOpenToOthers(file));
-    ::chmod(file.c_str(), 0600);
-    EXPECT_FALSE(isOpenToOthers(file));
+TEST_F(Token, FilesOfOthers) {
+    writeAll(file_, "x\n");
+    ::chmod(file_.c_str(), 0644);
+    EXPECT_TRUE(isOpenToOthers(file_));
+    ::chmod(file_.c_str(), 0600);
+    EXPECT_FALSE(isOpenToOthers(file_));
 }
 
-TEST(Token, Comparison) {
+TEST_F(Token, Comparison) {
     EXPECT_TRUE(isSameSecret("abc", "abc"));
     for (const char* given : {"", "ab", "abd", "abcd", "abcabc", "ABC"})
         EXPECT_FALSE(isSameSecret(given, "abc")) << given;
