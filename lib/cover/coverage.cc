@@ -2,6 +2,7 @@
 #include "cover/coverage.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -66,6 +67,14 @@ CellSet cellsAmongBeams(const Grid& grid, const Sensor& sensor, std::span<const 
     return cellsWithin(grid, curves);
 }
 
+/// Runs both, at once if there are threads. Who waits for tasks within one does not begin with
+/// others: it may hold what these wait for.
+template <typename F, typename G>
+void runBoth(F f, G g) {
+    tbb::parallel_invoke([&] { tbb::this_task_arena::isolate(f); },
+                         [&] { tbb::this_task_arena::isolate(g); });
+}
+
 /// Finds what every laser, ranger and receiver of a scene sees, in this order; shared out over all
 /// cores.
 class Viewer {
@@ -81,6 +90,9 @@ class Viewer {
             at_height[sensorOf(views_[i]).pose.position.z].push_back(i);
         const std::vector<std::pair<double, std::vector<std::size_t>>> groups(at_height.begin(),
                                                                               at_height.end());
+        if (groups.empty()) return std::move(views_);
+        const auto first = sight_.levelAt(groups.front().first);
+        runBoth([&] { prepareWorlds(); }, [&] { prepareSight(*first, groups.front().second); });
         tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t k) {
             // Whoever waits for others in here does not begin with another level or sensor.
             tbb::this_task_arena::isolate([&] {
@@ -99,13 +111,30 @@ class Viewer {
             const Sensor& sensor = scene_.sensors[i];
             if (!kindOf(sensor.model).perceives) continue;
             views_.push_back(viewOf(sensor, i));
-            if (sensor.is<Laser>()) worlds_.prepare(sensor.pose);
-            sight_.prepare(sensor);
         }
         std::stable_sort(views_.begin(), views_.end(),
                          [&](const SensorView& a, const SensorView& b) {
                              return sensorOf(a).model.index() < sensorOf(b).model.index();
                          });
+    }
+    void prepareWorlds() {
+        for (const SensorView& view : views_) {
+            const Sensor& sensor = sensorOf(view);
+            if (sensor.is<Laser>()) worlds_.prepare(sensor.pose);
+            sight_.prepare(sensor);
+        }
+    }
+    /// What level sensors at a height see through; others are made when it is their turn.
+    void prepareSight(const Level& level, const std::vector<std::size_t>& views) const {
+        const bool is_used = std::any_of(views.begin(), views.end(), [&](std::size_t i) {
+            return scansSlice(sensorOf(views_[i]));
+        });
+        if (!is_used) return;
+        try {
+            level.prepareSight();
+        } catch (const FormatError&) {
+            return;  // who looks through it meets the error again
+        }
     }
     [[nodiscard]] const Sensor& sensorOf(const SensorView& view) const {
         return scene_.sensors[view.index];
@@ -273,13 +302,17 @@ void compareExactly(const Coverage& coverage, const Coverage& other, const Regio
 Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options) {
     const Environment& environment = scene.environment;
     Coverage coverage;
-    coverage.target = makeTarget(environment, options.cells, options.height);
-    const Grid& grid = coverage.target.grid;
+    const Grid grid = gridOver(environment.limits(), options.cells);
     mustFit(scene, grid);
-    coverage.sensors = Viewer(scene, worlds, grid, options).run();
+    const auto level = environment.level(options.height);
+    CoverageReport& report = coverage.report;
+    runBoth([&] { coverage.sensors = Viewer(scene, worlds, grid, options).run(); },
+            [&] {
+                coverage.target = makeTarget(environment, options.cells, options.height);
+                report.free_area = totalArea(level->freeFloor());
+            });
     coverage.sets = setsOf(coverage.sensors, grid);
 
-    CoverageReport& report = coverage.report;
     report.digest = scene.digest;
     report.limits = environment.limits();
     report.grid = grid;
@@ -287,8 +320,6 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     report.plane = options.plane;
     report.density = options.density;
     report.indoor_area = environment.indoor().area();
-    const auto level = environment.level(options.height);
-    report.free_area = totalArea(level->freeFloor());
     report.sensors.reserve(coverage.sensors.size());
     for (const SensorView& view : coverage.sensors)
         report.sensors.push_back(metricsOf(scene, view, grid, options.plane));

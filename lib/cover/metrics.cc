@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <bit>
 #include <optional>
@@ -216,23 +218,40 @@ struct ZoneAreas {
     }
 };
 
+/// The connected regions of faces whose label satisfies `in`, with their areas.
+struct Pieces {
+    std::vector<Region> regions;
+    std::vector<double> areas;
+
+    template <typename In>
+    Pieces(const Overlay& overlay, In in)
+        : regions(overlay.regions(in)), areas(overlay.areasOf(regions)) {}
+};
+
 void addPieces(CoverageReport& report, const Overlay& overlay) {
-    const std::vector<Region> covered = overlay.regions([](const LayerLabel& label) {
-        return label.count > 0 && (label.marks & kIndoorMark) != 0;
-    });
+    std::optional<Pieces> covered, unseen;
+    tbb::parallel_invoke(
+        [&] {
+            covered.emplace(overlay, [](const LayerLabel& label) {
+                return label.count > 0 && (label.marks & kIndoorMark) != 0;
+            });
+        },
+        [&] {
+            unseen.emplace(overlay, [](const LayerLabel& label) {
+                return label.count == 0 && (label.marks & kFreeMark) != 0;
+            });
+        });
     double sum = 0, largest = 0;
-    for (const double area : overlay.areasOf(covered)) {
+    for (const double area : covered->areas) {
         if (area < kMinPiece) continue;
         ++report.pieces;
         sum += area;
         largest = std::max(largest, area);
     }
     report.largest_piece = shareOf(largest, sum);
-    const std::vector<Region> unseen = overlay.regions(
-        [](const LayerLabel& label) { return label.count == 0 && (label.marks & kFreeMark) != 0; });
-    const std::vector<double> areas = overlay.areasOf(unseen);
-    for (std::size_t i = 0; i < unseen.size(); ++i)
-        if (areas[i] >= kMinPiece) report.unseen.push_back({interiorPoint(unseen[i]), areas[i]});
+    for (std::size_t i = 0; i < unseen->regions.size(); ++i)
+        if (unseen->areas[i] >= kMinPiece)
+            report.unseen.push_back({interiorPoint(unseen->regions[i]), unseen->areas[i]});
     std::stable_sort(report.unseen.begin(), report.unseen.end(),
                      [](const UnseenSpot& a, const UnseenSpot& b) { return a.area > b.area; });
 }

@@ -38,6 +38,10 @@ const PolygonIndex& Level::solids() const {
     return solids_.get([this] { return PolygonIndex(slice().solids); });
 }
 
+const VisibilityMap& Level::sight() const {
+    return sight_.get([this] { return VisibilityMap(slice().straightLines(), slice().curves()); });
+}
+
 bool Level::isFree(Point2 p) const {
     assert(room_ != nullptr);
     if (room_->indoorIndex().locate(p) != Side::Inside || solids().holder(p)) return false;
@@ -57,9 +61,7 @@ std::vector<Polygon> Level::solidsTouching(Point2 p) const {
 
 void Level::query(Point2 viewpoint, double max_range, VisibleRegion& region) const {
     if (!isBuried(viewpoint)) {
-        const VisibilityMap& sight =
-            sight_.get([this] { return VisibilityMap(slice().straightLines(), slice().curves()); });
-        sight.query(viewpoint, max_range, region);
+        sight().query(viewpoint, max_range, region);
         return;
     }
     region.viewpoint = viewpoint;

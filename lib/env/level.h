@@ -37,6 +37,9 @@ class Level {
     /// bodies of the slice; nothing where isBuried().
     void query(Point2 viewpoint, double max_range, VisibleRegion& region) const;
 
+    /// Makes what query() looks into, which takes longer than many queries.
+    void prepareSight() const { static_cast<void>(sight()); }
+
     /// How many lines the slice has; 0 until it is made.
     [[nodiscard]] std::size_t linesMade() const;
 
@@ -45,6 +48,7 @@ class Level {
     Level(std::shared_ptr<const Environment::Data> room, double height);
 
     [[nodiscard]] const PolygonIndex& solids() const;
+    [[nodiscard]] const VisibilityMap& sight() const;
 
     std::shared_ptr<const Environment::Data> room_;
     double height_;

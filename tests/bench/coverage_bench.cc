@@ -103,7 +103,8 @@ void measure(benchmark::State& state, const Case& test, const std::string& folde
                    bench::cell(static_cast<double>(test.lines), 0, 8) +
                    bench::cell(1e3 * contest.quickest(0), 1, 8) +
                    bench::cell(1e3 * contest.quickest(1), 1, 8) +
-                   bench::cell(1e3 * one.wall, 0, 8) + bench::cell(1e3 * two.wall, 0, 8) +
+                   bench::cell(1e3 * one.wall, 0, 8) + bench::cell(1e3 * one.processor, 0, 8) +
+                   bench::cell(1e3 * two.wall, 0, 8) + bench::cell(1e3 * two.processor, 0, 8) +
                    bench::cell(1e3 * fine.wall, 0, 8) + bench::cell(1e3 * drawn.wall, 0, 8));
 }
 
@@ -142,7 +143,7 @@ int main(int argc, char** argv) {
     const std::string& folder = scratch.name;
     std::vector<Case> cases;
     for (const std::size_t sensors : {std::size_t{3}, std::size_t{100}})
-        for (const auto& [columns, rows] : {std::pair{4, 3}, {8, 6}, {46, 40}})
+        for (const auto& [columns, rows] : {std::pair{1, 1}, {4, 3}, {8, 6}, {46, 40}})
             cases.push_back(makeCase(columns, rows, sensors, folder));
     for (const Case& test : cases) {
         if (test.lines < 10'000) verify(test);
@@ -169,8 +170,8 @@ int main(int argc, char** argv) {
           "                           edges      cpu  an edge    -j 1    -j 2      MB"},
          {"coverage", "Whole runs of coverage on 100 x 100 cells, " + std::string(kModel) +
                           "; milliseconds\n"
-                          "                           lines   cells + exact   -j 1    -j 2  1000^2 "
-                          "    map"}});
+                          "                           lines   cells + exact    -j 1     cpu    -j 2"
+                          "     cpu  1000^2     map"}});
     benchmark::RunSpecifiedBenchmarks(&table);
     return 0;
 }
