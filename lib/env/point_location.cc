@@ -54,6 +54,10 @@ double distanceFromEdges(const Polygon& polygon, Point2 p) {
     return least;
 }
 
+bool isDeepInOne(const Polygon& polygon, Point2 p, double depth) {
+    return locate(polygon, p) == Side::Inside && distanceFromEdges(polygon, p) > depth;
+}
+
 }  // namespace
 
 RegionIndex::RegionIndex(std::span<const Region> regions) {
@@ -130,11 +134,15 @@ std::optional<std::size_t> PolygonIndex::holder(Point2 p) const {
 
 bool PolygonIndex::isDeepIn(Point2 p, double depth) const {
     bool inside = false;
-    boxes_.search({p, p}, [&](std::size_t i) {
-        inside = inside || (locate(polygons_[i], p) == Side::Inside &&
-                            distanceFromEdges(polygons_[i], p) > depth);
-    });
+    boxes_.search({p, p},
+                  [&](std::size_t i) { inside = inside || isDeepInOne(polygons_[i], p, depth); });
     return inside;
+}
+
+bool isDeepIn(std::span<const Polygon> polygons, Point2 p, double depth) {
+    return std::any_of(polygons.begin(), polygons.end(), [&](const Polygon& polygon) {
+        return meets(bounds(polygon), {p, p}) && isDeepInOne(polygon, p, depth);
+    });
 }
 
 std::vector<Polygon> PolygonIndex::touching(Point2 p, double reach) const {

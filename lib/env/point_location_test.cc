@@ -82,6 +82,20 @@ TEST(PolygonIndex, DeepIsFartherFromTheEdgeThanTold) {
     EXPECT_FALSE(PolygonIndex({}).isDeepIn({0, 0}, 1e-4));
 }
 
+TEST(PolygonIndex, NeedsNoIndexToBeDeep) {
+    const std::vector<Polygon> squares = {square(0, 0), square(1, 0), square(5, 5.5)};
+    const PolygonIndex index(squares);
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> place(-0.5, 7);
+    for (int i = 0; i < 3000; ++i) {
+        const Point2 p{place(random), place(random)};
+        EXPECT_EQ(isDeepIn(squares, p, 0.01), index.isDeepIn(p, 0.01)) << p.x << ' ' << p.y;
+    }
+    EXPECT_TRUE(isDeepIn(squares, {0.5, 0.5}, 1e-4));
+    EXPECT_FALSE(isDeepIn(squares, {1, 0.5}, 1e-4)) << "between two that touch";
+    EXPECT_FALSE(isDeepIn({}, {0, 0}, 1e-4));
+}
+
 TEST(PolygonIndex, HoldsTheirEdges) {
     const std::vector<Polygon> squares{square(0, 0), square(1, 0), square(5, 5)};
     const PolygonIndex index(squares);

@@ -8,14 +8,23 @@
 
 namespace ispace {
 
+namespace {
+
+/// For so many places an index takes longer than it saves.
+constexpr std::size_t kFewPlaces = 4;
+
+}  // namespace
+
 bool BurialTest::isBuried(Point3 place) {
     constexpr std::size_t kMaxHeights = 64;
     auto known = levels_.find(place.z);
     if (known == levels_.end()) {
         if (levels_.size() == kMaxHeights) return false;
-        known = levels_.emplace(place.z, environment_.level(place.z)).first;
+        known = levels_.emplace(place.z, Known{environment_.level(place.z)}).first;
     }
-    return known->second->isBuried(place.onFloor());
+    auto& [level, asked] = known->second;
+    if (asked++ < kFewPlaces) return isDeepIn(level->slice().solids, place.onFloor(), kRayEpsilon);
+    return level->isBuried(place.onFloor());
 }
 
 std::vector<std::string> sensorWarnings(const Scene& scene, const Sensors& sensors,
@@ -32,13 +41,17 @@ std::vector<std::string> sensorWarnings(const Scene& scene, const Sensors& senso
                            (record.keyword() == "laser" ? ", or let arrange place it" : ""));
     }
     BurialTest burial(scene.environment);
+    const bool are_few = sensors.read.size() + sensors.receivers.size() <= kFewPlaces;
+    const auto is_outside = [&](Point2 p) {
+        const Side side = are_few ? scene.environment.indoor().locate(p)
+                                  : scene.environment.indoorIndex().locate(p);
+        return side == Side::Outside;
+    };
     bool listens = with_receivers;
     const auto check = [&](const Sensor& sensor) {
         const Point3 place = sensor.pose.position;
         const bool inside = burial.isBuried(place);
-        if (!inside && place.z >= 0 &&
-            scene.environment.indoorIndex().locate(place.onFloor()) != Side::Outside)
-            return;
+        if (!inside && place.z >= 0 && !is_outside(place.onFloor())) return;
         std::string phrase = sensor.id;
         phrase.append(inside ? " stands inside something solid at "
                              : " stands outside the room at ");

@@ -11,15 +11,21 @@
 namespace ispace {
 
 /// Tells which places are buried, see Level. Each height costs a slice, so it looks at the first 64
-/// only and says no at others.
+/// only and says no at others. An index of the solids at a height is made for the fifth place.
 class BurialTest {
   public:
     explicit BurialTest(const Environment& environment) : environment_(environment) {}
     [[nodiscard]] bool isBuried(Point3 place);
 
   private:
+    /// A height, and how many places were looked at.
+    struct Known {
+        std::shared_ptr<const Level> level;
+        std::size_t asked = 0;
+    };
+
     const Environment& environment_;
-    std::map<double, std::shared_ptr<const Level>> levels_;
+    std::map<double, Known> levels_;
 };
 
 /// What a user may not have meant, a phrase each: sensors without a place, which are left out, and
