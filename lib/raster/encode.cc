@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "raster/encode.h"
 
+#include <libdeflate.h>
 #include <png.h>
 #include <zlib.h>
 
@@ -8,8 +9,10 @@
 #include <cassert>
 #include <csetjmp>
 #include <cstddef>
+#include <memory>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 namespace ispace {
@@ -96,6 +99,66 @@ std::string encode(const Samples& samples) {
     return bytes;
 }
 
+/// Appends a chunk of a PNG file. \pre content of less than 2^31 bytes
+void appendChunk(std::string_view type, std::string_view content, std::string& file) {
+    const auto append_number = [&file](std::uint32_t number) {
+        for (unsigned shift = 32; shift > 0; shift -= 8)
+            file.push_back(static_cast<char>(number >> (shift - 8) & 0xFFU));
+    };
+    append_number(static_cast<std::uint32_t>(content.size()));
+    const std::size_t begin = file.size();
+    file.append(type).append(content);
+    append_number(libdeflate_crc32(0, file.data() + begin, file.size() - begin));
+}
+
+/// The beginning of the file up to its header.
+std::string pngBegin(int columns, int rows) {
+    std::string header;
+    for (const int extent : {columns, rows})
+        for (int shift = 24; shift >= 0; shift -= 8)
+            header.push_back(static_cast<char>(extent >> shift & 0xFF));
+    header += {8, PNG_COLOR_TYPE_RGB, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT,
+               PNG_INTERLACE_NONE};
+    std::string file("\x89PNG\r\n\x1a\n", 8);
+    appendChunk("IHDR", header, file);
+    return file;
+}
+
+/// Rows as a PNG file has them, each after the number of its filter: none.
+void writeRows(std::size_t columns, std::size_t rows, std::span<const std::uint32_t> pixels,
+               std::size_t stride, std::uint8_t* to) {
+    for (std::size_t row = 0; row < rows; ++row) {
+        *to++ = PNG_FILTER_VALUE_NONE;
+        for (const std::uint32_t pixel : pixels.subspan(row * stride, columns)) {
+            *to++ = static_cast<std::uint8_t>(pixel >> 16U);
+            *to++ = static_cast<std::uint8_t>(pixel >> 8U);
+            *to++ = static_cast<std::uint8_t>(pixel);
+        }
+    }
+}
+
+/// By libdeflate, which wants all bytes at once: smaller than zlib makes drawings at level 4, in
+/// two thirds of the time.
+std::string encodeWhole(int columns, int rows, std::span<const std::uint32_t> pixels,
+                        std::size_t stride) {
+    constexpr int kLevel = 5;
+    const auto across = static_cast<std::size_t>(columns), down = static_cast<std::size_t>(rows);
+    const std::size_t all = down * (1 + 3 * across);
+    const auto bytes = std::make_unique_for_overwrite<std::uint8_t[]>(all);
+    writeRows(across, down, pixels, stride, bytes.get());
+    const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+        libdeflate_alloc_compressor(kLevel), libdeflate_free_compressor);
+    if (!compressor) throw std::bad_alloc();
+    const std::size_t most = libdeflate_zlib_compress_bound(compressor.get(), all);
+    const auto packed = std::make_unique_for_overwrite<char[]>(most);
+    const std::size_t size =
+        libdeflate_zlib_compress(compressor.get(), bytes.get(), all, packed.get(), most);
+    std::string file = pngBegin(columns, rows);
+    appendChunk("IDAT", {packed.get(), size}, file);
+    appendChunk("IEND", {}, file);
+    return file;
+}
+
 }  // namespace
 
 namespace {
@@ -130,6 +193,9 @@ std::string pngOfShades(int columns, int rows, std::span<const std::uint32_t> pi
 
 std::string pngOfDrawing(int columns, int rows, std::span<const std::uint32_t> pixels,
                          std::size_t stride) {
+    constexpr double kMostBytes = 64e6;  // of a picture that is held as a whole once more
+    if (columns > 0 && rows > 0 && 3.0 * columns * rows <= kMostBytes)
+        return encodeWhole(columns, rows, pixels, stride);
     return encodePixels(columns, rows, pixels, stride, kOfDrawings);
 }
 

@@ -9,9 +9,9 @@
 namespace ispace {
 
 // Pictures as files, row by row from the top. The same samples give the same bytes, and nothing but
-// the picture is in them: no time, no program. Every PNG of ours is written here, by libpng, in a
-// way that suits what is on it: quick, and about as small as libpng's own choice of filters makes
-// it in several times the time.
+// the picture is in them: no time, no program. Every PNG of ours is written here, by libpng or
+// libdeflate, in a way that suits what is on it: quick, and about as small as libpng's own choice
+// of filters makes it in several times the time.
 
 /// An 8-bit PNG of what a camera sees: shades and noise, so that neighbours are alike and nothing
 /// repeats. Red, green and blue bytes. \pre 3 columns * rows samples

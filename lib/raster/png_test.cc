@@ -180,5 +180,13 @@ TEST(EncodedPng, HasThePixels) {
             }
 }
 
+TEST(EncodedPng, HasThePixelsOfLargeDrawings) {
+    // More than is packed at once.
+    constexpr int kColumns = 5000, kRows = 4400;
+    std::vector<std::uint32_t> pixels(std::size_t{kColumns} * kRows, 0xE0E4E8);
+    for (std::size_t i = 0; i < pixels.size(); i += 997) pixels[i] = 0x102030;
+    EXPECT_EQ(pixelsOf(pngOfDrawing(kColumns, kRows, pixels, kColumns)), pixels);
+}
+
 }  // namespace
 }  // namespace ispace
