@@ -142,6 +142,10 @@ class Traffic {
     /// \pre the moves before it are settled, cancelled or not
     [[nodiscard]] std::optional<std::size_t> hit(std::span<const Move> moves,
                                                  std::size_t mover) const;
+    /// Place in the order of settling.
+    [[nodiscard]] std::size_t rank(std::size_t mover) const { return rank_[mover]; }
+    /// Where a mover is.
+    [[nodiscard]] Point2 place(std::size_t mover) const { return places_[mover]; }
     /// Calls visit(index) for everybody who may stand or come within `reach` of p in a step.
     template <typename Visit>
     void forEachNear(Point2 p, double reach, Visit visit) const {

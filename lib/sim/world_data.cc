@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/world_data.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,10 +10,6 @@
 namespace ispace {
 
 namespace {
-
-/// Metres around a robot within which obstacles are looked for: farther ones are looked for again
-/// when it has gone as far.
-constexpr double kLookout = 1;
 
 std::map<std::string_view, std::size_t> indexById(const auto& things) {
     std::map<std::string_view, std::size_t> index;
@@ -37,6 +30,7 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOp
       friction(scene->environment),
       order(settlingOrder(movers)),
       motions(movers.size()),
+      next_motions(movers.size()),
       states(movers.size()),
       gaits(scene->people.size()),
       swings(scene->people.size()),
@@ -56,134 +50,10 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOp
         if (!is_person) odometers.emplace_back(movers[i], options.seed, options.noise);
         pilots[i] = Pilot(movers[i], options.seed);
         pilots[i].follow(course, model.speed, false);
-        moves[i].from = &motions[i];
         moves[i].limits = &states[i].limits;
         moves[i].duration = seconds(length);
         moves[i].radius = model.radius;
     }
-}
-
-void World::Data::proposeAll() {
-    if (std::exchange(moved, false)) traffic.rebuild(motions);
-    const Surroundings around{movers, motions, &traffic};
-    // Fewer are done before other threads have begun.
-    constexpr std::size_t kTogether = 64;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, movers.size(), kTogether),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i)
-                              propose(i, around);
-                      });
-}
-
-/// Independent of all other proposals: of others only place and speed count, which stay.
-void World::Data::propose(std::size_t mover, const Surroundings& around) {
-    Move& move = moves[mover];
-    Motion& motion = motions[mover];
-    states[mover].blocked.reset();
-    if (const SimTime now = time - step_length; pilots[mover].isDue(now, motion))
-        pilots[mover].steer({&around, states[mover].obstacles, &states[mover].vicinity, mover,
-                             states[mover].clearance, now, step_length},
-                            motion);
-    if (motion.arrived()) {
-        move.to = {.motion = motion};
-        move.drift = {};
-        return;
-    }
-    setLimits(mover);
-    move.to = advance(motion, states[mover].limits, move.duration);
-    if (mover < odometers.size() && odometers[mover].isNoisy()) {
-        move.drift = odometers[mover].stray(move.to.motion, motion.pose, steps);
-        move.to.path += length(move.drift);
-    }
-    states[mover].blocked = elementAhead(mover);
-}
-
-void World::Data::setLimits(std::size_t mover) {
-    MotionLimits& limits = states[mover].limits;
-    const double rough = friction.at(motions[mover].pose.position);
-    if (!friction.empty()) limits = limitsOf(movers[mover].model, rough);
-    if (const auto& own = states[mover].own_limits) {
-        limits = narrowed(limitsOf(movers[mover].model, rough), *own, rough);
-        return;
-    }
-    const double speed = pilots[mover].isOn() ? pilots[mover].speed() : movers[mover].model.speed;
-    limits.drive.top = (1 - rough) * speed;
-}
-
-std::optional<std::size_t> World::Data::elementAhead(std::size_t mover) {
-    const Move& move = moves[mover];
-    MoverState& state = states[mover];
-    if (move.to.path == 0) return std::nullopt;
-    if (state.clearance < move.to.path) {
-        const double around = move.radius + kLookout;
-        state.clearance = state.obstacles->nearest(move.start(), around) - move.radius - kTouch;
-        if (state.clearance < move.to.path) {
-            if (const auto element = collides(move, *state.obstacles)) return element;
-        }
-    }
-    state.clearance -= move.to.path;
-    return std::nullopt;
-}
-
-/// One after another: each move depends on what became of those before it.
-void World::Data::settle() {
-    const bool any =
-        std::any_of(moves.begin(), moves.end(), [](const Move& move) { return move.to.path > 0; });
-    if (!any) return;
-    for (const std::size_t mover : order) {
-        if (moves[mover].to.path == 0) continue;
-        if (states[mover].blocked) {
-            collide({mover, std::nullopt, elements()[*states[mover].blocked].id, time});
-        } else if (const auto other = traffic.hit(moves, mover)) {
-            collide({mover, other, movers[*other].id, time});
-        }
-    }
-}
-
-void World::Data::collide(const Collision& collision) {
-    Move& move = moves[collision.robot];
-    states[collision.robot].bump = move.end() - move.start();
-    move.cancel();
-    if (collision.robot < odometers.size()) odometers[collision.robot].stay();
-    if (pilots[collision.robot].isOn()) return pilots[collision.robot].bumped();
-    states[collision.robot].stall = true;
-    collisions.push_back(collision);
-}
-
-void World::Data::apply() {
-    for (const std::size_t mover : order) {
-        Motion& motion = motions[mover];
-        if (moves[mover].to.motion.pose != motion.pose) {
-            moved = true;
-            sensors.moved();
-        }
-        motion = moves[mover].to.motion;
-        if (movers[mover].is_person)
-            walk(mover);
-        else
-            odometers[mover].count(steps);
-        if (states[mover].running == 0) continue;
-        if (Pilot& pilot = pilots[mover]; pilot.isOn()) {
-            continue;
-        } else if (pilot.state() != Pilot::State::Off) {
-            end(mover, pilot.state() == Pilot::State::Arrived ? Outcome::Done : Outcome::Unreached);
-            pilot.turnOff();
-        } else if (states[mover].stall) {
-            end(mover, Outcome::Stall);
-        } else if (motion.arrived()) {
-            end(mover, Outcome::Done);
-            motion.halt();
-        }
-    }
-}
-
-void World::Data::walk(std::size_t mover) {
-    const std::size_t person = mover - scene->robots.size();
-    const Motion& motion = motions[mover];
-    const double speed = std::hypot(motion.drive.speed, motion.side.speed);
-    const double path = moves[mover].to.path;
-    gaits[person].walk(movers[mover].model.height, motion.drive.speed < 0 ? -path : path, speed);
-    swings[person] = gaits[person].swing(speed);
 }
 
 void World::Data::tell(std::size_t mover) {
@@ -197,6 +67,9 @@ void World::Data::put(std::size_t mover, const RobotStatus& status) {
     moved = moved || status.pose != motions[mover].pose;
     if (moved) sensors.moved();
     motions[mover] = motionOf(status);
+    // It may be near to others all at once, and faster than it goes by itself.
+    for (MoverState& state : states) state.room = 0;
+    longest_step.reset();
     states[mover].stall = status.stall;
     if (!movers[mover].is_person) return;
     Gait& gait = gaits[mover - scene->robots.size()];
@@ -214,6 +87,18 @@ void World::Data::keepGait(std::size_t mover, const Data& before, std::size_t ol
 
 void World::Data::end(std::size_t mover, Outcome outcome) {
     ends.push_back({mover, std::exchange(states[mover].running, 0), outcome, time});
+}
+
+double World::Data::longestStep() const {
+    constexpr double kSlack = 1e-9;
+    double fastest = 0;
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+        const RobotModel& model = movers[i].model;
+        const double ahead = std::max(std::abs(motions[i].drive.speed), model.max_speed);
+        const double aside = std::max(std::abs(motions[i].side.speed), model.max_sidespeed);
+        fastest = std::max(fastest, ahead + aside);
+    }
+    return fastest * seconds(step_length) * (1 + kSlack) + kSlack;
 }
 
 std::unordered_map<std::string_view, Pose2> World::Data::places() const {

@@ -27,6 +27,7 @@ struct MoverState {
     MotionLimits limits;
     std::optional<MotionLimits> own_limits;  // of its wheels' orders
     double clearance = 0;  // it may go at least as far before it meets an obstacle
+    double room = 0;       // no other mover's circle is nearer
     int ids = 0;           // given so far
     int running = 0;       // id of the command that comes to an end, or 0
     // Moments at which it was given commands, and when that was.
@@ -63,13 +64,26 @@ struct World::Data {
     void tell(std::size_t mover);
     /// Somebody gets where a record says.
     void put(std::size_t mover, const RobotStatus& status);
-    /// What a step does, in this order: proposals in parallel, settled one by one.
+    /// What a step does. Each proposes its move, in parallel. Those who cannot meet anybody are
+    /// then done: settle() looks at the others, in parallel again, and settles one by one those
+    /// who may.
     void proposeAll();
     void settle();
     void apply();
 
     void propose(std::size_t mover, const Surroundings& around);
     [[nodiscard]] std::optional<std::size_t> elementAhead(std::size_t mover);
+    [[nodiscard]] bool isAlone(std::size_t mover);
+    [[nodiscard]] bool mayMeet(std::size_t mover);
+    /// What became of some movers in a step. They are the same for any number of threads.
+    struct Chunk {
+        std::vector<std::size_t> doubtful;  // who may meet somebody or something
+        std::vector<CommandEnd> ends;
+        bool moved = false;
+    };
+    void finish(std::size_t mover, Chunk& chunk);
+    /// Nobody goes farther in a step, but for what noise adds.
+    [[nodiscard]] double longestStep() const;
     void setLimits(std::size_t mover);
     void collide(const Collision& collision);
     void walk(std::size_t mover);
@@ -94,6 +108,7 @@ struct World::Data {
     FrictionMap friction;
     std::vector<std::size_t> order;  // in which moves are settled
     std::vector<Motion> motions;
+    std::vector<Motion> next_motions;  // after the step
     std::vector<MoverState> states;
     std::vector<Gait> gaits;    // of people
     std::vector<Angle> swings;  // of their limbs
@@ -101,6 +116,9 @@ struct World::Data {
     std::vector<Odometer> odometers;       // of robots
     std::vector<std::size_t> kept_starts;  // whose start errors lead nowhere
     std::vector<Move> moves;
+    std::optional<double> longest_step;  // while it is known
+    std::vector<Chunk> chunks;
+    std::vector<std::size_t> unsettled;  // who really may; kept for its memory
     Traffic traffic;
     bool moved = true;  // since the traffic was looked at
     SensorReader sensors;

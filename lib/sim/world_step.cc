@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a step makes of the state of a world.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim/world_data.h"
+
+namespace ispace {
+
+namespace {
+
+/// Metres around a robot within which obstacles are looked for: farther ones are looked for again
+/// when it has gone as far.
+constexpr double kLookout = 1;
+/// Movers that one thread proposes for: fewer are done before other threads have begun.
+constexpr std::size_t kTogether = 64;
+/// Metres that rounding may add to how near two are.
+constexpr double kRounding = 1e-9;
+
+}  // namespace
+
+void World::Data::proposeAll() {
+    if (std::exchange(moved, false)) traffic.rebuild(motions);
+    if (!longest_step) longest_step = longestStep();
+    chunks.resize((movers.size() + kTogether - 1) / kTogether);
+    const Surroundings around{movers, motions, &traffic};
+    tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t k) {
+        Chunk& chunk = chunks[k];
+        chunk.doubtful.clear();
+        chunk.ends.clear();
+        chunk.moved = false;
+        const std::size_t end = std::min((k + 1) * kTogether, movers.size());
+        for (std::size_t i = k * kTogether; i < end; ++i) {
+            propose(i, around);
+            if (isAlone(i))
+                finish(i, chunk);
+            else
+                chunk.doubtful.push_back(i);
+        }
+    });
+}
+
+/// Independent of all other proposals: of others only place and speed count, which stay.
+void World::Data::propose(std::size_t mover, const Surroundings& around) {
+    Move& move = moves[mover];
+    Motion& motion = motions[mover];
+    move.from = &motion;
+    states[mover].blocked.reset();
+    if (const SimTime now = time - step_length; pilots[mover].isDue(now, motion))
+        pilots[mover].steer({&around, states[mover].obstacles, &states[mover].vicinity, mover,
+                             states[mover].clearance, now, step_length},
+                            motion);
+    if (motion.arrived()) {
+        move.to = {.motion = motion};
+        move.drift = {};
+        return;
+    }
+    setLimits(mover);
+    move.to = advance(motion, states[mover].limits, move.duration);
+    if (mover < odometers.size() && odometers[mover].isNoisy()) {
+        move.drift = odometers[mover].stray(move.to.motion, motion.pose, steps);
+        move.to.path += length(move.drift);
+    }
+    states[mover].blocked = elementAhead(mover);
+}
+
+void World::Data::setLimits(std::size_t mover) {
+    MotionLimits& limits = states[mover].limits;
+    const double rough = friction.at(motions[mover].pose.position);
+    if (!friction.empty()) limits = limitsOf(movers[mover].model, rough);
+    if (const auto& own = states[mover].own_limits) {
+        limits = narrowed(limitsOf(movers[mover].model, rough), *own, rough);
+        return;
+    }
+    const double speed = pilots[mover].isOn() ? pilots[mover].speed() : movers[mover].model.speed;
+    limits.drive.top = (1 - rough) * speed;
+}
+
+std::optional<std::size_t> World::Data::elementAhead(std::size_t mover) {
+    const Move& move = moves[mover];
+    MoverState& state = states[mover];
+    if (move.to.path == 0) return std::nullopt;
+    if (state.clearance < move.to.path) {
+        const double around = move.radius + kLookout;
+        state.clearance = state.obstacles->nearest(move.start(), around) - move.radius - kTouch;
+        if (state.clearance < move.to.path) {
+            if (const auto element = collides(move, *state.obstacles)) return element;
+        }
+    }
+    state.clearance -= move.to.path;
+    return std::nullopt;
+}
+
+/// True if the move meets nobody, whatever the others do: who has room is not looked at again
+/// before it may be used up. How far noise leads is not known beforehand.
+bool World::Data::isAlone(std::size_t mover) {
+    const Advance& to = moves[mover].to;
+    double& room = states[mover].room;
+    const double both = to.path + *longest_step;
+    if (to.path > 0 && (options.noise || states[mover].blocked || room < 2 * both)) return false;
+    room -= both;
+    return true;
+}
+
+/// False if the move meets nobody, whatever becomes of the others' moves. Measures the room.
+bool World::Data::mayMeet(std::size_t mover) {
+    // Longer than a look about takes to pay.
+    constexpr double kSteps = 32;
+    const Move& move = moves[mover];
+    if (states[mover].blocked) return true;
+    const double both = move.to.path + *longest_step;
+    double room = options.noise ? 0 : kSteps * both;
+    bool may_meet = false;
+    traffic.forEachNear(move.start(), move.radius + std::max(room, 2 * both),
+                        [&](std::size_t other) {
+                            if (other == mover || may_meet) return;
+                            const Move& its = moves[other];
+                            room = std::min(room, distance(move.start(), traffic.place(other)) -
+                                                      move.radius - its.radius - kRounding);
+                            if (room < 2 * both)
+                                may_meet = collides(move, its, true) || collides(move, its, false);
+                        });
+    states[mover].room = may_meet ? 0 : room - both;
+    return may_meet;
+}
+
+void World::Data::settle() {
+    const auto look = [this](Chunk& chunk) {
+        std::erase_if(chunk.doubtful, [&](std::size_t mover) {
+            if (mayMeet(mover)) return false;
+            finish(mover, chunk);
+            return true;
+        });
+    };
+    std::size_t doubtful = 0;
+    for (const Chunk& chunk : chunks) doubtful += chunk.doubtful.size();
+    if (doubtful > 2 * kTogether)
+        tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t k) { look(chunks[k]); });
+    else if (doubtful > 0)
+        std::for_each(chunks.begin(), chunks.end(), look);
+    // One after another: each move depends on what became of those before it.
+    unsettled.clear();
+    for (const Chunk& chunk : chunks)
+        unsettled.insert(unsettled.end(), chunk.doubtful.begin(), chunk.doubtful.end());
+    std::sort(unsettled.begin(), unsettled.end(),
+              [&](std::size_t a, std::size_t b) { return traffic.rank(a) < traffic.rank(b); });
+    for (const std::size_t mover : unsettled) {
+        if (states[mover].blocked) {
+            collide({mover, std::nullopt, elements()[*states[mover].blocked].id, time});
+        } else if (const auto other = traffic.hit(moves, mover)) {
+            collide({mover, other, movers[*other].id, time});
+        }
+        finish(mover, chunks[mover / kTogether]);
+    }
+}
+
+void World::Data::collide(const Collision& collision) {
+    Move& move = moves[collision.robot];
+    states[collision.robot].bump = move.end() - move.start();
+    move.cancel();
+    if (collision.robot < odometers.size()) odometers[collision.robot].stay();
+    if (pilots[collision.robot].isOn()) return pilots[collision.robot].bumped();
+    states[collision.robot].stall = true;
+    collisions.push_back(collision);
+}
+
+/// Nothing changes its move any more.
+void World::Data::finish(std::size_t mover, Chunk& chunk) {
+    Motion& motion = next_motions[mover];
+    motion = moves[mover].to.motion;
+    chunk.moved = chunk.moved || motion.pose != motions[mover].pose;
+    if (movers[mover].is_person)
+        walk(mover);
+    else
+        odometers[mover].count(steps);
+    if (states[mover].running == 0) return;
+    const auto end = [&](Outcome outcome) { chunk.ends.push_back({mover, 0, outcome, time}); };
+    if (Pilot& pilot = pilots[mover]; pilot.isOn()) {
+        return;
+    } else if (pilot.state() != Pilot::State::Off) {
+        end(pilot.state() == Pilot::State::Arrived ? Outcome::Done : Outcome::Unreached);
+        pilot.turnOff();
+    } else if (states[mover].stall) {
+        end(Outcome::Stall);
+    } else if (motion.arrived()) {
+        end(Outcome::Done);
+        motion.halt();
+    }
+}
+
+void World::Data::apply() {
+    std::swap(motions, next_motions);
+    const std::size_t before = ends.size();
+    for (const Chunk& chunk : chunks) {
+        moved = moved || chunk.moved;
+        ends.insert(ends.end(), chunk.ends.begin(), chunk.ends.end());
+    }
+    if (moved) sensors.moved();
+    const auto added = ends.begin() + static_cast<std::ptrdiff_t>(before);
+    std::sort(added, ends.end(), [&](const CommandEnd& a, const CommandEnd& b) {
+        return traffic.rank(a.robot) < traffic.rank(b.robot);
+    });
+    for (auto end = added; end != ends.end(); ++end)
+        end->id = std::exchange(states[end->robot].running, 0);
+}
+
+void World::Data::walk(std::size_t mover) {
+    const std::size_t person = mover - scene->robots.size();
+    const Motion& motion = next_motions[mover];
+    const double speed = std::hypot(motion.drive.speed, motion.side.speed);
+    const double path = moves[mover].to.path;
+    gaits[person].walk(movers[mover].model.height, motion.drive.speed < 0 ? -path : path, speed);
+    swings[person] = gaits[person].swing(speed);
+}
+
+}  // namespace ispace
