@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "base/simd.h"
@@ -76,6 +77,90 @@ void see(const BodyTable& table, std::size_t begin, const ArcView& view, Seen& s
     }
 }
 
+/// What of a body's outline level beams meet: in its frame, as BodyFrom has it.
+struct OutlineFrom {
+    double cos, sin;  // of its heading
+    double x, y;      // where beams leave
+    double half_length, half_width, radius;
+};
+
+/// Where a beam enters and leaves a slab, or misses it. Zero directions divide by zero, and what
+/// that gives is not chosen.
+struct SlabCut {
+    double near, far;
+    ISPACE_INLINE SlabCut(double origin, double direction, double half) {
+        constexpr double kNone = std::numeric_limits<double>::infinity();
+        const double a = (-half - origin) / direction, b = (half - origin) / direction;
+        const double miss = (origin < -half) | (origin > half) ? kNone : -kNone;
+        const bool crosses = direction != 0;
+        near = flatChoice(crosses, b < a ? b : a, miss);
+        far = flatChoice(crosses, a < b ? b : a, -miss);
+    }
+};
+
+/// BodyFrom::meet for blocks of level beams at a height where the body is: the same to the last
+/// bit.
+template <typename Cut>
+ISPACE_INLINE void meetLevel(const OutlineFrom& from, const double* x, const double* y,
+                             double* range, double* slope, Cut cut) {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    ISPACE_LANES for (int i = 0; i < kLanes; ++i) {
+        const double ahead = from.cos * x[i] + from.sin * y[i];
+        const double aside = from.cos * y[i] - from.sin * x[i];
+        double begin, end, slope_begin, slope_end;
+        cut(ahead, aside, begin, end, slope_begin, slope_end);
+        const bool outside = begin >= 0;
+        const bool misses = (begin > end) | (end < 0);
+        range[i] = flatChoice(misses, kNone, flatChoice(outside, begin, end));
+        slope[i] = flatChoice(misses, 0.0, flatChoice(outside, slope_begin, slope_end));
+    }
+}
+
+ISPACE_SIMD_CLONES
+void meetBox(const OutlineFrom& from, const double* x, const double* y, std::size_t blocks,
+             double* range, double* slope) {
+    for (std::size_t block = 0; block < blocks; ++block) {
+        const std::size_t at = block * BodyTable::kLanes;
+        meetLevel(
+            from, x + at, y + at, range + at, slope + at,
+            [&from](double ahead, double aside, double& begin, double& end, double& slope_begin,
+                    double& slope_end) __attribute__((always_inline)) {
+                const SlabCut one(from.x, ahead, from.half_length);
+                const SlabCut other(from.y, aside, from.half_width);
+                const double steep = std::fabs(ahead), flat = std::fabs(aside);
+                const bool enters_other = other.near > one.near;
+                begin = flatChoice(enters_other, other.near, one.near);
+                slope_begin = flatChoice(enters_other, flat, steep);
+                const bool leaves_other = other.far < one.far;
+                end = flatChoice(leaves_other, other.far, one.far);
+                slope_end = flatChoice(leaves_other, flat, steep);
+            });
+    }
+}
+
+ISPACE_SIMD_CLONES
+void meetDisc(const OutlineFrom& from, const double* x, const double* y, std::size_t blocks,
+              double* range, double* slope) {
+    for (std::size_t block = 0; block < blocks; ++block) {
+        const std::size_t at = block * BodyTable::kLanes;
+        meetLevel(
+            from, x + at, y + at, range + at, slope + at,
+            [&from](double ahead, double aside, double& begin, double& end, double& slope_begin,
+                    double& slope_end) __attribute__((always_inline)) {
+                constexpr double kNone = std::numeric_limits<double>::infinity();
+                const double a = ahead * ahead + aside * aside;
+                const double b = from.x * ahead + from.y * aside;
+                const double side = from.x * aside - from.y * ahead;
+                const double root = a * from.radius * from.radius - side * side;
+                const double half = std::sqrt(flatMax(root, 0.0));
+                const bool misses = root < 0;
+                begin = flatChoice(misses, kNone, (-b - half) / a);
+                end = flatChoice(misses, -kNone, (-b + half) / a);
+                slope_begin = slope_end = half / from.radius;
+            });
+    }
+}
+
 /// Kept for its memory: threads read many scans.
 std::vector<float>& farthestOfThread() {
     thread_local std::vector<float> farthest;
@@ -103,20 +188,35 @@ BodyArc::BodyArc(Point3 origin, const Directions& directions, double max_range,
 }
 
 void BodyArc::findFarthest(std::size_t block) {
-    const std::size_t end = std::min((block + 1) * kBlock, directions_.size());
+    const std::size_t begin = block * kBlock, end = std::min(begin + kBlock, directions_.size());
     float farthest = 0;
-    for (std::size_t k = block * kBlock; k < end; ++k) farthest = std::max(farthest, ranges_[k]);
+    if (end - begin == kBlock) {
+        // In pairs, which need not wait for each other.
+        const std::span<const float> all = ranges_.all().subspan(begin, kBlock);
+        const float a = std::max(std::max(all[0], all[1]), std::max(all[2], all[3]));
+        const float b = std::max(std::max(all[4], all[5]), std::max(all[6], all[7]));
+        farthest = std::max(farthest, std::max(a, b));
+    } else {
+        for (std::size_t k = begin; k < end; ++k) farthest = std::max(farthest, ranges_[k]);
+    }
     farthest_[block] = std::min(farthest, static_cast<float>(far_ * (1 + kFarSlack)));
 }
 
 Box2 BodyArc::view() const {
     Box2 box;
     box.add(origin_.onFloor());
-    const std::size_t count = directions_.size();
+    constexpr double kWide = 1;  // radians
+    const double half = (kBlock - 1) / (2 * rate_);
+    if (half > kWide) {
+        const Vec2 margin{far_ * (1 + kFarSlack), far_ * (1 + kFarSlack)};
+        return {origin_.onFloor() - margin, origin_.onFloor() + margin};
+    }
+    // The ends of a block, so far away that the chord between them lies behind its arc.
+    const double beyond = (1 + kFarSlack) / std::cos(half);
     for (std::size_t block = 0; block < farthest_.size(); ++block) {
-        const double far = static_cast<double>(farthest_[block]) * (1 + kFarSlack);
-        const std::size_t end = std::min((block + 1) * kBlock, count);
-        for (std::size_t k = block * kBlock; k < end; ++k)
+        const double far = static_cast<double>(farthest_[block]) * beyond;
+        const std::size_t begin = block * kBlock;
+        for (const std::size_t k : {begin, std::min(begin + kBlock, directions_.size()) - 1})
             box.add(origin_.onFloor() + far * Vec2{directions_.x[k], directions_.y[k]});
     }
     return box;
@@ -189,11 +289,36 @@ void BodyArc::meetBeams(const BodyFrom& body, std::int32_t first, std::int32_t l
                         double nearest) {
     if (first > last) return;
     const auto begin = static_cast<std::size_t>(first), end = static_cast<std::size_t>(last) + 1;
-    for (std::size_t k = begin; k < end; ++k)
-        if (static_cast<double>(ranges_[k]) > nearest)
-            ranges_.shorten(k, body.meet(directions_[k]), 1);
+    meetSome(body, begin, end, nearest);
     for (std::size_t block = begin / kBlock; block <= (end - 1) / kBlock; ++block)
         findFarthest(block);
+}
+
+/// In whole blocks as far as there are any: beams that are not asked for cost nothing more.
+void BodyArc::meetSome(const BodyFrom& body, std::size_t begin, std::size_t end, double nearest) {
+    constexpr std::size_t kBlocks = 8;
+    double multiples[kBlocks * kBlock], slopes[kBlocks * kBlock];
+    const OutlineFrom outline{body.axes().cos,   body.axes().sin,         body.offset().x,
+                              body.offset().y,   body.body().half_length, body.body().half_width,
+                              body.body().radius};
+    const auto shorten = [&](std::size_t k, const BodyMeeting& met) {
+        if (static_cast<double>(ranges_[k]) > nearest) ranges_.shorten(k, met, 1);
+    };
+    const std::size_t whole = directions_.size() / kBlock;
+    std::size_t block = begin / kBlock;
+    for (; block < whole && block * kBlock < end; block += kBlocks) {
+        const std::size_t at = block * kBlock;
+        const std::size_t blocks =
+            std::min({kBlocks, whole - block, (end - 1) / kBlock + 1 - block});
+        (outline.radius > 0 ? meetDisc : meetBox)(outline, directions_.x.data() + at,
+                                                  directions_.y.data() + at, blocks, multiples,
+                                                  slopes);
+        const std::size_t stop = std::min(end, at + blocks * kBlock);
+        for (std::size_t k = std::max(begin, at); k < stop; ++k)
+            shorten(k, {multiples[k - at], slopes[k - at]});
+    }
+    for (std::size_t k = std::max(begin, whole * kBlock); k < end; ++k)
+        shorten(k, body.meet(directions_[k]));
 }
 
 }  // namespace ispace

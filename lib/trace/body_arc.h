@@ -45,6 +45,7 @@ class BodyArc {
     [[nodiscard]] bool isSeen(const Waiting& waiting) const;
     [[nodiscard]] bool isSeen(std::int32_t first, std::int32_t last, double nearest) const;
     void meetBeams(const BodyFrom& body, std::int32_t first, std::int32_t last, double nearest);
+    void meetSome(const BodyFrom& body, std::size_t begin, std::size_t end, double nearest);
     void findFarthest(std::size_t block);
 
     Point3 origin_;

@@ -87,6 +87,11 @@ class BodyFrom {
         return {stretch.to, stretch.slope_to};
     }
 
+    [[nodiscard]] const MovingBody& body() const { return body_; }
+    [[nodiscard]] CosSin axes() const { return axes_; }
+    /// Where the rays leave, in its frame.
+    [[nodiscard]] Vec2 offset() const { return offset_; }
+
   private:
     /// From the world into the body's frame.
     [[nodiscard]] Vec2 turned(Vec2 v) const {
@@ -106,6 +111,7 @@ class ShortenedRanges {
         : far_(static_cast<float>(most)), ranges_(ranges), cosines_(cosines) {}
 
     [[nodiscard]] float operator[](std::size_t i) const { return ranges_[i]; }
+    [[nodiscard]] std::span<const float> all() const { return ranges_; }
     /// `size`: the direction's length.
     void shorten(std::size_t i, const BodyMeeting& met, double size) {
         // As float32: what begins exactly at the limit is met.
