@@ -82,7 +82,7 @@ class Profile {
         speed_ = speed;
         return ramp;
     }
-    std::optional<Phase> hold(double duration) const {
+    [[nodiscard]] std::optional<Phase> hold(double duration) const {
         return duration > 0 ? std::optional<Phase>({duration, 0, speed_}) : std::nullopt;
     }
     std::optional<Phase> enter();

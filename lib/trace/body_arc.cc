@@ -91,7 +91,7 @@ struct SlabCut {
     ISPACE_INLINE SlabCut(double origin, double direction, double half) {
         constexpr double kNone = std::numeric_limits<double>::infinity();
         const double a = (-half - origin) / direction, b = (half - origin) / direction;
-        const double miss = (origin < -half) | (origin > half) ? kNone : -kNone;
+        const double miss = ((origin < -half) | (origin > half)) ? kNone : -kNone;
         const bool crosses = direction != 0;
         near = flatChoice(crosses, b < a ? b : a, miss);
         far = flatChoice(crosses, a < b ? b : a, -miss);
