@@ -12,28 +12,43 @@ namespace ispace {
 
 namespace {
 
+/// What JSON text holds as it is: ASCII without quotes, backslashes and control characters.
+bool isPlain(char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte >= 0x20 && byte < 0x80 && c != '"' && c != '\\';
+}
+
+/// A character that is not plain. \return how many bytes it has
+std::size_t appendSpecial(std::string& out, std::string_view text) {
+    const std::size_t length = utf8Length(text);
+    const char c = text.front();
+    if (length == 0) {
+        out += "\xef\xbf\xbd";
+    } else if (c == '"' || c == '\\') {
+        out += '\\';
+        out += c;
+    } else if (c == '\n') {
+        out += "\\n";
+    } else if (c == '\t') {
+        out += "\\t";
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+        std::array<char, 8> escape;
+        std::snprintf(escape.data(), escape.size(), "\\u%04x", static_cast<unsigned>(c));
+        out += escape.data();
+    } else {
+        out += text.substr(0, length);
+    }
+    return length == 0 ? 1 : length;
+}
+
 void appendQuoted(std::string& out, std::string_view text) {
     out += '"';
     while (!text.empty()) {
-        const std::size_t length = utf8Length(text);
-        const char c = text.front();
-        if (length == 0) {
-            out += "\xef\xbf\xbd";
-        } else if (c == '"' || c == '\\') {
-            out += '\\';
-            out += c;
-        } else if (c == '\n') {
-            out += "\\n";
-        } else if (c == '\t') {
-            out += "\\t";
-        } else if (static_cast<unsigned char>(c) < 0x20) {
-            std::array<char, 8> escape;
-            std::snprintf(escape.data(), escape.size(), "\\u%04x", static_cast<unsigned>(c));
-            out += escape.data();
-        } else {
-            out += text.substr(0, length);
-        }
-        text.remove_prefix(length == 0 ? 1 : length);
+        std::size_t plain = 0;
+        while (plain < text.size() && isPlain(text[plain])) ++plain;
+        out += text.substr(0, plain);
+        text.remove_prefix(plain);
+        if (!text.empty()) text.remove_prefix(appendSpecial(out, text));
     }
     out += '"';
 }
@@ -88,7 +103,7 @@ JsonWriter& JsonWriter::value(std::string_view text) {
 JsonWriter& JsonWriter::value(double number) {
     if (!std::isfinite(number)) return null();
     separate();
-    text_ += formatDouble(number);
+    appendDouble(text_, number);
     return *this;
 }
 
