@@ -15,6 +15,7 @@
 #include "env/slice.h"
 #include "env/walls.h"
 #include "geom/planar_map.h"
+#include "record/at_once.h"
 
 namespace ispace {
 
@@ -79,12 +80,14 @@ Diagnostic fileFinding(std::span<const Element> elements, std::string message) {
 /// other.
 class Builder {
   public:
-    void takeRecords(std::span<const Record> records, std::span<const std::string> ids) {
+    /// \param with_things else giveThings() is still to be called
+    void takeRecords(std::span<const Record> records, std::span<const std::string> ids,
+                     bool with_things) {
         elements_.reserve(static_cast<std::size_t>(
             std::count_if(records.begin(), records.end(),
                           [](const Record& record) { return record.schema().isEnvironment(); })));
         for (std::size_t i = 0; i < records.size(); ++i) {
-            if (records[i].schema().isEnvironment()) takeRecord(records[i], ids[i]);
+            if (records[i].schema().isEnvironment()) takeRecord(records[i], ids[i], with_things);
         }
         inside_ = insideRecords(elements_);
         if (plan_.walls.empty() && walls_whole_)
@@ -95,10 +98,22 @@ class Builder {
         if (plan_.walls.empty() || !walls_simple_) findings_.throwIfAny();
     }
 
-    /// Walls and what is in them. \pre there are walls
-    void raiseWalls() {
-        openings_ = placeOpenings(elements_, plan_, findings_);
-        welded_ = weldedLines();
+    /// The shapes of all that is no wall, while others look at walls. \throws FormatError
+    void giveThings() {
+        Diagnostics findings;
+        for (Element& element : elements_) {
+            if (!isWall(element.record)) giveShape(element, findings);
+            countCorners(element);
+        }
+        findings.throwIfAny();
+    }
+
+    /// Lines of walls, and what is cut out of them. \pre there are walls
+    /// \throws FormatError with all findings so far, or some if `at_once`
+    void cutWalls(bool at_once) {
+        doBoth(
+            at_once, [this] { openings_ = placeOpenings(elements_, plan_, findings_); },
+            [this, at_once] { welded_ = at_once ? weld(plan_.lines) : weldedLines(); });
         for (const Segment2& piece : welded_.pieces) {
             limits_.add(piece.a);
             limits_.add(piece.b);
@@ -107,8 +122,15 @@ class Builder {
             cut_ = cutOpenings(elements_, plan_, welded_, openings_, findings_);
         else
             cut_.parts = wallParts(plan_.walls, welded_);
+    }
+
+    [[nodiscard]] std::vector<Body> wallBodies() const {
+        return ispace::wallBodies(cut_.parts, plan_.walls.size() + openings_.size());
+    }
+
+    /// \param bodies those of wallBodies(). \pre all else has its shape
+    void addWalls(std::vector<Body> bodies) {
         const std::size_t walls = plan_.walls.size();
-        std::vector<Body> bodies = wallBodies(cut_.parts, walls + openings_.size());
         for (std::size_t i = 0; i < bodies.size(); ++i)
             addBody(elements_[i < walls ? plan_.owner[i] : openings_[i - walls].element].body,
                     std::move(bodies[i]));
@@ -140,8 +162,9 @@ class Builder {
     [[nodiscard]] std::vector<Segment2> takeLines() { return std::move(welded_.pieces); }
 
   private:
-    void takeRecord(const Record& record, const std::string& id) {
-        if (isWall(record)) {
+    void takeRecord(const Record& record, const std::string& id, bool with_things) {
+        const bool is_wall = isWall(record);
+        if (is_wall) {
             const std::size_t before = plan_.walls.size();
             Diagnostics findings;
             for (const WallLine& wall : wallLinesOf(record, findings))
@@ -149,17 +172,26 @@ class Builder {
             walls_whole_ = walls_whole_ && findings.empty() && plan_.walls.size() > before;
             takeFindings(findings);
         }
-        elements_.push_back({record, id, bodyBesideWalls(record)});
-        corners_ += cornersOf(elements_.back().body);
-        max_corners_ += record.isMade() ? kMaxCornersMade : kMaxCornersWritten;
+        elements_.push_back({record, id, {}});
+        Diagnostics findings;
+        if (is_wall || with_things) giveShape(elements_.back(), findings);
+        if (with_things) countCorners(elements_.back());
+        walls_simple_ = walls_simple_ && (findings.empty() || !is_wall);
+        takeFindings(findings);
+    }
+
+    static void giveShape(Element& element, Diagnostics& findings) {
+        element.body = bodyBesideWalls(element.record);
+        checkShape(element.record, element.body, findings);
+    }
+
+    void countCorners(const Element& element) {
+        corners_ += cornersOf(element.body);
+        max_corners_ += element.record.isMade() ? kMaxCornersMade : kMaxCornersWritten;
         if (corners_ > max_corners_)
-            throw FormatError(record.finding(
+            throw FormatError(element.record.finding(
                 "the shapes up to here have more than " + std::to_string(max_corners_) +
                 " corners: fewer round or checkered things are wanted, or smaller ones"));
-        Diagnostics findings;
-        checkShape(record, elements_.back().body, findings);
-        walls_simple_ = walls_simple_ && (findings.empty() || !isWall(record));
-        takeFindings(findings);
     }
 
     void takeFindings(const Diagnostics& findings) {
@@ -203,14 +235,53 @@ class Builder {
     Box2 limits_;
 };
 
+/// One step after another, so that findings come in order.
+Enclosure buildInOrder(std::span<const Record> records, std::span<const std::string> ids,
+                       Builder& builder) {
+    builder.takeRecords(records, ids, true);
+    builder.cutWalls(false);
+    builder.addWalls(builder.wallBodies());
+    return builder.enclose();
+}
+
+/// What takes longest, finding what walls enclose, while the shapes of all else are made.
+/// \throws FormatError if there are findings: some of them
+Enclosure buildAtOnce(std::span<const Record> records, std::span<const std::string> ids,
+                      Builder& builder) {
+    builder.takeRecords(records, ids, false);
+    std::vector<Body> walls;
+    Enclosure enclosure;
+    const auto enclose = [&] { enclosure = builder.enclose(); };
+    const auto give_walls = [&] { walls = builder.wallBodies(); };
+    doBoth(
+        true,
+        [&] {
+            builder.cutWalls(true);
+            doBoth(true, enclose, give_walls);
+        },
+        [&builder] { builder.giveThings(); });
+    builder.addWalls(std::move(walls));
+    return enclosure;
+}
+
+Enclosure build(std::span<const Record> records, std::span<const std::string> ids,
+                Builder& builder) {
+    if (records.size() >= kManyRecords) {
+        try {
+            return buildAtOnce(records, ids, builder);
+        } catch (const FormatError&) {
+            builder = Builder();
+        }
+    }
+    return buildInOrder(records, ids, builder);
+}
+
 }  // namespace
 
 Environment::Environment(std::span<const Record> records, std::span<const std::string> ids) {
     assert(records.size() == ids.size());
     Builder builder;
-    builder.takeRecords(records, ids);
-    builder.raiseWalls();
-    Enclosure enclosure = builder.enclose();
+    Enclosure enclosure = build(records, ids, builder);
     auto data = std::make_shared<Data>();
     data->indoor = std::move(enclosure.indoor);
     data->inside = enclosure.inside;

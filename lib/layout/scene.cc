@@ -13,6 +13,7 @@
 #include "base/message.h"
 #include "env/body.h"
 #include "layout/robot.h"
+#include "record/at_once.h"
 #include "record/record.h"
 #include "record/text.h"
 #include "sensor/keys.h"
@@ -269,7 +270,13 @@ Scene makeScene(const Document& environment, const Document* layout,
     if (layout != nullptr) checkIds(layout->records);
     std::vector<Record> records =
         layout == nullptr ? environment.records : joinRecords(environment.records, layout->records);
-    return makeScene(std::move(records), nullptr, environmentDigest(environment.records), devices);
+    std::optional<Scene> scene;
+    std::string digest;
+    const auto make = [&] { scene = makeScene(std::move(records), nullptr, "", devices); };
+    const auto digest_all = [&] { digest = environmentDigest(environment.records); };
+    doBoth(environment.records.size() >= kManyRecords, make, digest_all);
+    scene->digest = std::move(digest);
+    return *std::move(scene);
 }
 
 Scene makeScene(std::vector<Record> records, const Scene& before, const DeviceCatalogue& devices) {

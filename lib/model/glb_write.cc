@@ -12,6 +12,7 @@
 #include "model/glb_file.h"
 #include "model/glb_write.h"
 #include "model/model.h"
+#include "record/at_once.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -182,9 +183,18 @@ std::string writeGlb(const Scene& scene, const Document& document, const FloorPi
     const Point3 origin = meshOrigin(scene.environment.limits());
     GlbBuilder builder;
     GlbScene nodes(builder, origin, picture);
-    for (const Element& element : scene.environment.elements()) nodes.add(element);
-    for (const ModelNode& node : placedNodes(scene, true)) nodes.add(node);
-    return builder.finish(recordsText(document), gltfAxes(origin - Point3()));
+    std::vector<ModelNode> placed;
+    std::string records;
+    const auto add_elements = [&] {
+        for (const Element& element : scene.environment.elements()) nodes.add(element);
+    };
+    const auto prepare = [&] {
+        placed = placedNodes(scene, true);
+        records = recordsText(document);
+    };
+    doBoth(document.records.size() >= kManyRecords, add_elements, prepare);
+    for (const ModelNode& node : placed) nodes.add(node);
+    return builder.finish(records, gltfAxes(origin - Point3()));
 }
 
 }  // namespace ispace

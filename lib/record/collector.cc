@@ -95,6 +95,16 @@ Record RecordCollector::finish() {
 
 void RecordCollector::end() {
     records_.push_back(finish());
+    checkCount();
+}
+
+void RecordCollector::append(RecordCollector&& next) {
+    records_.insert(records_.end(), std::move_iterator(next.records_.begin()),
+                    std::move_iterator(next.records_.end()));
+    checkCount();
+}
+
+void RecordCollector::checkCount() const {
     if (records_.size() > kMaxRecords)
         throw FormatError(
             records_.back().place().finding("more than " + std::to_string(kMaxRecords) +

@@ -56,6 +56,10 @@ class RecordCollector {
     /// finish(), and keeps the record. \throws FormatError for more than kMaxRecords
     void end();
 
+    /// Takes the records of another that read what follows, which has no findings.
+    /// \throws FormatError as end() does
+    void append(RecordCollector&& next);
+
     /// Adds a finding. `message` is a function that makes its text, called only if the finding is
     /// kept: hints take time, and a hostile file has many errors.
     template <typename Message>
@@ -73,6 +77,8 @@ class RecordCollector {
     std::vector<Record> take();
 
   private:
+    void checkCount() const;
+
     Place file_;
     const Schemas* schemas_;
     Diagnostics findings_;

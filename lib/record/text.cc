@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "record/text.h"
 
-#define OPENSSL_SUPPRESS_DEPRECATED
-
-#include <openssl/sha.h>
 #include <algorithm>
 #include <array>
 #include <cstdio>
 
 #include "base/message.h"
+#include "record/at_once.h"
 #include "record/collector.h"
 
 namespace ispace {
@@ -244,23 +242,61 @@ bool isRecordText(std::string_view bytes) {
     return bytes.starts_with(kEnvironmentMagic) || bytes.starts_with(kLayoutMagic);
 }
 
+namespace {
+
+/// Texts shorter than this are read before another thread would begin.
+constexpr std::size_t kLong = 1 << 18;
+
+/// What follows the first line.
+std::string_view afterLine(std::string_view text) {
+    return text.substr(std::min(text.find('\n'), text.size() - 1) + 1);
+}
+
+/// Reads the records of all lines, of which `before` go before.
+void readLines(std::string_view text, int before, RecordCollector& collector) {
+    LineReader lines(text);
+    while (const auto line = lines.next()) readLine(*line, before + lines.number(), collector);
+}
+
+/// The same in two parts, at once. \return false if there are findings, which come in another order
+bool readInParts(std::string_view text, int before, RecordCollector& first) {
+    const std::size_t end = text.find('\n', text.size() / 2);
+    if (end == std::string_view::npos) return false;
+    const std::string_view front = text.substr(0, end + 1), back = text.substr(end + 1);
+    const auto lines = static_cast<int>(std::count(front.begin(), front.end(), '\n'));
+    RecordCollector second(*first.file().file, first.schemas());
+    try {
+        doBoth(
+            true, [&] { readLines(front, before, first); },
+            [&] { readLines(back, before + lines, second); });
+        if (!second.findings().empty()) return false;
+        first.append(std::move(second));
+    } catch (const FormatError&) {
+        return false;
+    }
+    return first.findings().empty();
+}
+
+}  // namespace
+
 Document readRecordText(std::string_view bytes, const std::string& name, const Schemas& schemas) {
     bytes = withoutMark(bytes);
     if (bytes.empty()) throw FormatError({name, 0, 0, std::string("empty file, ") + kWantedMagic});
     checkTextBytes(bytes, name);
-    LineReader lines(bytes);
     Document document;
-    document.kind = parseMagic(*lines.next(), name);
+    document.kind = parseMagic(*LineReader(bytes).next(), name);
+    int before = 1;
+    std::string_view rest = afterLine(bytes);
+    for (; rest.starts_with("# "); rest = afterLine(rest), ++before)
+        document.history.emplace_back(LineReader(rest).next()->substr(2));
     RecordCollector collector(name, schemas);
-    bool in_history = true;
-    while (const auto line = lines.next()) {
-        in_history = in_history && line->starts_with("# ");
-        if (in_history)
-            document.history.emplace_back(line->substr(2));
-        else
-            readLine(*line, lines.number(), collector);
+    if (rest.size() >= kLong && readInParts(rest, before, collector)) {
+        document.records = collector.take();
+        return document;
     }
-    document.records = collector.take();
+    RecordCollector in_order(name, schemas);
+    readLines(rest, before, in_order);
+    document.records = in_order.take();
     return document;
 }
 
@@ -303,90 +339,6 @@ Record readRecord(std::string_view line, const std::string& name, const Schemas&
     if (records.empty())
         throw FormatError({name, 1, 0, "no record found, wanted `keyword key=value ...`"});
     return std::move(records.front());
-}
-
-namespace {
-
-/// By the functions of OpenSSL that need no memory: its newer ones, for which these are deprecated,
-/// read settings, and crash where memory runs out meanwhile.
-class Sha256 {
-  public:
-    Sha256() { SHA256_Init(&context_); }
-    void add(std::string_view bytes) { SHA256_Update(&context_, bytes.data(), bytes.size()); }
-    std::string finish() {
-        std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
-        SHA256_Final(digest.data(), &context_);
-        constexpr std::string_view kDigits = "0123456789abcdef";
-        std::string text = "sha256:";
-        for (const unsigned char byte : digest) {
-            text += kDigits[byte >> 4U];
-            text += kDigits[byte & 15U];
-        }
-        return text;
-    }
-
-  private:
-    SHA256_CTX context_{};
-};
-
-/// Pictures do not change what is measured: they are left out, and with them names that depend on
-/// the folder.
-Record withoutPicture(Record record) {
-    record.erase("texture");
-    return record;
-}
-
-bool hasPicture(const Record& record) {
-    return record.schema().find("texture") != nullptr && record.has("texture");
-}
-
-/// A record of a loaded file with the digest of its content in place of the file's name and of
-/// where files that it names may be.
-/// \pre it is loaded
-Record byContent(Record record) {
-    for (const KeySpec& key : record.schema().keys)
-        if (key.role == Role::File || key.name == "side_files") record.erase(key.name);
-    record.set("digest", record.mesh()->digest);
-    return record;
-}
-
-}  // namespace
-
-std::string meshDigest(const TriangleMesh& mesh) {
-    Sha256 digest;
-    const auto add = [&digest](const auto& items) {
-        digest.add({reinterpret_cast<const char*>(items.data()), items.size() * sizeof items[0]});
-    };
-    add(mesh.vertices);
-    add(mesh.triangles);
-    return digest.finish();
-}
-
-std::string sha256(std::string_view bytes) {
-    Sha256 digest;
-    digest.add(bytes);
-    return digest.finish();
-}
-
-std::string environmentDigest(std::span<const Record> records) {
-    constexpr std::size_t kBlock = 1 << 16;
-    Sha256 digest;
-    std::string text;
-    for (const Record& record : records) {
-        if (!record.schema().isEnvironment()) continue;
-        if (record.mesh() != nullptr)
-            appendRecord(text, byContent(record));
-        else if (hasPicture(record))
-            appendRecord(text, withoutPicture(record));
-        else
-            appendRecord(text, record);
-        text += '\n';
-        if (text.size() < kBlock) continue;
-        digest.add(text);
-        text.clear();
-    }
-    digest.add(text);
-    return digest.finish();
 }
 
 }  // namespace ispace

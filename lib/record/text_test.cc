@@ -300,6 +300,52 @@ TEST(ReadText, BoundsTheNumberOfRecords) {
               "a.env:1000002:1: error: more than 1000000 records, the most that an input may have");
 }
 
+/// So many lines that they are read in parts.
+std::string longText(std::size_t lines) {
+    std::string text = "#env 1\n# a\n# b\n";
+    for (std::size_t i = 0; i < lines; ++i)
+        text += i % 7 == 3 ? "# desk\r\n" : "desk id=d" + std::to_string(i) + " at=1,1\n";
+    return text;
+}
+
+TEST(ReadText, ReadsLongTextsInPartsAsOthers) {
+    constexpr std::size_t kLines = 30000;
+    const Document document = read(longText(kLines));
+    EXPECT_EQ(document.history, (History{"a", "b"}));
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < kLines; ++i) {
+        if (i % 7 == 3) continue;
+        ASSERT_LT(next, document.records.size());
+        const Record& record = document.records[next++];
+        ASSERT_EQ(record.text("id"), "d" + std::to_string(i));
+        ASSERT_EQ(record.place().line, static_cast<int>(i) + 4);
+        ASSERT_EQ(*record.place().file, "a.env");
+    }
+    EXPECT_EQ(next, document.records.size());
+}
+
+TEST(ReadText, FindsErrorsOfLongTextsInTheirOrder) {
+    const std::string good = longText(30000);
+    const auto found = [](const std::string& text) {
+        return findingsOf([&] { (void)read(text); });
+    };
+    EXPECT_EQ(found(good + "desk heigth=1"),
+              Texts{"a.env:30004:6: error: unknown key `heigth`, did you mean `height`?"});
+    std::string early = good;
+    early.replace(early.find("id=d9 "), 2, "it");
+    EXPECT_EQ(found(early + "desk heigth=1\n"),
+              (Texts{"a.env:13:6: error: unknown key `it`, did you mean `id`?",
+                     "a.env:30004:6: error: unknown key `heigth`, did you mean `height`?"}));
+    EXPECT_EQ(found(good + "desk id=d5\n"),
+              Texts{"a.env:30004:9: error: doubled id `d5`, first used in line 9"});
+    std::string many = good;
+    for (std::size_t at = 0; (at = many.find(" id=", at)) != std::string::npos;) many[at + 1] = 'x';
+    const Texts all = found(many);
+    ASSERT_EQ(all.size(), 20U);
+    EXPECT_TRUE(all[0].starts_with("a.env:4:6: ")) << all[0];
+    EXPECT_TRUE(all[19].ends_with(" (25694 more errors not shown)")) << all[19];
+}
+
 TEST(ReadRecord, ReadsOneRecord) {
     const Record record = readRecord("desk at=1,2", "--add", testSchemas());
     EXPECT_EQ(record.tuple("at"), (Tuple{1, 2}));
