@@ -7,6 +7,7 @@
 
 #include "solve/branch_and_bound.h"
 #include "solve/lagrange.h"
+#include "solve/overlap_bound.h"
 #include "solve/packed_search.h"
 
 namespace ispace {
@@ -16,6 +17,10 @@ namespace {
 // A bound that is to be quick, and one that is to be good.
 constexpr LagrangeLimits kQuick = {.gap = 0.01, .rounds = 8};
 constexpr double kSmallGap = 0.001;
+// A wider gap than this takes a tree too long.
+constexpr double kWideGap = 0.005;
+constexpr int kOverlapRounds = 60;
+constexpr double kOverlapStall = 0.01;
 
 LagrangeLimits limitsOf(const SearchOptions& options) {
     LagrangeLimits limits;
@@ -156,11 +161,29 @@ class Search {
         });
         result_.bound = std::min(result_.bound, bound.value);
         noteProgress(problem_, result_, progress_);
-        if (options_.optimizer == Optimizer::Exact && !progress_.stopped() &&
-            result_.best.value < result_.bound)
+        if (options_.optimizer != Optimizer::Exact) return;
+        boundByOverlaps(bound);
+        if (!progress_.stopped() && result_.best.value < result_.bound)
             result_ = branchAndBound(problem_, bound, std::move(result_), options_.gap, progress_,
                                      std::numeric_limits<std::uint64_t>::max(), options_.max_bytes,
                                      share_);
+    }
+    void boundByOverlaps(const Bound& plain) {
+        const auto open = static_cast<double>(result_.bound - result_.best.value);
+        if (open <= std::max(options_.gap, kWideGap) * static_cast<double>(result_.bound)) return;
+        const LagrangeLimits limits = {.cut = result_.best.value,
+                                       .gap = options_.gap,
+                                       .rounds = kOverlapRounds,
+                                       .stall = kOverlapStall,
+                                       .pace = kLongPace};
+        result_ = recalled(share_, problem_, "overlaps", unpackResult, progress_, [&] {
+            SearchResult tighter = result_;
+            tighter.bound =
+                std::min(tighter.bound,
+                         overlapBound(problem_, plain, tighter.best.chosen, limits, progress_));
+            return tighter;
+        });
+        noteProgress(problem_, result_, progress_);
     }
 
     const Problem& problem_;
