@@ -87,6 +87,24 @@ std::vector<Record> editedRecords(const Scene& scene, const std::vector<Edit>& e
     return edited(std::move(records), edits, sceneSchemas());
 }
 
+void placeAgain(std::vector<Record>& records, std::span<const std::string> ids,
+                const std::vector<Edit>& edits, const MoverPlaces& where) {
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (!isMover(records[i])) continue;
+        const auto sets = [&](std::string_view key) {
+            return std::any_of(edits.begin(), edits.end(), [&](const Edit& edit) {
+                return places(edit, records[i]) && (key.empty() || edit.key == key) &&
+                       isAbout(edit, ids[i]);
+            });
+        };
+        if (!sets("")) continue;
+        const auto pose = where(ids[i]);
+        if (!pose) continue;
+        if (!sets("at")) records[i].set("at", Tuple{pose->position.x, pose->position.y});
+        if (!sets("heading")) records[i].set("heading", pose->heading.degrees());
+    }
+}
+
 std::vector<std::string> placedBy(const std::vector<Edit>& edits, const Scene& scene) {
     std::vector<std::string> placed;
     for (const Edit& edit : edits) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,11 @@ using MoverPlaces = std::function<std::optional<Pose2>(const std::string& id)>;
 /// where they are now but for that. \throws FormatError as edited()
 std::vector<Record> editedRecords(const Scene& scene, const std::vector<Edit>& edits,
                                   const MoverPlaces& where);
+
+/// Records that editedRecords() made earlier, with robots and people whose place or heading is set
+/// where they are now but for that. \param ids of the records
+void placeAgain(std::vector<Record>& records, std::span<const std::string> ids,
+                const std::vector<Edit>& edits, const MoverPlaces& where);
 
 /// Ids of those whom these edits put somewhere, where they may stand already.
 std::vector<std::string> placedBy(const std::vector<Edit>& edits, const Scene& scene);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <utility>
 
 #include "base/error.h"
@@ -21,29 +22,55 @@ constexpr auto kMute = std::chrono::seconds(1);
 /// Connections of a port that only have to close.
 constexpr std::size_t kMaxLeaving = 8;
 
+WireHost::Change resultOf(const std::exception_ptr& failure) {
+    try {
+        if (failure) std::rethrow_exception(failure);
+        return WireHost::Change::Done;
+    } catch (const UsageError&) {
+        return WireHost::Change::Refused;
+    } catch (const FormatError&) {
+        return WireHost::Change::Refused;
+    }
+}
+
 }  // namespace
 
 DeviceHost::Change DeviceHost::change(std::span<const std::string> assignments) {
     // Nobody shows a token here.
     if (!state_->mayChange() || !state_->limits().token.empty()) return Change::Refused;
-    const WallTime began = steady_clock::now();
-    if (state_->isMaking() || !state_->changes().mayBegin(began)) return Change::Later;
-    Change result = Change::Done;
+    const bool is_asked =
+        changing_ && std::equal(assignments.begin(), assignments.end(),
+                                changing_->assignments.begin(), changing_->assignments.end());
+    const auto asked = is_asked ? changing_ : nullptr;
+    if (asked && asked->result && asked->changes == state_->simulation().world().changes()) {
+        changing_.reset();
+        return *asked->result;
+    }
+    if (!state_->mayChangeNow(steady_clock::now())) return Change::Later;
+    std::vector<Edit> edits;
     try {
-        std::vector<Edit> edits;
         for (const std::string& assignment : assignments)
             edits.push_back(parseEdit(Edit::Kind::Set, assignment));
-        state_->editor().adopt(state_->editor().edited(edits), edits);
-        for (const std::string& assignment : assignments)
-            state_->simulation().events().add(EventKind::Change, "SET " + assignment);
     } catch (const UsageError&) {
-        result = Change::Refused;
+        return Change::Refused;
     } catch (const FormatError&) {
-        result = Change::Refused;
+        return Change::Refused;
     }
-    state_->changes().spend(began, steady_clock::now());
-    state_->sync();
-    return result;
+    const auto changing = std::make_shared<Changing>();
+    changing->assignments.assign(assignments.begin(), assignments.end());
+    changing_ = changing;
+    state_->change(state_->editor().edit(std::move(edits)),
+                   [changing, state = state_](const std::exception_ptr& failure) {
+                       changing->result = resultOf(failure);
+                       Simulation& simulation = state->simulation();
+                       changing->changes = simulation.world().changes();
+                       if (failure) return;
+                       for (const std::string& assignment : changing->assignments)
+                           simulation.events().add(EventKind::Change, "SET " + assignment);
+                   });
+    if (!changing->result) return Change::Later;
+    changing_.reset();
+    return *changing->result;
 }
 
 std::optional<std::int64_t> DeviceHost::hold(std::string_view robot) {
@@ -57,6 +84,8 @@ bool DeviceHost::holds(std::string_view robot, std::int64_t hold) {
 }
 
 void DeviceHost::release(std::string_view robot, std::int64_t hold) {
+    // Nobody asks what became of it any more.
+    changing_.reset();
     state_->sync();
     state_->release(robot, hold);
 }

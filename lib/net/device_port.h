@@ -3,8 +3,12 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <exception>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "net/acceptor.h"
@@ -27,9 +31,21 @@ class DeviceHost : public WireHost {
     [[nodiscard]] bool holds(std::string_view robot, std::int64_t hold) override;
     void release(std::string_view robot, std::int64_t hold) override;
     [[nodiscard]] std::chrono::nanoseconds clock() const override;
+    void doAside(std::function<void()> work,
+                 std::function<void(const std::exception_ptr& failure)> deliver) override {
+        state_->doAside({std::move(work), std::move(deliver)});
+    }
 
   private:
+    /// A change that was asked for.
+    struct Changing {
+        std::vector<std::string> assignments;
+        std::optional<Change> result = {};
+        std::int64_t changes = 0;  // of the world, when it was made
+    };
+
     ServerState* state_;
+    std::shared_ptr<Changing> changing_;
     WallTime began_ = std::chrono::steady_clock::now();
 };
 

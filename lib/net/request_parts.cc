@@ -30,6 +30,13 @@ Count parseCount(std::string_view text, std::string_view what) {
     return {*value, 0, ""};
 }
 
+std::string errorLine(int code, std::initializer_list<std::string_view> text) {
+    std::string line = "ERR ";
+    line.append(std::to_string(code)).append(" ");
+    for (const std::string_view piece : text) line += printable(piece);
+    return line += '\n';
+}
+
 std::string unknownThing(std::string_view kind, std::string_view id,
                          const std::vector<std::string>& known, std::string_view where) {
     constexpr std::size_t kFew = 12, kMany = 256;

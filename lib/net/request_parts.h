@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,9 @@ Count parseCount(std::string_view text, std::string_view what);
 std::string measured(double value);
 /// A heading within (-180, 180], still so when rounded.
 std::string headingText(Angle heading);
+
+/// "ERR 404 no robot `r9`\n"
+std::string errorLine(int code, std::initializer_list<std::string_view> text);
 
 /// "no robot `r9`" with what may have been meant, or what there is.
 std::string unknownThing(std::string_view kind, std::string_view id,

@@ -144,22 +144,24 @@ void Server::Data::stepped() {
 /// When a client that says nothing has something to be done for it.
 WallTime Server::Data::nextTurn() const {
     WallTime next = has_news ? next_news : WallTime::max();
+    bool may_change = false;
     for (const auto& connection : connections) {
-        if (connection->waitsToChange() && !state.isMaking())
-            next = std::min(next, state.changes().next());
+        if (connection->waitsToChange()) may_change = true;
         if (limits.watchdog.count() > 0 && connection->watched())
             next = std::min(next, connection->heard() + limits.watchdog);
     }
-    for (const DevicePort& device : devices)
-        if (device.waitsToChange() && !state.isMaking())
-            next = std::min(next, state.changes().next());
+    for (const DevicePort& device : devices) may_change = may_change || device.waitsToChange();
+    may_change = may_change || (web && web->waitsToChange());
+    if (const auto change = state.nextChange(); may_change && change)
+        next = std::min(next, *change);
     return next;
 }
 
 /// Of the world: a single step where it may have to wait for the frames of that step.
 std::chrono::nanoseconds Server::Data::turn() const {
-    const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay();
-    if (!may_hold || (serving == 0 && !web)) return kTurn;
+    const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay() ||
+                          simulation.paused();
+    if (!may_hold || (serving == 0 && !web && devices.empty())) return kTurn;
     const auto sensors = simulation.world().sensors();
     const bool has_heavy = std::any_of(sensors.begin(), sensors.end(),
                                        [](const RunSensor& sensor) { return sensor.isHeavy(); });
@@ -177,7 +179,10 @@ void Server::Data::serveClients() {
         if (has_made || connection->waiting()) connection->proceed();
     if (web && has_made) web->stepped();
     if (web) web->serve();
-    for (DevicePort& device : devices) device.serve(steady_clock::now());
+    for (DevicePort& device : devices) {
+        device.serve(steady_clock::now());
+        if (has_made) device.stepped();
+    }
     has_news = state.hasNews() || has_news;
     if (has_news && steady_clock::now() >= next_news) stepped();
     if (limits.watchdog.count() > 0) {

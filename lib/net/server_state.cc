@@ -2,6 +2,7 @@
 #include "net/server_state.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <utility>
 
@@ -129,23 +130,76 @@ ServerState::Text& ServerState::textOf(std::size_t sensor, const ReplyForm& form
 }
 
 bool ServerState::holdsWorld() const {
-    return isMaking() &&
-           (simulation_->clock().kind != Clock::Kind::Real || simulation_->isReplay());
+    const bool is_making = workshop_ && workshop_->open() > 0;
+    // Who steps a paused world means that which was changed before.
+    const bool may_wait = simulation_->clock().kind != Clock::Kind::Real ||
+                          simulation_->isReplay() || simulation_->paused();
+    return may_wait && (is_making || is_changing_);
+}
+
+void ServerState::doAside(Workshop::Job job) {
+    if (workshop_)
+        workshop_->give(std::move(job));
+    else
+        Workshop::doNow(std::move(job));
+}
+
+bool ServerState::collect() {
+    const bool has_made = workshop_ && workshop_->collect();
+    return (builders_ && builders_->collect()) || has_made;
+}
+
+void ServerState::collectAll() {
+    if (workshop_) workshop_->collectAll();
+}
+
+void ServerState::change(WorldChange change,
+                         std::function<void(const std::exception_ptr& failure)> end) {
+    is_changing_ = true;
+    const WallTime began = std::chrono::steady_clock::now();
+    auto prepare = std::exchange(change.prepare, nullptr);
+    auto adopted = [this, change = std::move(change), began,
+                    end = std::move(end)](const std::exception_ptr& failure) mutable {
+        adopt(std::move(change), failure, began, end);
+    };
+    Workshop::Job job{std::move(prepare), std::move(adopted)};
+    if (builders_)
+        builders_->give(std::move(job));
+    else
+        Workshop::doNow(std::move(job));
+}
+
+void ServerState::adopt(WorldChange change, std::exception_ptr failure, WallTime began,
+                        const std::function<void(const std::exception_ptr& failure)>& end) {
+    std::shared_ptr<const void> old;
+    try {
+        if (!failure) old = change.adopt();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    is_changing_ = false;
+    end(failure);
+    changes_.spend(began, std::chrono::steady_clock::now());
+    sync();
+    // To end a world takes long, too.
+    if (builders_)
+        builders_->give(
+            {[change = std::move(change), old = std::move(old)] {}, [](const auto&) {}});
 }
 
 std::shared_ptr<const ServerState::Asked> ServerState::ask(std::size_t sensor,
                                                            const ReplyForm& form) {
     World& world = simulation_->world();
-    const bool may_wait =
-        workshop_ && world.sensors()[sensor].isHeavy() && !simulation_->isRecorded();
+    const bool may_wait = workshop_ && world.sensors()[sensor].isHeavy();
     const std::int64_t seq = world.period(sensor);
     const bool is_taken = world.isTaken(sensor);
     const Text& text = textOf(sensor, form);
     if (!may_wait || (is_taken && text.seq == seq && text.bytes))
         return std::make_shared<const Asked>(Asked{scan(sensor, form)});
-    Making making{sensor, seq, form, std::make_shared<Asked>(), nullptr};
+    Making making{sensor, world.changes(), seq, form, std::make_shared<Asked>(), nullptr};
     for (const Making& other : makings_) {
-        if (other.sensor != sensor || other.seq != seq) continue;
+        const bool is_same = other.sensor == sensor && other.changes == making.changes;
+        if (!is_same || other.seq != seq) continue;
         if (other.form == form) return other.asked;
         making.reading = other.reading;
     }
@@ -167,7 +221,7 @@ void ServerState::make(const Making& making, std::function<SensorReading()> take
     const auto text = std::make_shared<std::string>();
     const bool takes = take != nullptr;
     workshop_->give(
-        {[making, text, take = std::move(take), &sensor = world.sensors()[making.sensor]] {
+        {[making, text, take = std::move(take), sensor = world.sensors()[making.sensor]] {
              if (take) *making.reading = take();
              *text = scanText(sensor, *making.reading, making.form);
          },
@@ -175,8 +229,9 @@ void ServerState::make(const Making& making, std::function<SensorReading()> take
              std::erase_if(makings_,
                            [&](const Making& other) { return other.asked == making.asked; });
              if (failure) std::rethrow_exception(failure);
-             if (takes) simulation_->world().put(making.sensor, *making.reading);
              making.asked->bytes = counted(std::move(*text));
+             if (making.changes != simulation_->world().changes()) return;
+             if (takes) simulation_->world().put(making.sensor, *making.reading);
              keep(textOf(making.sensor, making.form), making.seq, making.asked->bytes);
          }});
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -128,7 +129,18 @@ class ServerState {
     /// \pre mayChange()
     [[nodiscard]] WorldEditor& editor() { return *editor_; }
     [[nodiscard]] ChangeBudget& changes() { return changes_; }
-    [[nodiscard]] const ChangeBudget& changes() const { return changes_; }
+    /// False while changes leave the world time to go on, or one is under way.
+    [[nodiscard]] bool mayChangeNow(WallTime now) const {
+        return !is_changing_ && changes_.mayBegin(now);
+    }
+    /// When that will be so; nothing: when a change is over.
+    [[nodiscard]] std::optional<WallTime> nextChange() const {
+        return is_changing_ ? std::nullopt : std::optional(changes_.next());
+    }
+    /// Changes the world: at once, or if makeAside() was called with what takes long in another
+    /// thread, where nobody waits for it but pictures. `end` is then called by collect(), with what
+    /// was thrown, or null, and may throw that again. \pre mayChangeNow()
+    void change(WorldChange change, std::function<void(const std::exception_ptr& failure)> end);
     /// True if there may be news for clients since the last call: a change, a mark.
     [[nodiscard]] bool hasNews();
 
@@ -147,20 +159,24 @@ class ServerState {
     /// The same as scan(). Of a heavy sensor, it is made in another thread if makeAside() was
     /// called: as the sensor sees the world now.
     std::shared_ptr<const Asked> ask(std::size_t sensor, const ReplyForm& form);
+    /// Does something, in another thread if makeAside() was called; collect() then delivers it.
+    void doAside(Workshop::Job job);
     /// Lets another thread make what takes long. It calls `wake` when something is ready for
     /// collect().
-    void makeAside(std::function<void()> wake) { workshop_.emplace(std::move(wake)); }
-    void endAside() { workshop_.reset(); }
-    /// Something is being made, for which the world must not be changed.
-    [[nodiscard]] bool isMaking() const { return workshop_ && workshop_->open() > 0; }
-    /// The world must not go on either: it takes the same steps however long that lasts.
-    [[nodiscard]] bool holdsWorld() const;
-    /// Completes what was asked for and is ready. \returns false if nothing is
-    bool collect() { return workshop_ && workshop_->collect(); }
-    /// Waits for all that was asked for.
-    void collectAll() {
-        if (workshop_) workshop_->collectAll();
+    void makeAside(const std::function<void()>& wake) {
+        workshop_.emplace(wake);
+        builders_.emplace(wake);
     }
+    void endAside() {
+        workshop_.reset();
+        builders_.reset();
+    }
+    /// The world must not go on: it takes the same steps however long something takes.
+    [[nodiscard]] bool holdsWorld() const;
+    /// Completes what was asked for and is ready, between steps. \returns false if nothing is
+    bool collect();
+    /// Waits for all that was asked for.
+    void collectAll();
     /// Bytes of outdated scans that connections still have to send.
     [[nodiscard]] std::size_t staleBytes() const { return *alive_ - kept_; }
 
@@ -173,6 +189,7 @@ class ServerState {
     /// A text that is being made.
     struct Making {
         std::size_t sensor;
+        std::int64_t changes;  // of the world
         std::int64_t seq;
         ReplyForm form;
         std::shared_ptr<Asked> asked;
@@ -182,6 +199,8 @@ class ServerState {
     [[nodiscard]] Text& textOf(std::size_t sensor, const ReplyForm& form);
     void keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string> bytes);
     void make(const Making& making, std::function<SensorReading()> take);
+    void adopt(WorldChange change, std::exception_ptr failure, WallTime began,
+               const std::function<void(const std::exception_ptr& failure)>& end);
 
     Simulation* simulation_;
     ServerLimits limits_;
@@ -198,7 +217,9 @@ class ServerState {
     // Bytes of all texts that somebody has; it outlives them.
     std::shared_ptr<std::size_t> alive_ = std::make_shared<std::size_t>(0);
     std::vector<Making> makings_;
-    std::optional<Workshop> workshop_;  // the last: its jobs are about the others
+    bool is_changing_ = false;
+    // The last, as their jobs are about the others: of pictures, and of changes of the world.
+    std::optional<Workshop> workshop_, builders_;
 };
 
 }  // namespace ispace

@@ -169,7 +169,7 @@ void Session::stepped(bool has_room) {
 
 void Session::proceed() {
     stepped();
-    if (!change_.empty() && mayChangeNow()) carryOut(std::exchange(change_, {}));
+    changeIfPossible();
 }
 
 void Session::silent() {
@@ -182,7 +182,9 @@ void Session::silent() {
 void Session::finish() {
     sync();
     if (!running_.empty()) world().command(subject_, {Verb::Stop, 0});
-    if (!std::exchange(change_, {}).empty()) error(405, {"the run has ended"});
+    const bool is_changing = role_ == Role::World && wanted_;
+    if (is_changing) wanted_.reset();
+    if (is_changing || !std::exchange(change_, {}).empty()) error(405, {"the run has ended"});
     if (wanted_ || coming_) state_->collectAll();
     stepped();
 }
@@ -213,9 +215,7 @@ std::string Session::roleText() const {
 }
 
 void Session::error(int code, std::initializer_list<std::string_view> text) {
-    out_.append("ERR ").append(std::to_string(code)).append(" ");
-    for (const std::string_view piece : text) out_ += printable(piece);
-    out_ += '\n';
+    out_ += errorLine(code, text);
 }
 
 /// Why a verb is no request, or none now.

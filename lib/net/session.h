@@ -126,8 +126,7 @@ class Session {
     void step(Words words);
     void shutdown(Words words);
     void change(Words words);
-    [[nodiscard]] bool mayChangeNow() const;
-    void carryOut(std::string_view line);
+    void changeIfPossible();
     void events(Words words);
     void mark(Words words);
 
@@ -147,7 +146,7 @@ class Session {
     ReplyForm form_;
     bool is_stale_ = false;  // there is a newer one than that to be sent
     std::shared_ptr<const std::string> scan_;
-    // What is being made: a reading to be answered, and one of the stream.
+    // What is being made: the answer of a reading or a change, and a reading of the stream.
     std::shared_ptr<const ServerState::Asked> wanted_, coming_;
     std::shared_ptr<const StepQueue::Ticket> steps_;  // of a STEP to be answered
     std::string change_;                              // a request that has to wait its turn

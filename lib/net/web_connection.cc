@@ -64,6 +64,9 @@ class Browser final : public WebConnection, public std::enable_shared_from_this<
     void proceed() override;
     void goOn();
     [[nodiscard]] bool waiting() const override { return session_ && session_->waiting(); }
+    [[nodiscard]] bool waitsToChange() const override {
+        return session_ && session_->waitsToChange();
+    }
     [[nodiscard]] bool wantsFrame() const override { return wants_frame_ && !closed_; }
     void offerFrame() override {
         if (wants_frame_) flush();

@@ -33,6 +33,7 @@ class WebConnection {
     virtual void stepped() = 0;
     virtual void proceed() = 0;
     [[nodiscard]] virtual bool waiting() const = 0;
+    [[nodiscard]] virtual bool waitsToChange() const = 0;
     /// True if it is to get the next frame.
     [[nodiscard]] virtual bool wantsFrame() const = 0;
     /// Sends it the newest frame, if it has not got that.

@@ -62,6 +62,11 @@ void WebServer::serve() {
     alarm_.async_wait([](boost::system::error_code) {});
 }
 
+bool WebServer::waitsToChange() const {
+    return std::any_of(connections_.begin(), connections_.end(),
+                       [](const auto& connection) { return connection->waitsToChange(); });
+}
+
 void WebServer::sweep() {
     std::erase_if(connections_, [](const auto& connection) { return connection->closed(); });
 }

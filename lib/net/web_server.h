@@ -27,6 +27,8 @@ class WebServer {
     void stepped();
     /// Between steps: answers STEPs that are done, and hands out frames.
     void serve();
+    /// True if a client waits for its turn to change the world.
+    [[nodiscard]] bool waitsToChange() const;
     /// Says goodbye to all.
     void end();
     void closeAll();

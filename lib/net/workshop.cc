@@ -52,6 +52,11 @@ void Workshop::give(Job job) {
     changed_.notify_all();
 }
 
+void Workshop::doNow(Job job) {
+    const Done done = doneNow(std::move(job));
+    done.job.deliver(done.failure);
+}
+
 bool Workshop::collect() {
     std::vector<Done> done;
     {
@@ -80,6 +85,7 @@ Workshop::Done Workshop::doneNow(Job job) {
     } catch (...) {
         done.failure = std::current_exception();
     }
+    done.job.work = nullptr;
     return done;
 }
 

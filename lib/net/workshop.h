@@ -26,11 +26,14 @@ class Workshop {
     Workshop& operator=(const Workshop&) = delete;
 
     struct Job {
-        std::function<void()> work;  ///< in the thread of the workshop
+        /// In the thread of the workshop, where what it holds also ends.
+        std::function<void()> work;
         /// In that of the owner, with what `work` threw, or null. It may throw that again.
         std::function<void(const std::exception_ptr& failure)> deliver;
     };
     void give(Job job);
+    /// Does a job without a workshop, and delivers it.
+    static void doNow(Job job);
     /// Jobs that were given and not delivered.
     [[nodiscard]] std::size_t open() const { return open_; }
     /// Delivers those that are done. \returns false if there were none

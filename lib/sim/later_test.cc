@@ -79,6 +79,21 @@ TEST(Later, AChangedWorldHasWhatWasDue) {
     for (std::size_t k = 0; k < whole.sensors().size(); ++k) expectSame(parts, whole, k);
 }
 
+TEST(Later, APictureOutlivesItsWorld) {
+    const Scene room =
+        scene("ispace size=8,6\n",
+              "camera id=c1 at=-3,0,1 pixels=40,30\n"
+              "ranger id=d1 at=-3,1,1 pixels=40,30 range=0.3,9\nhuman id=h1 at=1,1\n");
+    World still(room, milliseconds(5));
+    World world(std::make_shared<const Scene>(room), milliseconds(5));
+    const auto photograph = world.takeLater(0), sense = world.takeLater(1);
+    world.restart(scene("ispace size=20,20\n", ""));
+    EXPECT_TRUE(std::get<Photo>(photograph().value).rgb ==
+                std::get<Photo>(still.take(0).value).rgb);
+    EXPECT_TRUE(std::get<DepthFrame>(sense().value).depths ==
+                std::get<DepthFrame>(still.take(1).value).depths);
+}
+
 TEST(Later, APictureShowsTheWorldAsItWasAskedOf) {
     const Scene room =
         scene("ispace size=8,6\n",

@@ -11,6 +11,7 @@
 
 #include "sense/sensors.h"
 #include "sensor/kind.h"
+#include "sim/setting.h"
 
 namespace ispace {
 
@@ -35,13 +36,6 @@ std::optional<std::uint64_t> noiseSeedOf(const SensorReader::Options& options) {
     return options.noise ? std::optional(options.seed) : std::nullopt;
 }
 
-PhotoOptions photoOptionsOf(const SensorReader::Options& options) {
-    PhotoOptions photo;
-    photo.with_noise = options.noise;
-    photo.seed = options.seed;
-    return photo;
-}
-
 }  // namespace
 
 int SensorReader::frameOf(std::int64_t number) {
@@ -49,13 +43,14 @@ int SensorReader::frameOf(std::int64_t number) {
     return static_cast<int>(std::min(number, kLast));
 }
 
-SensorReader::SensorReader(const Scene& scene, const Options& options)
-    : scene_(&scene),
+SensorReader::SensorReader(Setting& setting, const Options& options)
+    : scene_(setting.scene.get()),
       options_{.noise_seed = noiseSeedOf(options)},
       sound_{.noise_seed = noiseSeedOf(options)},
       step_(options.step),
-      floor_(scene),
-      worlds_(scene.environment) {
+      floor_(*scene_),
+      worlds_(&setting.worlds),
+      photographer_(setting.photographer.get()) {
     addSensors();
     const std::size_t count = sensors_.size();
     due_.resize(count);
@@ -64,11 +59,9 @@ SensorReader::SensorReader(const Scene& scene, const Options& options)
     casters_.resize(count);
     parts_.resize(count);
     latest_.reserve(count);
-    bool has_cameras = false;
     for (std::size_t i = 0; i < count; ++i) {
         periods_.emplace_back(sensors_[i].rate());
         is_heavy_.push_back(sensors_[i].isHeavy() ? 1 : 0);
-        has_cameras = has_cameras || sensors_[i].model<Camera>() != nullptr;
         const Sensor* const sensor = sensors_[i].sensor();
         if (sensor == nullptr) {
             readings_[i].pose = sensors_[i].floorPose();
@@ -80,15 +73,12 @@ SensorReader::SensorReader(const Scene& scene, const Options& options)
         const auto* laser = sensors_[i].model<Laser>();
         if (laser == nullptr) continue;
         durations_[i] = durationOf(*laser, step_);
-        worlds_.prepare(sensor->pose);
-        if (laser->sweep != SweepAxis::None) worlds_.prepareMesh();
-        casters_[i].emplace(worlds_, bodies_, *sensor, sensor->mount.has_value(), options_);
+        casters_[i].emplace(*worlds_, bodies_, *sensor, sensor->mount.has_value(), options_);
     }
     if (count > 0) trail_ = Trail(*std::max_element(durations_.begin(), durations_.end()));
     spin_heights_ = spinHeights();
-    if (has_cameras) photographer_ = std::make_unique<Photographer>(scene, photoOptionsOf(options));
-    for (const Placed& placed : scene.placed)
-        if (scene.records[placed.record].keyword() == "human")
+    for (const Placed& placed : scene_->placed)
+        if (scene_->records[placed.record].keyword() == "human")
             people_starts_.push_back(
                 {placed.pose.position.onFloor(), wrapped(placed.pose.heading)});
 }
@@ -224,7 +214,7 @@ void SensorReader::update(std::span<const std::size_t> due, SimTime time, const 
     updateBodies(movers);
     makeTrailBodies(due);
     if (!hears) return;
-    worlds_.prepareMesh(Surfaces::Solid);
+    worlds_->prepareMesh(Surfaces::Solid);
     std::size_t receiver = 0, tag = 0;
     for (const RunSensor& sensor : sensors_) {
         if (sensor.model<Receiver>() != nullptr)
@@ -285,7 +275,7 @@ void SensorReader::measure(const Tag& /*tag*/, std::size_t sensor, SimTime time)
     SensorReading& reading = readings_[sensor];
     Sensor tag = *sensors_[sensor].sensor();
     tag.pose = reading.pose;
-    reading.value = castBurst(worlds_.mesh(Surfaces::Solid), bodies_, tag, receivers_,
+    reading.value = castBurst(worlds_->mesh(Surfaces::Solid), bodies_, tag, receivers_,
                               frameOf(reading.seq), seconds(time), sound_);
 }
 
@@ -296,7 +286,7 @@ void SensorReader::measure(const Receiver& /*receiver*/, std::size_t sensor, Sim
     Hearings hearings;
     for (const Sensor& tag : tags_) {
         const Burst burst =
-            castBurst(worlds_.mesh(Surfaces::Solid), bodies_, tag, std::span(&receiver, 1),
+            castBurst(worlds_->mesh(Surfaces::Solid), bodies_, tag, std::span(&receiver, 1),
                       frameOf(reading.seq), seconds(time), sound_);
         hearings.tags.push_back(
             {tag.id, burst.heard.empty() ? std::nullopt : std::optional(burst.heard.front().time)});
@@ -307,9 +297,9 @@ void SensorReader::measure(const Receiver& /*receiver*/, std::size_t sensor, Sim
 Scan SensorReader::look(const Sensor& laser, const Movers& movers) {
     Scan scan;
     scan.pose = poseOf(laser, movers);
-    worlds_.prepare(scan.pose);
+    worlds_->prepare(scan.pose);
     updateBodies(movers);
-    LaserCaster(worlds_, bodies_, laser, true, ReadingOptions()).cast(scan);
+    LaserCaster(*worlds_, bodies_, laser, true, ReadingOptions()).cast(scan);
     return scan;
 }
 
@@ -319,8 +309,8 @@ const MovingBodies& SensorReader::bodies(const Movers& movers) {
 }
 
 const RayWorld& SensorReader::mesh(Surfaces surfaces) {
-    worlds_.prepareMesh(surfaces);
-    return worlds_.mesh(surfaces);
+    worlds_->prepareMesh(surfaces);
+    return worlds_->mesh(surfaces);
 }
 
 }  // namespace ispace

@@ -26,6 +26,8 @@
 
 namespace ispace {
 
+struct Setting;
+
 /// Reads the sensors of a world when they are due: in the first step at or after the beginning of
 /// a period, all at the moment of that step. The beams of a laser that spins follow one another
 /// from that moment on: each is of its own time, and the scan is read with the last one. Its first
@@ -37,9 +39,8 @@ class SensorReader {
         bool noise = false;
         SimTime step = SimTime(1);  ///< of the world
     };
-    /// The scene must outlive it. \throws FormatError for a texture that cannot be read, if there
-    /// are cameras
-    SensorReader(const Scene& scene, const Options& options);
+    /// The setting must outlive it, and be that of no other.
+    SensorReader(Setting& setting, const Options& options);
 
     /// After each step: follows those who move, and reads what is due, in parallel. Heavy
     /// sensors are left out.
@@ -155,7 +156,7 @@ class SensorReader {
     SimTime step_;
     FloorSensors floor_;
     std::vector<RunSensor> sensors_;  // as they start
-    Worlds worlds_;
+    Worlds* worlds_;
     std::vector<Periods> periods_;
     std::vector<SimTime> due_;
     std::vector<SimTime> durations_;  // of scans, in whole steps
@@ -172,7 +173,7 @@ class SensorReader {
     // Those that hear, and those that are heard, where they are; made when one of them is read.
     std::vector<Sensor> receivers_, tags_;
     std::vector<Pose2> people_starts_;
-    std::unique_ptr<Photographer> photographer_;       // if there are cameras
+    Photographer* photographer_;                       // if there are cameras
     std::mutex photographing_;                         // of it
     std::shared_ptr<const Stage> photographed_;        // as it was moved last
     std::shared_ptr<const Stage> stage_;               // as all are, if it was asked for

@@ -60,7 +60,7 @@ void SensorReader::photograph(const Sensor& camera, const std::shared_ptr<const 
 void SensorReader::senseDepth(const Sensor& ranger, const MovingBodies& bodies,
                               SensorReading& reading) const {
     DepthFrame frame =
-        castDepth(worlds_.mesh(), bodies, ranger, reading.pose, frameOf(reading.seq), options_);
+        castDepth(worlds_->mesh(), bodies, ranger, reading.pose, frameOf(reading.seq), options_);
     frame.time = seconds(reading.time);
     reading.value = std::move(frame);
 }
@@ -72,7 +72,7 @@ void SensorReader::take(std::size_t sensor, SimTime time, const Movers& movers) 
     if (taken.is<Camera>()) {
         photograph(taken, stage(movers), reading);
     } else {
-        worlds_.prepareMesh();
+        worlds_->prepareMesh();
         updateBodies(movers);
         senseDepth(taken, bodies_, reading);
     }
@@ -91,7 +91,7 @@ std::function<SensorReading()> SensorReader::takeLater(std::size_t sensor, SimTi
             photograph(taken, stage, reading);
             return reading;
         };
-    worlds_.prepareMesh();
+    worlds_->prepareMesh();
     updateBodies(movers);
     if (!kept_bodies_) kept_bodies_ = std::make_shared<const MovingBodies>(bodies_);
     return [this, &taken, begun, bodies = kept_bodies_] {

@@ -23,7 +23,8 @@ constexpr std::size_t kMaxEnds = 4096;
 }  // namespace
 
 World::World(std::shared_ptr<const Scene> scene, SimTime step, const RunOptions& options)
-    : data_(std::make_unique<Data>(std::move(scene), step, options)) {
+    : data_(std::make_shared<Data>(
+          std::make_shared<Setting>(std::move(scene), options, Worlds::Meshes()), step, options)) {
     assert(kShortestStep <= step && step <= kLongestStep);
     data_->sensors.read(data_->time, data_->where());
 }
@@ -38,6 +39,7 @@ World& World::operator=(World&&) noexcept = default;
 SimTime World::time() const { return data_->time; }
 const RunOptions& World::options() const { return data_->options; }
 const Scene& World::scene() const { return *data_->scene; }
+std::shared_ptr<const Scene> World::sharedScene() const { return data_->scene; }
 std::int64_t World::changes() const { return data_->changes; }
 SimTime World::stepLength() const { return data_->step_length; }
 std::int64_t World::steps() const { return data_->steps; }
@@ -108,7 +110,9 @@ bool World::isTaken(std::size_t sensor) const {
 }
 
 std::function<SensorReading()> World::takeLater(std::size_t sensor) {
-    return data_->sensors.takeLater(sensor, data_->time, data_->where());
+    return [data = data_, take = data_->sensors.takeLater(sensor, data_->time, data_->where())] {
+        return take();
+    };
 }
 
 void World::put(std::size_t sensor, SensorReading reading) {
@@ -232,18 +236,33 @@ void World::steer(std::size_t robot, const WheelOrder& order) {
 
 Scan World::look(const Sensor& laser) { return data_->sensors.look(laser, data_->where()); }
 
-void World::change(Scene scene, std::span<const std::string> placed) {
-    data_->sensors.finish();
-    auto stayers = stayersOf(*data_->scene, scene);
-    for (const std::string& id : placed) stayers.erase(id);
-    keepInPlace(scene, stayers, data_->places());
-    data_ = data_->next(std::move(scene), stayers);
+std::function<NextScene(Scene scene)> World::preparer() const {
+    return [options = data_->options, meshes = data_->setting->worlds.meshes()](Scene scene) {
+        NextScene next{std::make_shared<Scene>(std::move(scene)), nullptr};
+        next.setting = std::make_shared<Setting>(next.scene, options, meshes);
+        return next;
+    };
 }
 
-void World::restart(Scene scene) {
+std::shared_ptr<const void> World::change(const NextScene& next,
+                                          std::span<const std::string> placed) {
     data_->sensors.finish();
-    data_ = data_->next(std::move(scene), {});
+    auto stayers = stayersOf(*data_->scene, *next.scene);
+    for (const std::string& id : placed) stayers.erase(id);
+    keepInPlace(*next.scene, stayers, data_->places());
+    return std::exchange(data_, data_->next(next.setting, stayers));
 }
+
+std::shared_ptr<const void> World::restart(const NextScene& next) {
+    data_->sensors.finish();
+    return std::exchange(data_, data_->next(next.setting, {}));
+}
+
+void World::change(Scene scene, std::span<const std::string> placed) {
+    change(preparer()(std::move(scene)), placed);
+}
+
+void World::restart(Scene scene) { restart(preparer()(std::move(scene))); }
 
 void World::stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions,
                    std::span<const std::optional<Pose2>> odometries) {
@@ -266,7 +285,9 @@ void World::passTo(std::span<const RobotStatus> states) {
 
 void World::rewind() {
     const std::int64_t changes = data_->changes + 1;
-    data_ = std::make_unique<Data>(data_->start, data_->step_length, data_->options);
+    const auto room =
+        std::make_shared<Setting>(data_->start, data_->options, data_->setting->worlds.meshes());
+    data_ = std::make_shared<Data>(room, data_->step_length, data_->options);
     data_->changes = changes;
     data_->sensors.read(data_->time, data_->where());
 }

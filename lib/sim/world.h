@@ -58,6 +58,14 @@ struct Collision {
 };
 
 struct WheelOrder;
+struct Setting;
+
+/// A scene that is ready for a world to go on in, once. See World::preparer().
+struct NextScene {
+    /// Until then it may be replaced by one whose environment and models are the same.
+    std::shared_ptr<Scene> scene;
+    std::shared_ptr<Setting> setting;  ///< of that scene, private to lib/sim
+};
 
 /// What a run is besides its scene.
 struct RunOptions {
@@ -105,6 +113,7 @@ class World {
     [[nodiscard]] const RunOptions& options() const;
     /// What is in it, as of the last change. Views of its ids last until the next one.
     [[nodiscard]] const Scene& scene() const;
+    [[nodiscard]] std::shared_ptr<const Scene> sharedScene() const;
     /// Robots and people, then robots or people alone, in the order of the scene.
     [[nodiscard]] std::span<const Mover> movers() const;
     [[nodiscard]] std::span<const PlacedRobot> robots() const;
@@ -139,8 +148,8 @@ class World {
     /// True unless take() had to read it now.
     [[nodiscard]] bool isTaken(std::size_t sensor) const;
     /// take() in two parts, for those who have somebody else to serve meanwhile: the function that
-    /// this returns reads the sensor as it is now, in any thread and while the world goes on, but
-    /// not while or after it is changed. Then put() makes that its reading.
+    /// this returns reads the sensor as it is now, in any thread, and while the world goes on or is
+    /// changed. Then put() makes that its reading, unless the world was changed.
     /// \pre it is heavy
     std::function<SensorReading()> takeLater(std::size_t sensor);
     void put(std::size_t sensor, SensorReading reading);
@@ -197,6 +206,13 @@ class World {
     /// The same, but everything starts anew where the scene has it; running commands are Stopped.
     /// A robot's ids of commands go on all the same.
     void restart(Scene scene);
+    /// Both in two parts, for those who have somebody else to serve meanwhile: the function that
+    /// this returns does what takes long, in any thread and while the world goes on.
+    [[nodiscard]] std::function<NextScene(Scene scene)> preparer() const;
+    /// \returns what the world was, to be ended by somebody with time for it
+    std::shared_ptr<const void> change(const NextScene& next,
+                                       std::span<const std::string> placed = {});
+    std::shared_ptr<const void> restart(const NextScene& next);
     /// Changes and restarts so far.
     [[nodiscard]] std::int64_t changes() const;
 
@@ -214,7 +230,7 @@ class World {
 
   private:
     struct Data;
-    std::unique_ptr<Data> data_;
+    std::shared_ptr<Data> data_;  // also of pictures that are being taken
 };
 
 }  // namespace ispace

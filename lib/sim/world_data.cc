@@ -19,15 +19,14 @@ std::map<std::string_view, std::size_t> indexById(const auto& things) {
 
 }  // namespace
 
-World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOptions& run)
-    : scene(room),
-      start(std::move(room)),
+World::Data::Data(std::shared_ptr<Setting> room, SimTime length, const RunOptions& run)
+    : setting(std::move(room)),
+      scene(setting->scene),
+      start(scene),
       options(run),
       step_length(length),
       movers(moversOf(*scene)),
       mover_index(indexById(movers)),
-      obstacles(obstaclesOf(scene->environment, movers)),
-      friction(scene->environment),
       order(settlingOrder(movers)),
       motions(movers.size()),
       next_motions(movers.size()),
@@ -37,15 +36,15 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOp
       pilots(movers.size()),
       moves(movers.size()),
       traffic(movers, order, seconds(length)),
-      sensors(*scene, {run.seed, run.sensor_noise, length}),
+      sensors(*setting, {run.seed, run.sensor_noise, length}),
       sensor_index(indexById(sensors.sensors())) {
-    checkStart(scene->environment, movers, obstacles);
-    if (options.noise) kept_starts = strayStarts(movers, obstacles, options.seed);
+    checkStart(scene->environment, movers, setting->obstacles);
+    if (options.noise) kept_starts = strayStarts(movers, setting->obstacles, options.seed);
     odometers.reserve(scene->robots.size());
     for (std::size_t i = 0; i < motions.size(); ++i) {
         const auto& [id, model, pose, course, place, is_person] = movers[i];
         motions[i].pose = {pose.position, wrapped(pose.heading)};
-        states[i].obstacles = &obstacles.at(model.height);
+        states[i].obstacles = &setting->obstacles.at(model.height);
         states[i].limits = limitsOf(model, 0);
         if (!is_person) odometers.emplace_back(movers[i], options.seed, options.noise);
         pilots[i] = Pilot(movers[i], options.seed);
@@ -107,10 +106,9 @@ std::unordered_map<std::string_view, Pose2> World::Data::places() const {
     return places;
 }
 
-std::unique_ptr<World::Data> World::Data::next(
-    Scene next_scene, const std::unordered_set<std::string_view>& stayers) const {
-    auto after = std::make_unique<Data>(std::make_shared<const Scene>(std::move(next_scene)),
-                                        step_length, options);
+std::shared_ptr<World::Data> World::Data::next(
+    std::shared_ptr<Setting> room, const std::unordered_set<std::string_view>& stayers) const {
+    auto after = std::make_shared<Data>(std::move(room), step_length, options);
     after->start = start;
     after->time = time;
     after->steps = steps;
@@ -139,7 +137,7 @@ std::unique_ptr<World::Data> World::Data::next(
         }
     }
     after->sensors.follow(sensors, stayers, after->where());
-    after->sensors.read(time, after->where());
+    after->sensors.begin(time, after->where());
     return after;
 }
 

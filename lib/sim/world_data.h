@@ -16,6 +16,7 @@
 #include "sim/people.h"
 #include "sim/pilot.h"
 #include "sim/sensors.h"
+#include "sim/setting.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -40,7 +41,7 @@ struct MoverState {
 };
 
 struct World::Data {
-    Data(std::shared_ptr<const Scene> room, SimTime step_length, const RunOptions& run);
+    Data(std::shared_ptr<Setting> room, SimTime step_length, const RunOptions& run);
 
     [[nodiscard]] std::optional<std::size_t> moverNamed(std::string_view id) const {
         const auto found = mover_index.find(id);
@@ -93,10 +94,11 @@ struct World::Data {
     [[nodiscard]] std::unordered_map<std::string_view, Pose2> places() const;
     /// Another scene, with what goes on: of those who stay their motion, of the others what their
     /// clients know them by.
-    [[nodiscard]] std::unique_ptr<Data> next(
-        Scene scene, const std::unordered_set<std::string_view>& stayers) const;
+    [[nodiscard]] std::shared_ptr<Data> next(
+        std::shared_ptr<Setting> room, const std::unordered_set<std::string_view>& stayers) const;
 
-    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<Setting> setting;
+    std::shared_ptr<const Scene> scene;  // of it
     std::shared_ptr<const Scene> start;  // of the run
     RunOptions options;
     SimTime step_length, time{};
@@ -104,8 +106,6 @@ struct World::Data {
 
     std::vector<Mover> movers;
     std::map<std::string_view, std::size_t> mover_index;
-    ObstacleSets obstacles;
-    FrictionMap friction;
     std::vector<std::size_t> order;  // in which moves are settled
     std::vector<Motion> motions;
     std::vector<Motion> next_motions;  // after the step

@@ -10,8 +10,110 @@
 
 namespace ispace {
 
+namespace {
+
+using Preparer = std::function<NextScene(Scene scene)>;
+
+/// Where robots and people are.
+std::optional<Pose2> placeIn(const World& world, const std::string& id) {
+    const auto mover = world.moverNamed(id);
+    return mover ? std::optional(world.status(*mover).pose) : std::nullopt;
+}
+
+/// Edits of a scene, and what becomes of it.
+class Editing {
+  public:
+    Editing(World& world, std::shared_ptr<const SceneSource> source, std::vector<Edit> edits)
+        : world_(&world),
+          source_(std::move(source)),
+          edits_(std::move(edits)),
+          before_(world.sharedScene()),
+          prepare_(world.preparer()),
+          placed_(placedBy(edits_, *before_)) {
+        for (const std::string& id : placed_)
+            if (const auto place = placeIn(world, id)) places_.emplace(id, *place);
+    }
+
+    void prepare() {
+        Scene scene = makeScene(goodRecords(), *before_, source_->devices());
+        // Whoever is put somewhere is looked for in the room.
+        const bool places = std::any_of(edits_.begin(), edits_.end(), [](const Edit& edit) {
+            return edit.kind != Edit::Kind::Delete;
+        });
+        if (places) static_cast<void>(scene.environment.indoorIndex());
+        next_ = prepare_(std::move(scene));
+    }
+
+    std::shared_ptr<const void> adopt() {
+        follow();
+        return world_->change(next_, placed_);
+    }
+
+  private:
+    [[nodiscard]] std::vector<Record> records() const;
+    [[nodiscard]] std::vector<Record> goodRecords() const;
+    void follow();
+
+    World* world_;
+    std::shared_ptr<const SceneSource> source_;
+    std::vector<Edit> edits_;
+    std::shared_ptr<const Scene> before_;
+    Preparer prepare_;
+    std::vector<std::string> placed_;
+    std::unordered_map<std::string, Pose2> places_;  // of robots and people among them
+    NextScene next_;
+};
+
+std::vector<Record> Editing::records() const {
+    std::unordered_map<std::string, Record> with_files;
+    for (std::size_t i = 0; i < before_->records.size(); ++i)
+        if (fileKeyOf(before_->records[i]) != nullptr)
+            with_files.emplace(before_->ids[i], before_->records[i]);
+    std::vector<Record> records = editedRecords(*before_, edits_, [this](const std::string& id) {
+        const auto place = places_.find(id);
+        return place == places_.end() ? std::nullopt : std::optional(place->second);
+    });
+    constexpr std::size_t kMost = WorldEditor::kMaxRecords;
+    if (records.size() > kMost)
+        throw FormatError(
+            Diagnostic{"", 0, 0, "a world has at most " + std::to_string(kMost) + " records"});
+    const std::vector<std::string> ids = assignIds(records);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (fileKeyOf(records[i]) == nullptr) continue;
+        const auto before = with_files.find(ids[i]);
+        if (before == with_files.end() || !(before->second == records[i]))
+            source_->loadFilesOf(records[i]);
+    }
+    return records;
+}
+
+std::vector<Record> Editing::goodRecords() const {
+    try {
+        return records();
+    } catch (const FormatError& error) {
+        throw BadEdit(error);
+    }
+}
+
+/// Those who are put somewhere may have moved meanwhile.
+void Editing::follow() {
+    const bool moved = std::any_of(places_.begin(), places_.end(), [this](const auto& place) {
+        return placeIn(*world_, place.first) != place.second;
+    });
+    if (!moved) return;
+    Scene& scene = *next_.scene;
+    std::vector<Record> records = scene.records;
+    placeAgain(records, scene.ids, edits_,
+               [this](const std::string& id) { return placeIn(*world_, id); });
+    scene = makeScene(std::move(records), scene, source_->devices());
+}
+
+}  // namespace
+
 WorldEditor::WorldEditor(Simulation& simulation, std::shared_ptr<const SceneSource> source)
-    : simulation_(&simulation), source_(std::move(source)), start_(simulation.world().scene()) {}
+    : simulation_(&simulation),
+      source_(std::move(source)),
+      start_(simulation.world().sharedScene()) {}
 
 bool WorldEditor::finds(const Edit& edit) const {
     const auto& ids = simulation_->world().scene().ids;
@@ -26,42 +128,32 @@ std::vector<std::string> WorldEditor::moversOf(const Edit& edit) const {
     return ids;
 }
 
-std::vector<Record> WorldEditor::edited(const std::vector<Edit>& edits) const {
-    const World& world = simulation_->world();
-    const Scene& scene = world.scene();
-    std::unordered_map<std::string, Record> with_files;
-    for (std::size_t i = 0; i < scene.records.size(); ++i)
-        if (fileKeyOf(scene.records[i]) != nullptr)
-            with_files.emplace(scene.ids[i], scene.records[i]);
-    std::vector<Record> records = editedRecords(scene, edits, [&world](const std::string& id) {
-        const auto mover = world.moverNamed(id);
-        return mover ? std::optional(world.status(*mover).pose) : std::nullopt;
-    });
-    if (records.size() > kMaxRecords)
-        throw FormatError(Diagnostic{
-            "", 0, 0, "a world has at most " + std::to_string(kMaxRecords) + " records"});
-    const std::vector<std::string> ids = assignIds(records);
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        if (fileKeyOf(records[i]) == nullptr) continue;
-        const auto before = with_files.find(ids[i]);
-        if (before == with_files.end() || !(before->second == records[i]))
-            source_->loadFilesOf(records[i]);
-    }
-    return records;
+WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
+    const auto editing = std::make_shared<Editing>(simulation_->world(), source_, std::move(edits));
+    return {[editing] { editing->prepare(); }, [editing] { return editing->adopt(); }};
 }
 
-void WorldEditor::adopt(std::vector<Record> records, const std::vector<Edit>& edits) {
-    World& world = simulation_->world();
-    const std::vector<std::string> placed = placedBy(edits, world.scene());
-    world.change(makeScene(std::move(records), world.scene(), source_->devices()), placed);
+WorldChange WorldEditor::load(std::string environment, std::string layout) {
+    const auto next = std::make_shared<NextScene>();
+    return {[next, source = source_, prepare = simulation_->world().preparer(),
+             environment = std::move(environment), layout = std::move(layout)] {
+                Scene scene = source->load(environment, layout);
+                static_cast<void>(scene.environment.indoorIndex());
+                *next = prepare(std::move(scene));
+            },
+            [this, next] {
+                auto old = simulation_->world().restart(*next);
+                start_ = next->scene;
+                return old;
+            }};
 }
 
-void WorldEditor::load(const std::string& environment, const std::string& layout) {
-    Scene scene = source_->load(environment, layout);
-    simulation_->world().restart(scene);
-    start_ = std::move(scene);
+WorldChange WorldEditor::reset() const {
+    const auto next = std::make_shared<NextScene>();
+    return {[next, start = start_, prepare = simulation_->world().preparer()] {
+                *next = prepare(Scene(*start));
+            },
+            [this, next] { return simulation_->world().restart(*next); }};
 }
-
-void WorldEditor::reset() { simulation_->world().restart(start_); }
 
 }  // namespace ispace

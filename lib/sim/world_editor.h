@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
 #include "layout/scene.h"
 #include "record/edit.h"
 #include "sim/simulation.h"
@@ -25,7 +27,29 @@ class SceneSource {
     virtual void loadFilesOf(Record& record) const = 0;
 };
 
-/// Changes a world by its records while it runs. What fails leaves the world as it was.
+/// An edit that cannot be made, whatever is in the world.
+class BadEdit : public FormatError {
+  public:
+    explicit BadEdit(const FormatError& error) : FormatError(error) {}
+};
+
+/// A change of a world in two parts, for those who have somebody else to serve meanwhile. What
+/// fails leaves the world as it was.
+struct WorldChange {
+    /// What takes long: in any thread and while the world goes on, but is changed by nobody else.
+    /// \throws BadEdit, FormatError, UsageError, std::system_error
+    std::function<void()> prepare;
+    /// The world goes on with it, between steps. \returns what it was, see World::change
+    /// \throws FormatError
+    std::function<std::shared_ptr<const void>()> adopt;
+
+    void carryOut() const {
+        prepare();
+        adopt();
+    }
+};
+
+/// Changes a world by its records while it runs.
 class WorldEditor {
   public:
     /// Scenes of so many records at most are made.
@@ -37,21 +61,18 @@ class WorldEditor {
     [[nodiscard]] bool finds(const Edit& edit) const;
     /// The robots and people that an edit other than Add is about.
     [[nodiscard]] std::vector<std::string> moversOf(const Edit& edit) const;
-    /// The records after these edits. Robots and people whose place or heading is set are where
-    /// they are now but for that. \throws FormatError, std::system_error
-    [[nodiscard]] std::vector<Record> edited(const std::vector<Edit>& edits) const;
-    /// The world goes on with them, see World::change. \param edits those that made the records
-    /// \throws FormatError
-    void adopt(std::vector<Record> records, const std::vector<Edit>& edits);
-    /// Starts anew in another scene, see World::restart. \throws as SceneSource::load
-    void load(const std::string& environment, const std::string& layout);
-    /// Starts anew in the scene of the beginning, or loaded last. \throws FormatError
-    void reset();
+    /// The world goes on with its records after these edits, see World::change. Robots and people
+    /// whose place or heading is set are where they are then but for that.
+    [[nodiscard]] WorldChange edit(std::vector<Edit> edits) const;
+    /// It starts anew in another scene, see World::restart.
+    [[nodiscard]] WorldChange load(std::string environment, std::string layout);
+    /// It starts anew in the scene of the beginning, or loaded last.
+    [[nodiscard]] WorldChange reset() const;
 
   private:
     Simulation* simulation_;
     std::shared_ptr<const SceneSource> source_;
-    Scene start_;
+    std::shared_ptr<const Scene> start_;
 };
 
 }  // namespace ispace

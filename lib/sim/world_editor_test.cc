@@ -26,7 +26,7 @@ struct Edited {
                                                         {"bad.3dm", "robot id=r1 at=10,0\n"}})) {}
     void edit(Edit::Kind kind, const std::string& text) {
         const std::vector<Edit> edits = {parseEdit(kind, text)};
-        editor.adopt(editor.edited(edits), edits);
+        editor.edit(edits).carryOut();
     }
     void run(int steps) {
         for (int i = 0; i < steps; ++i) world.step();
@@ -78,13 +78,52 @@ TEST(WorldEditor, SetsAPlaceOfARobotOnTheWay) {
     EXPECT_NEAR(it.world.status(1).pose.position.y, 1, 1e-9);
 }
 
+TEST(WorldEditor, TheWorldGoesOnWhileAChangeIsPrepared) {
+    for (const std::string request : {"r1.heading=30", "r1.at=1,-1", "r2.max_speed=0.4"}) {
+        Edited early, late;
+        for (Edited* it : {&early, &late}) {
+            it->world.command(0, {Verb::Forward, 1});
+            it->world.command(1, {Verb::Backward, 1});
+            it->run(5);
+        }
+        const std::vector<Edit> edits = {parseEdit(Edit::Kind::Set, request)};
+        const WorldChange change = early.editor.edit(edits);
+        change.prepare();
+        for (Edited* it : {&early, &late}) it->run(5);
+        change.adopt();
+        late.editor.edit(edits).carryOut();
+        // It is as if all of it had been done at once.
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_EQ(early.world.status(i).pose, late.world.status(i).pose) << request << i;
+            EXPECT_EQ(early.world.status(i).speed, late.world.status(i).speed) << request << i;
+        }
+        EXPECT_EQ(early.world.scene().records, late.world.scene().records) << request;
+        EXPECT_EQ(early.world.reading(0).scan().ranges, late.world.reading(0).scan().ranges);
+        for (Edited* it : {&early, &late}) it->run(20);
+        EXPECT_EQ(early.world.status(0).pose, late.world.status(0).pose) << request;
+        EXPECT_EQ(early.world.reading(0).scan().ranges, late.world.reading(0).scan().ranges);
+    }
+}
+
+TEST(WorldEditor, SomebodyMayHaveComeMeanwhile) {
+    Edited it;
+    const WorldChange change =
+        it.editor.edit({parseEdit(Edit::Kind::Add, "cube id=c at=1,0 size=0.3")});
+    change.prepare();
+    it.world.command(0, {Verb::Forward, 1});
+    it.run(60);
+    EXPECT_NE(findings([&] { change.adopt(); }).find("robot r1 stands in c"), std::string::npos);
+    EXPECT_EQ(it.world.changes(), 0);
+    EXPECT_NEAR(it.world.status(0).pose.position.x, 1, 1e-9);
+}
+
 TEST(WorldEditor, DeletesWhatNothingNeeds) {
     Edited it;
     EXPECT_EQ(findings([&] { it.edit(Edit::Kind::Delete, "r1"); }),
               "error: --delete r1: `l1` has `on=r1`; delete it, too, or set that anew\n");
     const std::vector<Edit> edits = {parseEdit(Edit::Kind::Delete, "l1"),
                                      parseEdit(Edit::Kind::Delete, "r1")};
-    it.editor.adopt(it.editor.edited(edits), edits);
+    it.editor.edit(edits).carryOut();
     ASSERT_EQ(it.world.robots().size(), 1U);
     EXPECT_TRUE(it.world.sensors().empty());
     EXPECT_FALSE(it.editor.finds(edits[0]));
@@ -97,7 +136,7 @@ TEST(WorldEditor, ResetsToTheBeginning) {
     it.run(20);
     it.edit(Edit::Kind::Add, "robot at=-2,-2");
     it.edit(Edit::Kind::Set, "r1.at=1,1");
-    it.editor.reset();
+    it.editor.reset().carryOut();
     ASSERT_EQ(it.world.robots().size(), 2U);
     EXPECT_EQ(it.world.status(0).pose.position, (Point2{0, 0}));
     EXPECT_EQ(it.world.time(), milliseconds(2000));
@@ -106,15 +145,15 @@ TEST(WorldEditor, ResetsToTheBeginning) {
 TEST(WorldEditor, LoadsAnotherScene) {
     Edited it;
     it.run(5);
-    EXPECT_NE(findings([&] { it.editor.load("missing.env", ""); }), "");
-    EXPECT_NE(findings([&] { it.editor.load("hall.env", "bad.3dm"); }), "");
+    EXPECT_NE(findings([&] { it.editor.load("missing.env", "").carryOut(); }), "");
+    EXPECT_NE(findings([&] { it.editor.load("hall.env", "bad.3dm").carryOut(); }), "");
     EXPECT_EQ(it.world.changes(), 0);
-    it.editor.load("hall.env", "hall.3dm");
+    it.editor.load("hall.env", "hall.3dm").carryOut();
     ASSERT_EQ(it.world.robots().size(), 1U);
     EXPECT_EQ(it.world.status(0).pose.position, (Point2{9, 9}));
     EXPECT_EQ(it.world.time(), milliseconds(500));
     it.edit(Edit::Kind::Set, "r1.at=1,1");
-    it.editor.reset();
+    it.editor.reset().carryOut();
     EXPECT_EQ(it.world.status(0).pose.position, (Point2{9, 9}));
 }
 

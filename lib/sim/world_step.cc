@@ -70,6 +70,7 @@ void World::Data::propose(std::size_t mover, const Surroundings& around) {
 
 void World::Data::setLimits(std::size_t mover) {
     MotionLimits& limits = states[mover].limits;
+    const FrictionMap& friction = setting->friction;
     const double rough = friction.at(motions[mover].pose.position);
     if (!friction.empty()) limits = limitsOf(movers[mover].model, rough);
     if (const auto& own = states[mover].own_limits) {

@@ -21,6 +21,11 @@ class Worlds {
     /// the order of prepare(), are traced in the mesh.
     static constexpr std::size_t kMaxSlices = 64;
 
+    /// Which meshes there are.
+    struct Meshes {
+        bool opaque = false, solid = false;
+    };
+
     explicit Worlds(const Environment& environment);
     void prepare(const Pose3& pose);
     /// For sensors that look in all directions: what stops light, or (Solid) sound.
@@ -32,6 +37,8 @@ class Worlds {
     /// The mesh as light meets it, or (Solid) sound, which clear glass stops.
     /// \pre it was prepared, see at()
     [[nodiscard]] const RayWorld& mesh(Surfaces surfaces = Surfaces::Opaque) const;
+    /// Those prepared so far, as the thread that prepares knows it.
+    [[nodiscard]] Meshes meshes() const { return {mesh_.has_value(), solid_.has_value()}; }
 
   private:
     /// True where these surfaces stop more than opaque ones do.

@@ -183,15 +183,21 @@ void MjpegSession::show() {
     const auto sensor = world.sensorNamed(id_);
     if (!sensor || !world.sensors()[*sensor].isHeavy()) return close();
     const bool streams = request_->kind == PictureRequest::Kind::Stream;
-    std::shared_ptr<const PictureFile> file;
+    // A world that waits for its clients loses no time.
+    if (!coming_)
+        coming_ = host_->pictures().newest(world, *sensor, std::chrono::steady_clock::now(),
+                                           host_->isPaused(), [this](auto work, auto deliver) {
+                                               host_->doAside(std::move(work), std::move(deliver));
+                                           });
+    if (!coming_ || !(coming_->file || coming_->failure)) return;
+    const auto asked = std::exchange(coming_, nullptr);
     try {
-        // A world that waits for its clients loses no time.
-        file = host_->pictures().newest(world, *sensor, std::chrono::steady_clock::now(),
-                                        host_->isPaused());
+        if (asked->failure) std::rethrow_exception(asked->failure);
     } catch (const FormatError& missing) {
         return streams ? close() : refuse(kNoEncoder, missing.what());
     }
-    if (!file || file == sent_) return;
+    const auto file = asked->file;
+    if (file == sent_) return;
     sent_ = file;
     if (streams) {
         send("--" + std::string(kBoundary) + "\r\nContent-Type: " + std::string(file->type) +

@@ -46,7 +46,8 @@ class MjpegSession : public WireSession {
     std::string id_;
     std::string head_;
     std::optional<PictureRequest> request_;
-    std::shared_ptr<const PictureFile> sent_;  // the newest picture
+    std::shared_ptr<const PictureFiles::Asked> coming_;  // a picture that is being made
+    std::shared_ptr<const PictureFile> sent_;            // the newest one
 };
 
 /// The row of `--mjpeg`.

@@ -208,19 +208,60 @@ TEST(PictureFiles, AreTakenOnceForAllAndHalfOfTheTime) {
     World& world = host.world();
     const std::size_t depth = *world.sensorNamed("d1"), camera = *world.sensorNamed("c1");
     PictureFiles files;
-    PictureFiles::WallTime now{};
-    const auto first = files.newest(world, depth, now, false);
-    ASSERT_TRUE(first);
-    EXPECT_EQ(files.newest(world, depth, now, false), first);
-    EXPECT_EQ(files.newest(world, camera, now, false), nullptr) << "it has to wait";
-    EXPECT_TRUE(files.newest(world, camera, now, true));
+    auto now = std::chrono::steady_clock::now();
+    const auto newest = [&](std::size_t sensor, bool at_once) {
+        return files.newest(world, sensor, now, at_once, [&](auto work, auto deliver) {
+            host.doAside(std::move(work), std::move(deliver));
+        });
+    };
+    const auto first = newest(depth, false);
+    ASSERT_TRUE(first && first->file);
+    EXPECT_EQ(newest(depth, false), first);
+    EXPECT_EQ(newest(camera, false), nullptr) << "it has to wait";
+    EXPECT_TRUE(newest(camera, true)->file);
     for (int i = 0; i < 10; ++i) world.step();
-    EXPECT_EQ(files.newest(world, depth, now, false), nullptr);
+    EXPECT_EQ(newest(depth, false), nullptr);
     now += std::chrono::hours(1);  // far more than twice what a picture takes anywhere
-    const auto second = files.newest(world, depth, now, false);
-    ASSERT_TRUE(second);
-    EXPECT_EQ(second->seq, 1);
-    EXPECT_EQ(second->time, std::chrono::milliseconds(100));
+    const auto second = newest(depth, false);
+    ASSERT_TRUE(second && second->file);
+    EXPECT_EQ(second->file->seq, 1);
+    EXPECT_EQ(second->file->time, std::chrono::milliseconds(100));
+}
+
+TEST(PictureFiles, OneIsMadeForAllWhoAskMeanwhile) {
+    TestHost host(kEyes);
+    World& world = host.world();
+    const std::size_t depth = *world.sensorNamed("d1");
+    PictureFiles files;
+    std::vector<std::function<void()>> jobs;
+    const auto newest = [&] {
+        return files.newest(world, depth, std::chrono::steady_clock::now(), true,
+                            [&jobs](auto work, auto deliver) {
+                                jobs.emplace_back([work, deliver] {
+                                    work();
+                                    deliver(nullptr);
+                                });
+                            });
+    };
+    const auto first = newest();
+    ASSERT_TRUE(first);
+    EXPECT_FALSE(first->file);
+    // The world goes on, and others want the next picture.
+    for (int i = 0; i < 10; ++i) world.step();
+    EXPECT_EQ(newest(), first);
+    ASSERT_EQ(jobs.size(), 1U);
+    jobs[0]();
+    ASSERT_TRUE(first->file);
+    EXPECT_EQ(first->file->time, std::chrono::milliseconds(0));
+    // One of a world that was changed is not that of the world before.
+    const auto second = newest();
+    EXPECT_NE(second, first);
+    ASSERT_EQ(host.change(std::vector<std::string>{"d1.heading=90"}), WireHost::Change::Done);
+    const auto third = newest();
+    EXPECT_NE(third, second);
+    for (std::size_t i = 1; i < jobs.size(); ++i) jobs[i]();
+    EXPECT_NE(third->file->bytes, second->file->bytes);
+    EXPECT_EQ(newest(), third);
 }
 
 }  // namespace

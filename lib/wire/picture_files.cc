@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "wire/picture_files.h"
 
+#include <utility>
+
 #include "raster/encode.h"
 #include "sense/reading_picture.h"
 
@@ -29,20 +31,51 @@ std::shared_ptr<const PictureFile> fileOf(const RunSensor& sensor, const SensorR
 
 }  // namespace
 
-std::shared_ptr<const PictureFile> PictureFiles::newest(World& world, std::size_t sensor,
-                                                        WallTime now, bool at_once) {
-    const RunSensor& placed = world.sensors()[sensor];
-    Entry& entry = entries_[placed.id];
-    const bool is_new =
-        !entry.file || entry.changes != world.changes() || entry.file->seq != world.period(sensor);
-    if (!is_new) return entry.file;
+std::shared_ptr<const PictureFiles::Asked> PictureFiles::newest(World& world, std::size_t sensor,
+                                                                WallTime now, bool at_once,
+                                                                const Doer& does) {
+    Entry& entry = entries_[world.sensors()[sensor].id];
+    const std::int64_t seq = world.period(sensor), changes = world.changes();
+    const bool is_made = entry.asked && (entry.asked->file || entry.asked->failure);
+    const bool is_newest = entry.asked && entry.changes == changes && entry.seq == seq;
+    if (is_newest || (entry.asked && !is_made && entry.changes == changes)) return entry.asked;
     if (!at_once && (now < next_ || now < entry.next)) return nullptr;
-    const WallTime began = std::chrono::steady_clock::now();
-    entry.file = fileOf(placed, world.take(sensor));
-    entry.changes = world.changes();
-    entry.next = now + kLeastGap;
-    next_ = now + 2 * (std::chrono::steady_clock::now() - began);
-    return entry.file;
+    entry = {std::make_shared<Asked>(), seq, changes, now + kLeastGap};
+    // Of `entry` no more: another thread may be done before this one goes on.
+    const auto asked = entry.asked;
+    make(world, sensor, entry, does);
+    return asked;
+}
+
+void PictureFiles::make(World& world, std::size_t sensor, const Entry& entry, const Doer& does) {
+    struct Making {
+        RunSensor sensor;
+        SensorReading reading;
+        std::function<SensorReading()> take;
+        std::shared_ptr<const PictureFile> file;
+        std::chrono::steady_clock::duration time{};
+    };
+    const auto making = std::make_shared<Making>(Making{world.sensors()[sensor], {}, {}, {}});
+    const bool takes = !world.isTaken(sensor);
+    if (takes)
+        making->take = world.takeLater(sensor);
+    else
+        making->reading = world.reading(sensor);
+    does(
+        [making] {
+            const WallTime began = std::chrono::steady_clock::now();
+            if (making->take) making->reading = std::exchange(making->take, nullptr)();
+            making->file = fileOf(making->sensor, making->reading);
+            making->time = std::chrono::steady_clock::now() - began;
+        },
+        [this, &world, sensor, takes, making, asked = entry.asked,
+         changes = entry.changes](const std::exception_ptr& failure) {
+            next_ = std::chrono::steady_clock::now() + making->time;
+            asked->failure = failure;
+            asked->file = making->file;
+            if (takes && !failure && world.changes() == changes)
+                world.put(sensor, std::move(making->reading));
+        });
 }
 
 }  // namespace ispace

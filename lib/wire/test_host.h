@@ -35,7 +35,7 @@ class TestHost : public WireHost {
         std::vector<Edit> edits;
         for (const std::string& one : assignments) edits.push_back(parseEdit(Edit::Kind::Set, one));
         try {
-            editor_.adopt(editor_.edited(edits), edits);
+            editor_.edit(edits).carryOut();
         } catch (const FormatError&) {
             return Change::Refused;
         }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <array>
+#include <exception>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/message.h"
@@ -32,6 +35,17 @@ std::string unknown(std::string_view kind, std::string_view id,
 }
 
 }  // namespace
+
+void WireHost::doAside(std::function<void()> work,
+                       std::function<void(const std::exception_ptr& failure)> deliver) {
+    std::exception_ptr failure;
+    try {
+        std::exchange(work, nullptr)();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    std::exchange(deliver, nullptr)(failure);
+}
 
 std::string refusalOfSensor(const World& world, std::string_view keyword, std::string_view id) {
     std::vector<std::string> known;

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -51,6 +53,11 @@ class WireHost {
     /// What clocks of devices show: the time since the start of the run, simulated or of the wall.
     [[nodiscard]] virtual std::chrono::nanoseconds clock() const = 0;
 
+    /// Does what takes long: now, or where there is another thread, in that while others are
+    /// served. `deliver` is then called between steps, with what was thrown or null, and stepped()
+    /// of all sessions after it.
+    virtual void doAside(std::function<void()> work,
+                         std::function<void(const std::exception_ptr& failure)> deliver);
     /// Of all sessions together.
     [[nodiscard]] PictureFiles& pictures() { return pictures_; }
 

@@ -21,6 +21,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/error.h"
+#include "base/number.h"
 #include "bench_scenes.h"
 #include "crowd.h"
 #include "net/server.h"
@@ -36,6 +38,22 @@ constexpr std::size_t kBeams = 181;
     std::perror(what);
     std::exit(1);
 }
+
+/// Clients may change the world, but load no files.
+class NoFiles : public SceneSource {
+  public:
+    [[nodiscard]] const DeviceCatalogue& devices() const override { return devices_; }
+    [[nodiscard]] Scene load(const std::string& environment,
+                             const std::string& /*layout*/) const override {
+        throw FormatError({environment, 0, 0, "out of reach"});
+    }
+    void loadFilesOf(Record& record) const override {
+        throw FormatError(record.finding("files are out of reach"));
+    }
+
+  private:
+    DeviceCatalogue devices_ = bench::devices();
+};
 
 /// A world in real time and its server, in a thread.
 class Running {
@@ -66,6 +84,7 @@ class Running {
     static ServerLimits limits() {
         ServerLimits limits;
         limits.clients = 1100;
+        limits.source = std::make_shared<NoFiles>();
         return limits;
     }
     Scene scene_;
@@ -204,6 +223,23 @@ Scene cameras() {
         "robot id=r1 at=0,0\ncamera id=c1 at=-3.5,0,2 tilt=-20\n");
 }
 
+/// A robot in the same office, for others to change.
+Scene changingOffice() {
+    const std::string text = bench::officeText(12, 10);
+    const auto robots =
+        testing::crowd(bench::sceneOfText(text).environment, RobotModel(), 1, 0.1, 1);
+    const Point2 at = robots.front().pose.position;
+    return bench::sceneOfText(text + "robot id=r1 at=" + formatDouble(at.x) + "," +
+                              formatDouble(at.y) + "\nlaser on=r1 fov=180 step=1 rate=10\n");
+}
+
+/// More changes than the server makes while it is asked for STATUS.
+std::string manyChanges() {
+    std::string requests = "WORLD\n";
+    for (int i = 0; i < 1000; ++i) requests += "ADD cube id=c at=-5,-5 size=0.3\nDELETE c\n";
+    return requests;
+}
+
 /// One that reads whatever comes, in a thread.
 class Listener {
   public:
@@ -282,7 +318,7 @@ int main(int argc, char** argv) {
             ->Arg(1000)
             ->UseRealTime()
             ->Unit(benchmark::kMillisecond);
-    const auto status = [](const char* name, Scene (*scene)(), const char* others) {
+    const auto status = [](const char* name, Scene (*scene)(), const std::string& others) {
         benchmark::RegisterBenchmark(
             name, [=](benchmark::State& state) { askStatus(state, scene(), others); })
             ->UseRealTime()
@@ -290,6 +326,7 @@ int main(int argc, char** argv) {
     };
     status("server_rate/status/1000_robots", manyRobots, "WORLD\n");
     status("server_rate/status/pictures", cameras, "SENSOR c1\nSTREAM\n");
+    status("server_rate/status/changes", changingOffice, manyChanges());
     benchmark::RunSpecifiedBenchmarks();
     return 0;
 }

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/setting.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/people.h"
+
+namespace ispace {
+
+Setting::Setting(std::shared_ptr<const Scene> made_of, const RunOptions& options,
+                 const Worlds::Meshes& meshes)
+    : scene(std::move(made_of)),
+      obstacles(obstaclesOf(scene->environment, moversOf(*scene))),
+      friction(scene->environment),
+      worlds(scene->environment) {
+    if (meshes.opaque) worlds.prepareMesh();
+    if (meshes.solid) worlds.prepareMesh(Surfaces::Solid);
+    for (const Sensor& sensor : scene->sensors) {
+        const auto* const laser = std::get_if<Laser>(&sensor.model);
+        if (laser == nullptr) continue;
+        worlds.prepare(sensor.pose);
+        if (laser->sweep != SweepAxis::None) worlds.prepareMesh();
+    }
+    const bool has_cameras = std::any_of(scene->sensors.begin(), scene->sensors.end(),
+                                         [](const Sensor& sensor) { return sensor.is<Camera>(); });
+    if (!has_cameras) return;
+    PhotoOptions photo;
+    photo.with_noise = options.sensor_noise;
+    photo.seed = options.seed;
+    photographer = std::make_unique<Photographer>(*scene, photo);
+}
+
+}  // namespace ispace
