@@ -30,7 +30,7 @@ struct Watched : TestWorld {
         simulation.run(WallTime{}, std::chrono::hours(1));
     }
     std::string next() {
-        frames.look(now += std::chrono::seconds(1));
+        frames.look(now += std::chrono::hours(1));
         const std::int64_t known = std::exchange(last, frames.number());
         return *frames.frame(known);
     }
@@ -63,10 +63,10 @@ TEST(WebFrames, HaveMatsAndGates) {
 TEST(WebFrames, AreMadeWhenThereIsSomethingNew) {
     Watched world;
     world.next();
-    world.frames.look(world.now += std::chrono::seconds(1));
+    world.frames.look(world.now += std::chrono::hours(1));
     EXPECT_EQ(world.frames.number(), 1);
     world.step();
-    world.frames.look(world.now += std::chrono::seconds(1));
+    world.frames.look(world.now += std::chrono::hours(1));
     EXPECT_EQ(world.frames.number(), 2);
     world.step();
     world.frames.look(world.now + milliseconds(5));
@@ -84,7 +84,7 @@ TEST(WebFrames, HaveReadingsThatAreNew) {
     EXPECT_TRUE(has(second, "\"all\":false,\"readings\":[{\"id\":\"l1\",")) << second;
     EXPECT_FALSE(has(second, "\"id\":\"l2\"")) << second;
     world.step();
-    world.frames.look(world.now += std::chrono::seconds(1));
+    world.frames.look(world.now += std::chrono::hours(1));
     const std::string whole = *world.frames.frame(0);
     EXPECT_TRUE(has(whole, "\"all\":true") && has(whole, "\"id\":\"l2\"")) << whole;
     EXPECT_EQ(world.frames.frame(0), world.frames.frame(1)) << "made once for all";
@@ -116,7 +116,7 @@ TEST(WebFrames, FollowTheWorldIntoAnotherScene) {
     EXPECT_TRUE(has(*world.frames.scene(), "\"scene\":0,\"title\":\"room.env\""));
     world.next();
     world.step();
-    world.frames.look(world.now += std::chrono::seconds(1));
+    world.frames.look(world.now += std::chrono::hours(1));
     world.world.change(testing::scene("ispace size=8,6\n", "robot id=new at=1,1\n"));
     EXPECT_TRUE(has(*world.frames.frame(1), "\"readings\":[]")) << "of the scene before";
     EXPECT_EQ(world.frames.sceneVersion(), 1);
