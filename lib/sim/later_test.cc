@@ -99,7 +99,7 @@ TEST(Later, APictureShowsTheWorldAsItWasAskedOf) {
         scene("ispace size=8,6\n",
               "robot id=r1 at=0,0\ncamera id=c1 at=-3,0,1 pixels=40,30 rate=10\n"
               "ranger id=d1 at=-3,1,1 pixels=40,30 rate=10\nhuman id=h1 at=1,1 walk=wander\n");
-    for (const std::size_t sensor : {0, 1}) {
+    for (const std::size_t sensor : {std::size_t{0}, std::size_t{1}}) {
         World world(room, milliseconds(5)), still(room, milliseconds(5));
         for (World* each : {&world, &still}) {
             each->command(0, {Verb::Speed, 0.5});

@@ -59,7 +59,6 @@ class Simulation {
 
     /// Records every step from now on. The recorder must outlive the last one.
     void recordWith(Recorder& recorder) { recorder_ = &recorder; }
-    [[nodiscard]] bool isRecorded() const { return recorder_ != nullptr; }
 
     /// Takes the steps of a record instead of simulating. At its end the run ends; or, if it is to
     /// hold, it pauses and goes on serving the last moment. \pre the replay outlives the last step
