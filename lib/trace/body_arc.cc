@@ -102,63 +102,59 @@ struct SlabCut {
 /// bit.
 template <typename Cut>
 ISPACE_INLINE void meetLevel(const OutlineFrom& from, const double* x, const double* y,
-                             double* range, double* slope, Cut cut) {
+                             std::size_t blocks, double* range, double* slope, Cut cut) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
-    ISPACE_LANES for (int i = 0; i < kLanes; ++i) {
-        const double ahead = from.cos * x[i] + from.sin * y[i];
-        const double aside = from.cos * y[i] - from.sin * x[i];
-        double begin, end, slope_begin, slope_end;
-        cut(ahead, aside, begin, end, slope_begin, slope_end);
-        const bool outside = begin >= 0;
-        const bool misses = (begin > end) | (end < 0);
-        range[i] = flatChoice(misses, kNone, flatChoice(outside, begin, end));
-        slope[i] = flatChoice(misses, 0.0, flatChoice(outside, slope_begin, slope_end));
+    for (std::size_t at = 0; at < blocks * BodyTable::kLanes; at += BodyTable::kLanes) {
+        ISPACE_LANES for (std::size_t i = at; i < at + BodyTable::kLanes; ++i) {
+            const double ahead = from.cos * x[i] + from.sin * y[i];
+            const double aside = from.cos * y[i] - from.sin * x[i];
+            double begin, end, slope_begin, slope_end;
+            cut(ahead, aside, begin, end, slope_begin, slope_end);
+            const bool outside = begin >= 0;
+            const bool misses = (begin > end) | (end < 0);
+            range[i] = flatChoice(misses, kNone, flatChoice(outside, begin, end));
+            slope[i] = flatChoice(misses, 0.0, flatChoice(outside, slope_begin, slope_end));
+        }
     }
 }
 
 ISPACE_SIMD_CLONES
 void meetBox(const OutlineFrom& from, const double* x, const double* y, std::size_t blocks,
              double* range, double* slope) {
-    for (std::size_t block = 0; block < blocks; ++block) {
-        const std::size_t at = block * BodyTable::kLanes;
-        meetLevel(
-            from, x + at, y + at, range + at, slope + at,
-            [&from](double ahead, double aside, double& begin, double& end, double& slope_begin,
-                    double& slope_end) __attribute__((always_inline)) {
-                const SlabCut one(from.x, ahead, from.half_length);
-                const SlabCut other(from.y, aside, from.half_width);
-                const double steep = std::fabs(ahead), flat = std::fabs(aside);
-                const bool enters_other = other.near > one.near;
-                begin = flatChoice(enters_other, other.near, one.near);
-                slope_begin = flatChoice(enters_other, flat, steep);
-                const bool leaves_other = other.far < one.far;
-                end = flatChoice(leaves_other, other.far, one.far);
-                slope_end = flatChoice(leaves_other, flat, steep);
-            });
-    }
+    meetLevel(
+        from, x, y, blocks, range, slope,
+        [&from](double ahead, double aside, double& begin, double& end, double& slope_begin,
+                double& slope_end) __attribute__((always_inline)) {
+            const SlabCut one(from.x, ahead, from.half_length);
+            const SlabCut other(from.y, aside, from.half_width);
+            const double steep = std::fabs(ahead), flat = std::fabs(aside);
+            const bool enters_other = other.near > one.near;
+            begin = flatChoice(enters_other, other.near, one.near);
+            slope_begin = flatChoice(enters_other, flat, steep);
+            const bool leaves_other = other.far < one.far;
+            end = flatChoice(leaves_other, other.far, one.far);
+            slope_end = flatChoice(leaves_other, flat, steep);
+        });
 }
 
 ISPACE_SIMD_CLONES
 void meetDisc(const OutlineFrom& from, const double* x, const double* y, std::size_t blocks,
               double* range, double* slope) {
-    for (std::size_t block = 0; block < blocks; ++block) {
-        const std::size_t at = block * BodyTable::kLanes;
-        meetLevel(
-            from, x + at, y + at, range + at, slope + at,
-            [&from](double ahead, double aside, double& begin, double& end, double& slope_begin,
-                    double& slope_end) __attribute__((always_inline)) {
-                constexpr double kNone = std::numeric_limits<double>::infinity();
-                const double a = ahead * ahead + aside * aside;
-                const double b = from.x * ahead + from.y * aside;
-                const double side = from.x * aside - from.y * ahead;
-                const double root = a * from.radius * from.radius - side * side;
-                const double half = std::sqrt(flatMax(root, 0.0));
-                const bool misses = root < 0;
-                begin = flatChoice(misses, kNone, (-b - half) / a);
-                end = flatChoice(misses, -kNone, (-b + half) / a);
-                slope_begin = slope_end = half / from.radius;
-            });
-    }
+    meetLevel(
+        from, x, y, blocks, range, slope,
+        [&from](double ahead, double aside, double& begin, double& end, double& slope_begin,
+                double& slope_end) __attribute__((always_inline)) {
+            constexpr double kNone = std::numeric_limits<double>::infinity();
+            const double a = ahead * ahead + aside * aside;
+            const double b = from.x * ahead + from.y * aside;
+            const double side = from.x * aside - from.y * ahead;
+            const double root = a * from.radius * from.radius - side * side;
+            const double half = std::sqrt(flatMax(root, 0.0));
+            const bool misses = root < 0;
+            begin = flatChoice(misses, kNone, (-b - half) / a);
+            end = flatChoice(misses, -kNone, (-b + half) / a);
+            slope_begin = slope_end = half / from.radius;
+        });
 }
 
 /// Kept for its memory: threads read many scans.
