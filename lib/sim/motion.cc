@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace ispace {
 
@@ -53,109 +52,76 @@ struct Phase {
     double speed;  // at its end
 };
 
-/// What an axis does from now on, phase by phase, the last of them without end. Most steps lie
-/// within the first one, so later ones are worked out when they begin.
+/// What an axis does from now on: phases, the last of them without end.
 class Profile {
   public:
-    Profile(const Axis& axis, const AxisLimits& limits)
-        : limits_(limits),
-          speed_(axis.speed),
-          left_(axis.goal.value),
-          stage_(axis.goal.kind == AxisGoal::Kind::Speed ? Stage::Reach : Stage::Begin) {}
-
-    /// \pre not atEnd()
-    Phase next() {
-        for (;;) {
-            const auto phase = enter();
-            if (phase) return *phase;
-        }
+    explicit Profile(double speed) : speed_(speed) {}
+    void rampTo(double speed, double accel) {
+        if (speed == speed_) return;
+        const double duration = std::abs(speed - speed_) / accel;
+        phases_[size_++] = {duration, speed > speed_ ? accel : -accel, speed};
+        speed_ = speed;
     }
-    [[nodiscard]] bool atEnd() const { return stage_ == Stage::Ended; }
+    void hold(double duration) {
+        if (duration > 0) phases_[size_++] = {duration, 0, speed_};
+    }
+    [[nodiscard]] const Phase& operator[](std::size_t i) const { return phases_[i]; }
+    [[nodiscard]] std::size_t size() const { return size_; }
 
   private:
-    enum class Stage { Reach, Begin, Slow, Climb, Cruise, Stop, End, Ended };
-
-    std::optional<Phase> rampTo(double speed) {
-        if (speed == speed_) return std::nullopt;
-        const Phase ramp{std::abs(speed - speed_) / limits_.accel,
-                         speed > speed_ ? limits_.accel : -limits_.accel, speed};
-        speed_ = speed;
-        return ramp;
-    }
-    [[nodiscard]] std::optional<Phase> hold(double duration) const {
-        return duration > 0 ? std::optional<Phase>({duration, 0, speed_}) : std::nullopt;
-    }
-    std::optional<Phase> enter();
-    std::optional<Phase> begin();
-
-    const AxisLimits& limits_;
-    double speed_;  // at the end of the last phase
-    double left_;   // of the way, from where it goes towards its goal
-    double peak_ = 0, before_peak_ = 0, sign_ = 1;
-    Stage stage_;
+    std::array<Phase, 6> phases_;
+    std::size_t size_ = 0;
+    double speed_;
 };
 
-/// Enters the next stage; nothing if that takes no time.
-std::optional<Phase> Profile::enter() {
-    const double accel = limits_.accel;
-    switch (stage_) {
-        case Stage::Reach:
-            stage_ = Stage::End;
-            return rampTo(std::clamp(left_, -limits_.max, limits_.max));
-        case Stage::Begin:
-            return begin();
-        case Stage::Slow:
-            stage_ = Stage::Climb;
-            sign_ = left_ < 0 ? -1 : 1;
-            left_ = std::abs(left_);
-            before_peak_ = std::abs(speed_);
-            if (before_peak_ > limits_.top) {
-                left_ -= (before_peak_ - limits_.top) * (before_peak_ + limits_.top) / (2 * accel);
-                before_peak_ = limits_.top;
-                return rampTo(sign_ * limits_.top);
-            }
-            [[fallthrough]];
-        case Stage::Climb:
-            stage_ = Stage::Cruise;
-            peak_ = std::max(
-                before_peak_,
-                std::min(limits_.top, std::sqrt(accel * left_ + before_peak_ * before_peak_ / 2)));
-            return rampTo(sign_ * peak_);
-        case Stage::Cruise:
-            stage_ = Stage::Stop;
-            return hold((left_ - (peak_ * peak_ - before_peak_ * before_peak_ / 2) / accel) /
-                        peak_);
-        case Stage::Stop:
-            stage_ = Stage::End;
-            return rampTo(0);
-        default:
-            stage_ = Stage::Ended;
-            return hold(kForever);
-    }
+Profile speedProfile(const Axis& axis, const AxisLimits& limits) {
+    Profile profile(axis.speed);
+    profile.rampTo(std::clamp(axis.goal.value, -limits.max, limits.max), limits.accel);
+    profile.hold(kForever);
+    return profile;
 }
 
-std::optional<Phase> Profile::begin() {
-    const double to_rest = speed_ * std::abs(speed_) / (2 * limits_.accel);
-    const double slack = kStopTolerance * std::max({1.0, std::abs(left_), std::abs(to_rest)});
-    if (std::abs(left_ - to_rest) <= slack) {
-        stage_ = Stage::End;
-        return rampTo(0);
+Profile distanceProfile(const Axis& axis, const AxisLimits& limits) {
+    const double accel = limits.accel;
+    double left = axis.goal.value, speed = axis.speed;
+    Profile profile(speed);
+    const double to_rest = speed * std::abs(speed) / (2 * accel);
+    const double slack = kStopTolerance * std::max({1.0, std::abs(left), std::abs(to_rest)});
+    if (std::abs(left - to_rest) <= slack) {
+        profile.rampTo(0, accel);
+        profile.hold(kForever);
+        return profile;
     }
-    stage_ = Stage::Slow;
     // Brake first if it goes the wrong way, or beyond.
-    if (speed_ == 0 || (speed_ * left_ > 0 && std::abs(to_rest) <= std::abs(left_)))
-        return std::nullopt;
-    left_ -= to_rest;
-    return rampTo(0);
+    if (speed != 0 && (speed * left <= 0 || std::abs(to_rest) > std::abs(left))) {
+        profile.rampTo(0, accel);
+        left -= to_rest;
+        speed = 0;
+    }
+    const double sign = left < 0 ? -1 : 1;
+    left = std::abs(left);
+    speed = std::abs(speed);
+    if (speed > limits.top) {
+        profile.rampTo(sign * limits.top, accel);
+        left -= (speed - limits.top) * (speed + limits.top) / (2 * accel);
+        speed = limits.top;
+    }
+    const double peak =
+        std::max(speed, std::min(limits.top, std::sqrt(accel * left + speed * speed / 2)));
+    profile.rampTo(sign * peak, accel);
+    profile.hold((left - (peak * peak - speed * speed / 2) / accel) / peak);
+    profile.rampTo(0, accel);
+    profile.hold(kForever);
+    return profile;
 }
 
 /// An axis on its way through its profile.
 class Run {
   public:
     Run(const Axis& axis, const AxisLimits& limits)
-        : profile_(axis, limits),
-          phase_(profile_.next()),
-          rest_(phase_.duration),
+        : profile_(axis.goal.kind == AxisGoal::Kind::Speed ? speedProfile(axis, limits)
+                                                           : distanceProfile(axis, limits)),
+          rest_(profile_[0].duration),
           speed_(axis.speed),
           fastest_(std::abs(axis.speed)),
           came_with_(axis.speed) {}
@@ -163,23 +129,23 @@ class Run {
     /// Seconds until the acceleration changes.
     [[nodiscard]] double rest() const { return rest_; }
     [[nodiscard]] double speed() const { return speed_; }
-    [[nodiscard]] double accel() const { return phase_.accel; }
-    [[nodiscard]] bool atGoal() const { return profile_.atEnd(); }
+    [[nodiscard]] double accel() const { return profile_[phase_].accel; }
+    [[nodiscard]] bool atGoal() const { return phase_ + 1 == profile_.size(); }
     /// How far it goes in a time. \pre time <= rest()
     [[nodiscard]] double way(double time) const { return time * (speed_ + accel() * time / 2); }
 
     /// \pre time <= rest()
     void pass(double time) {
+        const Phase& phase = profile_[phase_];
         way_ += way(time);
         path_ += pathOf(time);
-        hardest_ = std::max(hardest_, std::abs(phase_.accel));
+        hardest_ = std::max(hardest_, std::abs(phase.accel));
         rest_ -= time;
         if (rest_ <= kInstant) {
-            speed_ = phase_.speed;
-            phase_ = profile_.next();
-            rest_ = phase_.duration;
+            speed_ = phase.speed;
+            rest_ = profile_[++phase_].duration;
         } else {
-            speed_ += phase_.accel * time;
+            speed_ += phase.accel * time;
         }
         fastest_ = std::max(fastest_, std::abs(speed_));
         reverses_ = reverses_ || speed_ * came_with_ < 0;
@@ -206,7 +172,7 @@ class Run {
     }
 
     Profile profile_;
-    Phase phase_;
+    std::size_t phase_ = 0;
     double rest_, speed_;
     double way_ = 0, path_ = 0, fastest_, hardest_ = 0;
     double came_with_;  // the last speed that was not 0
