@@ -54,22 +54,33 @@ inline double nearest(const std::vector<Segment2>& lines, Point2 p) {
     return least;
 }
 
-/// The area by dense rays against all lines, in the middle of each piece of the turn.
-inline double areaByRays(const std::vector<Segment2>& lines, Point2 p, double range, int rays) {
+/// The area by dense rays, in the middle of each piece of the turn; reach(ray) is how far each
+/// goes.
+template <typename Reach>
+double areaByRays(int rays, Reach reach) {
     double sum = 0;
     for (int i = 0; i < rays; ++i) {
         const double angle = 2 * std::numbers::pi * (i + 0.5) / rays;
-        const Vec2 ray{std::cos(angle), std::sin(angle)};
-        double reach = range;
-        for (const auto& [a, b] : lines) {
-            const double right = cross(a - p, ray), left = cross(ray, b - p);
-            if ((right > 0) != (left > 0)) continue;
-            const double at = cross(a - p, b - a) / cross(ray, b - a);
-            if (at > 0) reach = std::min(reach, at);
-        }
-        sum += reach * reach * std::numbers::pi / rays;
+        const double far = reach(Vec2{std::cos(angle), std::sin(angle)});
+        sum += far * far * std::numbers::pi / rays;
     }
     return sum;
+}
+
+/// How far a ray from p goes before it meets a line, each tried; at most `range`.
+inline double reachAlong(const std::vector<Segment2>& lines, Point2 p, Vec2 ray, double range) {
+    double reach = range;
+    for (const auto& [a, b] : lines) {
+        const double right = cross(a - p, ray), left = cross(ray, b - p);
+        if ((right > 0) != (left > 0)) continue;
+        const double at = cross(a - p, b - a) / cross(ray, b - a);
+        if (at > 0) reach = std::min(reach, at);
+    }
+    return reach;
+}
+
+inline double areaByRays(const std::vector<Segment2>& lines, Point2 p, double range, int rays) {
+    return areaByRays(rays, [&](Vec2 ray) { return reachAlong(lines, p, ray, range); });
 }
 
 }  // namespace ispace::test

@@ -85,24 +85,14 @@ TEST(VisibilityRounds, AreaPastOneIsClosedForm) {
     RecordProperty("worst_e9", static_cast<int>(worst * 1e9));
 }
 
-/// Midpoints of many directions: what ends there, and how far.
+/// The area by dense rays that lines and rounds stop.
 double byRays(const std::vector<Segment2>& lines, const std::vector<Ellipse>& rounds, Point2 v,
               double range, int rays) {
-    double sum = 0;
-    for (int i = 0; i < rays; ++i) {
-        const double angle = 2 * std::numbers::pi * (i + 0.5) / rays;
-        const Vec2 ray{std::cos(angle), std::sin(angle)};
-        double reach = range;
-        for (const auto& [a, b] : lines) {
-            const double right = cross(a - v, ray), left = cross(ray, b - v);
-            if ((right > 0) != (left > 0)) continue;
-            const double at = cross(a - v, b - a) / cross(ray, b - a);
-            if (at > 0) reach = std::min(reach, at);
-        }
+    return test::areaByRays(rays, [&](Vec2 ray) {
+        double reach = test::reachAlong(lines, v, ray, range);
         for (const Ellipse& round : rounds) reach = std::min(reach, entry(round, v, ray));
-        sum += reach * reach * std::numbers::pi / rays;
-    }
-    return sum;
+        return reach;
+    });
 }
 
 TEST(VisibilityRounds, ManyThatHideAndCutEachOther) {

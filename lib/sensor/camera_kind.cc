@@ -335,18 +335,7 @@ Mesh viewOf(const Sensor& sensor, double reach) {
         const double s = sin(camera.widest);
         return range * Vec3{cos(camera.widest), s * cos(around), s * sin(around)};
     };
-    Mesh mesh{Material::View, {}, {}, true};
-    const int columns = piecesOf(camera.fovX()), rows = piecesOf(camera.fovY());
-    const double deep = limits.far - limits.near;
-    addSheet(mesh, columns, rows,
-             [&](double u, double v) { return at(2 * u - 1, 2 * v - 1, limits.far); });
-    for (const double side : {-1.0, 1.0}) {
-        addSheet(mesh, columns, 1,
-                 [&](double u, double v) { return at(2 * u - 1, side, limits.near + v * deep); });
-        addSheet(mesh, rows, 1,
-                 [&](double u, double v) { return at(side, 2 * u - 1, limits.near + v * deep); });
-    }
-    return mesh;
+    return pictureView(camera.fovX(), camera.fovY(), limits, false, at);
 }
 
 }  // namespace

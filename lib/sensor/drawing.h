@@ -50,4 +50,27 @@ void addSheet(Mesh& mesh, int columns, int rows, Place place) {
         }
 }
 
+/// What a sensor with a picture looks at: the picture far away as a bent surface, and the sides to
+/// it. place(across, upright, range) is where the ray through a place of the picture, -1 to 1
+/// either way, has come to at this range. `fov_x` and `fov_y` say how finely to bend it; a view all
+/// around has no left and right side.
+template <typename Place>
+Mesh pictureView(Angle fov_x, Angle fov_y, ViewLimits limits, bool is_all_around, Place place) {
+    Mesh mesh{Material::View, {}, {}, true};
+    const int columns = piecesOf(fov_x), rows = piecesOf(fov_y);
+    const double deep = limits.far - limits.near;
+    addSheet(mesh, columns, rows,
+             [&](double u, double v) { return place(2 * u - 1, 2 * v - 1, limits.far); });
+    for (const double side : {-1.0, 1.0}) {
+        addSheet(mesh, columns, 1, [&](double u, double v) {
+            return place(2 * u - 1, side, limits.near + v * deep);
+        });
+        if (is_all_around) continue;
+        addSheet(mesh, rows, 1, [&](double u, double v) {
+            return place(side, 2 * u - 1, limits.near + v * deep);
+        });
+    }
+    return mesh;
+}
+
 }  // namespace ispace

@@ -119,32 +119,17 @@ Vec3 edgeRay(const Ranger& ranger, double across, double upright) {
     return {1, -across * tan(0.5 * ranger.fov_x), upright * tan(0.5 * ranger.fov_y)};
 }
 
-Mesh frustumOf(const Ranger& ranger, ViewLimits limits) {
-    Mesh mesh{Material::View, {}, {}, true};
+Mesh viewOf(const Sensor& sensor, double reach) {
+    const Ranger& ranger = sensor.as<Ranger>();
     const bool is_bent = ranger.projection == Projection::Spherical || !ranger.measures_depth;
     const auto at = [&](double across, double upright, double range) {
         const Vec3 ray = edgeRay(ranger, across, upright);
         return (is_bent ? range / length(ray) : range) * ray;
     };
-    const int columns = piecesOf(ranger.fov_x), rows = piecesOf(ranger.fov_y);
-    const double deep = limits.far - limits.near;
-    addSheet(mesh, columns, rows,
-             [&](double u, double v) { return at(2 * u - 1, 2 * v - 1, limits.far); });
-    for (const double side : {-1.0, 1.0}) {
-        addSheet(mesh, columns, 1,
-                 [&](double u, double v) { return at(2 * u - 1, side, limits.near + v * deep); });
-        const bool closed =
-            ranger.projection == Projection::Spherical && ranger.fov_x >= Angle::degrees(360);
-        if (closed) continue;
-        addSheet(mesh, rows, 1,
-                 [&](double u, double v) { return at(side, 2 * u - 1, limits.near + v * deep); });
-    }
-    return mesh;
-}
-
-Mesh viewOf(const Sensor& sensor, double reach) {
-    const Ranger& ranger = sensor.as<Ranger>();
-    return frustumOf(ranger, viewLimits(ranger.min_range, ranger.max_range, reach));
+    const bool is_all_around =
+        ranger.projection == Projection::Spherical && ranger.fov_x >= Angle::degrees(360);
+    return pictureView(ranger.fov_x, ranger.fov_y,
+                       viewLimits(ranger.min_range, ranger.max_range, reach), is_all_around, at);
 }
 
 std::vector<Mesh> body() { return lensBox({0.05, 0.18, 0.05}, {-0.05, 0.05}, 0.015); }
