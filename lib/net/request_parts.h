@@ -2,8 +2,10 @@
 // Private to lib/net: what requests of several roles have in common.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +13,13 @@
 #include "geom/pose.h"
 
 namespace ispace {
+
+/// The words of a request and what is between them. \pre they are neighbours, one at least
+inline std::string_view textOf(std::span<const std::string_view> words) {
+    const std::string_view last = words.back();
+    return {words.front().data(),
+            static_cast<std::size_t>(last.data() + last.size() - words.front().data())};
+}
 
 /// A whole number from 1 to a thousand million, or what is wrong with it.
 struct Count {

@@ -130,11 +130,10 @@ ServerState::Text& ServerState::textOf(std::size_t sensor, const ReplyForm& form
 }
 
 bool ServerState::holdsWorld() const {
-    const bool is_making = workshop_ && workshop_->open() > 0;
     // Who steps a paused world means that which was changed before.
     const bool may_wait = simulation_->clock().kind != Clock::Kind::Real ||
                           simulation_->isReplay() || simulation_->paused();
-    return may_wait && (is_making || is_changing_);
+    return may_wait && !isAtRest();
 }
 
 void ServerState::doAside(Workshop::Job job) {

@@ -171,6 +171,8 @@ class ServerState {
         workshop_.reset();
         builders_.reset();
     }
+    /// True if nothing is being made of the world as it is: no picture, no change.
+    [[nodiscard]] bool isAtRest() const { return !isMaking() && !is_changing_; }
     /// The world must not go on: it takes the same steps however long something takes.
     [[nodiscard]] bool holdsWorld() const;
     /// Completes what was asked for and is ready, between steps. \returns false if nothing is
@@ -195,6 +197,7 @@ class ServerState {
         std::shared_ptr<Asked> asked;
         std::shared_ptr<SensorReading> reading;  // once the first job of this sensor is done
     };
+    [[nodiscard]] bool isMaking() const { return workshop_ && workshop_->open() > 0; }
     [[nodiscard]] std::shared_ptr<const std::string> counted(std::string text) const;
     [[nodiscard]] Text& textOf(std::size_t sensor, const ReplyForm& form);
     void keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string> bytes);

@@ -169,7 +169,19 @@ void Session::stepped(bool has_room) {
 
 void Session::proceed() {
     stepped();
-    changeIfPossible();
+    goOn();
+}
+
+/// Keeps a request that cannot be answered now.
+void Session::hold(Words words, Condition until) {
+    held_ = textOf(words);
+    may_go_on_ = until;
+}
+
+void Session::goOn() {
+    if (held_.empty() || !(this->*may_go_on_)()) return;
+    may_go_on_ = nullptr;
+    request(std::exchange(held_, {}));
 }
 
 void Session::silent() {
@@ -182,10 +194,17 @@ void Session::silent() {
 void Session::finish() {
     sync();
     if (!running_.empty()) world().command(subject_, {Verb::Stop, 0});
-    const bool is_changing = role_ == Role::World && wanted_;
-    if (is_changing) wanted_.reset();
-    if (is_changing || !std::exchange(change_, {}).empty()) error(405, {"the run has ended"});
-    if (wanted_ || coming_) state_->collectAll();
+    if (role_ == Role::World && (wanted_ || !held_.empty())) {
+        wanted_.reset();
+        held_.clear();
+        may_go_on_ = nullptr;
+        error(405, {"the run has ended"});
+    }
+    // At last there is time to wait: for the frame before a request, and that which it asks for.
+    while (wanted_ || coming_) {
+        state_->collectAll();
+        proceed();
+    }
     stepped();
 }
 
@@ -301,7 +320,8 @@ void Session::leave() {
     if (drives()) state_->release(id_, hold_);
     state_->steps().drop(std::exchange(steps_, nullptr));
     state_->simulation().events().unwant(std::exchange(events_, {}));
-    change_.clear();
+    held_.clear();
+    may_go_on_ = nullptr;
     role_ = Role::None;
     running_.clear();
     every_ = 0;

@@ -38,7 +38,7 @@ class Session {
     /// step or change of the world. Without room for them, events that were asked for wait, and
     /// some may be missed.
     void stepped(bool has_room = true);
-    /// The same between steps, and carries out a change that had to wait.
+    /// The same between steps, and answers a request that had to wait.
     void proceed();
     /// Stops what it holds: the client has been silent for too long.
     void silent();
@@ -49,11 +49,11 @@ class Session {
     /// True while a STEP, a change of the world or a picture is under way; later requests wait for
     /// its answer.
     [[nodiscard]] bool waiting() const {
-        return steps_ != nullptr || !change_.empty() || wanted_ || coming_;
+        return steps_ != nullptr || !held_.empty() || wanted_ || coming_;
     }
     [[nodiscard]] bool hasRole() const { return role_ != Role::None; }
     /// True if that is a change that waits for its turn.
-    [[nodiscard]] bool waitsToChange() const { return !change_.empty(); }
+    [[nodiscard]] bool waitsToChange() const { return may_go_on_ == &Session::mayChange; }
     /// True if it drives a robot or a person.
     [[nodiscard]] bool drives() const {
         return !is_gone_ && (role_ == Role::Robot || role_ == Role::Person);
@@ -75,6 +75,7 @@ class Session {
   private:
     enum class Role { None, Robot, Person, Laser, Sensor, World };
     using Words = std::span<const std::string_view>;  // a request, the verb first
+    using Condition = bool (Session::*)() const;
     struct Request;
     static std::span<const Request> requests();
 
@@ -92,7 +93,12 @@ class Session {
     void tellEnds();
     void tellEvents();
     void answerStep();
-    void sendPendingScan();
+    void hold(Words words, Condition until);
+    void goOn();
+    [[nodiscard]] bool mayChange() const;
+    [[nodiscard]] bool maySeek() const { return state_->isAtRest(); }
+    [[nodiscard]] bool hasCome() const { return !coming_; }
+    [[nodiscard]] bool sendsPendingScan(Words words);
     void sendReading(std::size_t sensor, const ReplyForm& form);
     void receiveAsked();
 
@@ -126,7 +132,6 @@ class Session {
     void step(Words words);
     void shutdown(Words words);
     void change(Words words);
-    void changeIfPossible();
     void events(Words words);
     void mark(Words words);
 
@@ -149,8 +154,10 @@ class Session {
     // What is being made: the answer of a reading or a change, and a reading of the stream.
     std::shared_ptr<const ServerState::Asked> wanted_, coming_;
     std::shared_ptr<const StepQueue::Ticket> steps_;  // of a STEP to be answered
-    std::string change_;                              // a request that has to wait its turn
-    EventKinds events_;                               // that are told
+    // A request that is answered once this is so.
+    std::string held_;
+    Condition may_go_on_ = nullptr;
+    EventKinds events_;  // that are told
     std::int64_t next_event_ = 0;
     bool has_token_ = false;
     int wrong_tokens_ = 0;

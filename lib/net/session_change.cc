@@ -44,17 +44,12 @@ void Session::token(Words words) {
 /// At once, or when others' changes leave time for it.
 void Session::change(Words words) {
     if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
-    const std::string_view last = words.back();
-    change_.assign(words.front().data(),
-                   static_cast<std::size_t>(last.data() + last.size() - words.front().data()));
-    changeIfPossible();
-}
-
-void Session::changeIfPossible() {
-    if (change_.empty() || !state_->mayChangeNow(std::chrono::steady_clock::now())) return;
-    wanted_ = changeWorld(*state_, std::exchange(change_, {}));
+    if (!mayChange()) return hold(words, &Session::mayChange);
+    wanted_ = changeWorld(*state_, std::string(textOf(words)));
     receiveAsked();
 }
+
+bool Session::mayChange() const { return state_->mayChangeNow(std::chrono::steady_clock::now()); }
 
 void Session::events(Words words) {
     EventKinds kinds;
@@ -91,8 +86,7 @@ void Session::events(Words words) {
 }
 
 void Session::mark(Words words) {
-    const std::string_view last = words.back();
-    std::string text(words[1].data(), last.data() + last.size());
+    std::string text(textOf(words.subspan(1)));
     std::replace(text.begin(), text.end(), '\t', ' ');
     if (text.size() > kMaxText)
         return error(416, {"a mark has at most ", std::to_string(kMaxText), " bytes"});

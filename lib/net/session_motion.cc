@@ -65,10 +65,7 @@ bool Session::seize(Role role, std::string_view id, std::size_t mover) {
 }
 
 void Session::command(Words words) {
-    const char* const begin = words.front().data();
-    const char* const end = words.back().data() + words.back().size();
-    const ParsedCommand parsed =
-        parseCommand(std::string_view(begin, static_cast<std::size_t>(end - begin)));
+    const ParsedCommand parsed = parseCommand(textOf(words));
     if (!parsed.command) {
         const bool range = parsed.error.kind == CommandError::Kind::Range;
         return error(range ? 416 : 400, {parsed.error.message});

@@ -79,7 +79,10 @@ void Session::sendReading(std::size_t sensor, const ReplyForm& form) {
 
 void Session::receiveAsked() {
     if (wanted_ && wanted_->bytes) out_ += *std::exchange(wanted_, nullptr)->bytes;
-    if (coming_ && coming_->bytes) scan_ = std::exchange(coming_, nullptr)->bytes;
+    if (!coming_ || !coming_->bytes) return;
+    scan_ = std::exchange(coming_, nullptr)->bytes;
+    // It goes before the answer that waits for it.
+    if (!held_.empty()) out_ += *std::exchange(scan_, nullptr);
 }
 
 void Session::sonar(Words /*words*/) {
@@ -114,8 +117,8 @@ void Session::bumper(Words /*words*/) {
     out_.append(" hit=").append(hit).append(" at=").append(places).append("\n");
 }
 
-void Session::scan(Words /*words*/) {
-    sendPendingScan();
+void Session::scan(Words words) {
+    if (!sendsPendingScan(words)) return;
     sendReading(subject_, form_);
 }
 
@@ -129,17 +132,17 @@ void Session::stream(Words words) {
         if (count.code != 0) return error(count.code, {count.message});
         every = count.value;
     }
-    sendPendingScan();
+    if (!sendsPendingScan(words)) return;
     if (every_ == 0) seq_ = world().period(subject_);
     every_ = every;
     out_.append("OK STREAM every=").append(std::to_string(every)).append("\n");
 }
 
 /// Looks whether a new reading is to be sent. A heavy one is not even taken while the one before it
-/// is made, or waits for a slow reader.
+/// is made, or waits for a slow reader, and none once a request waits for that.
 void Session::streamSensor() {
     const std::int64_t seq = world().period(subject_);
-    if (seq != seq_ && seq % every_ == 0) {
+    if (seq != seq_ && seq % every_ == 0 && held_.empty()) {
         ReplyForm form = form_;
         form.stream = true;
         if (scan_ && world().sensors()[subject_].isHeavy())
@@ -164,21 +167,16 @@ std::shared_ptr<const std::string> Session::takeScan() {
     return std::exchange(scan_, nullptr);
 }
 
-/// A scan that was due before a request is sent before its answer.
-void Session::sendPendingScan() {
-    if (!scan_) return;
-    auto scan = takeScan();
-    if (coming_) {
-        // Only of one who read nothing for long.
-        state_->collectAll();
-        receiveAsked();
-        scan = std::exchange(scan_, nullptr);
-    }
-    if (scan) out_ += *scan;
+/// A scan that was due before a request is sent before its answer. \returns false if it is still to
+/// be made, as for one who read nothing for long: then the request is held until it is.
+bool Session::sendsPendingScan(Words words) {
+    if (const auto scan = takeScan()) out_ += *scan;
+    if (coming_) hold(words, &Session::hasCome);
+    return !coming_;
 }
 
-void Session::stopStream(Words /*words*/) {
-    sendPendingScan();
+void Session::stopStream(Words words) {
+    if (!sendsPendingScan(words)) return;
     every_ = 0;
     out_ += "OK STOP\n";
 }
@@ -189,7 +187,7 @@ void Session::binary(Words words) {
     const RunSensor& sensor = world().sensors()[subject_];
     if (words[1] == "on" && !hasBytes(sensor))
         return error(400, {"readings of ", sensor.id, " are lines of text alone"});
-    sendPendingScan();
+    if (!sendsPendingScan(words)) return;
     form_.binary = words[1] == "on";
     out_.append("OK BINARY ").append(words[1]).append("\n");
 }
@@ -216,7 +214,7 @@ void Session::format(Words words) {
             return error(400, {missing.what()});
         }
     }
-    sendPendingScan();
+    if (!sendsPendingScan(words)) return;
     form_.format = *found;
     out_.append("OK FORMAT ").append(words[1]).append("\n");
 }

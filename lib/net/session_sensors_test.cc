@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/base64.h"
@@ -45,6 +46,17 @@ struct SensorTalk {
     void step(std::int64_t count) {
         simulation.allow(count);
         simulation.run(WallTime{}, kLong);
+    }
+    /// What a client gets until what it waits for is made.
+    std::string settle(Session& client) {
+        std::string text = client.take();
+        while (client.waiting()) {
+            std::this_thread::yield();
+            state.collect();
+            client.proceed();
+            text += client.take();
+        }
+        return text;
     }
 
     Scene scene;
@@ -155,6 +167,71 @@ TEST(SessionSensors, ASlowReaderGetsTheNewestPictureAndCostsNoOthers) {
     EXPECT_EQ(talk.world.reading(0).seq, 1);
     EXPECT_TRUE(testing::streamed(client).starts_with("SCAN c1 t=2.200 seq=11 "));
     EXPECT_EQ(client.takeScan(), nullptr);
+}
+
+/// A client that has left a picture unread for so long that it is stale. Frames are made aside.
+struct SlowTalk : SensorTalk {
+    SlowTalk() : slow(client("SENSOR c1")) {
+        state.makeAside([] {});
+        ask(slow, "STREAM");
+        step(2);
+        EXPECT_EQ(settle(slow), "");
+        EXPECT_GT(slow.scanBytes(), 0U);
+        step(20);
+    }
+    ~SlowTalk() { state.endAside(); }
+    SlowTalk(const SlowTalk&) = delete;
+    SlowTalk& operator=(const SlowTalk&) = delete;
+
+    Session& slow;
+};
+
+TEST(SessionSensors, ARequestWaitsForTheFrameBeforeIt) {
+    SlowTalk talk;
+    EXPECT_EQ(talk.ask(talk.slow, "SCAN"), "") << "nobody else waits";
+    EXPECT_TRUE(talk.slow.waiting());
+    // Frames that come due meanwhile are not taken.
+    talk.step(4);
+    const std::string text = talk.settle(talk.slow);
+    EXPECT_EQ(lineOf(text).substr(0, 24), "SCAN c1 t=2.200 seq=11 p");
+    EXPECT_NE(lineOf(text).find(" stream=1 "), std::string::npos);
+    const std::size_t second = text.find("SCAN c1 ", 1);
+    ASSERT_NE(second, std::string::npos);
+    EXPECT_EQ(text.substr(second, 24), "SCAN c1 t=2.600 seq=13 p");
+    EXPECT_EQ(text.find("SCAN c1 ", second + 1), std::string::npos);
+    EXPECT_EQ(talk.slow.takeScan(), nullptr);
+    // The stream goes on.
+    talk.step(2);
+    EXPECT_EQ(talk.settle(talk.slow), "");
+    EXPECT_TRUE(testing::streamed(talk.slow).starts_with("SCAN c1 t=2.800 seq=14 "));
+}
+
+TEST(SessionSensors, AStreamStopsAfterTheFrameBeforeThat) {
+    SlowTalk talk;
+    EXPECT_EQ(talk.ask(talk.slow, "STOP"), "");
+    const std::string text = talk.settle(talk.slow);
+    EXPECT_TRUE(text.starts_with("SCAN c1 t=2.200 seq=11 "));
+    EXPECT_TRUE(text.ends_with("OK STOP\n"));
+    talk.step(10);
+    EXPECT_EQ(talk.slow.takeScan(), nullptr);
+}
+
+TEST(SessionSensors, TheRunEndsBeforeTheFrameIsMade) {
+    SlowTalk talk;
+    EXPECT_EQ(talk.ask(talk.slow, "SCAN"), "");
+    talk.slow.finish();
+    const std::string text = talk.slow.take();
+    EXPECT_TRUE(text.starts_with("SCAN c1 t=2.200 seq=11 "));
+    EXPECT_NE(text.find("SCAN c1 t=2.200 seq=11 ", 1), std::string::npos);
+    EXPECT_FALSE(talk.slow.waiting());
+}
+
+TEST(SessionSensors, TheSensorGoesBeforeTheFrameIsMade) {
+    SlowTalk talk;
+    EXPECT_EQ(talk.ask(talk.slow, "SCAN"), "");
+    talk.world.change(testing::scene("ispace size=8,6\n", "robot id=r1 at=0,0\n"));
+    EXPECT_EQ(talk.settle(talk.slow),
+              "EVENT gone t=2.200 id=c1\nERR 404 c1 is no more: open another connection\n");
 }
 
 TEST(SessionSensors, ALaserIsReadAsByTheRoleLaser) {

@@ -111,10 +111,10 @@ void Session::seek(Words words) {
     const auto time = parseSimTime(words[1]);
     if (!time || *time < SimTime(0))
         return error(416, {excerpt(words[1]), " is no time in seconds from 0 on"});
+    // What is being made is about the world as it is now.
+    if (!maySeek()) return hold(words, &Session::maySeek);
     if (!mayAskFor(words.front())) return;
     state_->steps().cut();
-    // It is about the world as it is now.
-    state_->collectAll();
     try {
         simulation.seek(*time, std::chrono::steady_clock::now());
     } catch (const FormatError& failure) {
