@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Python module against running servers and tools, which ctest puts into PATH."""
 
+import contextlib
 import math
 import os
 import subprocess
@@ -323,6 +324,41 @@ class LivingWorld(unittest.TestCase):
                 friend.reset()
 
 
+@contextlib.contextmanager
+def recorded():
+    """The record of a run of 2 s in which r1 drives ahead."""
+    with tempfile.TemporaryDirectory() as folder:
+        record = Path(folder) / "run"
+        script = Path(folder) / "script.txt"
+        script.write_text("0 r1 SPEED 0.3\n", encoding="ascii")
+        scene = (DATA / "square.env", DATA / "sensing.3dm")
+        with ispace.simrun(*scene, clock="fast", until=2, script=script, record=record, quiet=True) as run:
+            if run.wait(60) != 0:
+                raise AssertionError(run.messages)
+        yield record
+
+
+class Replays(unittest.TestCase):
+    def test_a_replay_is_taken_to_a_time(self):
+        with recorded() as record, ispace.simrun(replay=record, hold=True, clock="step") as run:
+            with run.world() as world, run.robot("r1") as robot:
+                self.assertEqual(world.end(), 2)
+                self.assertEqual(world.seek(1.503), 1.5)
+                there = robot.status()
+                self.assertEqual(there.time, 1.5)
+                self.assertEqual(world.seek(0), 0)
+                self.assertEqual(robot.status().pose, (-1, 0, 0))
+                world.advance(1.5)
+                self.assertEqual(robot.status(), there)
+                self.assertEqual(world.seek(99), 2)
+                with self.assertRaises(ispace.Refused):
+                    world.seek(-1)
+        with ispace.simrun(DATA / "square.env", clock="step", quiet=True) as run, run.world() as world:
+            self.assertEqual(world.end(), math.inf)
+            with self.assertRaisesRegex(ispace.Refused, "only a replay"):
+                world.seek(1)
+
+
 class Complete(unittest.TestCase):
     def test_both_clients_have_every_request(self):
         client = SOURCE / "lib" / "client"
@@ -330,7 +366,7 @@ class Complete(unittest.TestCase):
             "C++": "".join(path.read_text(encoding="utf-8") for path in (client / "ispace_client").glob("*.h")),
             "Python": "".join(path.read_text(encoding="utf-8") for path in (client / "python").glob("ispace/*.py")),
         }
-        with ispace.simrun(DATA / "square.env", DATA / "sensing.3dm", clock="step", quiet=True) as run:
+        with recorded() as record, ispace.simrun(replay=record, hold=True, clock="step") as run:
             for role in ("", "ROBOT r1", "PERSON h1", "LASER l1", "SENSOR c1", "WORLD"):
                 connection = ispace.Connection(run.address)
                 if role:

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -156,6 +157,30 @@ TEST_F(LivingWorld, EventsAreToldAsTheyHappen) {
     world.events();
     world.mark("all");
     EXPECT_EQ(events().back().kind, "mark");
+}
+
+TEST(LivingWorldReplay, IsTakenToATime) {
+    const std::string folder = ::testing::TempDir() + "/ispace_seek." + std::to_string(getpid());
+    std::ofstream(folder + ".txt") << "0 r1 SPEED 0.3\n";
+    EXPECT_EQ(TestServer({data("square.env"), data("sensing.3dm"), "--clock", "fast", "--until",
+                          "2", "--script", folder + ".txt", "--record", folder, "-q"})
+                  .wait(),
+              0);
+    TestServer server({"--replay", folder, "--hold", "--clock", "step"});
+    World world(server.address());
+    Robot robot(server.address(), "r1");
+    EXPECT_EQ(world.end(), 2);
+    EXPECT_EQ(world.seek(1.503), 1.5);
+    const double there = robot.status().pose.x;
+    EXPECT_GT(there, -1);
+    EXPECT_EQ(world.seek(0), 0);
+    EXPECT_EQ(robot.status().pose.x, -1);
+    world.step(300);
+    EXPECT_EQ(robot.status().pose.x, there);
+    EXPECT_EQ(world.seek(99), 2);
+    EXPECT_THROW(world.seek(-1), Refused);
+    std::filesystem::remove_all(folder);
+    std::remove((folder + ".txt").c_str());
 }
 
 TEST(LivingWorldToken, ChangesNeedItWhereItIsAskedFor) {

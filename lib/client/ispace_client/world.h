@@ -46,6 +46,11 @@ class World {
     /// Simulated seconds since the run began.
     double time() { return ask("TIME").fields.number("t"); }
     long steps() { return ask("TIME").fields.integer("steps"); }
+    /// When a replay ends, simulated seconds; infinity where that is not known, and of other runs.
+    double end() {
+        const Fields fields = ask("TIME").fields;
+        return fields.has("end") ? fields.number("end") : std::numeric_limits<double>::infinity();
+    }
     /// Where the robots and people are, m and degrees.
     std::map<std::string, Pose> poses() {
         std::map<std::string, Pose> poses;
@@ -71,6 +76,12 @@ class World {
     /// \return how many steps were taken: fewer if somebody else pauses or the run ends
     long step(long steps = 1, double timeout = std::numeric_limits<double>::infinity()) {
         return connection_.ask("STEP " + std::to_string(steps), timeout).fields.integer("n");
+    }
+    /// Takes a replay to its last step at or before so many simulated seconds, back or forth.
+    /// \param timeout seconds of wall time: going back reads the record anew
+    /// \return the time of that step
+    double seek(double seconds, double timeout = std::numeric_limits<double>::infinity()) {
+        return connection_.ask("SEEK " + textOf(seconds), timeout).fields.number("t");
     }
     /// Ends the run.
     void shutdown() { ask("SHUTDOWN"); }

@@ -19,7 +19,7 @@ import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, Iterator, List, Mapping, Sequence, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Union
 
 from .errors import RequirementMissed, ToolError
 
@@ -147,9 +147,9 @@ def arguments_of(options: Mapping[str, Option]) -> List[str]:
 
 
 @contextlib.contextmanager
-def operands(room: Room, layout: Placed) -> Iterator[List[str]]:
+def operands(room: Optional[Room], layout: Placed) -> Iterator[List[str]]:
     """Names of files for a room and a layout, for as long as the context lasts."""
-    names = [os.fspath(room)]
+    names = [] if room is None else [os.fspath(room)]
     if not isinstance(layout, Layout):
         yield names + ([] if layout is None else [os.fspath(layout)])
         return

@@ -22,7 +22,7 @@ from .world import World
 class Simrun:
     """A running simrun, which ends with its context; no other is touched. See simrun()."""
 
-    def __init__(self, room: Room, layout: Placed, clock: str, timeout: float, **options: Option) -> None:
+    def __init__(self, room: Optional[Room], layout: Placed, clock: str, timeout: float, **options: Option) -> None:
         self._context = contextlib.ExitStack()
         self._errors: IO[bytes] = tempfile.TemporaryFile()
         self._said = ""
@@ -120,7 +120,11 @@ class Simrun:
 
 
 def simrun(
-    room: Room, layout: Placed = None, clock: str = "real", timeout: float = 600, **options: Option
+    room: Optional[Room] = None,
+    layout: Placed = None,
+    clock: str = "real",
+    timeout: float = 600,
+    **options: Option,
 ) -> Simrun:
     """Starts simrun on a free port of this machine, and waits until it listens::
 
@@ -128,7 +132,8 @@ def simrun(
             with run.robot("r1") as robot:
                 robot.wait(robot.forward(1))
 
-    ``clock`` and ``options`` are those of simrun(1): ``dt``, ``until``, ``script``, ``record`` … At the end of
+    ``clock`` and ``options`` are those of simrun(1): ``dt``, ``until``, ``script``, ``record`` …; a run that was
+    recorded is served again by ``simrun(replay="run")``, in its own room. At the end of
     the context it stops what it has started, and nothing else. ``timeout``: seconds until it must listen.
     """
     return Simrun(room, layout, clock, timeout, **options)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Dict, Iterator, List, Optional, Union
 
 from ._connection import Address, Client
-from ._message import Fields, Pose, number_of, split
+from ._message import Fields, Pose, number_of, split, text_of
 from .errors import ProtocolError
 
 
@@ -49,6 +49,11 @@ class World(Client):
     def steps(self) -> int:
         return self._ask("TIME").fields.integer("steps")
 
+    def end(self) -> float:
+        """When a replay ends, simulated seconds; infinity where that is not known, and of other runs."""
+        fields = self._ask("TIME").fields
+        return fields.number("end") if "end" in fields else math.inf
+
     def poses(self) -> Dict[str, Pose]:
         """Where the robots and people are, m and degrees."""
         poses = {}
@@ -79,6 +84,13 @@ class World(Client):
         steps = round(seconds / self.dt)
         if steps > 0:
             self.step(steps, timeout)
+
+    def seek(self, seconds: float, timeout: float = math.inf) -> float:
+        """Takes a replay to its last step at or before so many simulated seconds; the time of that step.
+
+        Going back reads the record anew, which ``timeout`` seconds must be enough for.
+        """
+        return self._ask(f"SEEK {text_of(seconds)}", timeout).fields.number("t")
 
     def shutdown(self) -> None:
         """Ends the run."""
