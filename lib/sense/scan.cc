@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "base/simd.h"
 #include "sense/noise.h"
@@ -12,18 +13,32 @@
 
 namespace ispace {
 
-Beams::Beams(const Laser& laser, bool turns)
-    : first_(laser.first), step_(laser.step), turns_(turns) {
-    const auto count = static_cast<std::size_t>(laser.beams);
-    directions_.resize(count);
-    local_.resize(count);
-    for (std::size_t k = 0; k < count; ++k) {
-        const Vec2 flat = unitVector(laser.bearing(static_cast<int>(k)));
-        local_.set(k, {flat.x, flat.y, 0});
+std::shared_ptr<const Directions> LocalBeams::of(const Laser& laser) {
+    auto& known = known_[{laser.first, laser.step, laser.beams}];
+    if (known) return known;
+    const auto beams = std::make_shared<Directions>();
+    beams->resize(static_cast<std::size_t>(laser.beams));
+    for (int k = 0; k < laser.beams; ++k) {
+        const Vec2 flat = unitVector(laser.bearing(k));
+        beams->set(static_cast<std::size_t>(k), {flat.x, flat.y, 0});
     }
+    return known = beams;
+}
+
+Beams::Beams(const Laser& laser, bool turns, std::shared_ptr<const Directions> local)
+    : first_(laser.first),
+      step_(laser.step),
+      turns_(turns),
+      local_(local ? std::move(local) : LocalBeams().of(laser)) {
+    if (!turns_) directions_.resize(local_->size());
 }
 
 const Directions& Beams::at(const Pose3& pose) {
+    if (turns_) {
+        thread_local Directions turned;  // kept for its memory
+        turn(pose, turned);
+        return turned;
+    }
     if (!known_ || pose.heading != heading_ || pose.tilt != tilt_ || pose.roll != roll_)
         point(pose);
     return directions_;
@@ -48,8 +63,8 @@ void turnEach(const Directions& local, const BeamFrames& frames, Directions& out
 }
 
 /// Turns directions in the plane of the sensor into the world.
-ISPACE_SIMD_CLONES void turn(const double* x, const double* y, std::size_t count, Vec3 forward,
-                             Vec3 left, double* out_x, double* out_y, double* out_z) {
+ISPACE_SIMD_CLONES void turnAll(const double* x, const double* y, std::size_t count, Vec3 forward,
+                                Vec3 left, double* out_x, double* out_y, double* out_z) {
     for (std::size_t k = 0; k < count; ++k) {
         out_x[k] = x[k] * forward.x + y[k] * left.x;
         out_y[k] = x[k] * forward.y + y[k] * left.y;
@@ -59,23 +74,26 @@ ISPACE_SIMD_CLONES void turn(const double* x, const double* y, std::size_t count
 
 }  // namespace
 
+void Beams::turn(const Pose3& pose, Directions& directions) const {
+    directions.resize(local_->size());
+    directions.arc.reset();
+    if (pose.isLevel()) directions.arc = Directions::Arc{pose.heading + first_, step_};
+    const Frame3 frame(pose);
+    turnAll(local_->x.data(), local_->y.data(), local_->size(), frame.forward, frame.left,
+            directions.x.data(), directions.y.data(), directions.z.data());
+}
+
 void Beams::point(const Pose3& pose) {
     known_ = true;
     heading_ = pose.heading;
     tilt_ = pose.tilt;
     roll_ = pose.roll;
-    directions_.arc.reset();
-    if (pose.isLevel()) directions_.arc = Directions::Arc{heading_ + first_, step_};
-    if (pose.isLevel() && !turns_) {
-        for (std::size_t k = 0; k < directions_.size(); ++k) {
-            const Vec2 flat = unitVector(heading_ + (first_ + static_cast<double>(k) * step_));
-            directions_.set(k, {flat.x, flat.y, 0});
-        }
-        return;
+    if (!pose.isLevel()) return turn(pose, directions_);
+    directions_.arc = Directions::Arc{heading_ + first_, step_};
+    for (std::size_t k = 0; k < directions_.size(); ++k) {
+        const Vec2 flat = unitVector(heading_ + (first_ + static_cast<double>(k) * step_));
+        directions_.set(k, {flat.x, flat.y, 0});
     }
-    const Frame3 frame(pose);
-    turn(local_.x.data(), local_.y.data(), local_.size(), frame.forward, frame.left,
-         directions_.x.data(), directions_.y.data(), directions_.z.data());
 }
 
 std::vector<float> castBeams(const RayWorld& world, const Sensor& sensor) {
@@ -87,14 +105,15 @@ std::vector<float> castBeams(const RayWorld& world, const Sensor& sensor) {
 }
 
 LaserCaster::LaserCaster(const Worlds& worlds, const MovingBodies& bodies, const Sensor& sensor,
-                         bool turns, const ReadingOptions& options)
+                         bool turns, const ReadingOptions& options,
+                         std::shared_ptr<const Directions> local)
     : worlds_(&worlds),
       bodies_(&bodies),
       sensor_(&sensor),
       options_(options),
       id_hash_(hashOf(sensor.id)),
       own_(carrierOf(sensor)),
-      beams_(sensor.as<Laser>(), turns) {}
+      beams_(sensor.as<Laser>(), turns, std::move(local)) {}
 
 void LaserCaster::cast(Scan& scan) {
     const BeamsAmong all{0, static_cast<std::size_t>(sensor_->as<Laser>().beams), bodies_};

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "sensor/sensor.h"
@@ -30,27 +33,40 @@ struct Scan {
     }
 };
 
-/// Directions of the beams of one sensor, kept from scan to scan.
+/// Unit vectors of lasers' beams in the lasers' frames, kept once for all whose beams are alike:
+/// those of each of thousands would not stay in the processor's cache.
+class LocalBeams {
+  public:
+    /// z is 0.
+    std::shared_ptr<const Directions> of(const Laser& laser);
+
+  private:
+    std::map<std::tuple<Angle, Angle, int>, std::shared_ptr<const Directions>> known_;
+};
+
+/// Directions of the beams of one sensor; those of a sensor that stands are kept from scan to scan.
 ///
 /// Sums of degrees are exact where products of cosines are not: a level beam at 45 degrees of a
 /// sensor that faces 45 degrees runs exactly along y. The beams of a sensor that moves (`turns`)
 /// are rotated as a whole instead, which is faster.
 class Beams {
   public:
-    Beams(const Laser& laser, bool turns);
-    /// Unit vectors of all beams in the world frame; valid until the next call.
+    /// \param local those of this laser, if others share them
+    Beams(const Laser& laser, bool turns, std::shared_ptr<const Directions> local = nullptr);
+    /// Unit vectors of all beams in the world frame; valid until this thread asks for any others.
     const Directions& at(const Pose3& pose);
     /// Unit vectors in the sensor's frame.
-    [[nodiscard]] const Directions& local() const { return local_; }
+    [[nodiscard]] const Directions& local() const { return *local_; }
 
   private:
+    void turn(const Pose3& pose, Directions& directions) const;
     void point(const Pose3& pose);
 
     Angle first_, step_;
     bool turns_;
-    Directions local_;  // in the sensor's frame, z is 0
-    Directions directions_;
-    bool known_ = false;  // directions_ are those of:
+    std::shared_ptr<const Directions> local_;
+    Directions directions_;  // of a sensor that stands
+    bool known_ = false;     // directions_ are those of:
     Angle heading_, tilt_, roll_;
 };
 
@@ -79,9 +95,9 @@ struct BeamFrames {
 /// one per thread or per sensor. Results do not depend on earlier scans.
 class LaserCaster {
   public:
-    /// `turns`: see Beams. \pre all arguments outlive it
+    /// `turns`, `local`: see Beams. \pre the references outlive it
     LaserCaster(const Worlds& worlds, const MovingBodies& bodies, const Sensor& sensor, bool turns,
-                const ReadingOptions& options);
+                const ReadingOptions& options, std::shared_ptr<const Directions> local = nullptr);
     /// Sets the ranges of a scan from its frame, number, pose and beam_poses, including the blind
     /// zone and, if wanted, noise. \pre the worlds are prepared for the pose, and their mesh if
     /// beam_poses are not all level and at its height

@@ -59,6 +59,7 @@ SensorReader::SensorReader(Setting& setting, const Options& options)
     casters_.resize(count);
     parts_.resize(count);
     latest_.reserve(count);
+    LocalBeams beams;
     for (std::size_t i = 0; i < count; ++i) {
         periods_.emplace_back(sensors_[i].rate());
         is_heavy_.push_back(sensors_[i].isHeavy() ? 1 : 0);
@@ -73,7 +74,8 @@ SensorReader::SensorReader(Setting& setting, const Options& options)
         const auto* laser = sensors_[i].model<Laser>();
         if (laser == nullptr) continue;
         durations_[i] = durationOf(*laser, step_);
-        casters_[i].emplace(*worlds_, bodies_, *sensor, sensor->mount.has_value(), options_);
+        casters_[i].emplace(*worlds_, bodies_, *sensor, sensor->mount.has_value(), options_,
+                            beams.of(*laser));
     }
     if (count > 0) trail_ = Trail(*std::max_element(durations_.begin(), durations_.end()));
     spin_heights_ = spinHeights();
