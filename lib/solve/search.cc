@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "solve/branch_and_bound.h"
+#include "solve/kick_search.h"
 #include "solve/lagrange.h"
 #include "solve/overlap_bound.h"
 #include "solve/packed_search.h"
@@ -19,8 +20,10 @@ constexpr LagrangeLimits kQuick = {.gap = 0.01, .rounds = 8};
 constexpr double kSmallGap = 0.001;
 // A wider gap than this takes a tree too long.
 constexpr double kWideGap = 0.005;
+/// Before the bound that knows overlaps, which gains from a better solution, too.
+constexpr KickOptions kFewKicks = {.rounds = 1};
 constexpr int kOverlapRounds = 60;
-constexpr double kOverlapStall = 0.01;
+constexpr double kOverlapStall = 0.04;
 
 LagrangeLimits limitsOf(const SearchOptions& options) {
     LagrangeLimits limits;
@@ -162,15 +165,33 @@ class Search {
         result_.bound = std::min(result_.bound, bound.value);
         noteProgress(problem_, result_, progress_);
         if (options_.optimizer != Optimizer::Exact) return;
+        kick(kFewKicks);
         boundByOverlaps(bound);
+        kick(KickOptions());
         if (!progress_.stopped() && result_.best.value < result_.bound)
             result_ = branchAndBound(problem_, bound, std::move(result_), options_.gap, progress_,
                                      std::numeric_limits<std::uint64_t>::max(), options_.max_bytes,
                                      share_);
     }
-    void boundByOverlaps(const Bound& plain) {
+    /// More than a tree closes in a while.
+    [[nodiscard]] bool isWide() const {
         const auto open = static_cast<double>(result_.bound - result_.best.value);
-        if (open <= std::max(options_.gap, kWideGap) * static_cast<double>(result_.bound)) return;
+        return open > std::max(options_.gap, kWideGap) * static_cast<double>(result_.bound);
+    }
+    /// Where a wide gap is left the best solution may be what lacks.
+    void kick(KickOptions options) {
+        if (!isWide() || progress_.stopped()) return;
+        options.seed = options_.swap.seed;
+        options.enough = enoughOf(problem_, result_.bound, options_.gap);
+        result_ = recalled(share_, problem_, "kicked", unpackResult, progress_, [&] {
+            SearchResult better = result_;
+            better.best = improveByKicks(problem_, result_.best, options, progress_);
+            return better;
+        });
+        noteProgress(problem_, result_, progress_);
+    }
+    void boundByOverlaps(const Bound& plain) {
+        if (!isWide()) return;
         const LagrangeLimits limits = {.cut = result_.best.value,
                                        .gap = options_.gap,
                                        .rounds = kOverlapRounds,
