@@ -10,6 +10,7 @@
 #include "cli/outputs.h"
 #include "layout/run_reader.h"
 #include "view/encode_ahead.h"
+#include "view/gif_film.h"
 #include "view/run_picture.h"
 
 namespace ispace {
@@ -62,6 +63,17 @@ std::int64_t writeY4m(const SimrunOptions& options, RunPicture& picture) {
     return count;
 }
 
+std::int64_t writeGif(const SimrunOptions& options, RunPicture& picture) {
+    FileStream file(options.common.output);
+    GifFilm film(options.drawing.fps);
+    const std::int64_t count = takeFilm(options, picture, [&](const Image& image, int /*frame*/) {
+        file.stream() << film.add(image);
+    });
+    file.stream() << film.end();
+    file.commit();
+    return count;
+}
+
 std::int64_t writePictures(const SimrunOptions& options, const OutputSet& files,
                            RunPicture& picture) {
     const std::string name = "run";
@@ -83,6 +95,8 @@ void drawRecord(const SimrunOptions& options, const Scene& scene, const std::str
         count = writePictures(options, *files, picture);
     } else if (options.drawing.format == "y4m") {
         count = writeY4m(options, picture);
+    } else if (options.drawing.format == "gif") {
+        count = writeGif(options, picture);
     } else {
         readRecord(options, picture, [](double) {});
         const PictureFormat format = options.drawing.format == "svg"   ? PictureFormat::Svg

@@ -43,7 +43,7 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     addCommonOptions(
         line_, options_.common,
         "draw the record of --replay there instead of serving it: the ways (.png, .svg, "
-        ".pdf) or a film (.y4m; a folder or a pattern with %d for pictures)");
+        ".pdf) or a film (.y4m, .gif; a folder or a pattern with %d for pictures)");
     line_.parse(argc, argv);
     takeExpectations();
     checkReplay();

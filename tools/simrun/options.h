@@ -16,7 +16,7 @@ namespace ispace {
 
 /// What -o draws of a record.
 struct DrawingOptions {
-    std::string format;          ///< png, svg, pdf or y4m; "" without -o
+    std::string format;          ///< png, svg, pdf, y4m or gif; "" without -o
     int width = 1200;            ///< pixels
     double fps = 25, speed = 1;  ///< of a film: pictures a second, simulated seconds a second
 };

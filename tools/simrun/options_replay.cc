@@ -5,8 +5,16 @@
 #include "base/number.h"
 #include "cli/outputs.h"
 #include "simrun/options.h"
+#include "view/gif_film.h"
 
 namespace ispace {
+
+namespace {
+
+/// Of pictures, then of films.
+std::vector<std::string> formats() { return {"png", "svg", "pdf", "y4m", "gif"}; }
+
+}  // namespace
 
 void SimrunCommand::declareReplay() {
     SimrunOptions& o = options_;
@@ -43,8 +51,8 @@ void SimrunCommand::checkReplay() const {
 
 void SimrunCommand::declareDrawing() {
     DrawingOptions& o = options_.drawing;
-    line_.choice("--to", to_, {"png", "svg", "pdf", "y4m"},
-                 "format of FILE (default: its suffix, else png)", Enters::Nothing);
+    line_.choice("--to", to_, formats(), "format of FILE (default: its suffix, else png)",
+                 Enters::Nothing);
     constexpr int kNarrowest = 200, kWidest = 10000;
     line_.count("--width", "PIXELS", o.width, kNarrowest, kWidest,
                 "width of the picture or the film", Enters::Nothing);
@@ -87,18 +95,22 @@ void SimrunCommand::takeDrawing() {
         if (line_.given(option))
             throw UsageError(option + " does not go with -o, which serves nobody");
     const bool is_set = OutputSet::of(o.common.output).has_value();
-    o.drawing.format = is_set && to_.empty()
-                           ? "png"
-                           : outputFormat(to_, o.common.output, {"png", "svg", "pdf", "y4m"});
+    o.drawing.format =
+        is_set && to_.empty() ? "png" : outputFormat(to_, o.common.output, formats());
     if (is_set && o.drawing.format != "png")
-        throw UsageError("the pictures of a film are PNG; a film in one file is .y4m");
-    const bool is_film = is_set || o.drawing.format == "y4m";
+        throw UsageError("the pictures of a film are PNG; a film in one file is .y4m or .gif");
+    const bool is_gif = o.drawing.format == "gif";
+    const bool is_file = is_gif || o.drawing.format == "y4m";
+    const bool is_film = is_set || is_file;
     for (const char* option : {"--fps", "--speed", "--from"})
         if (!is_film && line_.given(option))
             throw UsageError(std::string(option) +
-                             " is about films: give -o FILE.y4m, or a folder");
+                             " is about films: give -o FILE.y4m, FILE.gif or a folder");
     if (!is_set && o.drawing.format != "svg")
-        refuseTerminal(o.common.output, o.drawing.format == "y4m" ? "a film" : "a picture");
+        refuseTerminal(o.common.output, is_file ? "a film" : "a picture");
+    if (is_gif && (o.drawing.fps < GifFilm::kSlowest || o.drawing.fps > GifFilm::kFastest))
+        throw UsageError("--fps of a GIF is from " + formatDouble(GifFilm::kSlowest) + " to " +
+                         formatDouble(GifFilm::kFastest) + ": give another one, or -o FILE.y4m");
 }
 
 }  // namespace ispace
