@@ -157,6 +157,31 @@ void meetDisc(const OutlineFrom& from, const double* x, const double* y, std::si
         });
 }
 
+/// The greatest of a block, in pairs, which need not wait for each other.
+ISPACE_INLINE float greatestOf(const float* range) {
+    const auto greater = [](float a, float b) { return a > b ? a : b; };
+    return greater(greater(greater(range[0], range[1]), greater(range[2], range[3])),
+                   greater(greater(range[4], range[5]), greater(range[6], range[7])));
+}
+
+/// ShortenedRanges::shorten for blocks of beams without cosines whose range is above `nearest`;
+/// then the greatest range of each block, at most `most`.
+ISPACE_SIMD_CLONES
+void shortenBlocks(const double* multiple, std::size_t blocks, double nearest, float farthest,
+                   float* range, float most, float* greatest) {
+    for (std::size_t block = 0; block < blocks; ++block) {
+        const std::size_t begin = block * BodyTable::kLanes;
+        ISPACE_LANES for (std::size_t i = begin; i < begin + BodyTable::kLanes; ++i) {
+            const float old = range[i], met = static_cast<float>(multiple[i]);
+            const bool is_shorter =
+                (met <= farthest) & (met < old) & (static_cast<double>(old) > nearest);
+            range[i] = simd::choose(is_shorter, met, old);
+        }
+        const float left = greatestOf(range + begin);
+        greatest[block] = left < most ? left : most;
+    }
+}
+
 /// Kept for its memory: threads read many scans.
 std::vector<float>& farthestOfThread() {
     thread_local std::vector<float> farthest;
@@ -173,6 +198,7 @@ BodyArc::BodyArc(Point3 origin, const Directions& directions, double max_range,
       bodies_(bodies),
       extents_(extents),
       far_(max_range),
+      most_(static_cast<float>(max_range * (1 + kFarSlack))),
       ranges_(ranges),
       count_(static_cast<double>(directions.size())),
       farthest_(farthestOfThread()) {
@@ -186,16 +212,11 @@ BodyArc::BodyArc(Point3 origin, const Directions& directions, double max_range,
 void BodyArc::findFarthest(std::size_t block) {
     const std::size_t begin = block * kBlock, end = std::min(begin + kBlock, directions_.size());
     float farthest = 0;
-    if (end - begin == kBlock) {
-        // In pairs, which need not wait for each other.
-        const std::span<const float> all = ranges_.all().subspan(begin, kBlock);
-        const float a = std::max(std::max(all[0], all[1]), std::max(all[2], all[3]));
-        const float b = std::max(std::max(all[4], all[5]), std::max(all[6], all[7]));
-        farthest = std::max(farthest, std::max(a, b));
-    } else {
+    if (end - begin == kBlock)
+        farthest = greatestOf(ranges_.all().data() + begin);
+    else
         for (std::size_t k = begin; k < end; ++k) farthest = std::max(farthest, ranges_[k]);
-    }
-    farthest_[block] = std::min(farthest, static_cast<float>(far_ * (1 + kFarSlack)));
+    farthest_[block] = std::min(farthest, most_);
 }
 
 Box2 BodyArc::view() const {
@@ -281,17 +302,12 @@ void BodyArc::meetCollected() {
     size_ = 0;
 }
 
+/// In whole blocks as far as there are any: beams that are not asked for pass the body, and cost
+/// nothing more.
 void BodyArc::meetBeams(const BodyFrom& body, std::int32_t first, std::int32_t last,
                         double nearest) {
     if (first > last) return;
     const auto begin = static_cast<std::size_t>(first), end = static_cast<std::size_t>(last) + 1;
-    meetSome(body, begin, end, nearest);
-    for (std::size_t block = begin / kBlock; block <= (end - 1) / kBlock; ++block)
-        findFarthest(block);
-}
-
-/// In whole blocks as far as there are any: beams that are not asked for cost nothing more.
-void BodyArc::meetSome(const BodyFrom& body, std::size_t begin, std::size_t end, double nearest) {
     constexpr std::size_t kBlocks = 8;
     double multiples[kBlocks * kBlock], slopes[kBlocks * kBlock];
     const OutlineFrom outline{body.axes().cos,   body.axes().sin,         body.offset().x,
@@ -309,12 +325,19 @@ void BodyArc::meetSome(const BodyFrom& body, std::size_t begin, std::size_t end,
         (outline.radius > 0 ? meetDisc : meetBox)(outline, directions_.x.data() + at,
                                                   directions_.y.data() + at, blocks, multiples,
                                                   slopes);
-        const std::size_t stop = std::min(end, at + blocks * kBlock);
-        for (std::size_t k = std::max(begin, at); k < stop; ++k)
-            shorten(k, {multiples[k - at], slopes[k - at]});
+        if (!ranges_.hasCosines()) {
+            shortenBlocks(multiples, blocks, nearest, ranges_.farthest(), ranges_.all().data() + at,
+                          most_, farthest_.data() + block);
+            continue;
+        }
+        for (std::size_t k = 0; k < blocks * kBlock; ++k)
+            shorten(at + k, {multiples[k], slopes[k]});
+        for (std::size_t k = 0; k < blocks; ++k) findFarthest(block + k);
     }
+    if (end <= whole * kBlock) return;
     for (std::size_t k = std::max(begin, whole * kBlock); k < end; ++k)
         shorten(k, body.meet(directions_[k]));
+    findFarthest(whole);
 }
 
 }  // namespace ispace

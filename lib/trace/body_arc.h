@@ -45,7 +45,6 @@ class BodyArc {
     [[nodiscard]] bool isSeen(const Waiting& waiting) const;
     [[nodiscard]] bool isSeen(std::int32_t first, std::int32_t last, double nearest) const;
     void meetBeams(const BodyFrom& body, std::int32_t first, std::int32_t last, double nearest);
-    void meetSome(const BodyFrom& body, std::size_t begin, std::size_t end, double nearest);
     void findFarthest(std::size_t block);
 
     Point3 origin_;
@@ -53,6 +52,7 @@ class BodyArc {
     std::span<const MovingBody> bodies_;
     std::span<const BodyExtent> extents_;
     double far_;
+    float most_;  // that and a little more
     ShortenedRanges ranges_;
     CosSin middle_;                 // of the arc
     double rate_ = 0;               // beams a radian

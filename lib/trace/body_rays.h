@@ -111,7 +111,9 @@ class ShortenedRanges {
         : far_(static_cast<float>(most)), ranges_(ranges), cosines_(cosines) {}
 
     [[nodiscard]] float operator[](std::size_t i) const { return ranges_[i]; }
-    [[nodiscard]] std::span<const float> all() const { return ranges_; }
+    [[nodiscard]] std::span<float> all() const { return ranges_; }
+    [[nodiscard]] bool hasCosines() const { return !cosines_.empty(); }
+    [[nodiscard]] float farthest() const { return far_; }
     /// `size`: the direction's length.
     void shorten(std::size_t i, const BodyMeeting& met, double size) {
         // As float32: what begins exactly at the limit is met.
