@@ -126,6 +126,9 @@ class Lattice {
     [[nodiscard]] lattice::Point pointOf(Point2 p) const {
         return {rounded(p.x - middle_.x), rounded(p.y - middle_.y)};
     }
+    [[nodiscard]] Point2 placeOf(lattice::Point p) const {
+        return middle_ + Vec2{unit_ * p.x, unit_ * p.y};
+    }
 
   private:
     /// A multiple of the step where doubles tell them apart, so that the same places are rounded
@@ -242,10 +245,15 @@ class Overlay::Maker {
     void add(const lattice::Edge& line, const lattice::EdgeLabels& labels,
              const std::vector<lattice::Point>& points, Kept& kept) const {
         const Ends ends{line.from, line.to, line.is_wall};
-        auto [left, right] = labels;
-        if (left != right) {
+        LayerLabel same = labels.left;  // on both sides
+        bool differ = labels.left != labels.right;
+        if (differ) {
             const lattice::Point p = points[line.from], q = points[line.to];
-            Edge edge{overlay_.placeOf({p.x, p.y}), overlay_.placeOf({q.x, q.y}), left, right};
+            Edge& edge = kept.edges.emplace_back();
+            edge.from = overlay_.placeOf({p.x, p.y});
+            edge.to = overlay_.placeOf({q.x, q.y});
+            edge.left = labels.left;
+            edge.right = labels.right;
             if (line.circle != kNone) {
                 const Circle& circle = curves_.circles[line.circle];
                 edge.bulge = bulgeOf(circle, edge.from, edge.to);
@@ -254,20 +262,21 @@ class Overlay::Maker {
             }
             if (coarse_.label) {
                 const double area = overlay_.areaLeftOf(edge);
-                kept.areas.emplace_back(left, area);
-                kept.areas.emplace_back(right, -area);
-                edge.left = left = coarse_.label(left);
-                edge.right = right = coarse_.label(right);
+                kept.areas.emplace_back(edge.left, area);
+                kept.areas.emplace_back(edge.right, -area);
+                edge.left = same = coarse_.label(edge.left);
+                edge.right = coarse_.label(edge.right);
+                differ = edge.left != edge.right;
             }
-            if (left != right) {
-                kept.edges.push_back(edge);
+            if (differ)
                 kept.ends.push_back(ends);
-            }
+            else
+                kept.edges.pop_back();
         } else if (coarse_.label) {
-            left = right = coarse_.label(left);
+            same = coarse_.label(same);
         }
-        if (line.is_wall && left == right && left != LayerLabel{}) {
-            kept.walls.push_back(left);
+        if (line.is_wall && !differ && same != LayerLabel{}) {
+            kept.walls.push_back(same);
             kept.ends_of_walls.push_back(ends);
         }
     }
@@ -308,28 +317,74 @@ class Overlay::Maker {
     std::vector<Index> numbers_;  // of a part's points in the table
 };
 
+namespace {
+
+/// Layers and walls, rounded to the lattice.
+struct Rounded {
+    ChordCurves curves;
+    Lattice lattice;
+    lattice::SetStore sets;
+
+    Rounded(std::span<const Layer> layers)
+        : curves(layers), lattice(curves.box), sets(layers.size()) {}
+
+    void forEachPart(std::span<const Layer> layers, std::span<const Segment2> walls,
+                     const lattice::PartVisitor& visit) {
+        lattice::PointTable table;
+        std::vector<lattice::Edge> edges =
+            latticeEdges(curves, layers.size(), walls, lattice, table);
+        curves.vertices = {};
+        edges = merged(std::move(edges), table.points(), sets);
+        lattice::forEachPart(layers, std::move(edges), std::move(table), sets, 0, visit);
+    }
+};
+
+}  // namespace
+
 Overlay::Overlay(std::span<const Layer> layers, std::span<const Segment2> walls,
                  const Coarse& coarse) {
-    ChordCurves curves(layers);
-    const Lattice lattice(curves.box);
-    unit_ = lattice.unit();
+    Rounded rounded(layers);
+    unit_ = rounded.lattice.unit();
     if (unit_ == 0) return;
-    middle_ = lattice.middle();
-    lattice::PointTable table;
-    lattice::SetStore sets(layers.size());
-    std::vector<lattice::Edge> edges = latticeEdges(curves, layers.size(), walls, lattice, table);
-    curves.vertices = {};
-    edges = merged(std::move(edges), table.points(), sets);
-    Maker maker(*this, curves, coarse);
-    lattice::forEachPart(layers, std::move(edges), std::move(table), sets, 0,
-                         [&](lattice::Part part) { return maker.visit(std::move(part)); });
+    middle_ = rounded.lattice.middle();
+    Maker maker(*this, rounded.curves, coarse);
+    rounded.forEachPart(layers, walls,
+                        [&](lattice::Part part) { return maker.visit(std::move(part)); });
     maker.finish();
 }
 
 void forEachArea(std::span<const Layer> layers,
                  const std::function<void(const LayerLabel&, double)>& add) {
-    const auto all_one = [](const LayerLabel&) { return LayerLabel(); };
-    const Overlay nothing(layers, {}, {.label = all_one, .add_area = add});
+    /// Of a part: what each edge between different labels adds to the area of what is on its left.
+    struct Areas {
+        std::vector<lattice::EdgeLabels> labels;
+        std::vector<double> areas;
+    };
+    Rounded rounded(layers);
+    const Lattice& lattice = rounded.lattice;
+    if (lattice.unit() == 0) return;
+    rounded.forEachPart(layers, {}, [&](lattice::Part part) {
+        auto found = std::make_shared<Areas>(Areas{std::move(part.labels), {}});
+        std::size_t count = 0;
+        found->areas.reserve(part.edges.size());
+        for (std::size_t i = 0; i < part.edges.size(); ++i) {
+            if (found->labels[i].left == found->labels[i].right) continue;
+            const lattice::Edge& edge = part.edges[i];
+            const Point2 from = lattice.placeOf(part.points[edge.from]);
+            const Point2 to = lattice.placeOf(part.points[edge.to]);
+            const double bulge =
+                edge.circle == kNone ? 0 : bulgeOf(rounded.curves.circles[edge.circle], from, to);
+            found->areas.push_back(Overlay::areaLeftOf(lattice.middle(), from, to, bulge));
+            found->labels[count++] = found->labels[i];
+        }
+        return [found, &add] {
+            for (std::size_t i = 0; i < found->areas.size(); ++i) {
+                add(found->labels[i].left, found->areas[i]);
+                add(found->labels[i].right, -found->areas[i]);
+            }
+            *found = {};
+        };
+    });
 }
 
 }  // namespace ispace

@@ -119,10 +119,15 @@ class Overlay {
     [[nodiscard]] Point2 placeOf(LatticePoint point) const {
         return middle_ + Vec2{unit_ * point.x, unit_ * point.y};
     }
-    /// What the edge adds to the area of what lies on its left.
-    [[nodiscard]] double areaLeftOf(const Edge& edge) const {
-        return cross(edge.from - middle_, edge.to - middle_) / 2 + edge.bulge;
+    /// What an edge adds to the area of what lies on its left.
+    static double areaLeftOf(Point2 middle, Point2 from, Point2 to, double bulge) {
+        return cross(from - middle, to - middle) / 2 + bulge;
     }
+    [[nodiscard]] double areaLeftOf(const Edge& edge) const {
+        return areaLeftOf(middle_, edge.from, edge.to, edge.bulge);
+    }
+    friend void forEachArea(std::span<const Layer> layers,
+                            const std::function<void(const LayerLabel&, double)>& add);
     /// The pieces with these boundaries: for each of edges_ and then of walls_.
     [[nodiscard]] std::vector<Region> trace(const std::vector<Sides>& sides) const;
     [[nodiscard]] std::vector<Curve> withArcs(std::span<const Region> regions) const;

@@ -139,28 +139,33 @@ using Graph = plane::Graph<Point>;
 /// The layers that contain a point, as it moves.
 class Place {
   public:
-    explicit Place(std::span<const Layer> layers) : layers_(layers), inside_(layers.size()) {}
+    explicit Place(std::span<const Layer> layers) {
+        layers_.reserve(layers.size());
+        for (const Layer& layer : layers)
+            // Numbers may be anything: their sum may wrap around.
+            layers_.push_back(
+                {layer.counts ? static_cast<std::uint64_t>(layer.number) : layer.marks,
+                 layer.counts, false});
+    }
 
     [[nodiscard]] const LayerLabel& label() const { return label_; }
-    /// Crosses the boundary of these.
-    void cross(std::span<const Index> set) {
-        for (const Index i : set) {
-            const bool enters = inside_[i] == 0;
-            inside_[i] = enters ? 1 : 0;
-            const Layer& layer = layers_[i];
-            if (!layer.counts) {
-                crossMarks(layer.marks, enters);
-                continue;
-            }
-            label_.count += enters ? 1 : -1;
-            // Numbers may be anything: their sum may wrap around.
-            const auto number = static_cast<std::uint64_t>(layer.number);
-            const auto sum = static_cast<std::uint64_t>(label_.numbers);
-            label_.numbers = static_cast<std::int64_t>(enters ? sum + number : sum - number);
-        }
+    /// Crosses the boundary of one layer.
+    void cross(Index i) {
+        Known& layer = layers_[i];
+        layer.is_inside = !layer.is_inside;
+        if (!layer.counts) return crossMarks(layer.value, layer.is_inside);
+        label_.count += layer.is_inside ? 1 : -1;
+        const auto sum = static_cast<std::uint64_t>(label_.numbers);
+        label_.numbers =
+            static_cast<std::int64_t>(layer.is_inside ? sum + layer.value : sum - layer.value);
     }
 
   private:
+    struct Known {
+        std::uint64_t value;  // number or marks
+        bool counts, is_inside;
+    };
+
     void crossMarks(std::uint64_t marks, bool enters) {
         for (; marks != 0; marks &= marks - 1) {
             const int bit = std::countr_zero(marks);
@@ -171,8 +176,7 @@ class Place {
         }
     }
 
-    std::span<const Layer> layers_;
-    std::vector<std::uint8_t> inside_;
+    std::vector<Known> layers_;
     std::array<Index, 64> marking_{};  // layers with each mark
     LayerLabel label_;
 };
@@ -181,21 +185,15 @@ class Place {
 /// another, or outside all. Those at the end of an edge that comes in from the left are left out.
 class Nesting {
   public:
-    Nesting(const Graph& graph, const Columns& columns, bool anything_enters)
-        : columns_(columns),
-          component_of_(graph.vertices(), kNone),
-          first_inside_(graph.halves() / 2, kNone) {
-        for (Index v = 0; v < graph.vertices(); ++v) {
-            if (component_of_[v] == kNone && columns.hold(graph.pointOf(v)) &&
-                !graph.leaving(v).empty())
-                addComponent(graph, v);
-        }
-        next_.assign(roots_.size(), kNone);
+    Nesting(const Graph& graph, const Columns& columns, bool anything_enters) {
+        findRoots(graph, columns);
         if (roots_.size() < 2 && !anything_enters) {
             outermost_ = roots_;
             return;
         }
         const std::vector<Index> below = graph.linesBelow(roots_);
+        next_.assign(roots_.size(), kNone);
+        first_inside_.assign(graph.halves() / 2, kNone);
         for (Index c = 0; c < roots_.size(); ++c) {
             if (below[c] == kNone) {
                 outermost_.push_back(roots_[c]);
@@ -211,43 +209,52 @@ class Nesting {
     /// Calls visit(lowest point) for each component directly above this line.
     template <typename Visit>
     void forEachAbove(Index line, Visit visit) const {
+        if (first_inside_.empty()) return;
         for (Index c = first_inside_[line]; c != kNone; c = next_[c]) visit(roots_[c]);
     }
 
   private:
-    void addComponent(const Graph& graph, Index start) {
-        const auto number = static_cast<Index>(roots_.size());
-        Index lowest = start;
-        bool is_entered = false;
-        std::vector<Index>& open = open_;
-        open.assign(1, start);
-        component_of_[start] = number;
-        while (!open.empty()) {
-            const Index v = open.back();
-            open.pop_back();
-            if (lexLess(graph.pointOf(v), graph.pointOf(lowest))) lowest = v;
-            for (const Index half : graph.leaving(v)) {
-                const Index other = graph.target(half);
-                if (component_of_[other] != kNone) continue;
-                if (!columns_.hold(graph.pointOf(other))) {
-                    is_entered = is_entered || graph.pointOf(other).x < columns_.first;
-                    continue;
-                }
-                component_of_[other] = number;
-                open.push_back(other);
-            }
+    /// Joins the points of each component in a tree whose root is the lowest of them.
+    void findRoots(const Graph& graph, const Columns& columns) {
+        lower_.assign(graph.vertices(), kNone);
+        std::vector<Index> entered;
+        for (Index half = 0; half < graph.halves(); half += 2) {
+            const Index from = graph.source(half), to = graph.target(half);
+            const bool has_from = columns.hold(graph.pointOf(from));
+            const bool has_to = columns.hold(graph.pointOf(to));
+            if (has_from && lower_[from] == kNone) lower_[from] = from;
+            if (has_to && lower_[to] == kNone) lower_[to] = to;
+            if (has_from && has_to)
+                join(graph, lowestFrom(from), lowestFrom(to));
+            else if (has_to && graph.pointOf(from).x < columns.first)
+                entered.push_back(to);
         }
-        if (!is_entered) roots_.push_back(lowest);
+        for (Index& v : entered) v = lowestFrom(v);
+        for (const Index root : entered) lower_[root] = kNone;
+        for (Index v = 0; v < lower_.size(); ++v)
+            if (lower_[v] == v) roots_.push_back(v);
     }
 
-    const Columns& columns_;
+    /// The root of its tree, to which all on the way are brought nearer.
+    Index lowestFrom(Index v) {
+        while (lower_[v] != v) {
+            lower_[v] = lower_[lower_[v]];
+            v = lower_[v];
+        }
+        return v;
+    }
 
-    std::vector<Index> component_of_;  // points
+    void join(const Graph& graph, Index root, Index other) {
+        if (root == other) return;
+        if (lexLess(graph.pointOf(other), graph.pointOf(root))) std::swap(root, other);
+        lower_[other] = root;
+    }
+
+    std::vector<Index> lower_;         // of each point; roots: themselves
     std::vector<Index> roots_;         // lowest point of each component
     std::vector<Index> next_;          // of the components right above the same line
-    std::vector<Index> first_inside_;  // component right above each line
+    std::vector<Index> first_inside_;  // component right above each line; empty: there is none
     std::vector<Index> outermost_;
-    std::vector<Index> open_;
 };
 
 /// A walk around all points in some columns.
@@ -255,13 +262,13 @@ class Walk {
   public:
     Walk(std::span<const Layer> layers, const std::vector<Edge>& edges, const SetStore& sets,
          const Graph& graph, const Columns& columns)
-        : edges_(edges),
-          sets_(sets),
-          graph_(graph),
-          columns_(columns),
-          place_(layers),
-          begun_(graph.vertices()),
-          labels_(edges.size()) {}
+        : sets_(sets), graph_(graph), columns_(columns), place_(layers), labels_(edges.size()) {
+        set_of_.reserve(edges.size());
+        for (const Edge& edge : edges) set_of_.push_back(edge.set);
+        is_done_.reserve(graph.vertices());
+        for (Index v = 0; v < graph.vertices(); ++v)
+            is_done_.push_back(columns.hold(graph.pointOf(v)) ? 0 : 1);
+    }
 
     std::vector<EdgeLabels> run() {
         const std::vector<Index> entering = linesThatEnter();
@@ -272,9 +279,9 @@ class Walk {
         }
         // Up along the left side of the columns.
         for (const Index line : entering) {
-            place_.cross(sets_[edges_[line].set]);
+            cross(line);
             nesting.forEachAbove(line, [&](Index lowest) { begin(lowest, 0); });
-            begin(edges_[line].to, graph_.placeOf(2 * line + 1));
+            begin(graph_.target(2 * line), graph_.placeOf(2 * line + 1));
             goOn(nesting);
         }
         return std::move(labels_);
@@ -284,24 +291,32 @@ class Walk {
     /// A turn around a point, from before the half-edge at `at`: at its end the place is the same
     /// again, so that turns begun meanwhile may be made one within another.
     struct Turn {
-        Index vertex, at;
+        std::span<const Index> about;
+        Index at;
         Index left;  // half-edges to come
     };
 
     /// Lines from the left of the columns, from below.
     [[nodiscard]] std::vector<Index> linesThatEnter() const {
         std::vector<Index> lines;
-        for (Index i = 0; i < edges_.size(); ++i)
-            if (graph_.pointOf(edges_[i].from).x < columns_.first) lines.push_back(i);
+        for (Index i = 0; i < set_of_.size(); ++i)
+            if (graph_.pointOf(graph_.source(2 * i)).x < columns_.first) lines.push_back(i);
         std::sort(lines.begin(), lines.end(),
                   [this](Index e, Index f) { return e != f && graph_.isAbove(f, e); });
         return lines;
     }
 
     void begin(Index vertex, Index at) {
-        if (begun_[vertex] || !columns_.hold(graph_.pointOf(vertex))) return;
-        begun_[vertex] = true;
-        turns_.push_back({vertex, at, static_cast<Index>(graph_.leaving(vertex).size())});
+        if (is_done_[vertex] != 0) return;
+        is_done_[vertex] = 1;
+        const std::span<const Index> about = graph_.leaving(vertex);
+        turns_.push_back({about, at, static_cast<Index>(about.size())});
+    }
+
+    void cross(Index line) {
+        const Index set = set_of_[line];
+        if (set < sets_.emptySet()) return place_.cross(set);  // of that layer alone
+        for (const Index layer : sets_[set]) place_.cross(layer);
     }
 
     void goOn(const Nesting& nesting) {
@@ -311,27 +326,29 @@ class Walk {
                 turns_.pop_back();
                 continue;
             }
-            const std::span<const Index> about = graph_.leaving(turn.vertex);
-            const Index half = about[turn.at];
-            turn.at = turn.at + 1 == about.size() ? 0 : turn.at + 1;
+            const Index half = turn.about[turn.at];
+            turn.at = turn.at + 1 == turn.about.size() ? 0 : turn.at + 1;
             --turn.left;
             const Index line = half / 2;
-            if (half % 2 == 0) labels_[line].right = place_.label();
-            place_.cross(sets_[edges_[line].set]);
             if (half % 2 == 0) {
-                labels_[line].left = place_.label();
+                EdgeLabels& labels = labels_[line];
+                labels.right = place_.label();
+                cross(line);
+                labels.left = place_.label();
                 nesting.forEachAbove(line, [&](Index lowest) { begin(lowest, 0); });
+            } else {
+                cross(line);
             }
             begin(graph_.target(half), graph_.placeOf(plane::twin(half)));
         }
     }
 
-    const std::vector<Edge>& edges_;
     const SetStore& sets_;
     const Graph& graph_;
     const Columns& columns_;
     Place place_;
-    std::vector<bool> begun_;  // points
+    std::vector<Index> set_of_;          // of lines
+    std::vector<std::uint8_t> is_done_;  // points: begun, or in other columns
     std::vector<Turn> turns_;
     std::vector<EdgeLabels> labels_;
 };

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -114,16 +113,6 @@ struct Edge {
 /// the boundary of each layer, are dropped unless they are walls. O(n)
 std::vector<Edge> merged(std::vector<Edge> edges, const std::vector<Point>& points, SetStore& sets);
 
-/// A part of the lattice.
-struct Cell {
-    Box box;                        ///< cells do not overlap and cover all points
-    std::span<const Index> edges;   ///< all that come within kReach of the box, and others
-    std::span<const Index> points;  ///< those in the box
-};
-
-/// In steps of the lattice, in x as well as in y.
-constexpr std::int32_t kReach = 2;
-
 /// Columns of the lattice, both ends included.
 struct Columns {
     std::int32_t first = std::numeric_limits<std::int32_t>::min();
@@ -131,13 +120,6 @@ struct Columns {
 
     [[nodiscard]] bool hold(Point p) const { return first <= p.x && p.x <= last; }
 };
-
-/// Divides the box of all points, as far as it lies in these columns, into square cells, and
-/// crowded ones again, until few edges come near each cell or dividing no longer separates them
-/// (because they lie along each other). The order depends only on the input. `visit` may add
-/// points; they belong to no cell. \pre edges begin at their lower end (lexLess)
-void forEachCell(const std::vector<Point>& points, const std::vector<Edge>& edges,
-                 const Columns& columns, const std::function<void(const Cell&)>& visit);
 
 /// \throws FormatError (without a place) for more crossings than some gigabytes hold
 void mustBeFew(std::size_t crossings);

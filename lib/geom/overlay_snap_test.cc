@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/overlay_lattice.h"
+#include "geom/overlay_cells.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace ispace::lattice {
@@ -239,6 +241,56 @@ TEST(Cells, coverPointsAndEdges) {
     });
     EXPECT_GT(cells, 50U);
     for (const int times : seen) EXPECT_EQ(times, 1);
+}
+
+/// Far apart and crowded: most points in the last of cells within cells.
+std::vector<Point> clusters(std::mt19937_64& random, int count) {
+    PointTable table;
+    for (int k = 0; k < count; ++k) {
+        const std::int32_t size = 1 << (3 * (k % 10) + 2);
+        std::uniform_int_distribution<std::int32_t> at(-size, size);
+        table.add({at(random) + (1 << 20), at(random)});
+    }
+    return table.points();
+}
+
+TEST(Cells, findAllPointsNearALine) {
+    std::mt19937_64 random(6);
+    for (const int count : {0, 1, 2, 40, 3000}) {
+        const std::vector<Point> points = clusters(random, count);
+        const PointGrid grid(points);
+        for (std::size_t k = 0; k + 1 < std::min<std::size_t>(points.size(), 400); ++k) {
+            Point a = points[k], b = points[points.size() - 1 - k];
+            if (k % 3 == 1) b = {a.x, b.y};
+            if (k % 3 == 2) b = {b.x, a.y};
+            if (b.x < a.x) std::swap(a, b);
+            std::vector<int> found(points.size());
+            grid.forEachNear(a, b, [&](Point p, Index number) {
+                EXPECT_EQ(p, points[number]);
+                ++found[number];
+            });
+            const double length = std::hypot(double(b.x) - a.x, double(b.y) - a.y);
+            const Box box{{a.x - kReach, std::min(a.y, b.y) - kReach},
+                          {b.x + kReach, std::max(a.y, b.y) + kReach}};
+            for (Index i = 0; i < points.size(); ++i) {
+                const auto off = static_cast<double>(std::abs(cross(a, b, points[i])));
+                EXPECT_LE(found[i], 1);
+                if (box.holds(points[i]) && off <= kReach * length) {
+                    EXPECT_EQ(found[i], 1);
+                }
+            }
+        }
+    }
+}
+
+TEST(Cells, lookAtFewPointsOfMany) {
+    std::mt19937_64 random(7);
+    const std::vector<Point> points = clusters(random, 30'000);
+    const PointGrid grid(points);
+    std::size_t looked_at = 0;
+    for (const Point p : points)
+        grid.forEachNear(p, {p.x + 1, p.y}, [&](Point, Index) { ++looked_at; });
+    EXPECT_LT(looked_at, 100 * points.size());
 }
 
 TEST(PlaneGraph, linesBelowByScanAndBySweep) {

@@ -10,6 +10,8 @@
 #include <numeric>
 #include <utility>
 
+#include "geom/overlay_cells.h"
+
 namespace ispace::lattice {
 
 namespace {
@@ -222,7 +224,7 @@ class Sweep {
 
     /// The ways of its edges, as far as they lie in it.
     void find(Strip& strip) const {
-        strip.table.reserve(2 * (strip.points.size() + 2 * strip.edges.size()));
+        strip.table.reserve(2 * strip.points.size());
         for (const Index i : strip.points) strip.table.add(points_[i]);
         strip.parts.reserve(strip.edges.size());
         for (const Index i : strip.edges) {

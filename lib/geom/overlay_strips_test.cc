@@ -251,6 +251,20 @@ TEST(OverlayStrips, CoarseTellsAndKeepsTheSame) {
     }
 }
 
+TEST(OverlayStrips, AreasAloneAreTheSame) {
+    using Told = std::vector<std::pair<LayerLabel, double>>;
+    for (const int count : {0, 1, 30, 900}) {
+        const std::vector<Layer> layers = manyViews(count);
+        Told kept, told;
+        Overlay(layers).addAreas(
+            [&](const LayerLabel& label, double area) { kept.emplace_back(label, area); });
+        forEachArea(layers,
+                    [&](const LayerLabel& label, double area) { told.emplace_back(label, area); });
+        EXPECT_EQ(told, kept) << "to the last bit, in the same order";
+    }
+    forEachArea({}, [](const LayerLabel&, double) { FAIL(); });
+}
+
 TEST(OverlayStrips, AnyNumberOfThreads) {
     const std::vector<Layer> layers = manyViews(900);
     const auto edges = [&layers](std::size_t threads) {

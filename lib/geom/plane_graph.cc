@@ -34,27 +34,43 @@ struct Lower {
 
 template <typename P>
 Graph<P>::Graph(const std::vector<P>& points, const std::vector<Line>& lines)
-    : points_(points), lines_(lines), first_(points.size() + 1, 0) {
+    : points_(points), lines_(lines), first_(points.size() + 1, 0), order_(2 * lines.size()) {
+    // About each point first those that lead to the right or straight up, which are even, then the
+    // others, to the left or down.
+    std::vector<Index> odd(points.size(), 0);
     for (const Line& line : lines) {
         ++first_[line.from + 1];
-        ++first_[line.to + 1];
+        ++odd[line.to];
     }
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    order_.resize(2 * lines.size());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (Index half = 0; half < halves(); ++half) order_[next[source(half)]++] = half;
+    std::vector<Index> even(points.size());
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        even[v] = first_[v];
+        const Index middle = first_[v] + first_[v + 1];
+        first_[v + 1] = middle + odd[v];
+        odd[v] = middle;
+    }
+    for (Index i = 0; i < lines.size(); ++i) {
+        order_[even[lines[i].from]++] = 2 * i;
+        order_[odd[lines[i].to]++] = 2 * i + 1;
+    }
     place_.resize(order_.size());
     for (Index v = 0; v + 1 < first_.size(); ++v) {
-        const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(first_[v]);
-        const auto end = order_.begin() + static_cast<std::ptrdiff_t>(first_[v + 1]);
-        std::sort(begin, end, [&](Index g, Index h) {
-            // Even ones lead to the right or straight up, the others to the left or down.
-            if (g % 2 != h % 2) return g % 2 < h % 2;
-            return g != h && isLeft(points_[v], points_[target(g)], points_[target(h)]);
-        });
-        for (auto half = begin; half != end; ++half)
-            place_[*half] = static_cast<Index>(half - begin);
+        sortAbout(v, first_[v], even[v]);
+        sortAbout(v, even[v], first_[v + 1]);
+        for (Index i = first_[v]; i < first_[v + 1]; ++i) place_[order_[i]] = i - first_[v];
     }
+}
+
+/// Counter-clockwise. \pre all lead to the right, or all to the left
+template <typename P>
+void Graph<P>::sortAbout(Index vertex, Index from, Index to) {
+    const auto less = [&](Index g, Index h) {
+        return g != h && isLeft(points_[vertex], points_[target(g)], points_[target(h)]);
+    };
+    // Mostly there are one or two.
+    if (to - from == 2 && less(order_[from + 1], order_[from]))
+        std::swap(order_[from], order_[from + 1]);
+    if (to - from > 2) std::sort(order_.begin() + from, order_.begin() + to, less);
 }
 
 template <typename P>

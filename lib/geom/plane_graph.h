@@ -62,11 +62,12 @@ class Graph {
     [[nodiscard]] std::vector<Index> linesBelow(const std::vector<Index>& vertices) const;
 
   private:
+    void sortAbout(Index vertex, Index from, Index to);
     void sweepBelow(const std::vector<Index>& vertices, std::vector<Index>& below) const;
 
     const std::vector<P>& points_;
     const std::vector<Line>& lines_;
-    std::vector<std::size_t> first_;  // of the half-edges that leave each point
+    std::vector<Index> first_;  // of the half-edges that leave each point
     std::vector<Index> order_;
     std::vector<Index> place_;
 };

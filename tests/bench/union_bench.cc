@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much of a floor k views cover together: the area of their union and the area seen by each
-// number of them at once, by Overlay, beside the bare union by CGAL (exact kernel) and by Clipper 6
-// where that is installed (libpolyclipping-dev; on a lattice of 2^-30 m). Views of lasers (4 m, 180
-// degrees) at free places of offices: some 26 vertices each and arcs.
+// number of them at once, by forEachArea as for `coverage`, beside the bare union by CGAL (exact
+// kernel) and by Clipper 6 where that is installed (libpolyclipping-dev; on a lattice of 2^-30 m).
+// Views of lasers (4 m, 180 degrees) at free places of offices: some 26 vertices each and arcs.
 //
 // union_bench --write FOLDER instead writes the outlines as JSON, for clipper2_union.js, and the
 // time that all depths take, in milliseconds of processor time.
@@ -124,7 +124,7 @@ Case makeCase(const std::string& name, const Scene& scene, std::size_t count) {
 /// Area seen by k views, of which the first is that of the union.
 std::vector<double> depthsOf(const std::vector<Layer>& layers) {
     std::vector<double> areas(layers.size() + 1);
-    Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
+    forEachArea(layers, [&](const LayerLabel& label, double area) {
         areas[static_cast<std::size_t>(label.count)] += area;
     });
     areas[0] = 0;
@@ -255,10 +255,9 @@ int main(int argc, char** argv) {
     }
     bench::TableReporter reporter(
         {{"union",
-          "Union of k views (4 m, 180 degrees): milliseconds for its area and that of all depths "
-          "by\n"
-          "Overlay, for the union alone by CGAL::join and by Clipper 6, their ratios, and how the\n"
-          "time grows beside n log n of the edges (chords included)\n" +
+          "Union of k views (4 m, 180 degrees): milliseconds for its area and that of all depths\n"
+          "by forEachArea, for the union alone by CGAL::join and by Clipper 6, their ratios, and\n"
+          "how the time grows beside n log n of the edges (chords included)\n" +
               bench::leftCell("scene", 12) + bench::cell("k", 6) + bench::cell("edges", 8) +
               bench::cell("layers", 9) + bench::cell("CGAL", 10) + bench::cell("ratio", 8) +
               bench::cell("Clipper", 10) + bench::cell("ratio", 8) + bench::cell("growth", 9)}});
