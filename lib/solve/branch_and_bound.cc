@@ -127,6 +127,9 @@ namespace {
 // Nodes at once, whatever the number of threads, so that the tree does not depend on it.
 constexpr std::size_t kBatch = 8;
 
+// With fewer sensors splits that look at what they do to the bound need fewer nodes.
+constexpr std::size_t kLeastAreas = 6;
+
 /// The highest bound that is within `gap` of a value.
 std::uint64_t goodBound(std::uint64_t value, double gap) {
     if (!(gap > 0)) return value;
@@ -202,6 +205,8 @@ class Tree {
           open_(max_bytes),
           share_(share) {
         result_.bound = std::min(result_.bound, bound.value);
+        if (result_.best.chosen.size() >= kLeastAreas)
+            areas_ = areasAbout(problem, result_.best.chosen, bound.multipliers);
         if (share_.ledger != nullptr) {
             name_ = share_.ledger->nameFor("tree");
             mark_ = markOf(bound);
@@ -231,7 +236,7 @@ class Tree {
             std::vector<BranchResult> results(batch.size());
             const std::uint64_t cut = this->cut();
             tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
-                results[i] = branch(problem_, batch[i], cut, progress);
+                results[i] = branch(problem_, batch[i], areas_, cut, progress);
                 batch[i] = BranchNode();
             });
             if (share_.ledger != nullptr && progress.stopped()) {
@@ -317,6 +322,7 @@ class Tree {
     double gap_;
     std::uint64_t enough_;
     std::uint64_t closed_ = 0;  // upper bound of what is neither open nor known, fine
+    Areas areas_;               // about the sensors of the best that was known before; empty: none
     OpenNodes open_;
     const SearchShare& share_;
     bool is_dealt_ = false;

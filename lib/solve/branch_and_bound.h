@@ -67,8 +67,9 @@ std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const 
 /// Branch and bound over the surviving candidates: improves `known` until its value and bound are
 /// within `gap`, its value reaches `enough`, or progress says stop. Each node has its own
 /// Lagrangian bound, warm-started from its parent's multipliers, and rules out more candidates.
-/// Best first, or depth first while open nodes take more than `max_bytes`. Deterministic unless
-/// stopped.
+/// Best first, or depth first while open nodes take more than `max_bytes`. If `known` has six
+/// sensors or more, nodes first branch on how many stand in the area about each of these.
+/// Deterministic unless stopped.
 ///
 /// If a budget can be split in more ways than CountChoice lists (20'000) there is no tree: `known`
 /// is returned unchanged. known.best need not be a solution: only better values are searched.

@@ -208,8 +208,8 @@ BranchResult unchanged(const BranchNode& node, std::uint64_t bound) {
 
 }  // namespace
 
-BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut,
-                    const Progress& progress) {
+BranchResult branch(const Problem& problem, const BranchNode& node, const Areas& areas,
+                    std::uint64_t cut, const Progress& progress) {
     if (node.bound <= cut) return closedAt(node.bound);
     if (progress.stopped()) return unchanged(node, node.bound);
     NodeRelaxation relaxed(node);
@@ -234,6 +234,8 @@ BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_
         result.children.push_back(std::move(now));
         return result;
     }
+    result.children = splitByAreas(now, relaxed, areas);
+    if (!result.children.empty()) return result;
     SplitNode split = splitNode(now, relaxed, search.best(), cut, progress);
     result.children = std::move(split.children);
     result.closed = std::max(result.closed, split.closed);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "solve/areas.h"
 #include "solve/relaxation.h"
 
 namespace ispace {
@@ -73,8 +74,9 @@ struct BranchResult {
 
 /// Processes a node: bounds it, fixes variables, and splits the rest. Only solutions better than
 /// `cut` (fine) matter. Deterministic, unless progress says stop: then the node is its only child.
-BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut,
-                    const Progress& progress);
+/// \param areas of the problem's candidates; empty: none
+BranchResult branch(const Problem& problem, const BranchNode& node, const Areas& areas,
+                    std::uint64_t cut, const Progress& progress);
 
 /// A node split into children.
 struct SplitNode {
@@ -95,6 +97,13 @@ struct SplitNode {
 SplitNode splitNode(const BranchNode& node, NodeRelaxation& relaxed,
                     const std::vector<std::uint32_t>& multipliers, std::uint64_t cut,
                     const Progress& progress);
+
+/// Branches on how many sensors stand in an area: one child for each number, with the bound of the
+/// node. The area is the one where by the relaxation the number is the least whole.
+/// \param relaxed as for splitNode()
+/// \return no children if no group has candidates in several areas
+std::vector<BranchNode> splitByAreas(const BranchNode& node, const NodeRelaxation& relaxed,
+                                     const Areas& areas);
 
 /// What remains of a group of a node.
 struct OpenGroup {

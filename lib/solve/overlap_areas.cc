@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "solve/areas.h"
+
 namespace ispace {
 
 namespace {
@@ -27,33 +29,15 @@ OverlapRelaxation::OverlapRelaxation(const Problem& problem, const Bound& plain,
       weights_(set_.size()),
       limits_(cells_.weights),
       start_(plain.multipliers),
+      area_of_(areasAbout(problem, near, plain.multipliers)[0]),
       cover_(problem.cells() + 1) {
-    part(near);
+    areas_.resize(near.size());
     set_.weighAll(WeightSums(start_), weights_);
     const std::uint32_t least = nthOf(weights_, sensors_);
     join(least);
     // As many are worth it as there are sensors.
     start_.push_back(least / kNumberUnit);
     limits_.push_back(std::numeric_limits<std::uint32_t>::max() / kNumberUnit);
-}
-
-/// Candidates belong to the sensor that sees most of the same.
-void OverlapRelaxation::part(const std::vector<Choice>& near) {
-    area_of_.assign(set_.size(), 0);
-    areas_.resize(near.size());
-    std::vector<std::uint32_t> most(set_.size(), 0);
-    for (std::uint32_t area = 0; area < near.size(); ++area) {
-        std::vector<std::uint32_t> seen(cells_.weights.size(), 0);
-        set_.forEachRun(near[area].candidate, [&](const CellRun& run) {
-            for (std::uint32_t i = run.first; i < run.end; ++i) seen[i] = start_[i];
-        });
-        set_.weighAll(WeightSums(seen), weights_);
-        for (std::size_t i = 0; i < set_.size(); ++i) {
-            if (weights_[i] <= most[i]) continue;
-            most[i] = weights_[i];
-            area_of_[i] = area;
-        }
-    }
 }
 
 /// Prim's algorithm for the spanning tree of most overlap between promising candidates.

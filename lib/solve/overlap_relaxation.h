@@ -115,7 +115,6 @@ class OverlapRelaxation {
         }
     };
 
-    void part(const std::vector<Choice>& near);
     void join(std::uint32_t least);
     const Runs& viewOf(std::uint32_t candidate);
     void addToBundle(std::uint32_t candidate);

@@ -20,6 +20,8 @@ constexpr LagrangeLimits kQuick = {.gap = 0.01, .rounds = 8};
 constexpr double kSmallGap = 0.001;
 // A wider gap than this takes a tree too long.
 constexpr double kWideGap = 0.005;
+/// A tree closes more of the gap of so many sensors than bounds and kicks do in the same time.
+constexpr std::size_t kFewSensors = 12;
 /// Before the bound that knows overlaps, which gains from a better solution, too.
 constexpr KickOptions kFewKicks = {.rounds = 1};
 constexpr int kOverlapRounds = 60;
@@ -166,8 +168,10 @@ class Search {
         noteProgress(problem_, result_, progress_);
         if (options_.optimizer != Optimizer::Exact) return;
         kick(kFewKicks);
-        boundByOverlaps(bound);
-        kick(KickOptions());
+        if (result_.best.chosen.size() > kFewSensors) {
+            boundByOverlaps(bound);
+            kick(KickOptions());
+        }
         if (!progress_.stopped() && result_.best.value < result_.bound)
             result_ = branchAndBound(problem_, bound, std::move(result_), options_.gap, progress_,
                                      std::numeric_limits<std::uint64_t>::max(), options_.max_bytes,

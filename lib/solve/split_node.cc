@@ -230,4 +230,62 @@ SplitNode splitNode(const BranchNode& node, NodeRelaxation& relaxed,
     return all;
 }
 
+namespace {
+
+/// How many sensors of a group stand in each area, by the relaxation. Areas of no candidate: -1.
+std::vector<double> sensorsIn(const NodeRelaxation& relaxed, std::size_t g, const Areas& areas) {
+    const OpenGroup& group = relaxed.groups()[g];
+    const std::vector<float>& frequencies = relaxed.frequencies()[g];
+    const std::vector<std::uint32_t>& original = relaxed.problem().kinds[group.kind].original;
+    std::vector<double> sensors;
+    for (std::size_t i = 0; i < group.list.size(); ++i) {
+        const std::size_t area = areas[group.kind][original[group.list[i]]];
+        if (area >= sensors.size()) sensors.resize(area + 1, -1.0);
+        sensors[area] = std::max(sensors[area], 0.0) + static_cast<double>(frequencies[i]);
+    }
+    const double total = std::accumulate(frequencies.begin(), frequencies.end(), 0.0);
+    if (total > 0)
+        for (double& of : sensors)
+            if (of > 0) of *= static_cast<double>(group.count) / total;
+    return sensors;
+}
+
+/// The candidates of a group that are in an area, and the others.
+Split splitByArea(const NodeRelaxation& relaxed, std::size_t g, const Areas& areas,
+                  std::size_t area) {
+    const OpenGroup& group = relaxed.groups()[g];
+    const std::vector<std::uint32_t>& original = relaxed.problem().kinds[group.kind].original;
+    Split split{g, {}, {}};
+    for (std::uint32_t i = 0; i < group.list.size(); ++i) {
+        const bool is_there = areas[group.kind][original[group.list[i]]] == area;
+        (is_there ? split.near : split.far).push_back(i);
+    }
+    return split;
+}
+
+}  // namespace
+
+std::vector<BranchNode> splitByAreas(const BranchNode& node, const NodeRelaxation& relaxed,
+                                     const Areas& areas) {
+    if (areas.empty()) return {};
+    std::size_t group = 0, area = 0;
+    double least_whole = -1;
+    for (std::size_t g = 0; g < relaxed.groups().size(); ++g) {
+        const std::vector<double> sensors = sensorsIn(relaxed, g, areas);
+        const auto inhabited =
+            std::count_if(sensors.begin(), sensors.end(), [](double of) { return of >= 0; });
+        if (inhabited < 2) continue;
+        for (std::size_t i = 0; i < sensors.size(); ++i) {
+            if (sensors[i] < 0) continue;
+            const double off = std::abs(sensors[i] - std::round(sensors[i]));
+            if (off <= least_whole) continue;
+            least_whole = off;
+            group = g;
+            area = i;
+        }
+    }
+    if (least_whole < 0) return {};
+    return childrenOf(node, splitByArea(relaxed, group, areas, area));
+}
+
 }  // namespace ispace
