@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Times Clipper 2's union, compiled to WebAssembly, of the outlines that `union_bench --write FOLDER`
-// wrote, beside what that says all depths take; processor time, the least of eight, without start-up.
+// wrote, beside what that says all depths, and an Overlay with its edges, take; processor time, the
+// least of eight, without start-up.
 //
 //     npm install clipper2-wasm && node clipper2_union.js FOLDER
 const fs = require('fs');
@@ -23,7 +24,7 @@ function millisecondsOf(work) {
 async function main(folder) {
     const here = createRequire(path.join(process.cwd(), 'package.json'));
     const clipper = await here('clipper2-wasm/dist/umd/clipper2z.js')();
-    console.log('scene and k         depths, ms  Clipper 2, WebAssembly, ms   ratio');
+    console.log('scene and k         depths, ms  Overlay, ms  Clipper 2, WebAssembly, ms   ratio');
     for (const file of fs.readdirSync(folder).filter((name) => name.endsWith('.json'))) {
         const test = JSON.parse(fs.readFileSync(path.join(folder, file)));
         const paths = new clipper.Paths64();
@@ -38,6 +39,7 @@ async function main(folder) {
         if (Math.abs(area - test.area) > 1e-8 * test.area)
             throw new Error(`${file}: the union has ${area} m2, wanted ${test.area}`);
         console.log(file.replace('.json', '').padEnd(16), test.depths_ms.toFixed(2).padStart(13),
+                    test.overlay_ms.toFixed(2).padStart(12),
                     spent.toFixed(2).padStart(27), (spent / test.depths_ms).toFixed(2).padStart(7));
     }
 }

@@ -5,7 +5,8 @@
 // Views of lasers (4 m, 180 degrees) at free places of offices: some 26 vertices each and arcs.
 //
 // union_bench --write FOLDER instead writes the outlines as JSON, for clipper2_union.js, and the
-// time that all depths take, in milliseconds of processor time.
+// times that all depths and an Overlay that keeps its edges take, in milliseconds of processor
+// time.
 #include <CGAL/Boolean_set_operations_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <benchmark/benchmark.h>
@@ -218,8 +219,12 @@ void write(const Case& test, const std::string& folder) {
         outlines += (outlines.empty() ? "[" : ",\n[") + numbers + ']';
     }
     const double ours = millisecondsOf([&] { benchmark::DoNotOptimize(depthsOf(test.layers)); });
+    const double kept = millisecondsOf([&] {
+        const Overlay overlay(test.layers);
+        benchmark::DoNotOptimize(overlay.edges().data());
+    });
     writeAll(folder + '/' + test.scene + '-' + std::to_string(test.layers.size()) + ".json",
-             "{\"depths_ms\":" + formatDouble(ours) +
+             "{\"depths_ms\":" + formatDouble(ours) + ",\"overlay_ms\":" + formatDouble(kept) +
                  ",\"area\":" + formatDouble(depthsOf(test.chord_layers)[0]) + ",\"outlines\":[\n" +
                  outlines + "]}\n");
 }
