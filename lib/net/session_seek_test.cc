@@ -100,6 +100,8 @@ TEST_F(SessionSeekTest, GoingBackUndoesTheChangeUnderWay) {
     EXPECT_EQ(talk_.ask(seeker, "LIST").substr(0, 21), "OK LIST robots=r1,r2 ");
     EXPECT_EQ(talk_.ask(seeker, "POSES").substr(0, 48),
               "OK POSES t=0.100 n=2 poses=r1,0.100,0.000,0.000;");
+    EXPECT_EQ(ask(seeker, "RESET"), "OK RESET t=0.100\n");
+    EXPECT_EQ(talk_.ask(seeker, "LIST").substr(0, 21), "OK LIST robots=r1,r2 ") << "loaded no more";
 }
 
 TEST_F(SessionSeekTest, WhoGoesMeanwhileSeeksNothing) {

@@ -40,6 +40,7 @@ SimTime World::time() const { return data_->time; }
 const RunOptions& World::options() const { return data_->options; }
 const Scene& World::scene() const { return *data_->scene; }
 std::shared_ptr<const Scene> World::sharedScene() const { return data_->scene; }
+std::shared_ptr<const Scene> World::sharedStart() const { return data_->latest_start; }
 std::int64_t World::changes() const { return data_->changes; }
 SimTime World::stepLength() const { return data_->step_length; }
 std::int64_t World::steps() const { return data_->steps; }
@@ -255,7 +256,9 @@ std::shared_ptr<const void> World::change(const NextScene& next,
 
 std::shared_ptr<const void> World::restart(const NextScene& next) {
     data_->sensors.finish();
-    return std::exchange(data_, data_->next(next.setting, {}));
+    auto after = data_->next(next.setting, {});
+    after->latest_start = next.scene;
+    return std::exchange(data_, std::move(after));
 }
 
 void World::change(Scene scene, std::span<const std::string> placed) {

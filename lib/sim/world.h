@@ -114,6 +114,8 @@ class World {
     /// What is in it, as of the last change. Views of its ids last until the next one.
     [[nodiscard]] const Scene& scene() const;
     [[nodiscard]] std::shared_ptr<const Scene> sharedScene() const;
+    /// The scene in which everything started last: that of the beginning, or of the last restart.
+    [[nodiscard]] std::shared_ptr<const Scene> sharedStart() const;
     /// Robots and people, then robots or people alone, in the order of the scene.
     [[nodiscard]] std::span<const Mover> movers() const;
     [[nodiscard]] std::span<const PlacedRobot> robots() const;

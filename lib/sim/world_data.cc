@@ -23,6 +23,7 @@ World::Data::Data(std::shared_ptr<Setting> room, SimTime length, const RunOption
     : setting(std::move(room)),
       scene(setting->scene),
       start(scene),
+      latest_start(scene),
       options(run),
       step_length(length),
       movers(moversOf(*scene)),
@@ -110,6 +111,7 @@ std::shared_ptr<World::Data> World::Data::next(
     std::shared_ptr<Setting> room, const std::unordered_set<std::string_view>& stayers) const {
     auto after = std::make_shared<Data>(std::move(room), step_length, options);
     after->start = start;
+    after->latest_start = latest_start;
     after->time = time;
     after->steps = steps;
     after->changes = changes + 1;

@@ -99,7 +99,8 @@ struct World::Data {
 
     std::shared_ptr<Setting> setting;
     std::shared_ptr<const Scene> scene;  // of it
-    std::shared_ptr<const Scene> start;  // of the run
+    std::shared_ptr<const Scene> start;         // of the run
+    std::shared_ptr<const Scene> latest_start;  // that, or of the last restart
     RunOptions options;
     SimTime step_length, time{};
     std::int64_t steps = 0, changes = 0;

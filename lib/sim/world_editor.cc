@@ -111,9 +111,7 @@ void Editing::follow() {
 }  // namespace
 
 WorldEditor::WorldEditor(Simulation& simulation, std::shared_ptr<const SceneSource> source)
-    : simulation_(&simulation),
-      source_(std::move(source)),
-      start_(simulation.world().sharedScene()) {}
+    : simulation_(&simulation), source_(std::move(source)) {}
 
 bool WorldEditor::finds(const Edit& edit) const {
     const auto& ids = simulation_->world().scene().ids;
@@ -133,7 +131,7 @@ WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
     return {[editing] { editing->prepare(); }, [editing] { return editing->adopt(); }};
 }
 
-WorldChange WorldEditor::load(std::string environment, std::string layout) {
+WorldChange WorldEditor::load(std::string environment, std::string layout) const {
     const auto next = std::make_shared<NextScene>();
     return {[next, source = source_, prepare = simulation_->world().preparer(),
              environment = std::move(environment), layout = std::move(layout)] {
@@ -141,18 +139,13 @@ WorldChange WorldEditor::load(std::string environment, std::string layout) {
                 static_cast<void>(scene.environment.indoorIndex());
                 *next = prepare(std::move(scene));
             },
-            [this, next] {
-                auto old = simulation_->world().restart(*next);
-                start_ = next->scene;
-                return old;
-            }};
+            [this, next] { return simulation_->world().restart(*next); }};
 }
 
 WorldChange WorldEditor::reset() const {
     const auto next = std::make_shared<NextScene>();
-    return {[next, start = start_, prepare = simulation_->world().preparer()] {
-                *next = prepare(Scene(*start));
-            },
+    return {[next, start = simulation_->world().sharedStart(),
+             prepare = simulation_->world().preparer()] { *next = prepare(Scene(*start)); },
             [this, next] { return simulation_->world().restart(*next); }};
 }
 

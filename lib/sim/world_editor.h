@@ -65,14 +65,13 @@ class WorldEditor {
     /// whose place or heading is set are where they are then but for that.
     [[nodiscard]] WorldChange edit(std::vector<Edit> edits) const;
     /// It starts anew in another scene, see World::restart.
-    [[nodiscard]] WorldChange load(std::string environment, std::string layout);
-    /// It starts anew in the scene of the beginning, or loaded last.
+    [[nodiscard]] WorldChange load(std::string environment, std::string layout) const;
+    /// It starts anew in the scene in which it did so last, see World::sharedStart.
     [[nodiscard]] WorldChange reset() const;
 
   private:
     Simulation* simulation_;
     std::shared_ptr<const SceneSource> source_;
-    std::shared_ptr<const Scene> start_;
 };
 
 }  // namespace ispace
