@@ -43,8 +43,10 @@ constexpr double kInstant = 1e-13;
 /// A way to stop that misses its goal by this share is exact but for rounding.
 constexpr double kStopTolerance = 1e-12;
 /// A piece of quadrature turns by at most so many radians, and its rate changes at most so much
-/// (square root of the radians that makes): five points are then good to 1e-14 of the way.
+/// (square root of the radians that makes): five points are then good to 1e-14 of the way. So are
+/// three if it turns little, as in most steps.
 constexpr double kMaxTurn = 0.25, kMaxBend = 0.3;
+constexpr double kLittleTurn = 0.015, kLittleBend = 0.01;
 
 /// A time of constant acceleration.
 struct Phase {
@@ -179,59 +181,89 @@ class Run {
     bool reverses_ = false;
 };
 
-double sinc(double x) { return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x; }
+/// Radians up to which four terms of Taylor's series are good to rounding: steps turn by less as a
+/// rule.
+constexpr double kLittle = 0.03;
+
+double sinc(double x) {
+    if (std::abs(x) > kLittle) return std::sin(x) / x;
+    const double square = x * x;
+    return 1 - square * (1.0 / 6) * (1 - square * (1.0 / 20) * (1 - square * (1.0 / 42)));
+}
+
+/// Of an angle in radians.
+CosSin cosSinOf(double x) {
+    if (std::abs(x) > kLittle) return {std::cos(x), std::sin(x)};
+    const double square = x * x;
+    return {1 - square * 0.5 * (1 - square * (1.0 / 12) * (1 - square * (1.0 / 30))), x * sinc(x)};
+}
+
+/// A vector of the frame that faces along `forward`.
+Vec2 turned(Vec2 local, Vec2 forward) {
+    return local.x * forward + local.y * perpendicular(forward);
+}
 
 /// A speed along the heading and one to its left, each with its acceleration.
 struct Velocity {
     Vec2 speed, accel;
 };
 
+/// Points in [-1, 1] and their weights, by Gauss and Legendre.
+template <std::size_t kCount>
+struct Rule {
+    std::array<double, kCount> nodes, weights;
+};
+constexpr Rule<3> kThree = {{-0.7745966692414834, 0, 0.7745966692414834},
+                            {5.0 / 9, 8.0 / 9, 5.0 / 9}};
+constexpr Rule<5> kFive = {
+    {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640},
+    {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+     0.2369268850561891}};
+
+/// Displacement from time `begin` on for twice `half`.
+template <std::size_t kCount>
+Vec2 quadrature(const Rule<kCount>& rule, const Velocity& velocity, double rate, double rate_accel,
+                double begin, double half) {
+    Vec2 sum;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const double t = begin + half * (1 + rule.nodes[i]);
+        const auto [cos, sin] = cosSinOf(t * (rate + rate_accel * t / 2));
+        sum =
+            sum + half * rule.weights[i] * turned(velocity.speed + t * velocity.accel, {cos, sin});
+    }
+    return sum;
+}
+
 /// Displacement while speeds and rate of turning (radians) change, in a frame that faces along the
 /// heading of the start.
 Vec2 quadrature(const Velocity& velocity, double rate, double rate_accel, double time) {
-    constexpr std::array<double, 5> kNodes = {-0.9061798459386640, -0.5384693101056831, 0,
-                                              0.5384693101056831, 0.9061798459386640};
-    constexpr std::array<double, 5> kWeights = {0.2369268850561891, 0.4786286704993665,
-                                                0.5688888888888889, 0.4786286704993665,
-                                                0.2369268850561891};
-    const double fastest = std::max(std::abs(rate), std::abs(rate + rate_accel * time));
-    const double pieces = std::ceil(std::max(
-        {1.0, fastest * time / kMaxTurn, std::sqrt(std::abs(rate_accel)) * time / kMaxBend}));
-    const double half = time / pieces / 2;
+    const double turn = std::max(std::abs(rate), std::abs(rate + rate_accel * time)) * time;
+    if (turn <= kLittleTurn && std::abs(rate_accel) * time * time <= kLittleBend * kLittleBend)
+        return quadrature(kThree, velocity, rate, rate_accel, 0, time / 2);
+    const double pieces = std::ceil(
+        std::max({1.0, turn / kMaxTurn, std::sqrt(std::abs(rate_accel)) * time / kMaxBend}));
     Vec2 sum;
-    for (double piece = 0; piece < pieces; ++piece) {
-        for (std::size_t i = 0; i < kNodes.size(); ++i) {
-            const double t = half * (2 * piece + 1 + kNodes[i]);
-            const double weight = half * kWeights[i];
-            const double angle = t * (rate + rate_accel * t / 2);
-            const Vec2 along{std::cos(angle), std::sin(angle)};
-            sum = sum + weight * (velocity.speed.x + velocity.accel.x * t) * along;
-            if (velocity.speed.y != 0 || velocity.accel.y != 0)
-                sum =
-                    sum + weight * (velocity.speed.y + velocity.accel.y * t) * perpendicular(along);
-        }
-    }
+    for (double piece = 0; piece < pieces; ++piece)
+        sum = sum + quadrature(kFive, velocity, rate, rate_accel, piece * time / pieces,
+                               time / pieces / 2);
     return sum;
 }
 
 bool rests(const Run& run) { return run.speed() == 0 && run.accel() == 0; }
 
-Vec2 displacement(Angle heading, const Run& drive, const Run& side, const Run& turn, double time) {
-    if (rests(drive) && rests(side)) return {};
+/// \param forward unit vector along the heading of the start
+Vec2 displacement(Vec2 forward, const Run& drive, const Run& side, const Run& turn, double time) {
     const bool constant = drive.accel() == 0 && side.accel() == 0 && turn.accel() == 0;
     if (constant || rests(turn)) {
         // Along the heading in the middle of an arc; a straight way is an arc of no turn.
-        const Angle half = Angle::degrees(turn.way(time) / 2);
-        const Vec2 along = unitVector(heading + half);
-        const Vec2 ahead = drive.way(time) * sinc(half.radians()) * along;
-        if (rests(side)) return ahead;
-        return ahead + side.way(time) * sinc(half.radians()) * perpendicular(along);
+        const double half = Angle::degrees(turn.way(time) / 2).radians();
+        const auto [cos, sin] = cosSinOf(half);
+        return sinc(half) * turned({drive.way(time), side.way(time)}, turned({cos, sin}, forward));
     }
     const Velocity velocity{{drive.speed(), side.speed()}, {drive.accel(), side.accel()}};
-    const Vec2 local = quadrature(velocity, Angle::degrees(turn.speed()).radians(),
-                                  Angle::degrees(turn.accel()).radians(), time);
-    const Vec2 forward = unitVector(heading);
-    return local.x * forward + local.y * perpendicular(forward);
+    return turned(quadrature(velocity, Angle::degrees(turn.speed()).radians(),
+                             Angle::degrees(turn.accel()).radians(), time),
+                  forward);
 }
 
 void setDeviation(Advance& to, const Run& drive, const Run& side, const Run& turn,
@@ -338,7 +370,9 @@ Advance advance(const Motion& from, const MotionLimits& limits, const double dur
     double left = duration;
     while (left > 0) {
         const double time = std::min({left, drive.rest(), turn.rest(), side.rest()});
-        pose.position = pose.position + displacement(pose.heading, drive, side, turn, time);
+        if (!rests(drive) || !rests(side))
+            pose.position =
+                pose.position + displacement(to.motion.forward(), drive, side, turn, time);
         pose.heading = pose.heading + Angle::degrees(turn.way(time));
         drive.pass(time);
         turn.pass(time);

@@ -86,6 +86,15 @@ struct Motion {
     Axis side;       ///< metres, to the left
     Angle turn_end;  ///< the heading at which a turn of given angle ends
 
+    /// Unit vector along the heading.
+    [[nodiscard]] Vec2 forward() const {
+        return kept_heading == pose.heading ? kept_forward : unitVector(pose.heading);
+    }
+    /// Keeps it, for those who ask more than once.
+    void keepForward() {
+        kept_forward = forward();
+        kept_heading = pose.heading;
+    }
     /// Sets the goals of a command. Speed, Rotspeed and Sidespeed keep the speeds that the others
     /// have set. Path brings all to rest: who walks it sets the goals, see route.h.
     void command(const Command& command);
@@ -95,6 +104,9 @@ struct Motion {
     [[nodiscard]] bool arrived() const;
     /// At rest at once, without a goal.
     void halt();
+
+    Vec2 kept_forward{1, 0};  ///< of kept_heading, see forward()
+    Angle kept_heading;
 };
 
 /// Result of a motion, and how far it strayed from an even motion along its chord.

@@ -21,7 +21,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 Vec2 velocityOf(const Motion& motion) {
     if (motion.drive.speed == 0 && motion.side.speed == 0) return {};
-    const Vec2 ahead = unitVector(motion.pose.heading);
+    const Vec2 ahead = motion.forward();
     return motion.drive.speed * ahead + motion.side.speed * perpendicular(ahead);
 }
 

@@ -65,6 +65,9 @@ void World::Data::propose(std::size_t mover, const Surroundings& around) {
         move.drift = odometers[mover].stray(move.to.motion, motion.pose, steps);
         move.to.path += length(move.drift);
     }
+    // For the next step, and for those who steer by it.
+    if (move.to.motion.drive.speed != 0 || move.to.motion.side.speed != 0)
+        move.to.motion.keepForward();
     states[mover].blocked = elementAhead(mover);
 }
 
