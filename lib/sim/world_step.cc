@@ -61,7 +61,7 @@ void World::Data::propose(std::size_t mover, const Surroundings& around) {
     }
     setLimits(mover);
     move.to = advance(motion, states[mover].limits, move.duration);
-    if (mover < odometers.size() && odometers[mover].isNoisy()) {
+    if (options.noise && mover < odometers.size() && odometers[mover].isNoisy()) {
         move.drift = odometers[mover].stray(move.to.motion, motion.pose, steps);
         move.to.path += length(move.drift);
     }
@@ -177,9 +177,9 @@ void World::Data::finish(std::size_t mover, Chunk& chunk) {
     Motion& motion = next_motions[mover];
     motion = moves[mover].to.motion;
     chunk.moved = chunk.moved || motion.pose != motions[mover].pose;
-    if (movers[mover].is_person)
+    if (mover >= odometers.size())
         walk(mover);
-    else
+    else if (options.noise)
         odometers[mover].count(steps);
     if (states[mover].running == 0) return;
     const auto end = [&](Outcome outcome) { chunk.ends.push_back({mover, 0, outcome, time}); };
