@@ -168,7 +168,7 @@ std::vector<ShadowBody> opaqueBodiesOf(const Environment& environment) {
         for (const Plate& plate : body.plates) addPlate(plate, bodies);
         addAll({{}, {}, {}, body.meshes}, ShadowBody::Kind::Loose, bodies);
     }
-    add(floorMesh(environment.indoor()), ShadowBody::Kind::Flat, bodies);
+    add(environment.floor(), ShadowBody::Kind::Flat, bodies);
     return bodies;
 }
 

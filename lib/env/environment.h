@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/lazy.h"
@@ -37,7 +38,10 @@ class Environment {
     ///         fence outlines, doors and windows that are in no wall or overlap, nothing that
     ///         encloses, or lines that do not close ("not enclosed: 0.12 m between w3 and w4 near
     ///         (4.1, 2.0)"); the last two only where every wall has made its lines
-    Environment(std::span<const Record> records, std::span<const std::string> ids);
+    /// \param stored what stored() gave for records with the same walls, openings and inside
+    ///        points, which need not be derived again; of others, or damaged: as if there were none
+    Environment(std::span<const Record> records, std::span<const std::string> ids,
+                std::string_view stored = {});
 
     [[nodiscard]] const std::vector<Element>& elements() const { return data_->elements; }
     /// Bounding rectangle of the wall lines (thesis, Limit Acquire).
@@ -49,12 +53,16 @@ class Environment {
     [[nodiscard]] const Regions& indoor() const { return data_->indoor; }
     /// The same, made for very many questions; built when first asked for.
     [[nodiscard]] const RegionIndex& indoorIndex() const { return data_->indoorIndex(); }
+    /// The floor of the indoor region at z = 0.
+    [[nodiscard]] Mesh floor() const;
     /// The known inside point: the first record's, else the origin if it lies strictly in a bounded
     /// face, else a point of the largest face.
     [[nodiscard]] Point2 inside() const { return data_->inside; }
     /// The wall lines, welded, with all openings closed; for drawings, and for the parity rule
     /// where no open door joins rooms: there the lines that enclose are the edges of indoor().
     [[nodiscard]] const std::vector<Segment2>& wallLines() const { return data_->wall_lines; }
+    /// What took longest to derive, for a file; see env/derived_walls.h.
+    [[nodiscard]] std::string stored() const;
     /// Height of the highest wall, in metres.
     [[nodiscard]] double height() const { return data_->height; }
 
@@ -82,6 +90,11 @@ class Environment {
         [[nodiscard]] Slice slice(double at) const;
         [[nodiscard]] const RegionIndex& indoorIndex() const;
         Lazy<std::shared_ptr<const RegionIndex>> indoor_index = {};
+        /// The triangles of each part of the region.
+        [[nodiscard]] const std::vector<Triangulation>& floorParts() const;
+        Lazy<std::vector<Triangulation>> floor = {};
+        struct Derivation;
+        std::shared_ptr<const Derivation> derivation = {};
     };
     struct Levels;
 

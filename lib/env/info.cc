@@ -24,7 +24,7 @@ EnvironmentInfo describe(const Environment& environment, std::span<const Record>
     info.height = environment.height();
     info.perimeter = environment.indoor().boundaryLength();
     for (const Record& record : records) ++info.counts[record.keyword()];
-    info.triangles = floorMesh(environment.indoor()).triangles.size();
+    info.triangles = environment.floor().triangles.size();
     for (const Element& element : environment.elements())
         for (const Mesh& mesh : meshesOf(element.body, Surfaces::Solid))
             info.triangles += mesh.triangles.size();

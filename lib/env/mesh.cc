@@ -139,14 +139,13 @@ bool isWatertight(const Mesh& mesh) {
     return true;
 }
 
-Mesh floorMesh(const Regions& indoor) {
+Mesh floorMesh(std::span<const Triangulation> parts) {
     Mesh mesh{Material::Floor, {}, {}, true};
-    for (const Region& part : indoor.parts) {
+    for (const Triangulation& part : parts) {
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-        const Triangulation triangles = triangulate(part);
-        for (const auto& [a, b, c] : triangles.triangles)
+        for (const auto& [a, b, c] : part.triangles)
             mesh.triangles.push_back({first + a, first + b, first + c});
-        for (const Point2 p : triangles.vertices) mesh.vertices.push_back({p.x, p.y, 0});
+        for (const Point2 p : part.vertices) mesh.vertices.push_back({p.x, p.y, 0});
     }
     return mesh;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/error.h"
@@ -81,8 +82,8 @@ std::vector<Mesh> meshesOf(const Body& body, Surfaces surfaces);
 /// something. O(triangles) for edges that are well spread over the vertices.
 bool isWatertight(const Mesh& mesh);
 
-/// The floor of an indoor region at z = 0.
-Mesh floorMesh(const Regions& indoor);
+/// The floor of an indoor region at z = 0, of the triangles of its parts.
+Mesh floorMesh(std::span<const Triangulation> parts);
 
 /// The body of a `mesh` record; none while its file is not loaded.
 ///

@@ -113,7 +113,7 @@ TEST(Mesh, OpenIsWhatHasARim) {
             EXPECT_TRUE(mesh.open) << line;
             EXPECT_FALSE(isWatertight(mesh)) << line;
         }
-    EXPECT_TRUE(floorMesh({{{{{0, 0}, {1, 0}, {0, 1}}, {}}}}).open);
+    EXPECT_TRUE(floorMesh({}).open);
     EXPECT_TRUE(isWatertight(Mesh()));
 }
 
@@ -158,7 +158,8 @@ TEST(Mesh, PatternsOnlyWhereAskedFor) {
 
 TEST(Mesh, FloorOfARegionWithHoles) {
     const Region region{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {{{1, 1}, {1, 2}, {2, 2}, {2, 1}}}};
-    const Mesh mesh = floorMesh({{region}});
+    const std::vector<Triangulation> parts{triangulate(region)};
+    const Mesh mesh = floorMesh(parts);
     EXPECT_EQ(mesh.material, Material::Floor);
     EXPECT_NEAR(area(mesh), 15, 1e-12);
     for (const Point3 p : mesh.vertices) EXPECT_EQ(p.z, 0);

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -183,10 +184,10 @@ class Resolver {
 
 /// Throws what is wrong with the room together with the findings about sensors.
 Environment makeEnvironment(const std::vector<Record>& records, const std::vector<std::string>& ids,
-                            Diagnostics& findings) {
+                            std::string_view stored, Diagnostics& findings) {
     std::optional<Environment> environment;
     try {
-        environment.emplace(records, ids);
+        environment.emplace(records, ids, stored);
     } catch (const FormatError& error) {
         findings.add(error);
     }
@@ -211,15 +212,17 @@ bool isSameRoom(const Scene& before, const std::vector<Record>& records,
     return i == before.records.size() && j == records.size();
 }
 
+/// \param stored results about the walls, see Environment
 Scene makeScene(std::vector<Record> records, const Scene* before, std::string digest,
-                const DeviceCatalogue& devices) {
+                const DeviceCatalogue& devices, std::string_view stored = {}) {
     std::erase_if(records, isMeta);
     std::vector<std::string> ids = assignIds(records);
     Diagnostics findings;
     Placements placements = Resolver(records, ids, devices).resolve(findings);
     const bool is_same = before != nullptr && isSameRoom(*before, records, ids);
     if (is_same) findings.throwIfAny();
-    Environment room = is_same ? before->environment : makeEnvironment(records, ids, findings);
+    Environment room =
+        is_same ? before->environment : makeEnvironment(records, ids, stored, findings);
     return {.records = std::move(records),
             .ids = std::move(ids),
             .environment = std::move(room),
@@ -272,7 +275,9 @@ Scene makeScene(const Document& environment, const Document* layout,
         layout == nullptr ? environment.records : joinRecords(environment.records, layout->records);
     std::optional<Scene> scene;
     std::string digest;
-    const auto make = [&] { scene = makeScene(std::move(records), nullptr, "", devices); };
+    const auto make = [&] {
+        scene = makeScene(std::move(records), nullptr, "", devices, environment.derived);
+    };
     const auto digest_all = [&] { digest = environmentDigest(environment.records); };
     doBoth(environment.records.size() >= kManyRecords, make, digest_all);
     scene->digest = std::move(digest);

@@ -184,16 +184,18 @@ std::string writeGlb(const Scene& scene, const Document& document, const FloorPi
     GlbBuilder builder;
     GlbScene nodes(builder, origin, picture);
     std::vector<ModelNode> placed;
-    std::string records;
+    std::string records, derived;
     const auto add_elements = [&] {
         for (const Element& element : scene.environment.elements()) nodes.add(element);
     };
     const auto prepare = [&] {
         placed = placedNodes(scene, true);
         records = recordsText(document);
+        derived = scene.environment.stored();
     };
     doBoth(document.records.size() >= kManyRecords, add_elements, prepare);
     for (const ModelNode& node : placed) nodes.add(node);
+    builder.addDerived(derived);
     return builder.finish(records, gltfAxes(origin - Point3()));
 }
 

@@ -19,7 +19,7 @@ void addNode(std::vector<ModelNode>& nodes, ModelNode node) {
 }
 
 void addPlaced(std::vector<ModelNode>& nodes, const Scene& scene, bool with_views) {
-    addNode(nodes, {"floor", "", {}, {floorMesh(scene.environment.indoor())}});
+    addNode(nodes, {"floor", "", {}, {scene.environment.floor()}});
     for (const Placed& placed : scene.placed) {
         std::vector<Mesh> meshes = bodyOf(scene, placed);
         if (auto view = with_views ? viewOf(scene, placed) : std::nullopt)

@@ -128,8 +128,7 @@ class StillBuilder {
     StillSurfaces build() {
         for (const Element& element : scene_.environment.elements()) addElement(element);
         findings_.throwIfAny();
-        solid_.add(floorMesh(scene_.environment.indoor()), {0, paintOf(Material::Floor)},
-                   still_.shift);
+        solid_.add(scene_.environment.floor(), {0, paintOf(Material::Floor)}, still_.shift);
         for (const PaintedMesh& paint : options_.paint)
             paint_.add(paint.mesh, {0, addPaint({paint.color, paint.opacity, paint.is_lit})},
                        still_.shift);

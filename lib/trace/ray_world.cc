@@ -82,7 +82,7 @@ RayWorld RayWorld::ofEnvironment(const Environment& environment, Surfaces surfac
         for (Mesh& mesh : meshesOf(is_flat ? element.body : withoutRounds(element.body), surfaces))
             meshes.push_back(std::move(mesh));
     }
-    meshes.push_back(floorMesh(environment.indoor()));
+    meshes.push_back(environment.floor());
     const std::size_t first_round = meshes.size();
     for (const Prism* round : rounds) meshes.push_back(meshAround(*round));
     Box2 plan;

@@ -40,7 +40,7 @@ struct alignas(64) Packet {
 
 /// What stops rays.
 std::vector<Mesh> meshesThatStop(const Environment& environment) {
-    std::vector<Mesh> meshes{floorMesh(environment.indoor())};
+    std::vector<Mesh> meshes{environment.floor()};
     for (const Element& element : environment.elements())
         for (Mesh& mesh : meshesOf(element.body, Surfaces::Opaque))
             meshes.push_back(std::move(mesh));

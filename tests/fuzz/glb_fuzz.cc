@@ -30,5 +30,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         fuzz::require(has_records, "records where none should be");
         fuzz::checkText(document);
         fuzz::tryScene(document, bytes);
+        fuzz::tryDerived(document);
     });
 }

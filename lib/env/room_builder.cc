@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "env/room_builder.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "env/enclosure.h"
+#include "env/info.h"
+#include "env/openings.h"
+#include "env/walls.h"
+#include "geom/planar_map.h"
+#include "record/at_once.h"
+
+namespace ispace {
+
+namespace {
+
+/// What a record is besides its walls: those follow from the lines of all records, welded.
+Body bodyBesideWalls(const Record& record) {
+    if (!isWall(record)) return bodyOf(record);
+    Body body;
+    if (record.keyword() == "ispace" && record.flag("ceiling")) body.plates = bodyOf(record).plates;
+    return body;
+}
+
+void addBody(Body& body, Body&& more) {
+    std::move(more.sheets.begin(), more.sheets.end(), std::back_inserter(body.sheets));
+    std::move(more.prisms.begin(), more.prisms.end(), std::back_inserter(body.prisms));
+}
+
+/// The `inside` records.
+std::vector<const Record*> insideRecords(std::span<const Element> elements) {
+    std::vector<const Record*> inside;
+    for (const Element& element : elements)
+        if (element.record.keyword() == "inside") inside.push_back(&element.record);
+    return inside;
+}
+
+/// What the shapes of things may have in corners: so many, and more for each record that is written
+/// than for those that a repetition makes. A few lines can make round and checkered things without
+/// end; a plan that somebody wrote stays far below.
+constexpr std::size_t kMaxCorners = 1'000'000, kMaxCornersWritten = 1000, kMaxCornersMade = 10;
+
+std::size_t cornersOf(const Body& body) {
+    std::size_t corners = 0;
+    for (const Prism& prism : body.prisms) corners += prism.footprint.size();
+    for (const Plate& plate : body.plates) corners += plate.outline.size();
+    return corners;
+}
+
+/// For findings about the file as a whole.
+Diagnostic fileFinding(std::span<const Element> elements, std::string message) {
+    if (elements.empty()) return {{}, 0, 0, std::move(message)};
+    Diagnostic diagnostic = elements.front().record.finding(std::move(message));
+    diagnostic.line = diagnostic.column = 0;
+    return diagnostic;
+}
+
+/// Builds an environment step by step, with as many findings together as do not follow from each
+/// other.
+class Builder {
+  public:
+    /// \param stored as storedWalls() wrote it; cutWalls() throws unless it is of these walls.
+    /// Empty: all is derived
+    explicit Builder(std::string_view stored = {}) : stored_(stored) {}
+
+    /// \param with_things else giveThings() is still to be called
+    void takeRecords(std::span<const Record> records, std::span<const std::string> ids,
+                     bool with_things) {
+        elements_.reserve(static_cast<std::size_t>(
+            std::count_if(records.begin(), records.end(),
+                          [](const Record& record) { return record.schema().isEnvironment(); })));
+        for (std::size_t i = 0; i < records.size(); ++i) {
+            if (records[i].schema().isEnvironment()) takeRecord(records[i], ids[i], with_things);
+        }
+        inside_ = insideRecords(elements_);
+        if (plan_.walls.empty() && walls_whole_)
+            findings_.add(fileFinding(
+                elements_,
+                "no walls: nothing encloses a room; add an ispace, wall or fence record"));
+        // What a wall that crosses itself encloses says little, and may take long to find.
+        if (plan_.walls.empty() || !walls_simple_) findings_.throwIfAny();
+    }
+
+    /// The shapes of all that is no wall, while others look at walls. \throws FormatError
+    void giveThings() {
+        Diagnostics findings;
+        for (Element& element : elements_) {
+            if (!isWall(element.record)) giveShape(element, findings);
+            countCorners(element);
+        }
+        findings.throwIfAny();
+    }
+
+    /// Lines of walls, and what is cut out of them. \pre there are walls
+    /// \throws FormatError with all findings so far, or some if `at_once`
+    void cutWalls(bool at_once) {
+        WeldedLines& welded = derived_.welded;
+        const auto place = [this] { openings_ = placeOpenings(elements_, plan_, findings_); };
+        const auto weld_all = [&] { welded = at_once ? weld(plan_.lines) : weldedLines(); };
+        if (stored_.empty())
+            doBoth(at_once, place, weld_all);
+        else
+            place();
+        key_ = keyOf(plan_, elements_, openings_, inside_);
+        if (!stored_.empty()) restore();
+        for (const Segment2& piece : welded.pieces) {
+            limits_.add(piece.a);
+            limits_.add(piece.b);
+        }
+        if (!openings_.empty())
+            cut_ = cutOpenings(elements_, plan_, welded, openings_, findings_);
+        else
+            cut_.parts = wallParts(plan_.walls, welded);
+    }
+
+    [[nodiscard]] std::vector<Body> wallBodies() const {
+        return ispace::wallBodies(cut_.parts, plan_.walls.size() + openings_.size());
+    }
+
+    /// \param bodies those of wallBodies(). \pre all else has its shape
+    void addWalls(std::vector<Body> bodies) {
+        const std::size_t walls = plan_.walls.size();
+        for (std::size_t i = 0; i < bodies.size(); ++i)
+            addBody(elements_[i < walls ? plan_.owner[i] : openings_[i - walls].element].body,
+                    std::move(bodies[i]));
+    }
+
+    /// \throws FormatError with all findings
+    void enclose() {
+        try {
+            if (stored_.empty()) derived_.enclosure = enclosed();
+        } catch (const FormatError& error) {
+            // What is left of broken walls need not enclose anything.
+            if (walls_whole_) findings_.add(withFile(error));
+        }
+        findings_.throwIfAny();
+    }
+
+    /// \pre all is done
+    [[nodiscard]] BuiltRoom take() {
+        double height = 0;
+        for (const WallLine& wall : plan_.walls) height = std::max(height, wall.top);
+        return {std::move(elements_),
+                std::move(plan_.lines),
+                key_,
+                std::move(derived_),
+                limits_,
+                height};
+    }
+
+  private:
+    /// \throws FormatError, for no human to read, where what is stored is of other walls
+    void restore() {
+        auto derived = restoredWalls(stored_, key_, plan_.lines);
+        if (!derived) throw FormatError(Diagnostic{"", 0, 0, "other walls than were compiled"});
+        derived_ = *std::move(derived);
+    }
+
+    [[nodiscard]] Enclosure enclosed() const {
+        const std::vector<Region> faces = cut_.passages.empty()
+                                              ? boundedFaces(derived_.welded)
+                                              : boundedFaces(cut_.lines, cut_.passages);
+        return ispace::enclose(plan_, faces, limits_, elements_, inside_);
+    }
+
+    void takeRecord(const Record& record, const std::string& id, bool with_things) {
+        const bool is_wall = isWall(record);
+        if (is_wall) {
+            const std::size_t before = plan_.walls.size();
+            Diagnostics findings;
+            for (const WallLine& wall : wallLinesOf(record, findings))
+                plan_.add(wall, elements_.size());
+            walls_whole_ = walls_whole_ && findings.empty() && plan_.walls.size() > before;
+            takeFindings(findings);
+        }
+        elements_.push_back({record, id, {}});
+        Diagnostics findings;
+        if (is_wall || with_things) giveShape(elements_.back(), findings);
+        if (with_things) countCorners(elements_.back());
+        walls_simple_ = walls_simple_ && (findings.empty() || !is_wall);
+        takeFindings(findings);
+    }
+
+    void giveShape(Element& element, Diagnostics& findings) const {
+        element.body = bodyBesideWalls(element.record);
+        // Stored are results of walls that have passed.
+        if (stored_.empty() || !isWall(element.record))
+            checkShape(element.record, element.body, findings);
+    }
+
+    void countCorners(const Element& element) {
+        corners_ += cornersOf(element.body);
+        max_corners_ += element.record.isMade() ? kMaxCornersMade : kMaxCornersWritten;
+        if (corners_ > max_corners_)
+            throw FormatError(element.record.finding(
+                "the shapes up to here have more than " + std::to_string(max_corners_) +
+                " corners: fewer round or checkered things are wanted, or smaller ones"));
+    }
+
+    void takeFindings(const Diagnostics& findings) {
+        try {
+            findings.throwIfAny();
+        } catch (const FormatError& error) {
+            findings_.add(error);
+        }
+    }
+
+    /// Findings about lines as such, without a place of their own.
+    [[nodiscard]] FormatError withFile(const FormatError& error) const {
+        std::vector<Diagnostic> all = error.diagnostics();
+        for (Diagnostic& diagnostic : all) {
+            if (diagnostic.file.empty())
+                diagnostic = fileFinding(elements_, std::move(diagnostic.message));
+        }
+        return FormatError(std::move(all));
+    }
+
+    [[nodiscard]] WeldedLines weldedLines() {
+        try {
+            return weld(plan_.lines);
+        } catch (const FormatError& error) {
+            findings_.add(withFile(error));
+            findings_.throwIfAny();
+            throw;
+        }
+    }
+
+    Diagnostics findings_;
+    std::vector<Element> elements_;
+    std::size_t corners_ = 0, max_corners_ = kMaxCorners;  // without walls and meshes
+    WallPlan plan_;
+    bool walls_whole_ = true;   // every record has all its lines
+    bool walls_simple_ = true;  // none crosses itself
+    std::vector<const Record*> inside_;
+    std::vector<Opening> openings_;
+    CutWalls cut_;
+    Box2 limits_;
+    std::string_view stored_;
+    WallsKey key_;
+    DerivedWalls derived_;
+};
+
+/// One step after another, so that findings come in order.
+void buildInOrder(std::span<const Record> records, std::span<const std::string> ids,
+                  Builder& builder) {
+    builder.takeRecords(records, ids, true);
+    builder.cutWalls(false);
+    builder.addWalls(builder.wallBodies());
+    builder.enclose();
+}
+
+/// What takes longest, finding what walls enclose, while the shapes of all else are made.
+/// \throws FormatError if there are findings: some of them
+void buildAtOnce(std::span<const Record> records, std::span<const std::string> ids,
+                 Builder& builder) {
+    builder.takeRecords(records, ids, false);
+    std::vector<Body> walls;
+    const auto enclose = [&] { builder.enclose(); };
+    const auto give_walls = [&] { walls = builder.wallBodies(); };
+    doBoth(
+        true,
+        [&] {
+            builder.cutWalls(true);
+            doBoth(true, enclose, give_walls);
+        },
+        [&builder] { builder.giveThings(); });
+    builder.addWalls(std::move(walls));
+}
+
+}  // namespace
+
+BuiltRoom buildRoom(std::span<const Record> records, std::span<const std::string> ids,
+                    std::string_view stored) {
+    const bool is_many = records.size() >= kManyRecords;
+    if (is_many || !stored.empty()) {
+        try {
+            Builder builder(stored);
+            (is_many ? buildAtOnce : buildInOrder)(records, ids, builder);
+            return builder.take();
+        } catch (const FormatError&) {
+            if (!stored.empty()) return buildRoom(records, ids, {});
+        }
+    }
+    Builder builder;
+    buildInOrder(records, ids, builder);
+    return builder.take();
+}
+
+}  // namespace ispace
