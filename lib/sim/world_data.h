@@ -98,7 +98,7 @@ struct World::Data {
         std::shared_ptr<Setting> room, const std::unordered_set<std::string_view>& stayers) const;
 
     std::shared_ptr<Setting> setting;
-    std::shared_ptr<const Scene> scene;  // of it
+    std::shared_ptr<const Scene> scene;         // of it
     std::shared_ptr<const Scene> start;         // of the run
     std::shared_ptr<const Scene> latest_start;  // that, or of the last restart
     RunOptions options;
