@@ -68,8 +68,8 @@ class SessionSeekTest : public ::testing::Test {
     }
 
     fs::path folder_;
+    std::unique_ptr<Replay> replay_;  // outlives the room that it is played in
     Talk talk_;
-    std::unique_ptr<Replay> replay_;
 };
 
 TEST_F(SessionSeekTest, ComesAfterAChangeUnderWay) {
