@@ -70,9 +70,10 @@ races:
 	@.ci/races $(RACES)
 
 bench:
-	@.ci/deps build
+	@.ci/deps build check
 	@$(MAKE) --no-print-directory $(BUILD)/configured
 	$(call build,$(BUILD)) --target tools benchmarks
+	@.ci/validator $(BUILD)/npm
 	@tests/bench/run.sh $(BUILD)
 
 fuzz:

@@ -3,10 +3,9 @@
 // wrote, beside what that says all depths, and an Overlay with its edges, take; processor time, the
 // least of eight, without start-up.
 //
-//     npm install clipper2-wasm && node clipper2_union.js FOLDER
+//     NODE_PATH=build/npm/node_modules node clipper2_union.js FOLDER      (what tests/bench/run.sh does)
 const fs = require('fs');
 const path = require('path');
-const {createRequire} = require('module');
 
 const STEP = 2 ** -30;  // metres
 
@@ -22,10 +21,11 @@ function millisecondsOf(work) {
 }
 
 async function main(folder) {
-    const here = createRequire(path.join(process.cwd(), 'package.json'));
-    const clipper = await here('clipper2-wasm/dist/umd/clipper2z.js')();
+    const clipper = await require('clipper2-wasm/dist/umd/clipper2z.js')();
     console.log('scene and k         depths, ms  Overlay, ms  Clipper 2, WebAssembly, ms   ratio');
-    for (const file of fs.readdirSync(folder).filter((name) => name.endsWith('.json'))) {
+    const files = fs.readdirSync(folder).filter((name) => name.endsWith('.json'));
+    const inOrder = (a, b) => a.localeCompare(b, 'en', {numeric: true});
+    for (const file of files.sort(inOrder)) {
         const test = JSON.parse(fs.readFileSync(path.join(folder, file)));
         const paths = new clipper.Paths64();
         for (const outline of test.outlines)

@@ -12,3 +12,13 @@ for program in start kernel plan load ray_rate sight_scan depth_rate render_rate
     "$build/tests/${program}_bench" --benchmark_out="$build/bench/$program.json" \
         --benchmark_out_format=json
 done
+
+# Clipper 2 is in npm alone.
+if [ -d "$build/npm/node_modules/clipper2-wasm" ] && command -v node >/dev/null; then
+    outlines=$(mktemp -d)
+    trap 'rm -rf "$outlines"' EXIT
+    "$build/tests/union_bench" --write "$outlines"
+    NODE_PATH="$build/npm/node_modules" node "$(dirname "$0")/clipper2_union.js" "$outlines"
+else
+    echo "bench: no unions by Clipper 2 here, it takes node and npm" >&2
+fi
