@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geom/polygon.h"
 
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include "geom/predicates.h"
@@ -190,10 +195,12 @@ std::vector<double> levelsBetweenVertices(const std::vector<Segment2>& edges, st
     ys.erase(std::unique(ys.begin(), ys.end()), ys.end());
     std::vector<std::size_t> steps;
     for (std::size_t i = 1; i < ys.size(); ++i) steps.push_back(i);
-    std::stable_sort(steps.begin(), steps.end(), [&](std::size_t i, std::size_t k) {
-        return ys[i] - ys[i - 1] > ys[k] - ys[k - 1];
+    const auto last = steps.begin() + static_cast<std::ptrdiff_t>(std::min(steps.size(), most));
+    std::partial_sort(steps.begin(), last, steps.end(), [&](std::size_t i, std::size_t k) {
+        const double wide = ys[i] - ys[i - 1], other = ys[k] - ys[k - 1];
+        return wide != other ? wide > other : i < k;
     });
-    steps.resize(std::min(steps.size(), most));
+    steps.erase(last, steps.end());
     std::vector<double> levels;
     levels.reserve(steps.size());
     for (const std::size_t i : steps) levels.push_back(middle(ys[i - 1], ys[i]));
@@ -211,12 +218,8 @@ std::vector<double> evenLevels(const std::vector<Segment2>& edges) {
     return levels;
 }
 
-/// Middles of the longest chords of the region at this level.
-std::vector<Point2> chordMiddles(const std::vector<Segment2>& edges, double y) {
-    std::vector<double> xs;
-    for (const auto& [a, b] : edges) {
-        if ((a.y > y) != (b.y > y)) xs.push_back(a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)));
-    }
+/// Middles of the longest chords of the region at a level, between these crossings of its boundary.
+void addChordMiddles(std::vector<double>& xs, double y, std::vector<Point2>& middles) {
     std::sort(xs.begin(), xs.end());
     std::vector<std::pair<double, Point2>> chords;
     for (std::size_t i = 1; i < xs.size(); i += 2)
@@ -224,51 +227,96 @@ std::vector<Point2> chordMiddles(const std::vector<Segment2>& edges, double y) {
     std::stable_sort(chords.begin(), chords.end(),
                      [](const auto& c, const auto& d) { return c.first > d.first; });
     chords.resize(std::min(chords.size(), kChordsPerLine));
-    std::vector<Point2> middles;
-    middles.reserve(chords.size());
     for (const auto& [width, p] : chords) middles.push_back(p);
-    return middles;
 }
 
-/// Distance from the nearest edge, or any smaller number once it is below `enough`.
-double clearance(const std::vector<Segment2>& edges, Point2 p, double enough) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Segment2& e : edges) {
-        nearest = std::min(nearest, distance(p, e));
-        if (nearest <= enough) break;
+/// The same at some levels, one after another.
+void addChordMiddles(const std::vector<Segment2>& edges, std::span<const double> levels,
+                     std::vector<Point2>& middles) {
+    std::vector<std::pair<double, std::size_t>> by_height;
+    for (std::size_t i = 0; i < levels.size(); ++i) by_height.emplace_back(levels[i], i);
+    std::sort(by_height.begin(), by_height.end());
+    std::vector<std::vector<double>> xs(levels.size());
+    for (const auto& [a, b] : edges) {
+        const double low = std::min(a.y, b.y), high = std::max(a.y, b.y);
+        auto level = std::lower_bound(by_height.begin(), by_height.end(), low,
+                                      [](const auto& l, double y) { return l.first < y; });
+        for (; level != by_height.end() && level->first < high; ++level)
+            xs[level->second].push_back(a.x + (b.x - a.x) * ((level->first - a.y) / (b.y - a.y)));
     }
-    return nearest;
+    for (std::size_t i = 0; i < levels.size(); ++i) addChordMiddles(xs[i], levels[i], middles);
 }
 
 /// Keeps the candidate farthest from the boundary.
 class Best {
   public:
-    explicit Best(const Region& region) : region_(region), edges_(edgesOf(region, false)) {}
+    explicit Best(const Region& region) : region_(region), edges_(edgesOf(region, false)) {
+        for (const Segment2& e : edges_)
+            for (const double v : {e.a.x, e.a.y}) rounding_ = std::max(rounding_, std::abs(v));
+        rounding_ *= 1e-12;
+    }
 
     void offer(Point2 p) {
-        const double distance = clearance(edges_, p, clearance_);
+        const double distance = clearance(p);
         if (distance <= clearance_ || region_.locate(p) != Side::Inside) return;
         clearance_ = distance;
         point_ = p;
     }
+    [[nodiscard]] std::size_t edges() const { return edges_.size(); }
     [[nodiscard]] bool found() const { return clearance_ >= 0; }
     [[nodiscard]] Point2 point() const { return point_; }
 
   private:
+    /// Distance from the nearest edge, or any smaller number once that is no better.
+    [[nodiscard]] double clearance(Point2 p) const {
+        double nearest = std::numeric_limits<double>::infinity(), reach = nearest;
+        for (const Segment2& e : edges_) {
+            const double dx = std::max(std::min(e.a.x, e.b.x) - p.x, p.x - std::max(e.a.x, e.b.x));
+            const double dy = std::max(std::min(e.a.y, e.b.y) - p.y, p.y - std::max(e.a.y, e.b.y));
+            if (dx > reach || dy > reach) continue;  // the box about it is too far
+            nearest = std::min(nearest, distance(p, e));
+            if (nearest <= clearance_) break;
+            reach = (1 + 1e-9) * nearest + rounding_;
+        }
+        return nearest;
+    }
+
     const Region& region_;
     std::vector<Segment2> edges_;
+    double rounding_ = 0;  ///< no distance errs by as much
     double clearance_ = -1;
     Point2 point_;
 };
 
-void scan(const Region& region, bool swapped, std::size_t most, Best& best) {
+/// Candidates on scanlines, from both directions.
+std::vector<Point2> candidates(const Region& region, bool swapped, std::size_t most) {
+    constexpr std::size_t kAtOnce = 64;  // levels
     const auto edges = edgesOf(region, swapped);
     auto levels = levelsBetweenVertices(edges, most);
     const auto even = evenLevels(edges);
     levels.insert(levels.end(), even.begin(), even.end());
-    for (const double y : levels) {
-        for (const Point2 p : chordMiddles(edges, y)) best.offer(swapped ? Point2{p.y, p.x} : p);
+    std::vector<Point2> middles;
+    for (std::size_t i = 0; i < levels.size(); i += kAtOnce)
+        addChordMiddles(edges, std::span(levels).subspan(i, std::min(kAtOnce, levels.size() - i)),
+                        middles);
+    if (swapped)
+        for (Point2& p : middles) std::swap(p.x, p.y);
+    return middles;
+}
+
+void scan(const Region& region, std::size_t most, Best& best) {
+    constexpr std::size_t kManyEdges = 10'000;
+    std::vector<Point2> up, across;
+    const auto find_up = [&] { up = candidates(region, false, most); };
+    const auto find_across = [&] { across = candidates(region, true, most); };
+    if (best.edges() < kManyEdges) {
+        find_up();
+        find_across();
+    } else {
+        tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(find_up, find_across); });
     }
+    for (const std::vector<Point2>* found : {&up, &across})
+        for (const Point2 p : *found) best.offer(p);
 }
 
 /// Middles of the triangles at the corners, and the doubles about them: where a region is so thin
@@ -296,10 +344,8 @@ void tryCorners(const Region& region, Best& best) {
 
 Point2 interiorPoint(const Region& region) {
     Best best(region);
-    for (const bool swapped : {false, true}) scan(region, swapped, kLevels, best);
-    if (!best.found()) {
-        for (const bool swapped : {false, true}) scan(region, swapped, kManyLevels, best);
-    }
+    scan(region, kLevels, best);
+    if (!best.found()) scan(region, kManyLevels, best);
     if (!best.found()) tryCorners(region, best);
     if (!best.found())
         throw std::invalid_argument(

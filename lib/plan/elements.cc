@@ -94,21 +94,39 @@ constexpr std::size_t kMaxExact = 200;
 /// Cells along the longer side of a larger mesh.
 constexpr int kCells = 500;
 
-/// True if the polygon is convex and p lies in it or at most kUnseen outside.
-bool covers(const Polygon& convex, Point2 p) {
-    bool inside = true;
-    forEachEdge(convex, [&](const Segment2& edge) {
-        const Vec2 along = edge.b - edge.a;
-        inside = inside && cross(along, p - edge.a) >= -kUnseen * length(along);
-    });
-    return inside;
-}
+/// A convex polygon and what lies at most kUnseen outside.
+class Cover {
+  public:
+    /// \pre the polygon is convex
+    explicit Cover(const Polygon& convex) {
+        sides_.reserve(convex.size());
+        forEachEdge(convex, [this](const Segment2& edge) {
+            const Vec2 along = edge.b - edge.a;
+            sides_.push_back({edge.a, along, -kUnseen * length(along)});
+        });
+    }
 
-bool covers(const Polygon& convex, const std::vector<Polygon>& curves) {
-    return std::all_of(curves.begin(), curves.end(), [&](const Polygon& curve) {
-        return std::all_of(curve.begin(), curve.end(), [&](Point2 p) { return covers(convex, p); });
-    });
-}
+    [[nodiscard]] bool holds(const std::vector<Polygon>& curves) const {
+        return std::all_of(curves.begin(), curves.end(), [this](const Polygon& curve) {
+            return std::all_of(curve.begin(), curve.end(), [this](Point2 p) { return holds(p); });
+        });
+    }
+
+  private:
+    struct Side {
+        Point2 from;
+        Vec2 along;
+        double least;  ///< product with the way to what is held
+    };
+
+    [[nodiscard]] bool holds(Point2 p) const {
+        return std::all_of(sides_.begin(), sides_.end(), [p](const Side& side) {
+            return cross(side.along, p - side.from) >= side.least;
+        });
+    }
+
+    std::vector<Side> sides_;
+};
 
 std::vector<Polygon> trianglesAbove(const Mesh& mesh) {
     std::vector<Polygon> triangles;
@@ -189,8 +207,9 @@ std::vector<PartAbove> partsFromAbove(const Body& body) {
     for (std::size_t high = 1; high < parts.size(); ++high) {
         const std::vector<Polygon>& above = parts[high].curves;
         if (above.size() != 1 || !isConvex(above.front())) continue;
+        const Cover cover(above.front());
         for (std::size_t low = 0; low < high; ++low)
-            parts[low].hidden = parts[low].hidden || covers(above.front(), parts[low].curves);
+            parts[low].hidden = parts[low].hidden || cover.holds(parts[low].curves);
     }
     return parts;
 }
@@ -200,10 +219,10 @@ std::vector<Region> footprintOf(const Body& body) {
     std::erase_if(parts, [](const PartAbove& part) { return part.hidden; });
     // A board below a smaller thing of the same body is not hidden, but covers.
     for (const PartAbove& part : parts) {
-        if (part.curves.size() == 1 && isConvex(part.curves.front()) &&
-            std::all_of(parts.begin(), parts.end(), [&](const PartAbove& other) {
-                return covers(part.curves.front(), other.curves);
-            }))
+        if (part.curves.size() != 1 || !isConvex(part.curves.front())) continue;
+        const Cover cover(part.curves.front());
+        if (std::all_of(parts.begin(), parts.end(),
+                        [&](const PartAbove& other) { return cover.holds(other.curves); }))
             return {{part.curves.front(), {}}};
     }
     if (parts.size() == 1) return regionsOf(std::move(parts.front().curves));

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What stands in the room of a plan, and what hangs from its ceiling.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,13 +28,16 @@ double areaOf(const PartAbove& part) {
 }  // namespace
 
 std::vector<PlanDrawing::Thing> PlanDrawing::thingsOf(const Environment& environment) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     std::vector<Thing> things;
     for (const Element& element : environment.elements()) {
         const RecordType type = element.record.schema().type;
-        if (type != RecordType::Infra && type != RecordType::Other) continue;
-        constexpr double kInfinity = std::numeric_limits<double>::infinity();
-        Thing thing{&element, partsFromAbove(element.body), {}, kInfinity, -kInfinity};
-        if (thing.parts.empty()) continue;
+        if (type == RecordType::Infra || type == RecordType::Other)
+            things.push_back({&element, {}, {}, kInfinity, -kInfinity});
+    }
+    constexpr std::size_t kFew = 64;  // are done before another thread would begin
+    const auto look_at = [](Thing& thing) {
+        thing.parts = partsFromAbove(thing.element->body);
         double largest = -1;
         for (const PartAbove& part : thing.parts) {
             thing.bottom = std::min(thing.bottom, part.bottom);
@@ -43,8 +49,13 @@ std::vector<PlanDrawing::Thing> PlanDrawing::thingsOf(const Environment& environ
             largest = area;
             thing.height = part.top;
         }
-        things.push_back(std::move(thing));
-    }
+    };
+    tbb::parallel_for(tbb::blocked_range(std::size_t{0}, things.size(), kFew),
+                      [&](const auto& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i)
+                              look_at(things[i]);
+                      });
+    std::erase_if(things, [](const Thing& thing) { return thing.parts.empty(); });
     std::stable_sort(things.begin(), things.end(),
                      [](const Thing& a, const Thing& b) { return a.height < b.height; });
     return things;

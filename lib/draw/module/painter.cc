@@ -39,7 +39,7 @@ void check(cairo_status_t status) {
 }
 
 /// Cairo crashes in its rasteriser when memory runs out: what it may want has to be there before.
-/// It costs a microsecond or two.
+/// It costs two microseconds or three, as long as a small thing takes to be drawn.
 void mustHaveMemory() {
     constexpr std::size_t kMax = std::size_t{8} << 20U;
     void* const memory = ::mmap(nullptr, kMax, PROT_READ | PROT_WRITE,
@@ -149,19 +149,34 @@ class Painter {
         cairo_set_source_rgba(context_, color.red, color.green, color.blue, color.alpha);
     }
 
-    // Each leaves the path as it is.
-    void apply(Color color, const DisplayList::Shape& /*shape*/) {
-        use(color);
+    /// For small shapes, of which there may be many, now and then: Cairo keeps nothing of them.
+    void needMemory(const DisplayList::Shape& shape) {
+        constexpr std::size_t kPointsOfArc = 128;
+        if (shape.kind == Kind::Arc)
+            unchecked_ += kPointsOfArc;
+        else if (shape.kind == Kind::Area || shape.kind == Kind::Lines)
+            unchecked_ += list_.ends[shape.last] - list_.ends[shape.first];
+        else
+            unchecked_ = kMany;
+        if (unchecked_ < kMany) return;
+        unchecked_ = 0;
         mustHaveMemory();
+    }
+
+    // Each leaves the path as it is.
+    void apply(Color color, const DisplayList::Shape& shape) {
+        use(color);
+        needMemory(shape);
         cairo_fill_preserve(context_);
     }
-    void apply(const Stroke& stroke, const DisplayList::Shape& /*shape*/) {
+    void apply(const Stroke& stroke, const DisplayList::Shape& shape) {
         use(stroke.color);
+        if (!stroke.dashes.empty()) unchecked_ = kMany;  // there may be thousands
         cairo_set_line_width(context_, stroke.width);
         cairo_set_dash(context_, stroke.dashes.data(), static_cast<int>(stroke.dashes.size()), 0);
         cairo_set_line_cap(context_,
                            stroke.dashes.empty() ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
-        mustHaveMemory();
+        needMemory(shape);
         cairo_stroke_preserve(context_);
     }
     void apply(const Hatch& hatch, const DisplayList::Shape& shape) {
@@ -173,7 +188,7 @@ class Painter {
             cairo_move_to(context_, line.a.x, line.a.y);
             cairo_line_to(context_, line.b.x, line.b.y);
         }
-        apply(Stroke{hatch.color, hatch.width}, shape);
+        apply(Stroke{hatch.color, hatch.width}, {});
         cairo_new_path(context_);
         cairo_restore(context_);
         cairo_append_path(context_, path.get());
@@ -210,11 +225,14 @@ class Painter {
         cairo_restore(context_);
     }
 
+    static constexpr std::size_t kMany = 1024;  // points, for which memory was there
+
     const Picture& picture_;
     HatchOf& hatch_of_;
     const DisplayList& list_;
     Context owner_;
     cairo_t* context_;
+    std::size_t unchecked_ = kMany;  ///< points drawn since there was memory
 };
 
 double widthOf(const std::string& text, const TextStyle& style) {
