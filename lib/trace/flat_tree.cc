@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <tuple>
 #include <utility>
 
+#include "base/simd.h"
 #include "geom/point.h"
 
 namespace ispace {
@@ -17,102 +20,115 @@ namespace {
 constexpr std::size_t kWidth = FlatTree::kWidth;
 /// From this depth on ranges are halved, whatever their shape.
 constexpr int kDeep = 12;
-constexpr std::size_t kBins = 32;
+constexpr std::uint32_t kBins = 32;
+
+/// Two numbers of a box.
+using Pair = double __attribute__((vector_size(16)));
+
+ISPACE_INLINE void lower(Pair& a, const Pair& b) { a = b < a ? b : a; }
+
+/// A box with its upper ends negated, so that boxes are merged by minima alone.
+struct Extent {
+    Pair low = {kNone, kNone}, high = {kNone, kNone};
+
+    static constexpr double kNone = std::numeric_limits<double>::infinity();
+    Extent() = default;
+    explicit Extent(const Box2& box) : low{box.low.x, box.low.y}, high{-box.high.x, -box.high.y} {}
+
+    ISPACE_INLINE void add(const Extent& other) {
+        lower(low, other.low);
+        lower(high, other.high);
+    }
+    [[nodiscard]] double wide() const { return -high[0] - low[0]; }
+    [[nodiscard]] double tall() const { return -high[1] - low[1]; }
+    [[nodiscard]] double halfPerimeter() const { return wide() - high[1] - low[1]; }
+};
 
 /// A line or a round body, which splits only move by its box.
 struct Item {
-    Box2 box;
+    Extent box;
     std::uint32_t index = 0;
 
     /// Times two.
-    [[nodiscard]] double middle(std::size_t axis) const {
-        return axis == 0 ? box.low.x + box.high.x : box.low.y + box.high.y;
-    }
+    [[nodiscard]] ISPACE_INLINE Pair middle() const { return box.low - box.high; }
 };
 
 struct Group {
     std::size_t begin = 0, end = 0;
-    Box2 box;
+    Extent box;
     [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
-double halfPerimeter(const Box2& box) {
-    return box.empty() ? 0 : box.high.x - box.low.x + box.high.y - box.low.y;
-}
-
-/// An empty one changes nothing.
-void merge(Box2& box, const Box2& other) {
-    box.low.x = std::min(box.low.x, other.low.x);
-    box.low.y = std::min(box.low.y, other.low.y);
-    box.high.x = std::max(box.high.x, other.high.x);
-    box.high.y = std::max(box.high.y, other.high.y);
-}
-
 /// What a group costs: how likely it is met, times the vectors of lines in it.
-double cost(const Box2& box, std::size_t size) {
+double cost(const Extent& box, std::size_t size) {
     const std::size_t vectors = (size + kWidth - 1) / kWidth;
-    return halfPerimeter(box) * static_cast<double>(vectors);
+    return box.halfPerimeter() * static_cast<double>(vectors);
 }
+
+/// Bins side by side along an axis.
+struct Axis {
+    double low = 0, scale = 0;
+
+    /// \param middle of an item
+    [[nodiscard]] ISPACE_INLINE std::uint32_t binOf(double middle) const {
+        const double place = (middle - low) * scale;
+        // As integers, which order those from 0 on alike.
+        return std::min(static_cast<std::uint32_t>(static_cast<std::int32_t>(place)), kBins - 1);
+    }
+};
 
 /// A cut between bins along an axis: items with smaller bins go left.
 struct Cut {
     std::size_t axis = 0;
-    double low = 0, scale = 0;
-    std::size_t bin = 0;  ///< 0: there is none
+    Axis bins;
+    std::uint32_t bin = 0;  ///< 0: there is none
     double cost = std::numeric_limits<double>::infinity();
-    Box2 left, right;
-
-    [[nodiscard]] std::size_t binOf(const Item& item) const {
-        const double place = (item.middle(axis) - low) * scale;
-        return std::min(static_cast<std::size_t>(std::max(place, 0.0)), kBins - 1);
-    }
+    Extent left, right;
 };
 
 /// The items of a group, sorted into bins along an axis.
 struct Bins {
-    Cut cut;  ///< where bins are
-    std::array<Box2, kBins> boxes;
-    std::array<std::size_t, kBins> sizes{};
+    std::uint32_t used = 0;  ///< a bit for each bin that has items; what others hold is old
+    std::array<Extent, kBins> boxes;
+    std::array<std::uint32_t, kBins> sizes;
 
-    void add(const Item& item) {
-        const std::size_t bin = cut.binOf(item);
-        merge(boxes[bin], item.box);
-        ++sizes[bin];
+    ISPACE_INLINE void add(std::uint32_t bin, const Extent& box) {
+        const std::uint32_t bit = 1U << bin;
+        if ((used & bit) == 0) {
+            used |= bit;
+            boxes[bin] = box;
+            sizes[bin] = 1;
+        } else {
+            boxes[bin].add(box);
+            ++sizes[bin];
+        }
     }
 
-    /// The cheapest cut.
-    [[nodiscard]] Cut cheapest() const {
-        // What lies right of each cut, then what lies left; only bins with items change it.
+    /// Puts the cheapest cut into `best` where it is cheaper.
+    void cheapen(std::size_t axis, const Axis& bins, Cut& best) const {
+        // What lies right of each bin that has items, then what lies left.
         std::array<double, kBins> right_costs;
-        std::array<Box2, kBins> rights;
-        Box2 box;
+        std::array<Extent, kBins> rights;
+        Extent box;
         std::size_t size = 0;
-        double here = std::numeric_limits<double>::infinity();
-        for (std::size_t bin = kBins; bin-- > 1;) {
-            if (sizes[bin] > 0) {
-                merge(box, boxes[bin]);
-                size += sizes[bin];
-                here = ispace::cost(box, size);
-            }
+        const auto last = static_cast<std::uint32_t>(std::bit_width(used)) - 1;
+        for (std::uint32_t left = used & ~(1U << last), bin = last; left != 0;) {
+            box.add(boxes[bin]);
+            size += sizes[bin];
+            bin = static_cast<std::uint32_t>(std::bit_width(left)) - 1;
+            left &= ~(1U << bin);
             rights[bin] = box;
-            right_costs[bin] = here;
+            right_costs[bin] = cost(box, size);
         }
-        Cut best = cut;
         box = {};
         size = 0;
-        for (std::size_t bin = 1; bin < kBins; ++bin) {
-            if (sizes[bin - 1] == 0) continue;
-            merge(box, boxes[bin - 1]);
-            size += sizes[bin - 1];
-            here = ispace::cost(box, size) + right_costs[bin];
-            if (here < best.cost) {
-                best.cost = here;
-                best.bin = bin;
-                best.left = box;
-                best.right = rights[bin];
-            }
+        for (std::uint32_t left = used & ~(1U << last); left != 0; left &= left - 1) {
+            const auto bin = static_cast<std::uint32_t>(std::countr_zero(left));
+            box.add(boxes[bin]);
+            size += sizes[bin];
+            const double here = cost(box, size) + right_costs[bin];
+            if (here < best.cost) best = {axis, bins, bin + 1, here, box, rights[bin]};
         }
-        return best;
     }
 };
 
@@ -130,32 +146,35 @@ class Builder {
   private:
     [[nodiscard]] Group group(std::size_t begin, std::size_t end) const {
         Group out{begin, end, {}};
-        for (std::size_t i = begin; i < end; ++i) merge(out.box, items_[i].box);
+        for (std::size_t i = begin; i < end; ++i) out.box.add(items_[i].box);
         return out;
     }
 
     /// The cheapest cut along one axis or the other.
-    [[nodiscard]] Cut cheapestCut(const Group& all) const {
+    [[nodiscard]] Cut cheapestCut(const Group& all) {
         const std::span items = std::span(items_).subspan(all.begin, all.size());
-        std::array<double, 2> low{}, high{};
-        for (const std::size_t axis : {0U, 1U}) low[axis] = high[axis] = items.front().middle(axis);
-        for (const Item& item : items)
-            for (const std::size_t axis : {0U, 1U}) {
-                low[axis] = std::min(low[axis], item.middle(axis));
-                high[axis] = std::max(high[axis], item.middle(axis));
-            }
-        std::array<Bins, 2> bins;
-        for (const std::size_t axis : {0U, 1U}) {
-            bins[axis].cut.axis = axis;
-            bins[axis].cut.low = low[axis];
-            // Without extent all are in the first bin.
-            if (low[axis] < high[axis])
-                bins[axis].cut.scale = static_cast<double>(kBins) / (high[axis] - low[axis]);
+        Pair low = items.front().middle(), high = -low;
+        for (const Item& item : items) {
+            const Pair middle = item.middle();
+            lower(low, middle);
+            lower(high, -middle);
         }
-        for (const Item& item : items)
-            for (Bins& along : bins) along.add(item);
-        const Cut x = bins[0].cheapest(), y = bins[1].cheapest();
-        return y.cost < x.cost ? y : x;
+        std::array<Axis, 2> axes;
+        for (const std::size_t axis : {0U, 1U}) {
+            axes[axis].low = low[axis];
+            // Without extent all are in the first bin.
+            if (low[axis] < -high[axis])
+                axes[axis].scale = static_cast<double>(kBins) / (-high[axis] - low[axis]);
+            bins_[axis].used = 0;
+        }
+        for (const Item& item : items) {
+            const Pair middle = item.middle();
+            bins_[0].add(axes[0].binOf(middle[0]), item.box);
+            bins_[1].add(axes[1].binOf(middle[1]), item.box);
+        }
+        Cut best;
+        for (const std::size_t axis : {0U, 1U}) bins_[axis].cheapen(axis, axes[axis], best);
+        return best;
     }
 
     /// Reorders the items of a group into two.
@@ -165,59 +184,63 @@ class Builder {
         if (depth < kDeep) {
             const Cut cut = cheapestCut(all);
             if (cut.bin > 0) {
-                const auto middle = static_cast<std::size_t>(
-                    std::partition(begin, end,
-                                   [&](const Item& item) { return cut.binOf(item) < cut.bin; }) -
-                    items_.begin());
+                const auto is_left = [&cut](const Item& item) {
+                    return cut.bins.binOf(item.middle()[cut.axis]) < cut.bin;
+                };
+                const auto middle =
+                    static_cast<std::size_t>(std::partition(begin, end, is_left) - items_.begin());
                 return {{all.begin, middle, cut.left}, {middle, all.end, cut.right}};
             }
         }
-        const bool is_tall = all.box.high.y - all.box.low.y > all.box.high.x - all.box.low.x;
+        const auto axis = static_cast<std::size_t>(all.box.tall() > all.box.wide());
         const auto middle = begin + (end - begin) / 2;
-        std::nth_element(begin, middle, end,
-                         [axis = std::size_t{is_tall}](const Item& a, const Item& b) {
-                             return a.middle(axis) < b.middle(axis);
-                         });
+        std::nth_element(begin, middle, end, [axis](const Item& a, const Item& b) {
+            return a.middle()[axis] < b.middle()[axis];
+        });
         const auto at = static_cast<std::size_t>(middle - items_.begin());
         return {group(all.begin, at), group(at, all.end)};
     }
 
+    /// Up to eight parts of a group.
+    struct Parts {
+        std::array<Group, kWidth> groups;
+        std::size_t count = 1;
+    };
+
     /// Splits what is most expensive until there are eight parts.
-    std::vector<Group> parts(const Group& all, int depth) {
-        std::vector<Group> groups{all};
-        groups.reserve(kWidth);
-        while (groups.size() < kWidth) {
-            std::size_t most = 0;
-            double highest = -1;
-            for (std::size_t i = 0; i < groups.size(); ++i) {
-                const double here = depth < kDeep ? cost(groups[i].box, groups[i].size())
-                                                  : static_cast<double>(groups[i].size());
-                if (groups[i].size() > most_ && here > highest) {
-                    highest = here;
-                    most = i;
-                }
-            }
-            if (highest < 0) break;
-            const auto [first, second] = split(groups[most], depth);
-            groups[most] = first;
-            groups.push_back(second);
+    Parts parts(const Group& all, int depth) {
+        Parts out{{all}};
+        std::array<double, kWidth> costs{};  // of those that may be split; else below 0
+        const auto rate = [&](std::size_t i) {
+            const Group& group = out.groups[i];
+            costs[i] = group.size() <= most_ ? -1
+                       : depth < kDeep       ? cost(group.box, group.size())
+                                             : static_cast<double>(group.size());
+        };
+        for (rate(0); out.count < kWidth; ++out.count) {
+            const auto most = static_cast<std::size_t>(
+                std::max_element(costs.begin(), costs.begin() + out.count) - costs.begin());
+            if (costs[most] < 0) break;
+            std::tie(out.groups[most], out.groups[out.count]) = split(out.groups[most], depth);
+            rate(most);
+            rate(out.count);
         }
-        return groups;
+        return out;
     }
 
     std::int32_t node(const Group& all, int depth) {
-        const std::vector<Group> groups = parts(all, depth);
+        const auto [groups, count] = parts(all, depth);
         const std::size_t index = tree_.nodes.size();
         tree_.nodes.emplace_back();
         FlatTree::Node made{};
-        made.count = static_cast<std::int32_t>(groups.size());
+        made.count = static_cast<std::int32_t>(count);
         for (std::size_t i = 0; i < kWidth; ++i) {
-            const Box2& box = groups[i < groups.size() ? i : 0].box;
-            made.left[i] = box.low.x;
-            made.right[i] = box.high.x;
-            made.low[i] = box.low.y;
-            made.high[i] = box.high.y;
-            if (i < groups.size())
+            const Extent& box = groups[i < count ? i : 0].box;
+            made.left[i] = box.low[0];
+            made.right[i] = -box.high[0];
+            made.low[i] = box.low[1];
+            made.high[i] = -box.high[1];
+            if (i < count)
                 made.child[i] =
                     groups[i].size() > most_ ? node(groups[i], depth + 1) : leaf(groups[i]);
         }
@@ -250,6 +273,7 @@ class Builder {
     std::span<const Segment2> lines_;
     FlatTree& tree_;
     std::size_t most_;
+    std::array<Bins, 2> bins_;
 };
 
 /// What rays meet of round bodies, computed with rounding, lies in these boxes.
@@ -273,14 +297,18 @@ FlatTree::FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> rou
     items.reserve(lines.size());
     for (std::size_t i = 0; i < lines.size(); ++i)
         if (lines[i].a != lines[i].b)
-            items.push_back({bounds(lines[i]), static_cast<std::uint32_t>(i)});
-    if (!items.empty()) Builder(std::move(items), lines, *this, kWidth).build();
+            items.push_back({Extent(bounds(lines[i])), static_cast<std::uint32_t>(i)});
+    if (!items.empty()) {
+        // Most leaves have five to seven lines.
+        leaves.reserve(items.size() / 5 + 1);
+        Builder(std::move(items), lines, *this, kWidth).build();
+    }
     if (round_bodies.empty()) return;
     if (nodes.empty()) nodes.push_back({});
     items.clear();
     rounds.reserve(round_bodies.size());
     for (std::size_t i = 0; i < round_bodies.size(); ++i) {
-        items.push_back({boxOf(round_bodies[i]), static_cast<std::uint32_t>(i)});
+        items.push_back({Extent(boxOf(round_bodies[i])), static_cast<std::uint32_t>(i)});
         rounds.push_back(unitMapOf(round_bodies[i]));
     }
     round_root = Builder(std::move(items), {}, *this, 1).build();
