@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trace/embree_device.h"
 
-#include <array>
 #include <cstdint>
 
 #include "trace/embree_query.h"
@@ -28,18 +27,19 @@ EmbreeTriangles buildTriangles(RTCDeviceTy* device, const TriangleSet& triangles
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | kFilterFlag);
     rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
     if (const std::size_t count = triangles.size(); count > 0) {
-        using Corner = std::array<float, 3>;
+        using Corners = TriangleSet::FloatTriangle;
         const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
         throw_if_failed();
         rtcAttachGeometryByID(scene.get(), geometry, geometry_id);
         rtcReleaseGeometry(geometry);  // the scene holds it
-        auto* const corners = static_cast<std::array<Corner, 3>*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Corner), 3 * count));
+        auto* const corners = static_cast<Corners*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                    sizeof(Corners) / 3, 3 * count));
         auto* const indices = static_cast<std::uint32_t*>(
             rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                     3 * sizeof(std::uint32_t), count));
         throw_if_failed();
-        for (std::size_t i = 0; i < count; ++i) corners[i] = triangles.enlarged(i);
+        triangles.enlarge({corners, count});
         for (std::size_t i = 0; i < 3 * count; ++i) indices[i] = static_cast<std::uint32_t>(i);
         rtcCommitGeometry(geometry);
     }

@@ -70,50 +70,50 @@ RayWorld RayWorld::ofSlice(const Slice& slice) {
     return RayWorld(std::move(data));
 }
 
-RayWorld RayWorld::ofEnvironment(const Environment& environment, Surfaces surfaces,
-                                 int packet_width) {
-    std::vector<Mesh> meshes;
+namespace {
+
+/// Adds a mesh, whose triangles stand for a round body or for themselves.
+void addMesh(const Mesh& mesh, std::uint32_t round, TriangleSoup& soup) {
+    const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+    soup.vertices.insert(soup.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const auto& [a, b, c] : mesh.triangles)
+        soup.triangles.push_back({first + a, first + b, first + c});
+    soup.round_of.resize(soup.triangles.size(), round);
+}
+
+/// These surfaces of all bodies, then the floor, then what is round.
+TriangleSoup soupOf(const Environment& environment, Surfaces surfaces) {
+    TriangleSoup soup;
     std::vector<const Prism*> rounds;
     for (const Element& element : environment.elements()) {
         const std::size_t before = rounds.size();
         for (const Prism& prism : element.body.prisms)
             if (prism.curve) rounds.push_back(&prism);
         const bool is_flat = rounds.size() == before;
-        for (Mesh& mesh : meshesOf(is_flat ? element.body : withoutRounds(element.body), surfaces))
-            meshes.push_back(std::move(mesh));
+        for (const Mesh& mesh :
+             meshesOf(is_flat ? element.body : withoutRounds(element.body), surfaces))
+            addMesh(mesh, TriangleSoup::kFlat, soup);
     }
-    meshes.push_back(environment.floor());
-    const std::size_t first_round = meshes.size();
-    for (const Prism* round : rounds) meshes.push_back(meshAround(*round));
+    addMesh(environment.floor(), TriangleSoup::kFlat, soup);
+    for (const Prism* const round : rounds) {
+        addMesh(meshAround(*round), static_cast<std::uint32_t>(soup.rounds.size()), soup);
+        soup.rounds.push_back({*round->curve, round->bottom, round->top});
+    }
+    return soup;
+}
+
+}  // namespace
+
+RayWorld RayWorld::ofEnvironment(const Environment& environment, Surfaces surfaces,
+                                 int packet_width) {
+    TriangleSoup soup = soupOf(environment, surfaces);
     Box2 plan;
-    for (const Mesh& mesh : meshes)
-        for (const Point3& vertex : mesh.vertices) plan.add(vertex.onFloor());
+    for (const Point3& vertex : soup.vertices) plan.add(vertex.onFloor());
     auto data = std::make_unique<Data>(Data{middleOf(plan)});
-    TriangleSoup soup;
-    std::size_t vertices = 0, triangles = 0;
-    for (const Mesh& mesh : meshes) {
-        vertices += mesh.vertices.size();
-        triangles += mesh.triangles.size();
-    }
-    soup.vertices.reserve(vertices);
-    soup.triangles.reserve(triangles);
-    soup.round_of.reserve(triangles);
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const Mesh& mesh = meshes[i];
-        const auto first = static_cast<std::uint32_t>(soup.vertices.size());
-        for (const Point3& vertex : mesh.vertices) soup.add(relative(vertex, data->middle));
-        for (const auto& [a, b, c] : mesh.triangles)
-            soup.triangles.push_back({first + a, first + b, first + c});
-        const bool is_round = i >= first_round;
-        soup.round_of.resize(
-            soup.triangles.size(),
-            is_round ? static_cast<std::uint32_t>(i - first_round) : TriangleSoup::kFlat);
-        if (!is_round) continue;
-        const Prism& prism = *rounds[i - first_round];
-        RoundBody round{*prism.curve, prism.bottom, prism.top};
+    for (Point3& vertex : soup.vertices) vertex = data->local(vertex);
+    for (RoundBody& round : soup.rounds) {
         const Point2 center = round.curve.center;
-        round.curve.center = relative({center.x, center.y, 0}, data->middle).onFloor();
-        soup.rounds.push_back(round);
+        round.curve.center = data->local({center.x, center.y, 0}).onFloor();
     }
     data->mesh.emplace(soup, kRayEpsilon, packet_width);
     return RayWorld(std::move(data));

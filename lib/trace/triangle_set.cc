@@ -2,8 +2,11 @@
 #include "trace/triangle_set.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
+
+#include "trace/triangle_lanes.h"
 
 namespace ispace {
 
@@ -18,6 +21,8 @@ constexpr double kThinnest = 1e-9;
 /// extent of the scene.
 constexpr double kFloatError = 0x1p-21;
 
+constexpr std::size_t kLanes = TriangleLanes::kSize;
+
 /// Of the bounding box.
 double diagonalOf(const std::vector<Point3>& vertices) {
     if (vertices.empty()) return 0;
@@ -29,8 +34,6 @@ double diagonalOf(const std::vector<Point3>& vertices) {
     return length(high - low);
 }
 
-Vec3 unit(Vec3 v) { return (1 / length(v)) * v; }
-
 }  // namespace
 
 TriangleSet::TriangleSet(const TriangleSoup& soup)
@@ -41,40 +44,50 @@ TriangleSet::TriangleSet(const TriangleSoup& soup)
     margins_.reserve(count);
     round_of_.reserve(count);
     sources_.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto& [first, second, third] = soup.triangles[i];
-        const Point3 a = soup.vertices[first], b = soup.vertices[second], c = soup.vertices[third];
-        const double longest = std::max({length(b - a), length(c - b), length(a - c)});
-        const Vec3 across = cross(b - a, c - a);
-        const double twice = length(across), thin = twice / longest;
-        if (!(thin > kThinnest)) continue;
-        const Vec3 normal = (1 / twice) * across;
-        const std::uint32_t round =
-            i < soup.round_of.size() ? soup.round_of[i] : TriangleSoup::kFlat;
-        corners_.push_back({a, b, c});
-        planes_.push_back({normal, normal.x * a.x + normal.y * a.y + normal.z * a.z});
-        margins_.push_back(round == TriangleSoup::kFlat ? 2.5 * tolerance_ / thin : kInfinity);
-        round_of_.push_back(round);
-        sources_.push_back(static_cast<std::uint32_t>(i));
+    TriangleLanes lanes;
+    TriangleLanePlanes found;
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        const std::size_t size = std::min(kLanes, count - first);
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const auto& triangle = soup.triangles[first + std::min(lane, size - 1)];
+            for (std::size_t k = 0; k < 3; ++k) lanes.set(lane, k, soup.vertices[triangle[k]]);
+        }
+        findPlanes(lanes, found);
+        for (std::size_t lane = 0; lane < size; ++lane) {
+            const double thin = found.thin[lane];
+            if (!(thin > kThinnest)) continue;
+            const std::size_t i = first + lane;
+            const auto& [a, b, c] = soup.triangles[i];
+            const std::uint32_t round =
+                i < soup.round_of.size() ? soup.round_of[i] : TriangleSoup::kFlat;
+            corners_.push_back({soup.vertices[a], soup.vertices[b], soup.vertices[c]});
+            planes_.push_back(
+                {{found.normals.x[lane], found.normals.y[lane], found.normals.z[lane]},
+                 found.offsets[lane]});
+            margins_.push_back(round == TriangleSoup::kFlat ? 2.5 * tolerance_ / thin : kInfinity);
+            round_of_.push_back(round);
+            sources_.push_back(static_cast<std::uint32_t>(i));
+        }
     }
 }
 
-std::array<std::array<float, 3>, 3> TriangleSet::enlarged(std::size_t triangle) const {
-    // Sharper corners would move far away.
-    constexpr double kMinSine = 1.0 / 16;
-    const std::array<Point3, 3>& corners = corners_[triangle];
-    std::array<std::array<float, 3>, 3> moved{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Point3 p = corners[i];
-        const Vec3 left = unit(corners[(i + 1) % 3] - p);
-        const Vec3 right = unit(corners[(i + 2) % 3] - p);
-        // The tolerance over the sine of half the angle, along the line that halves it.
-        const double sine = length({left.x - right.x, left.y - right.y, left.z - right.z}) / 2;
-        const Vec3 between{left.x + right.x, left.y + right.y, left.z + right.z};
-        const Point3 q = p + (-tolerance_ / std::max(sine, kMinSine)) * unit(between);
-        moved[i] = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
+void TriangleSet::enlarge(std::span<FloatTriangle> out) const {
+    assert(out.size() == size());
+    TriangleLanes lanes;
+    for (std::size_t first = 0; first < out.size(); first += kLanes) {
+        const std::size_t count = std::min(kLanes, out.size() - first);
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            for (std::size_t k = 0; k < 3; ++k)
+                lanes.set(lane, k, corners_[first + std::min(lane, count - 1)][k]);
+        ispace::enlarge(lanes, tolerance_);
+        for (std::size_t lane = 0; lane < count; ++lane)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const TriangleLanes::Vectors& moved = lanes.corners[k];
+                out[first + lane][k] = {static_cast<float>(moved.x[lane]),
+                                        static_cast<float>(moved.y[lane]),
+                                        static_cast<float>(moved.z[lane])};
+            }
     }
-    return moved;
 }
 
 RayHit TriangleSet::meet(std::size_t triangle, const Ray& ray, double ray_epsilon) const {

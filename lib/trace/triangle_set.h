@@ -87,8 +87,9 @@ class TriangleSet {
     /// A hit whose smallest barycentric coordinate times the cosine of ray and normal exceeds this
     /// lies in the triangle itself. Infinite for round bodies.
     [[nodiscard]] std::span<const double> margins() const { return margins_; }
-    /// The enlarged triangle's corners, in float32.
-    [[nodiscard]] std::array<std::array<float, 3>, 3> enlarged(std::size_t triangle) const;
+    using FloatTriangle = std::array<std::array<float, 3>, 3>;
+    /// The enlarged triangles' corners, in float32. \pre out.size() == size()
+    void enlarge(std::span<FloatTriangle> out) const;
 
     /// Where a ray through the enlarged triangle meets its plane, no nearer or farther than the
     /// triangle itself extends; or where it meets the round body that the triangle stands for, if
