@@ -40,7 +40,9 @@ constexpr ExportFormat kFormats[] = {
      .write = [](const Scene& scene, const Document& document,
                  const ExportOptions& /*options*/) -> ExportedFiles {
          return {writeGlb(scene, document), ""};
-     }},
+     },
+     .write_to = [](const Scene& scene, const Document& document,
+                    const ByteSink& sink) { writeGlb(scene, document, sink); }},
     {.name = "env",
      .suffix = "env",
      .help = "Records of an environment. From records to records no other file is read.",

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "layout/scene.h"
+#include "model/glb_write.h"
 #include "raster/grid.h"
 #include "record/record.h"
 
@@ -45,6 +46,8 @@ struct ExportFormat {
     /// Records are written as they are, without a scene: the other writer is null.
     std::string (*write_records)(Document&& document) = nullptr;
     ExportedFiles (*write)(const Scene&, const Document&, const ExportOptions&) = nullptr;
+    /// The same of a product that may be large and stands alone, piece by piece; null: as a whole.
+    void (*write_to)(const Scene&, const Document&, const ByteSink&) = nullptr;
     /// A file that stands beside the product and is named after it.
     std::string_view beside_suffix = "";  ///< ".pgm"; "" for none
     std::string_view beside_role = "";    ///< for messages: "materials"

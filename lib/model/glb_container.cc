@@ -71,34 +71,35 @@ GlbChunks glbChunks(std::string_view bytes, const std::string& name) {
 }
 
 std::string glbContainer(std::string_view json, std::span<const std::string_view> parts) {
-    return glbContainer(std::vector<std::string>{std::string(json)}, parts);
+    std::string out;
+    writeGlbContainer({std::string(json)}, parts, [&out](std::string_view bytes) { out += bytes; });
+    return out;
 }
 
-std::string glbContainer(std::vector<std::string> json, std::span<const std::string_view> parts) {
+void writeGlbContainer(std::vector<std::string> json, std::span<const std::string_view> parts,
+                       const ByteSink& sink) {
     std::size_t size = 0, json_text = 0;
     for (const std::string_view part : parts) size += part.size();
     for (const std::string& piece : json) json_text += piece.size();
     const std::size_t json_size = padded(json_text), binary_size = padded(size);
     const std::size_t length = kHeaderSize + 2 * kChunkHeaderSize + json_size + binary_size;
-    // Checked before anything is copied: the parts may be large.
     if (length > kMaxBytes) failFile("", "the model is too large for a glTF file");
-    std::string out;
-    out.reserve(length);
-    out += kMagic;
-    appendWord(out, kVersion);
-    appendWord(out, length);
-    appendWord(out, json_size);
-    appendWord(out, kJsonChunk);
+    std::string head(kMagic);
+    appendWord(head, kVersion);
+    appendWord(head, length);
+    appendWord(head, json_size);
+    appendWord(head, kJsonChunk);
+    sink(head);
     for (std::string& piece : json) {
-        out += piece;
+        sink(piece);
         piece = std::string();
     }
-    out.append(json_size - json_text, ' ');
-    appendWord(out, binary_size);
-    appendWord(out, kBinaryChunk);
-    for (const std::string_view part : parts) out += part;
-    out.append(binary_size - size, '\0');
-    return out;
+    head.assign(json_size - json_text, ' ');
+    appendWord(head, binary_size);
+    appendWord(head, kBinaryChunk);
+    sink(head);
+    for (const std::string_view part : parts) sink(part);
+    sink(std::string(binary_size - size, '\0'));
 }
 
 }  // namespace ispace

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <span>
 
 namespace ispace {
@@ -41,7 +42,7 @@ void writeList(JsonWriter& json, const List& list) {
     json.endArray();
 }
 
-/// Opens the array that a section of the file is, if this is its first item.
+/// Begins an item of a section of the file, and with the first one the array that this is.
 JsonWriter& item(JsonWriter& section, int count) {
     if (count == 0) section.beginArray();
     return section;
@@ -107,12 +108,12 @@ int GlbBuilder::material(Material material, bool double_sided) {
 }
 
 JsonWriter& GlbBuilder::beginMaterial(std::string_view name) {
-    JsonWriter& json = item(materials_json_, material_count_++).beginObject();
+    JsonWriter& json = item(materials_json_.json, material_count_++).beginObject();
     return json.key("name").value(name);
 }
 
 int GlbBuilder::pictureMaterial(std::string_view name, std::string_view png) {
-    picture_view_ = addView({png});
+    picture_view_ = addView({{png}});
     JsonWriter& json = beginMaterial(name);
     json.key("doubleSided").value(true).key("pbrMetallicRoughness").beginObject();
     json.key("baseColorTexture").beginObject().key("index").value(0).endObject();
@@ -126,7 +127,7 @@ int GlbBuilder::addView(const ViewSpec& view) {
 }
 
 int GlbBuilder::addAccessor(int view, std::size_t offset, std::size_t count, const char* type) {
-    JsonWriter& json = item(accessors_json_, accessors_).beginObject();
+    JsonWriter& json = item(accessors_json_.json, accessors_).beginObject();
     json.key("bufferView").value(view);
     if (offset > 0) json.key("byteOffset").value(offset);
     json.key("componentType").value(type == kScalar ? kUnsignedInt : kFloat);
@@ -144,30 +145,29 @@ int GlbBuilder::addPositions(int view, std::size_t offset, const std::vector<Vec
             high[i] = std::max(high[i], point[i]);
         }
     const int index = addAccessor(view, offset, points.size(), kVec3);
-    writeList(accessors_json_.key("min"), low);
-    writeList(accessors_json_.key("max"), high);
-    accessors_json_.endObject();
+    writeList(accessors_json_.json.key("min"), low);
+    writeList(accessors_json_.json.key("max"), high);
+    accessors_json_.json.endObject();
     return index;
 }
 
 GlbBuilder::Primitive GlbBuilder::add(const GlbSurface& surface, int material) {
     Primitive primitive;
     primitive.material = material;
-    primitive.positions = addPositions(kPositions, bytesOf(positions_).size(), surface.positions);
-    primitive.normals =
-        addAccessor(kNormals, bytesOf(normals_).size(), surface.normals.size(), kVec3);
-    accessors_json_.endObject();
+    primitive.positions = addPositions(kPositions, positions_.bytes(), surface.positions);
+    primitive.normals = addAccessor(kNormals, normals_.bytes(), surface.normals.size(), kVec3);
+    accessors_json_.json.endObject();
     if (!surface.places.empty()) {
-        const int view = addView({bytesOf(surface.places), 0, kVertices});
+        const int view = addView({{bytesOf(surface.places)}, 0, kVertices});
         primitive.places = addAccessor(view, 0, surface.places.size(), kVec2);
-        accessors_json_.endObject();
+        accessors_json_.json.endObject();
     }
-    primitive.indices =
-        addAccessor(kIndices, bytesOf(indices_).size(), surface.indices.size(), kScalar);
-    accessors_json_.endObject();
-    positions_.insert(positions_.end(), surface.positions.begin(), surface.positions.end());
-    normals_.insert(normals_.end(), surface.normals.begin(), surface.normals.end());
-    indices_.insert(indices_.end(), surface.indices.begin(), surface.indices.end());
+    primitive.indices = addAccessor(kIndices, indices_.bytes(), surface.indices.size(), kScalar);
+    accessors_json_.json.endObject();
+    positions_.append(surface.positions);
+    normals_.append(surface.normals);
+    indices_.append(surface.indices);
+    accessors_json_.putAside();
     return primitive;
 }
 
@@ -180,19 +180,19 @@ GlbBuilder::Primitive GlbBuilder::add(const TriangleMesh& mesh, int material) {
         primitive.material = material;
         return primitive;
     }
-    const int view = addView({bytesOf(mesh.vertices), 0, kVertices});
-    addView({bytesOf(mesh.triangles), 0, kElements});
+    const int view = addView({{bytesOf(mesh.vertices)}, 0, kVertices});
+    addView({{bytesOf(mesh.triangles)}, 0, kElements});
     Primitive primitive;
     primitive.material = material;
     primitive.positions = addPositions(view, 0, mesh.vertices);
     primitive.indices = addAccessor(view + 1, 0, 3 * mesh.triangles.size(), kScalar);
-    accessors_json_.endObject();
+    accessors_json_.json.endObject();
     files_.push_back({mesh.digest, view, primitive});
     return primitive;
 }
 
 int GlbBuilder::addMesh(std::string_view name, const std::vector<Primitive>& primitives) {
-    JsonWriter& json = item(meshes_json_, meshes_).beginObject();
+    JsonWriter& json = item(meshes_json_.json, meshes_).beginObject();
     json.key("name").value(name).key("primitives").beginArray();
     for (const Primitive& primitive : primitives) {
         json.beginObject().key("attributes").beginObject();
@@ -204,11 +204,12 @@ int GlbBuilder::addMesh(std::string_view name, const std::vector<Primitive>& pri
         json.key("mode").value(kTriangles).endObject();
     }
     json.endArray().endObject();
+    meshes_json_.putAside();
     return meshes_++;
 }
 
 void GlbBuilder::addNode(const GlbNode& node) {
-    JsonWriter& json = item(nodes_json_, nodes_++).beginObject();
+    JsonWriter& json = item(nodes_json_.json, nodes_++).beginObject();
     json.key("name").value(node.name);
     if (node.mesh >= 0) json.key("mesh").value(node.mesh);
     if (node.frame != nullptr) {
@@ -223,9 +224,10 @@ void GlbBuilder::addNode(const GlbNode& node) {
     if (!node.keyword.empty())
         json.key("extras").beginObject().key("keyword").value(node.keyword).endObject();
     json.endObject();
+    nodes_json_.putAside();
 }
 
-void GlbBuilder::addDerived(std::string_view derived) { derived_view_ = addView({derived}); }
+void GlbBuilder::addDerived(std::string_view derived) { derived_view_ = addView({{derived}}); }
 
 void GlbBuilder::writeExtras(JsonWriter& json) const {
     json.key("extras").beginObject().key("ispace").value(static_cast<int>(kRecords));
@@ -250,14 +252,18 @@ std::vector<std::string_view> GlbBuilder::writeViews(JsonWriter& json,
     for (const ViewSpec& view : views) {
         const std::size_t padding = (4 - size % 4) % 4;
         parts.push_back(kPadding.substr(0, padding));
-        parts.push_back(view.data);
         size += padding;
-        json.beginObject().key("buffer").value(0).key("byteLength").value(view.data.size());
+        std::size_t bytes = 0;
+        for (const std::string_view piece : view.data) {
+            parts.push_back(piece);
+            bytes += piece.size();
+        }
+        json.beginObject().key("buffer").value(0).key("byteLength").value(bytes);
         if (size > 0) json.key("byteOffset").value(size);
         if (view.stride > 0) json.key("byteStride").value(view.stride);
         if (view.target > 0) json.key("target").value(view.target);
         json.endObject();
-        size += view.data.size();
+        size += bytes;
     }
     json.endArray();
     json.key("buffers").beginArray().beginObject().key("byteLength").value(size);
@@ -266,7 +272,7 @@ std::vector<std::string_view> GlbBuilder::writeViews(JsonWriter& json,
 }
 
 void GlbBuilder::writeScene(JsonWriter& json, const std::array<double, 3>& origin) {
-    JsonWriter& nodes = item(nodes_json_, nodes_).beginObject().key("name").value("room");
+    JsonWriter& nodes = item(nodes_json_.json, nodes_).beginObject().key("name").value("room");
     if (origin != std::array<double, 3>{}) writeList(nodes.key("translation"), origin);
     nodes.key("children").beginArray();
     for (int child = 0; child < nodes_; ++child) nodes.value(child);
@@ -293,17 +299,23 @@ std::string picturesText(int view) {
 
 }  // namespace
 
-std::string GlbBuilder::finish(std::string_view records, const std::array<double, 3>& origin) {
+void GlbBuilder::Section::putAside() {
+    constexpr std::size_t kFull = 1 << 20;
+    if (json.text().size() >= kFull) full.push_back(json.take());
+}
+
+void GlbBuilder::finish(std::string_view records, const std::array<double, 3>& origin,
+                        const ByteSink& sink) {
     constexpr int kStride = sizeof(Vector);
-    if (indices_.empty()) {  // a view has at least one byte
-        positions_.emplace_back();
-        normals_.emplace_back();
-        indices_.emplace_back();
+    if (indices_.bytes() == 0) {  // a view has at least one byte
+        positions_.append({Vector{}});
+        normals_.append({Vector{}});
+        indices_.append({0});
     }
-    std::vector<ViewSpec> views = {{records},
-                                   {bytesOf(positions_), kStride, kVertices},
-                                   {bytesOf(normals_), kStride, kVertices},
-                                   {bytesOf(indices_), 0, kElements}};
+    std::vector<ViewSpec> views = {{{records}},
+                                   {positions_.parts(), kStride, kVertices},
+                                   {normals_.parts(), kStride, kVertices},
+                                   {indices_.parts(), 0, kElements}};
     views.insert(views.end(), file_views_.begin(), file_views_.end());
     JsonWriter json;
     json.beginObject().key("asset").beginObject().key("version").value("2.0");
@@ -312,10 +324,11 @@ std::string GlbBuilder::finish(std::string_view records, const std::array<double
     const std::vector<std::string_view> parts = writeViews(json, views);
     writeScene(json, origin);
     std::vector<std::string> text = {json.take()};
-    const auto append = [&text](std::string_view key, JsonWriter& section) {
-        if (section.text().empty()) return;  // glTF has no empty lists
+    const auto append = [&text](std::string_view key, Section& section) {
+        if (section.isEmpty()) return;  // glTF has no empty lists
         text.emplace_back(key);
-        text.push_back(section.endArray().take());
+        std::move(section.full.begin(), section.full.end(), std::back_inserter(text));
+        text.push_back(section.json.endArray().take());
     };
     if (picture_view_ >= 0) text.push_back(picturesText(picture_view_));
     append(R"(,"materials":)", materials_json_);
@@ -323,7 +336,7 @@ std::string GlbBuilder::finish(std::string_view records, const std::array<double
     append(R"(,"accessors":)", accessors_json_);
     append(R"(,"nodes":)", nodes_json_);
     text.emplace_back("}");
-    return glbContainer(std::move(text), parts);
+    writeGlbContainer(std::move(text), parts, sink);
 }
 
 }  // namespace ispace

@@ -2,6 +2,7 @@
 // The container of GLB files, and the builder that glb_write.cc writes them with.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include "base/json_writer.h"
 #include "env/mesh.h"
 #include "geom/rotation.h"
+#include "model/glb_write.h"
 #include "record/record.h"
 
 namespace ispace {
@@ -33,8 +35,10 @@ GlbChunks glbChunks(std::string_view bytes, const std::string& name);
 /// Writes the container: JSON, and the parts one after another as its binary data.
 /// \throws FormatError for more than 2 GiB, which some readers take for a negative length
 std::string glbContainer(std::string_view json, std::span<const std::string_view> parts);
-/// The same of JSON in pieces, each of which is let go of once it is in the file.
-std::string glbContainer(std::vector<std::string> json, std::span<const std::string_view> parts);
+/// The same piece by piece, of JSON in pieces, each of which is let go of once it is written.
+/// \throws FormatError as above, before anything is written
+void writeGlbContainer(std::vector<std::string> json, std::span<const std::string_view> parts,
+                       const ByteSink& sink);
 
 /// glTF's (X, Y, Z) are our (x, z, -y).
 std::array<double, 3> gltfAxes(Vec3 v);
@@ -68,6 +72,34 @@ struct GlbNode {
     std::unique_ptr<const Frame> frame;
 };
 
+/// Items one after another, in blocks: it grows without moving them.
+template <typename T>
+class Blocks {
+  public:
+    void append(const std::vector<T>& items) {
+        if (blocks_.empty() || blocks_.back().capacity() - blocks_.back().size() < items.size()) {
+            blocks_.emplace_back();
+            blocks_.back().reserve(std::max(std::clamp(size_, kLeast, kMost), items.size()));
+        }
+        blocks_.back().insert(blocks_.back().end(), items.begin(), items.end());
+        size_ += items.size();
+    }
+    [[nodiscard]] std::size_t bytes() const { return size_ * sizeof(T); }
+    [[nodiscard]] std::vector<std::string_view> parts() const {
+        std::vector<std::string_view> parts;
+        for (const auto& block : blocks_)
+            parts.emplace_back(reinterpret_cast<const char*>(block.data()),
+                               block.size() * sizeof(T));
+        return parts;
+    }
+
+  private:
+    static constexpr std::size_t kLeast = 1 << 10, kMost = 1 << 17;
+
+    std::vector<std::vector<T>> blocks_;
+    std::size_t size_ = 0;
+};
+
 /// Collects nodes, meshes and data of a file, and writes it. The JSON begins with what readers of
 /// the records need.
 class GlbBuilder {
@@ -96,22 +128,32 @@ class GlbBuilder {
     /// \pre it stays as it is until finish(), and is the only one
     void addDerived(std::string_view derived);
 
-    /// The whole file. All nodes stand in a node `room` at this place, in glTF's axes.
-    /// \throws FormatError as glbContainer does
-    std::string finish(std::string_view records, const std::array<double, 3>& origin);
+    /// Writes the whole file. All nodes stand in a node `room` at this place, in glTF's axes.
+    /// \throws FormatError as writeGlbContainer does
+    void finish(std::string_view records, const std::array<double, 3>& origin,
+                const ByteSink& sink);
 
   private:
     // Accessors name views before the later ones are known: those of files follow the four.
     enum View : int { kRecords, kPositions, kNormals, kIndices, kFiles };
     struct ViewSpec {
-        std::string_view data;
-        int stride = 0;  ///< bytes; 0: none is given
-        int target = 0;  ///< how glTF uses it; 0: not at all
+        std::vector<std::string_view> data;  ///< in pieces
+        int stride = 0;                      ///< bytes; 0: none is given
+        int target = 0;                      ///< how glTF uses it; 0: not at all
     };
     struct FileMesh {
         std::string digest;
         int view = 0;  ///< of its positions; that of its indices follows
         Primitive primitive;
+    };
+
+    /// The items of a list in the file. What is full is put aside.
+    struct Section {
+        JsonWriter json;
+        std::vector<std::string> full;
+
+        void putAside();
+        [[nodiscard]] bool isEmpty() const { return full.empty() && json.text().empty(); }
     };
 
     int addAccessor(int view, std::size_t offset, std::size_t count, const char* type);
@@ -123,12 +165,12 @@ class GlbBuilder {
                                                     const std::vector<ViewSpec>& views);
     void writeScene(JsonWriter& json, const std::array<double, 3>& origin);
 
-    std::vector<GlbSurface::Vector> positions_, normals_;
-    std::vector<std::uint32_t> indices_;
+    Blocks<GlbSurface::Vector> positions_, normals_;
+    Blocks<std::uint32_t> indices_;
     std::vector<ViewSpec> file_views_;
     std::vector<FileMesh> files_;
     std::map<std::pair<Material, bool>, int> materials_;
-    JsonWriter materials_json_, meshes_json_, accessors_json_, nodes_json_;
+    Section materials_json_, meshes_json_, accessors_json_, nodes_json_;
     int material_count_ = 0, meshes_ = 0, accessors_ = 0, nodes_ = 0;
     int picture_view_ = -1;  ///< of the picture; -1 for none
     int derived_view_ = -1;  ///< of what is derived; -1 for none

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <span>
 #include <tuple>
 #include <unordered_map>
 
+#include "base/number.h"
 #include "env/body.h"
 #include "env/mesh.h"
 #include "env/standing.h"
@@ -38,19 +41,70 @@ Eigen::Quaterniond gltfFromFile(const std::string& up) {
     return turnAbout(0, Angle::degrees(-90));
 }
 
+/// Triangles and what they are made of.
+struct PreparedSurface {
+    GlbSurface surface;
+    Material material;
+    bool open;
+};
+
+/// What can be made of an element before its turn to be added has come.
+struct Prepared {
+    bool stands = false;                         ///< furniture, of which equal ones share a mesh
+    std::string shape = {};                      ///< of furniture: what its mesh depends on
+    std::vector<PreparedSurface> surfaces = {};  ///< of what is fixed
+};
+
+std::vector<PreparedSurface> surfacesOf(const std::vector<Mesh>& meshes, Point3 origin) {
+    std::vector<PreparedSurface> surfaces;
+    surfaces.reserve(meshes.size());
+    for (const Mesh& mesh : meshes)
+        surfaces.push_back({surfaceOf(mesh, origin), mesh.material, mesh.open});
+    return surfaces;
+}
+
+/// The record of furniture without id and place, but for its height above the floor.
+std::string shapeText(const Record& record) {
+    std::string text = record.keyword();
+    record.forEachWritten([&text](const KeySpec& key, const Value& value) {
+        if (key.name == "id" || key.name == "heading") return;
+        if (key.name != "at") {
+            text += ' ';
+            text += key.name;
+            text += '=';
+            appendValue(text, key, value);
+        } else if (const Tuple& at = std::get<Tuple>(value); at.size() > 2) {
+            text += " z=";
+            appendDouble(text, at[2]);
+        }
+    });
+    return text;
+}
+
+Prepared prepare(const Element& element, Point3 origin) {
+    Prepared prepared;
+    prepared.stands = standsByItself(element.record);
+    if (prepared.stands)
+        prepared.shape = shapeText(element.record);
+    else if (element.record.mesh() == nullptr)
+        prepared.surfaces = surfacesOf(meshesOf(element.body, Surfaces::Drawn), origin);
+    return prepared;
+}
+
 /// Adds the nodes of a scene.
 class GlbScene {
   public:
     GlbScene(GlbBuilder& builder, Point3 origin, const FloorPicture* picture)
         : builder_(builder), origin_(origin), picture_(picture) {}
 
-    void add(const Element& element) {
-        if (standsByItself(element.record))
-            addStanding(element);
+    /// \param prepared what prepare() made of it
+    void add(const Element& element, const Prepared& prepared) {
+        if (prepared.stands)
+            addStanding(element, prepared.shape);
         else if (element.record.mesh() != nullptr)
             addFile(element);
         else
-            addFixed(nodeOf(element));
+            addNode(element.id, element.record.keyword(), meshOf(element.id, prepared.surfaces));
     }
     void add(const ModelNode& node) {
         if (picture_ != nullptr && node.keyword.empty())
@@ -67,22 +121,22 @@ class GlbScene {
     using Figure = std::vector<std::tuple<Material, std::vector<std::array<double, 3>>,
                                           std::vector<std::array<std::uint32_t, 3>>>>;
 
-    /// Adds a mesh with its triangles about a point. \return its index, -1 if it shows nothing
-    int meshAbout(Point3 origin, const std::string& name, const std::vector<Mesh>& meshes) {
+    /// Adds a mesh of these. \return its index, -1 if it shows nothing
+    int meshOf(const std::string& name, const std::vector<PreparedSurface>& surfaces) {
         Primitives primitives;
-        for (const Mesh& mesh : meshes) {
-            const GlbSurface surface = surfaceOf(mesh, origin);
+        for (const auto& [surface, material, open] : surfaces)
             if (!surface.indices.empty())
-                primitives.push_back(
-                    builder_.add(surface, builder_.material(mesh.material, mesh.open)));
-        }
+                primitives.push_back(builder_.add(surface, builder_.material(material, open)));
         return primitives.empty() ? -1 : builder_.addMesh(name, primitives);
     }
 
     /// A thing whose mesh is in the world.
     void addFixed(const ModelNode& node) {
-        const int mesh = meshAbout(origin_, node.id, node.meshes);
-        if (mesh >= 0) builder_.addNode({node.id, node.keyword, mesh, nullptr});
+        addNode(node.id, node.keyword, meshOf(node.id, surfacesOf(node.meshes, origin_)));
+    }
+
+    void addNode(const std::string& id, const std::string& keyword, int mesh) {
+        if (mesh >= 0) builder_.addNode({id, keyword, mesh, nullptr});
     }
 
     /// The floor of the indoor region with the picture on it.
@@ -110,22 +164,25 @@ class GlbScene {
             figure.emplace_back(mesh.material, std::move(vertices), mesh.triangles);
         }
         const auto [place, is_new] = figures_.try_emplace(std::move(figure), -1);
-        if (is_new) place->second = meshAbout(Point3(), node.keyword, node.meshes);
+        if (is_new) place->second = meshOf(node.keyword, surfacesOf(node.meshes, Point3()));
         addNode(node.id, node.keyword, place->second, *node.pose);
     }
 
     /// Furniture: things whose records differ only in id and place share a mesh.
-    void addStanding(const Element& element) {
-        Record shape = element.record;
-        const Tuple at = shape.tuple("at");
-        for (const char* key : {"id", "at", "heading"}) shape.erase(key);
-        if (at.size() > 2) shape.set("at", Tuple{0, 0, at[2]});
-        const auto [place, is_new] = shapes_.try_emplace(formatRecord(shape), -1);
-        if (is_new)
-            place->second =
-                meshAbout(Point3(), shape.keyword(), meshesOf(bodyOf(shape), Surfaces::Drawn));
-        addNode(element.id, shape.keyword(), place->second,
-                {{at[0], at[1], 0}, element.record.angle("heading"), {}, {}});
+    void addStanding(const Element& element, const std::string& shape) {
+        const Record& record = element.record;
+        const auto [place, is_new] = shapes_.try_emplace(shape, -1);
+        if (is_new) place->second = meshOf(record.keyword(), surfacesAtOrigin(record));
+        const Tuple& at = record.tuple("at");
+        addNode(element.id, record.keyword(), place->second,
+                {{at[0], at[1], 0}, record.angle("heading"), {}, {}});
+    }
+
+    static std::vector<PreparedSurface> surfacesAtOrigin(Record record) {
+        const Tuple at = record.tuple("at");
+        for (const char* key : {"id", "at", "heading"}) record.erase(key);
+        if (at.size() > 2) record.set("at", Tuple{0, 0, at[2]});
+        return surfacesOf(meshesOf(bodyOf(record), Surfaces::Drawn), Point3());
     }
 
     /// With a mesh in the frame of a pose, if it shows something.
@@ -177,26 +234,58 @@ std::string recordsText(const Document& document) {
     return writeRecordText(compiled);
 }
 
+/// Their nodes, in order; triangles are made by several threads if there are many.
+void addElements(const std::vector<Element>& elements, Point3 origin, GlbScene& nodes) {
+    if (elements.size() < kManyRecords) {
+        for (const Element& element : elements) nodes.add(element, prepare(element, origin));
+        return;
+    }
+    constexpr std::size_t kBlock = 256;
+    std::array<std::vector<Prepared>, kBlocksAtOnce> prepared;
+    const auto elements_of = [&](std::size_t block) {
+        return std::span(elements)
+            .subspan(block * kBlock)
+            .first(std::min(kBlock, elements.size() - block * kBlock));
+    };
+    const auto make = [&](std::size_t block) {
+        std::vector<Prepared>& slot = prepared[block % kBlocksAtOnce];
+        slot.clear();
+        for (const Element& element : elements_of(block)) slot.push_back(prepare(element, origin));
+    };
+    const auto take = [&](std::size_t block) {
+        auto next = prepared[block % kBlocksAtOnce].begin();
+        for (const Element& element : elements_of(block)) nodes.add(element, *next++);
+    };
+    makeInOrder((elements.size() + kBlock - 1) / kBlock, make, take);
+}
+
 }  // namespace
 
 std::string writeGlb(const Scene& scene, const Document& document, const FloorPicture* picture) {
+    std::string out;
+    writeGlb(
+        scene, document, [&out](std::string_view bytes) { out += bytes; }, picture);
+    return out;
+}
+
+void writeGlb(const Scene& scene, const Document& document, const ByteSink& sink,
+              const FloorPicture* picture) {
     const Point3 origin = meshOrigin(scene.environment.limits());
     GlbBuilder builder;
     GlbScene nodes(builder, origin, picture);
     std::vector<ModelNode> placed;
     std::string records, derived;
-    const auto add_elements = [&] {
-        for (const Element& element : scene.environment.elements()) nodes.add(element);
-    };
-    const auto prepare = [&] {
+    const bool at_once = document.records.size() >= kManyRecords;
+    const auto add_elements = [&] { addElements(scene.environment.elements(), origin, nodes); };
+    const auto prepare_rest = [&] {
         placed = placedNodes(scene, true);
         records = recordsText(document);
         derived = scene.environment.stored();
     };
-    doBoth(document.records.size() >= kManyRecords, add_elements, prepare);
+    doBoth(at_once, add_elements, prepare_rest);
     for (const ModelNode& node : placed) nodes.add(node);
     builder.addDerived(derived);
-    return builder.finish(records, gltfAxes(origin - Point3()));
+    builder.finish(records, gltfAxes(origin - Point3()), sink);
 }
 
 }  // namespace ispace

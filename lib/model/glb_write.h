@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include "layout/scene.h"
 #include "record/record.h"
@@ -14,6 +16,9 @@ struct FloorPicture {
     Box2 limits;
     std::string png;
 };
+
+/// Takes the bytes of a file as they come.
+using ByteSink = std::function<void(std::string_view)>;
 
 /// The compiled form: binary glTF 2.0, one named node per element (and sensor body), shared
 /// materials with colours, normals, metres, +Y up; the records of `document` as canonical text
@@ -30,5 +35,8 @@ struct FloorPicture {
 /// \throws FormatError for a model of more than 2 GiB
 std::string writeGlb(const Scene& scene, const Document& document,
                      const FloorPicture* picture = nullptr);
+/// The same piece by piece: nobody holds the file as a whole.
+void writeGlb(const Scene& scene, const Document& document, const ByteSink& sink,
+              const FloorPicture* picture = nullptr);
 
 }  // namespace ispace

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "base/file.h"
 #include "base/number.h"
@@ -24,12 +25,12 @@ namespace {
 using namespace ispace;
 
 struct Outcome {
-    std::string glb;
     double indoor_area = 0;
     double seconds[3] = {};  // reading, the scene, the model
 };
 
-Outcome compile(const std::function<Document()>& read) {
+/// \param sink takes the bytes of the model
+Outcome compile(const std::function<Document()>& read, const ByteSink& sink) {
     Outcome out;
     auto last = std::chrono::steady_clock::now();
     const auto lap = [&last] {
@@ -40,14 +41,16 @@ Outcome compile(const std::function<Document()>& read) {
     out.seconds[0] = lap();
     const Scene scene = makeScene(document, nullptr, DeviceCatalogue());
     out.seconds[1] = lap();
-    out.glb = writeGlb(scene, document);
+    writeGlb(scene, document, sink);
     out.seconds[2] = lap();
     out.indoor_area = scene.environment.indoor().area();
     return out;
 }
 
-void verify(const std::string& name, const Outcome& out, double area) {
-    const Document again = readGlb(out.glb, name, sceneSchemas());
+void verify(const std::string& name, const std::function<Document()>& read, double area) {
+    std::string glb;
+    const Outcome out = compile(read, [&glb](std::string_view bytes) { glb += bytes; });
+    const Document again = readGlb(glb, name, sceneSchemas());
     const double loaded = makeScene(again, nullptr, DeviceCatalogue()).environment.indoor().area();
     if (std::abs(out.indoor_area - area) <= 1e-6 * area && loaded == out.indoor_area) return;
     std::fprintf(stderr, "plan: %s encloses %g m2, loaded %g m2, wanted %g m2\n", name.c_str(),
@@ -59,7 +62,8 @@ void verify(const std::string& name, const Outcome& out, double area) {
 double measure(benchmark::State& state, const std::function<Document()>& read) {
     double seconds[3] = {};
     for (auto _ : state) {
-        const Outcome out = compile(read);
+        const Outcome out =
+            compile(read, [](std::string_view bytes) { benchmark::DoNotOptimize(bytes); });
         for (int i = 0; i < 3; ++i) seconds[i] += out.seconds[i];
     }
     const auto runs = static_cast<double>(state.iterations());
@@ -101,7 +105,7 @@ std::string stlOf(const TriangleMesh& mesh) {
 /// Makes a file and compiles it as envc does.
 void registerFile(const std::string& name, const std::string& file, double area) {
     const auto read = [file] { return readDocument(file, ImportOptions(), sceneSchemas()); };
-    verify(name, compile(read), area);
+    verify(name, read, area);
     benchmark::RegisterBenchmark(("plan/" + name).c_str(),
                                  [read](benchmark::State& state) { measure(state, read); })
         ->UseRealTime()
@@ -116,10 +120,10 @@ int main(int argc, char** argv) {
     for (const std::size_t walls : {1000U, 10000U, 100000U}) {
         const bench::Building plan = bench::building(walls);
         const std::string name = "walls-" + std::to_string(walls);
-        verify(name, compile([&plan] {
-                   return parseDocument(plan.text, "plan.env", ImportOptions(), sceneSchemas());
-               }),
-               plan.indoor_area);
+        const auto read = [&plan] {
+            return parseDocument(plan.text, "plan.env", ImportOptions(), sceneSchemas());
+        };
+        verify(name, read, plan.indoor_area);
         benchmark::RegisterBenchmark(
             ("plan/" + name).c_str(),
             [plan](benchmark::State& state) { compileBuilding(state, plan); })

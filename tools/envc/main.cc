@@ -2,6 +2,7 @@
 // envc: compiles rooms and layouts into a model, checks, converts, edits and draws them.
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -51,6 +52,13 @@ Document readModel(const EnvcOptions& options) {
 }
 
 void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document) {
+    if (options.format->write_to != nullptr) {
+        OutputFile file(options.common.output);
+        options.format->write_to(scene, document,
+                                 [&file](std::string_view bytes) { file.write(bytes); });
+        file.commit();
+        return;
+    }
     const std::string beside = besideOf(options);
     ExportOptions how{options.slice,
                       options.import.resolution,
