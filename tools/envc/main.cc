@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // envc: compiles rooms and layouts into a model, checks, converts, edits and draws them.
+#include <malloc.h>
+
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -95,6 +98,19 @@ void check(const Document& document, const DeviceCatalogue& devices) {
     findings.throwIfAny();
 }
 
+/// What is compiled. It is left to the end of the process: to take a large room apart takes long.
+struct Room {
+    Document document;
+    Scene scene;
+};
+
+const Room& makeRoom(Document document, const DeviceCatalogue& devices) {
+    static const Room* room = nullptr;
+    Scene scene = makeScene(document, nullptr, devices);
+    room = new Room{std::move(document), std::move(scene)};
+    return *room;
+}
+
 void compile(const EnvcOptions& options, Document document) {
     // The model holds its environment: a way to another would only go stale.
     std::erase_if(document.records,
@@ -107,13 +123,13 @@ void compile(const EnvcOptions& options, Document document) {
         talk(options.common, "envc", "nothing found");
         return;
     }
-    const Scene scene = makeScene(document, nullptr, devices);
+    const auto& [compiled, scene] = makeRoom(std::move(document), devices);
     const std::string& output = options.common.output;
     if (options.info) {
         const EnvironmentInfo info = describe(scene.environment, scene.records, scene.digest);
         writeAll(output, options.json ? infoJson(info) : infoText(info));
     } else {
-        writeProduct(options, scene, document);
+        writeProduct(options, scene, compiled);
         talk(options.common, "envc",
              std::to_string(scene.records.size()) + " records compiled, indoor area " +
                  formatFixed(scene.environment.indoor().area(), 2) + " m2");
@@ -143,8 +159,19 @@ void envc(const EnvcOptions& options) {
     writeDependencies(options.common, files);
 }
 
+/// Large rooms come and go through a few hundred megabytes: what is let go of is used again, and
+/// not given back to the system, which would have to clear it anew.
+void keepMemory() {
+#ifdef __GLIBC__
+    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TOP_PAD, 64 << 20);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    keepMemory();
     return ispace::runTool("envc", [&] { envc(ispace::parseEnvcOptions(argc, argv)); });
 }
