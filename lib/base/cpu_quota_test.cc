@@ -2,10 +2,11 @@
 #include "base/cpu_quota.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+
+#include "base/test_folder.h"
 
 namespace ispace {
 namespace {
@@ -13,23 +14,15 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A machine's /proc and /sys as files.
-class CpuQuotaTest : public testing::Test {
+class CpuQuotaTest : public ::testing::Test {
   protected:
-    CpuQuotaTest() {
-        std::string name = (fs::temp_directory_path() / "ispace_quota_XXXXXX").string();
-        root_ = ::mkdtemp(name.data());
-    }
-    void TearDown() override {
-        std::error_code ignored;
-        fs::remove_all(root_, ignored);
-    }
     void write(const std::string& name, const std::string& text) const {
         fs::create_directories((root_ / name).parent_path());
         std::ofstream(root_ / name) << text;
     }
-    [[nodiscard]] std::optional<int> quota() const { return cpuQuota(root_); }
+    [[nodiscard]] std::optional<int> quota() const { return cpuQuota(root_.path()); }
 
-    fs::path root_;
+    testing::TestFolder root_;
 };
 
 TEST_F(CpuQuotaTest, IsRoundedUp) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/test_folder.h"
 
 namespace ispace {
 namespace {
@@ -25,21 +26,12 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A folder of its own for each test, removed afterwards.
-class FileTest : public testing::Test {
+class FileTest : public ::testing::Test {
   protected:
-    FileTest() {
-        std::string name = (fs::temp_directory_path() / "ispace_file_XXXXXX").string();
-        folder_ = ::mkdtemp(name.data());
-    }
-    void TearDown() override {
-        std::error_code ignored;
-        fs::permissions(folder_, fs::perms::owner_all, ignored);
-        fs::remove_all(folder_, ignored);
-    }
     [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
     [[nodiscard]] std::vector<std::string> names() const {
         std::vector<std::string> all;
-        for (const auto& entry : fs::directory_iterator(folder_))
+        for (const auto& entry : fs::directory_iterator(folder_.path()))
             all.push_back(entry.path().filename());
         std::sort(all.begin(), all.end());
         return all;
@@ -49,7 +41,7 @@ class FileTest : public testing::Test {
         EXPECT_EQ(::stat(file.c_str(), &info), 0);
         return info.st_mode & 07777;
     }
-    fs::path folder_;
+    testing::TestFolder folder_;
 };
 
 /// The error code of what `action` throws; it names `file`.
@@ -236,8 +228,8 @@ TEST_F(FileTest, RefusesFoldersAndWhatCannotBeMade) {
     const auto write = [&](const std::string& name) {
         return errorOf([&] { const OutputFile file(name); }, name);
     };
-    EXPECT_EQ(write(folder_.string()), EISDIR);
-    EXPECT_EQ(write(folder_.string() + '/'), EISDIR);
+    EXPECT_EQ(write(folder_.path().string()), EISDIR);
+    EXPECT_EQ(write(folder_.path().string() + '/'), EISDIR);
     EXPECT_EQ(write(path("new/")), EISDIR);
     EXPECT_EQ(write(path("no/such/folder")), ENOENT);
     EXPECT_EQ(write(""), ENOENT);
@@ -252,7 +244,7 @@ TEST_F(FileTest, RefusesWhatMayNotBeWritten) {
     writeAll(path("a"), "old");
     ASSERT_EQ(::chmod(path("a").c_str(), 0444), 0);
     EXPECT_EQ(errorOf([&] { const OutputFile file(path("a")); }, path("a")), EACCES);
-    ASSERT_EQ(::chmod(folder_.c_str(), 0555), 0);
+    ASSERT_EQ(::chmod(folder_.path().c_str(), 0555), 0);
     EXPECT_EQ(errorOf([&] { const OutputFile file(path("b")); }, path("b")), EACCES);
 }
 
@@ -266,7 +258,7 @@ TEST_F(FileTest, ReadsEverything) {
     EXPECT_EQ(readAll(path("empty")), "");
     EXPECT_NE(readAll("/proc/self/status").find("Name:"), std::string::npos);
     EXPECT_EQ(errorOf([&] { (void)readAll(path("none")); }, path("none")), ENOENT);
-    EXPECT_EQ(errorOf([&] { (void)readAll(folder_); }, folder_), EISDIR);
+    EXPECT_EQ(errorOf([&] { (void)readAll(folder_.path()); }, folder_.path()), EISDIR);
 }
 
 TEST_F(FileTest, FilesThatBelongTogetherAreAllNewOrAllOld) {

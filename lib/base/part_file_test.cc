@@ -2,29 +2,21 @@
 #include "base/part_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <system_error>
 
 #include "base/checkpoint.h"
 #include "base/test_damage.h"
+#include "base/test_folder.h"
 
 namespace ispace {
 namespace {
 
 namespace fs = std::filesystem;
 
-class PartFileTest : public testing::Test {
+class PartFileTest : public ::testing::Test {
   protected:
-    PartFileTest() {
-        std::string name = (fs::temp_directory_path() / "ispace_part_XXXXXX").string();
-        folder_ = ::mkdtemp(name.data());
-    }
-    void TearDown() override {
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
     [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
     static PartHead head(int index = 1, int count = 1) {
         PartHead head;
@@ -50,13 +42,13 @@ class PartFileTest : public testing::Test {
     /// What opening parts of scan says, without the folder.
     std::string merging(std::vector<std::string> files) const {
         std::string errors = errorsOf([&] { (void)openParts(files, "scan"); });
-        const std::string folder = folder_.string() + "/";
+        const std::string folder = folder_.path().string() + "/";
         for (std::size_t at = 0; (at = errors.find(folder)) != std::string::npos;)
             errors.erase(at, folder.size());
         return errors;
     }
 
-    fs::path folder_;
+    testing::TestFolder folder_;
 };
 
 TEST_F(PartFileTest, HoldsWhatWasWritten) {

@@ -2,7 +2,6 @@
 #include "base/run_files.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/test_folder.h"
 
 namespace ispace {
 namespace {
@@ -19,22 +19,16 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A folder with a file `room`, its hard link `twin` and its symbolic link `link`.
-class RunFilesTest : public testing::Test {
+class RunFilesTest : public ::testing::Test {
   protected:
     RunFilesTest() {
-        std::string name = (fs::temp_directory_path() / "ispace_run_XXXXXX").string();
-        folder_ = ::mkdtemp(name.data());
         writeAll(path("room"), "old");
         fs::create_hard_link(path("room"), path("twin"));
         fs::create_symlink("room", path("link"));
     }
-    void TearDown() override {
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
     [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
 
-    fs::path folder_;
+    testing::TestFolder folder_;
 };
 
 template <typename Action>

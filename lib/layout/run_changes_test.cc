@@ -2,12 +2,12 @@
 #include "layout/run_changes.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/test_folder.h"
 #include "layout/test_layout.h"
 
 namespace ispace {
@@ -21,15 +21,12 @@ constexpr const char* kHead = "t,kind,id,other,x,y,value,text\n";
 
 class RunChangesTest : public ::testing::Test {
   protected:
-    RunChangesTest() {
-        std::string name = (fs::temp_directory_path() / "ispace_changes_XXXXXX").string();
-        folder_ = ::mkdtemp(name.data());
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     RunChanges changes(const std::string& rows) {
         writeAll((folder_ / "events.csv").string(), kHead + rows);
-        return {folder_.string(), testing::scene(kRoom, kWho), {}, [this](const std::string& file) {
+        return {folder_.path().string(),
+                testing::scene(kRoom, kWho),
+                {},
+                [this](const std::string& file) {
                     EXPECT_EQ(file, (folder_ / "scenes/scene-000001.env").string());
                     if (!fs::exists(file)) throw FormatError({file, 0, 0, "is gone"});
                     return testing::scene("ispace id=other size=4,4\n", "robot id=r9 at=1,1\n");
@@ -37,16 +34,16 @@ class RunChangesTest : public ::testing::Test {
     }
     static std::optional<Pose2> nowhere(const std::string& /*id*/) { return std::nullopt; }
 
-    fs::path folder_;
+    testing::TestFolder folder_;
 };
 
 TEST_F(RunChangesTest, AreThoseOfTheTable) {
-    EXPECT_TRUE(recordedChanges(folder_.string()).empty());
+    EXPECT_TRUE(recordedChanges(folder_.path().string()).empty());
     changes(
         "0,seen,r1,,,,1,\n0.5,change,,,,,,\"SET h1.at=2,2\"\n"
         "0.5,change,,scenes/scene-000001.env,,,,LOAD other.env\n"
         "1.25,change,,,,,,\"ADD wall name=\"\"a, b\"\" from=0,0\"\n");
-    const auto rows = recordedChanges(folder_.string());
+    const auto rows = recordedChanges(folder_.path().string());
     ASSERT_EQ(rows.size(), 3U);
     EXPECT_EQ(rows[0].time, 0.5);
     EXPECT_EQ(rows[0].text, "SET h1.at=2,2");

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A replay is taken to another time while something is still being made of the world as it is.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <thread>
 
 #include "base/file.h"
+#include "base/test_folder.h"
 #include "net/test_talk.h"
 #include "sim/replay.h"
 #include "sim/test_source.h"
@@ -16,7 +15,6 @@
 namespace ispace {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::Talk;
 
 ServerLimits changing() {
@@ -30,21 +28,14 @@ ServerLimits changing() {
 /// aside.
 class SessionSeekTest : public ::testing::Test {
   protected:
-    SessionSeekTest() : folder_(folder()), talk_({Clock::Kind::Step, 1}, {}, "", changing()) {
+    SessionSeekTest() : talk_({Clock::Kind::Step, 1}, {}, "", changing()) {
         writeAll(folder_ / "robots.csv", moments());
-        replay_ = std::make_unique<Replay>(folder_);
+        replay_ = std::make_unique<Replay>(folder_.path());
         talk_.room.simulation.replay(*replay_, true);
         talk_.state.makeAside([] {});
     }
-    void TearDown() override {
-        talk_.state.endAside();
-        fs::remove_all(folder_);
-    }
+    void TearDown() override { talk_.state.endAside(); }
 
-    static fs::path folder() {
-        std::string name = (fs::temp_directory_path() / "ispace_seek_XXXXXX").string();
-        return ::mkdtemp(name.data());
-    }
     static std::string moments() {
         std::string text = "t,id,x,y,heading_deg,stall\n";
         for (const char* t : {"0", "0.1", "0.2", "0.3"})
@@ -67,7 +58,7 @@ class SessionSeekTest : public ::testing::Test {
         return answer(client);
     }
 
-    fs::path folder_;
+    testing::TestFolder folder_;
     std::unique_ptr<Replay> replay_;  // outlives the room that it is played in
     Talk talk_;
 };

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/file.h"
+#include "base/test_folder.h"
 #include "layout/test_layout.h"
 #include "sense/ultrasound.h"
 #include "sim/record_files.h"
@@ -21,18 +22,13 @@ using std::chrono::milliseconds;
 /// A folder of its own for each test, removed afterwards.
 class RecordLines : public ::testing::Test {
   protected:
-    RecordLines() {
-        std::string name = (fs::temp_directory_path() / "ispace_lines_XXXXXX").string();
-        folder_ = ::mkdtemp(name.data());
-    }
-    void TearDown() override { fs::remove_all(folder_); }
     [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
     [[nodiscard]] std::size_t filesIn(const std::string& name) const {
         const fs::directory_iterator all(path(name));
         return static_cast<std::size_t>(std::distance(begin(all), end(all)));
     }
 
-    fs::path folder_;
+    testing::TestFolder folder_;
 };
 
 const std::string kThings =

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -12,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/test_folder.h"
 #include "layout/test_layout.h"
 #include "sense/reading_text.h"
 
@@ -31,15 +31,10 @@ constexpr const char* kHeader =
 /// A folder of its own for each test, removed afterwards.
 class RecorderTest : public ::testing::Test {
   protected:
-    RecorderTest() {
-        std::string name = (fs::temp_directory_path() / "ispace_recorder_XXXXXX").string();
-        folder_ = ::mkdtemp(name.data());
-    }
-    void TearDown() override { fs::remove_all(folder_); }
     [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
     [[nodiscard]] std::string text(const std::string& name) const { return readAll(path(name)); }
 
-    fs::path folder_;
+    testing::TestFolder folder_;
 };
 
 /// The error that `action` throws, as it reads; "" for none.

@@ -2,7 +2,6 @@
 #include "sim/replay.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/test_folder.h"
 #include "layout/test_layout.h"
 #include "sim/simulation.h"
 
@@ -29,17 +29,12 @@ constexpr const char* kWho =
 
 class ReplayTest : public ::testing::Test {
   protected:
-    ReplayTest() {
-        std::string name = (fs::temp_directory_path() / "ispace_replay_XXXXXX").string();
-        folder_ = ::mkdtemp(name.data());
-        world_ = std::make_unique<World>(scene_, kStep);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
+    ReplayTest() { world_ = std::make_unique<World>(scene_, kStep); }
     [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
 
     /// r1 drives round a bend and into the post; four seconds.
     void record() {
-        Recorder recorder(folder_, *world_, {}, 0);
+        Recorder recorder(folder_.path(), *world_, {}, 0);
         world_->command(0, {.verb = Verb::Speed, .value = 1.2});
         world_->command(0, {.verb = Verb::Rotspeed, .value = 2});
         for (int i = 0; i < 200; ++i) {
@@ -51,7 +46,7 @@ class ReplayTest : public ::testing::Test {
     }
 
     Scene scene_ = scene(kRoom, kWho);
-    fs::path folder_;
+    testing::TestFolder folder_;
     std::unique_ptr<World> world_;
 };
 
@@ -63,7 +58,7 @@ TEST_F(ReplayTest, GoesAsRecordedAndSeesTheSame) {
     record();
     ASSERT_TRUE(world_->status(0).stall);
     const std::vector<float> seen = rangesOf(*world_, "l1");
-    Replay replay(folder_);
+    Replay replay(folder_.path());
     EXPECT_EQ(replay.stepLength(), kStep);
     World again(scene_, kStep);
     int steps = 0, stalls = 0;
@@ -93,7 +88,7 @@ TEST_F(ReplayTest, KnowsWhoRanIntoWhom) {
              "t,id,x,y,heading_deg,speed,phase,sidespeed,stall\n0,h1,1,2,0,0,0,0,0\n"
              "0.02,h1,1,2,0,1,0.25,0.3,0\n0.04,h1,1,2,0,0,0.5,0,1\n");
     const auto into = [this] {
-        Replay replay(folder_);
+        Replay replay(folder_.path());
         World world(scene_, kStep);
         std::string all;
         while (replay.step(world))
@@ -105,7 +100,7 @@ TEST_F(ReplayTest, KnowsWhoRanIntoWhom) {
     writeAll(path("events.csv"),
              "t,kind,id,other,x,y,value,text\n0.02,collision,r1,h1,0,0,,\n0.04,stall,h1,,0,0,,\n");
     EXPECT_EQ(into(), "r1>h1 ") << "by the events";
-    Replay replay(folder_);
+    Replay replay(folder_.path());
     World world(scene_, kStep);
     ASSERT_TRUE(replay.step(world));
     EXPECT_EQ(world.collisions()[0].other, 1U);
@@ -115,7 +110,7 @@ TEST_F(ReplayTest, KnowsWhoRanIntoWhom) {
 
 TEST_F(ReplayTest, EndsTheRunOrHolds) {
     record();
-    Replay replay(folder_);
+    Replay replay(folder_.path());
     World world(scene_, kStep);
     Simulation simulation(world, {}, {Clock::Kind::Fast, 1}, {});
     simulation.replay(replay, false);
@@ -124,7 +119,7 @@ TEST_F(ReplayTest, EndsTheRunOrHolds) {
     EXPECT_TRUE(simulation.finished());
     EXPECT_EQ(world.steps(), 200);
 
-    Replay held(folder_);
+    Replay held(folder_.path());
     World held_world(scene_, kStep);
     Simulation holding(held_world, {}, {Clock::Kind::Fast, 1}, {});
     holding.replay(held, true);
@@ -142,7 +137,7 @@ TEST_F(ReplayTest, EndsTheRunOrHolds) {
 
 TEST_F(ReplayTest, BeginsWhereTheRecordDoes) {
     writeAll(path("robots.csv"), "t,id,x,y,heading_deg\n0,r1,0.25,-1,90\n0.02,r1,0.25,-0.9,90\n");
-    const Replay replay(folder_);
+    const Replay replay(folder_.path());
     EXPECT_EQ(replay.stepLength(), kStep) << "by the moments";
     replay.placeAtStart(scene_);
     EXPECT_EQ(scene_.robots[0].pose, (Pose2{{0.25, -1}, Angle::degrees(90)}));
@@ -166,7 +161,7 @@ TEST_F(ReplayTest, RefusesWhatIsNoRun) {
     const std::string header = "t,id,x,y,heading_deg\n", name = path("robots.csv");
     const auto errorWith = [&](const std::string& rows) {
         writeAll(name, header + rows);
-        return errorOf(folder_, scene_);
+        return errorOf(folder_.path(), scene_);
     };
     EXPECT_EQ(errorWith(""), name + ": error: holds no moment of a run: nobody moved in it");
     EXPECT_EQ(errorWith("1,r1,0,0,0\n"),
@@ -188,11 +183,11 @@ TEST_F(ReplayTest, PassesTimesWithoutAnybody) {
     writeAll(path("robots.csv"),
              header + "0,r1,0,0,0\n0.02,r1,0.01,0,0\n0.1,r1,0.5,0,0\n0.12,r1,0.51,0,0\n");
     writeAll(path("events.csv"), events + "0.02,mark,,,,,,none\n");
-    EXPECT_EQ(errorOf(folder_, scene_),
+    EXPECT_EQ(errorOf(folder_.path(), scene_),
               path("robots.csv") + ": error: goes on at t=0.1, wanted t=0.04");
     writeAll(path("events.csv"),
              events + "0.02,change,,,,,,DELETE id=r1\n0.1,change,,,,,,ADD robot id=r1\n");
-    Replay replay(folder_);
+    Replay replay(folder_.path());
     EXPECT_EQ(replay.changedAt(), kStep);
     World world(scene_, kStep);
     std::string way;
@@ -202,7 +197,7 @@ TEST_F(ReplayTest, PassesTimesWithoutAnybody) {
 
     // Off the grid of steps it is no such time.
     writeAll(path("robots.csv"), header + "0,r1,0,0,0\n0.02,r1,0,0,0\n0.09,r1,0,0,0\n");
-    EXPECT_EQ(errorOf(folder_, scene_),
+    EXPECT_EQ(errorOf(folder_.path(), scene_),
               path("robots.csv") + ": error: goes on at t=0.09, wanted t=0.04");
 }
 
@@ -214,7 +209,7 @@ TEST_F(ReplayTest, OdometryAndNoiseAreThoseOfThen) {
     std::vector<Odometry> believed;
     std::vector<std::vector<float>> ranges;
     {
-        Recorder recorder(folder_, world, {.seed = 5, .odometry = true, .noise = true});
+        Recorder recorder(folder_.path(), world, {.seed = 5, .odometry = true, .noise = true});
         for (int i = 0; i < 100; ++i) {
             world.step();
             recorder.record(world);
@@ -222,7 +217,7 @@ TEST_F(ReplayTest, OdometryAndNoiseAreThoseOfThen) {
             ranges.push_back(rangesOf(world, "l1"));
         }
     }
-    Replay replay(folder_);
+    Replay replay(folder_.path());
     EXPECT_TRUE(replay.hasOdometry());
     EXPECT_EQ(replay.info().seed, 5U);
     ASSERT_TRUE(replay.info().noise);
@@ -242,14 +237,14 @@ TEST_F(ReplayTest, SeeksBackAndForth) {
     std::vector<RobotStatus> states;
     std::vector<std::vector<float>> ranges;
     {
-        Replay replay(folder_);
+        Replay replay(folder_.path());
         World world(scene_, kStep);
         do {
             states.push_back(world.status(0));
             ranges.push_back(rangesOf(world, "l1"));
         } while (replay.step(world));
     }
-    Replay replay(folder_);
+    Replay replay(folder_.path());
     EXPECT_EQ(replay.end(), 200 * kStep);
     World world(scene_, kStep);
     for (const int step : {150, 20, 21, 199, 0, 200}) {
@@ -279,7 +274,7 @@ TEST_F(ReplayTest, SeeksIntoTheMidstOfScans) {
     std::vector<SimTime> times;
     std::vector<std::vector<float>> ranges;
     {
-        Replay replay(folder_);
+        Replay replay(folder_.path());
         World world(scene_, kStep);
         do {
             times.push_back(world.reading(1).time);
@@ -287,7 +282,7 @@ TEST_F(ReplayTest, SeeksIntoTheMidstOfScans) {
             ranges.push_back(rangesOf(world, "l2"));
         } while (replay.step(world));
     }
-    Replay replay(folder_);
+    Replay replay(folder_.path());
     World world(scene_, kStep);
     for (const int step : {150, 3, 20, 21, 187, 0, 200}) {
         const auto i = static_cast<std::size_t>(step);
@@ -310,7 +305,7 @@ TEST_F(ReplayTest, ServesSonarsAndBumpersAgain) {
         heard.push_back(world.sonar(1));
     };
     {
-        Recorder recorder(folder_, *world_, {.sonar_rate = 5});
+        Recorder recorder(folder_.path(), *world_, {.sonar_rate = 5});
         world_->command(0, {Verb::Forward, 1});
         world_->command(1, {Verb::Speed, 0.5});
         for (int i = 0; i < 200; ++i) {
@@ -330,7 +325,7 @@ TEST_F(ReplayTest, ServesSonarsAndBumpersAgain) {
         return std::find(hit.begin(), hit.end(), true) != hit.end();
     }));
 
-    Replay replay(folder_);
+    Replay replay(folder_.path());
     World world(scene_, kStep);
     const std::string again = path("again");
     {
@@ -357,10 +352,10 @@ TEST_F(ReplayTest, ServesSonarsAndBumpersAgain) {
 TEST_F(ReplayTest, BeginsWithNobody) {
     writeAll(path("robots.csv"), "t,id,x,y,heading_deg\n0.06,r1,1,0,0\n0.08,r1,1.01,0,0\n");
     writeAll(path("info.csv"), "dt,control_interval,steps\n0.02,0.1,4\n");
-    EXPECT_NE(errorOf(folder_, scene_), "");
+    EXPECT_NE(errorOf(folder_.path(), scene_), "");
     writeAll(path("events.csv"),
              "t,kind,id,other,x,y,value,text\n0.06,change,,,,,,ADD robot id=r1\n");
-    Replay replay(folder_);
+    Replay replay(folder_.path());
     replay.placeAtStart(scene_);
     EXPECT_EQ(scene_.robots[0].pose.position, (Point2{0, 0}));
     World world(scene_, kStep);
@@ -371,7 +366,7 @@ TEST_F(ReplayTest, BeginsWithNobody) {
 
 TEST_F(ReplayTest, PassesOverWhoIsGone) {
     record();
-    Replay replay(folder_);
+    Replay replay(folder_.path());
     World world(scene_, kStep);
     replay.step(world);
     world.change(scene(kRoom, "robot id=r7 at=-2,-2\nhuman id=h1 at=1,2\n"));

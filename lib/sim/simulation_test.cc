@@ -4,18 +4,17 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <memory>
 #include <random>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/test_folder.h"
 #include "layout/test_layout.h"
 
 namespace ispace {
 namespace {
 
-namespace fs = std::filesystem;
 using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
@@ -335,19 +334,16 @@ TEST_F(SimulationTest, CommandsFromTheEndOnAreNotGiven) {
 
 /// What robots.csv holds after a second with this script.
 std::string recorded(const Scene& scene, const std::string& script) {
-    std::string folder = (fs::temp_directory_path() / "ispace_simulation_XXXXXX").string();
-    if (::mkdtemp(folder.data()) == nullptr) return "";
+    const testing::TestFolder folder;
     {
         World world(scene, milliseconds(50));
-        Recorder recorder(folder, world, {});
+        Recorder recorder(folder.path(), world, {});
         Simulation simulation(world, readScript(script, "run.txt", world), kFast,
                               std::chrono::seconds(1));
         simulation.recordWith(recorder);
         simulation.run(kStart, kLong);
     }
-    std::string robots = readAll(folder + "/robots.csv");
-    fs::remove_all(folder);
-    return robots;
+    return readAll(folder / "robots.csv");
 }
 
 TEST(SimulationRecord, HoldsEachStepBeforeTheNextCommands) {
@@ -366,10 +362,9 @@ TEST(SimulationRecord, HoldsEachStepBeforeTheNextCommands) {
 
 TEST(SimulationRecord, IsWrittenOutWhileTheWorldRests) {
     const Scene scene = testing::scene("ispace size=8,6\n", "robot id=r1 at=0,0\n");
-    std::string folder = (fs::temp_directory_path() / "ispace_simulation_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(folder.data()), nullptr);
+    const testing::TestFolder folder;
     World world(scene, milliseconds(50));
-    Recorder recorder(folder, world, {});
+    Recorder recorder(folder.path(), world, {});
     Simulation simulation(world, {}, kByStep, {});
     simulation.recordWith(recorder);
     simulation.allow(3);
@@ -379,10 +374,9 @@ TEST(SimulationRecord, IsWrittenOutWhileTheWorldRests) {
         again = simulation.run(*again, kLong);
     }
     EXPECT_FALSE(again);  // nothing pending, nothing to do
-    EXPECT_NE(readAll(folder + "/robots.csv").find("\n0.15,r1,"), std::string::npos);
-    EXPECT_EQ(readAll(folder + "/info.csv"),
+    EXPECT_NE(readAll(folder / "robots.csv").find("\n0.15,r1,"), std::string::npos);
+    EXPECT_EQ(readAll(folder / "info.csv"),
               "dt,control_interval,steps,elapsed,seed,noise\n0.05,0.05,3,0.15,0,0\n");
-    fs::remove_all(folder);
 }
 
 TEST(Simulation, ScriptOfTimeZeroIsGivenBeforeAnyClient) {
