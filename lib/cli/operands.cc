@@ -253,7 +253,7 @@ RawInput readRaw(const std::string& input, const ImportOptions& import) {
 Document parseInput(const RawInput& raw, const InputRequest& request, const ImportOptions& import) {
     if (raw.name == "-" && request.may_be_empty && isBlank(raw.bytes)) return {};
     Document document = parseDocument(raw.bytes, raw.name, import, sceneSchemas());
-    checkIds(document.records);
+    if (!isRecordText(raw.bytes)) checkIds(document.records);  // as those are when they are read
     rebaseFiles(document.records, folderOf(raw.name), "");
     return document;
 }
@@ -279,15 +279,15 @@ std::vector<Document> parseInputs(const InputRequest& request) {
     for (const std::string& input : request.inputs) raw.push_back(readRaw(input, request.import));
     std::vector<Document> documents(raw.size());
     ImportOptions import = request.import;
+    const bool any_plan =
+        std::any_of(raw.begin(), raw.end(), [](const RawInput& input) { return input.is_plan; });
     addKnown(request.added, import);
     for (const bool plans : {false, true})
         for (std::size_t i = 0; i < raw.size(); ++i) {
             if (raw[i].is_plan != plans) continue;
             documents[i] = parseInput(raw[i], request, import);
-            if (!plans) addKnown(documents[i].records, import);
+            if (!plans && any_plan) addKnown(documents[i].records, import);
         }
-    const bool any_plan =
-        std::any_of(raw.begin(), raw.end(), [](const RawInput& input) { return input.is_plan; });
     if (!any_plan && !import.inside.empty()) setInside(import.inside, documents);
     return documents;
 }
@@ -363,7 +363,7 @@ Document readInputs(const InputRequest& request) {
             if (checks_digests) environment = joined.records;
         }
     }
-    checkIds(joined.records);
+    if (documents.size() > 1) checkIds(joined.records);
     return joined;
 }
 

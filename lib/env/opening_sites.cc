@@ -2,7 +2,9 @@
 #include "env/opening_sites.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -19,6 +21,8 @@ namespace {
 /// thirty, since its ends may be off the line.
 constexpr double kParallel = std::numbers::pi / 180, kAlmostParallel = 30 * kParallel;
 
+constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
+
 Point2 pointOf(const Tuple& tuple) { return {tuple[0], tuple[1]}; }
 
 OpeningSite siteAround(std::size_t line, double middle, const Record& record) {
@@ -30,13 +34,32 @@ OpeningSite siteAround(std::size_t line, double middle, const Record& record) {
 
 OpeningSites::OpeningSites(std::span<const Element> elements, const WallPlan& plan,
                            Diagnostics& findings)
-    : elements_(elements), plan_(plan), findings_(findings), grid_(plan.lines, kWeldDistance) {
+    : elements_(elements), plan_(plan), findings_(findings) {
     starts_.reserve(plan.lines.size() + 1);
     starts_.push_back(0);
     for (const auto& [a, b] : plan.lines) starts_.push_back(starts_.back() + distance(a, b));
-    by_id_.reserve(elements.size());
-    for (std::size_t i = 0; i < elements.size(); ++i) by_id_.emplace_back(elements[i].id, i);
-    std::sort(by_id_.begin(), by_id_.end());
+    by_id_.assign(std::bit_ceil(2 * elements.size() + 1), kFree);
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        std::size_t slot = slotOf(elements[i].id);
+        while (by_id_[slot] != kFree) slot = (slot + 1) & (by_id_.size() - 1);
+        by_id_[slot] = static_cast<std::uint32_t>(i);
+    }
+}
+
+const SegmentGrid& OpeningSites::grid() const {
+    if (!grid_) grid_.emplace(plan_.lines, kWeldDistance);
+    return *grid_;
+}
+
+std::size_t OpeningSites::slotOf(std::string_view id) const {
+    return std::hash<std::string_view>{}(id) & (by_id_.size() - 1);
+}
+
+const Element* OpeningSites::elementOf(std::string_view id) const {
+    std::size_t slot = slotOf(id);
+    while (by_id_[slot] != kFree && elements_[by_id_[slot]].id != id)
+        slot = (slot + 1) & (by_id_.size() - 1);
+    return by_id_[slot] == kFree ? nullptr : &elements_[by_id_[slot]];
 }
 
 std::optional<OpeningSite> OpeningSites::find(const Element& opening) const {
@@ -80,22 +103,20 @@ bool OpeningSites::hasOnePlace(const Record& record) const {
 std::optional<OpeningSites::Lines> OpeningSites::linesOf(const Element& opening) const {
     if (!opening.record.has("wall")) return Lines{0, plan_.lines.size()};
     const std::string& id = opening.record.text("wall");
-    const auto found = std::lower_bound(
-        by_id_.begin(), by_id_.end(), id,
-        [](const auto& entry, const std::string& wanted) { return entry.first < wanted; });
-    if (found == by_id_.end() || found->first != id) {
+    const Element* const found = elementOf(id);
+    if (found == nullptr) {
         fail(opening, "wall", "`wall`: nothing has the id `" + id + '`' + hintFor(id));
         return std::nullopt;
     }
-    const Element& wall = elements_[found->second];
+    const Element& wall = *found;
     if (!isWall(wall.record)) {
         fail(opening, "wall",
              "`wall`: " + id + " is a " + wall.record.keyword() + "; a " +
                  opening.record.keyword() + " is in a wall, fence or ispace");
         return std::nullopt;
     }
-    const auto [first, last] =
-        std::equal_range(plan_.owner.begin(), plan_.owner.end(), found->second);
+    const auto [first, last] = std::equal_range(plan_.owner.begin(), plan_.owner.end(),
+                                                static_cast<std::size_t>(found - elements_.data()));
     if (first == last) return std::nullopt;  // that has a finding of its own
     return Lines{static_cast<std::size_t>(first - plan_.owner.begin()),
                  static_cast<std::size_t>(last - plan_.owner.begin()), &wall};
@@ -166,7 +187,7 @@ std::optional<OpeningSite> OpeningSites::nearest(Point2 p, Allowed allowed, Off 
             near.emplace_back(d, line);
         }
     };
-    grid_.searchBox({{p.x - kReach, p.y - kReach}, {p.x + kReach, p.y + kReach}}, look);
+    grid().searchBox({{p.x - kReach, p.y - kReach}, {p.x + kReach, p.y + kReach}}, look);
     std::optional<OpeningSite> best;
     for (const auto& [d, line] : near) {
         if (d > least + kWeldDistance || (best && best->line == line)) continue;
@@ -245,7 +266,7 @@ void OpeningSites::tellNearest(const Element& opening, std::string_view key, Poi
         }
     };
     // Of what is not shown only the number counts.
-    if (!findings_.full()) grid_.searchFrom(p, look, [&](double seen) { return nearest <= seen; });
+    if (!findings_.full()) grid().searchFrom(p, look, [&](double seen) { return nearest <= seen; });
     std::string message = nameOf(opening) + " at " + placeText(p) + " is not on ";
     message += lines.wall != nullptr ? nameOf(*lines.wall) : "a wall";
     if (nearest == std::numeric_limits<double>::infinity()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,6 +43,10 @@ class OpeningSites {
         const Element* wall = nullptr;  ///< whose they are, if it is written
     };
 
+    [[nodiscard]] const SegmentGrid& grid() const;
+    [[nodiscard]] std::size_t slotOf(std::string_view id) const;
+    /// The element with this id, null for none.
+    [[nodiscard]] const Element* elementOf(std::string_view id) const;
     void fail(const Element& opening, std::string_view key, std::string message) const;
     [[nodiscard]] bool hasOnePlace(const Record& record) const;
     [[nodiscard]] std::optional<Lines> linesOf(const Element& opening) const;
@@ -66,9 +71,9 @@ class OpeningSites {
     std::span<const Element> elements_;
     const WallPlan& plan_;
     Diagnostics& findings_;
-    SegmentGrid grid_;
-    std::vector<double> starts_;  // of each line when all are laid end to end, and the end
-    std::vector<std::pair<std::string_view, std::size_t>> by_id_;
+    mutable std::optional<SegmentGrid> grid_;  // made when first asked for
+    std::vector<double> starts_;        // of each line when all are laid end to end, and the end
+    std::vector<std::uint32_t> by_id_;  // elements by hash: open addressing, at most half full
 };
 
 }  // namespace ispace

@@ -2,6 +2,7 @@
 #include "env/room_builder.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <utility>
 
@@ -71,9 +72,13 @@ class Builder {
         elements_.reserve(static_cast<std::size_t>(
             std::count_if(records.begin(), records.end(),
                           [](const Record& record) { return record.schema().isEnvironment(); })));
-        for (std::size_t i = 0; i < records.size(); ++i) {
-            if (records[i].schema().isEnvironment()) takeRecord(records[i], ids[i], with_things);
-        }
+        if (with_things)
+            for (std::size_t i = 0; i < records.size(); ++i) {
+                if (records[i].schema().isEnvironment())
+                    take(begun(records[i], ids[i], true), true);
+            }
+        else
+            takeInBlocks(records, ids);
         inside_ = insideRecords(elements_);
         if (plan_.walls.empty() && walls_whole_)
             findings_.add(fileFinding(
@@ -165,22 +170,51 @@ class Builder {
         return ispace::enclose(plan_, faces, limits_, elements_, inside_);
     }
 
-    void takeRecord(const Record& record, const std::string& id, bool with_things) {
+    /// What becomes of a record of the room by itself.
+    struct Begun {
+        Element element;
+        std::vector<WallLine> walls = {};
+        Diagnostics wall_findings = {}, findings = {};
+    };
+
+    [[nodiscard]] Begun begun(const Record& record, const std::string& id, bool with_things) const {
+        Begun begun{{record, id, {}}};
         const bool is_wall = isWall(record);
+        if (is_wall) begun.walls = wallLinesOf(record, begun.wall_findings);
+        if (is_wall || with_things) giveShape(begun.element, begun.findings);
+        return begun;
+    }
+
+    void take(Begun&& begun, bool with_things) {
+        const bool is_wall = isWall(begun.element.record);
         if (is_wall) {
-            const std::size_t before = plan_.walls.size();
-            Diagnostics findings;
-            for (const WallLine& wall : wallLinesOf(record, findings))
-                plan_.add(wall, elements_.size());
-            walls_whole_ = walls_whole_ && findings.empty() && plan_.walls.size() > before;
-            takeFindings(findings);
+            for (const WallLine& wall : begun.walls) plan_.add(wall, elements_.size());
+            walls_whole_ = walls_whole_ && begun.wall_findings.empty() && !begun.walls.empty();
+            takeFindings(begun.wall_findings);
         }
-        elements_.push_back({record, id, {}});
-        Diagnostics findings;
-        if (is_wall || with_things) giveShape(elements_.back(), findings);
+        elements_.push_back(std::move(begun.element));
         if (with_things) countCorners(elements_.back());
-        walls_simple_ = walls_simple_ && (findings.empty() || !is_wall);
-        takeFindings(findings);
+        walls_simple_ = walls_simple_ && (begun.findings.empty() || !is_wall);
+        takeFindings(begun.findings);
+    }
+
+    /// The walls of all, and the things without their shapes.
+    void takeInBlocks(std::span<const Record> records, std::span<const std::string> ids) {
+        constexpr std::size_t kBlock = 512;
+        std::array<std::vector<Begun>, kBlocksAtOnce> slots;
+        const auto begin = [&](std::size_t block) {
+            std::vector<Begun>& slot = slots[block % kBlocksAtOnce];
+            slot.clear();
+            slot.reserve(kBlock);
+            const std::size_t end = std::min(records.size(), (block + 1) * kBlock);
+            for (std::size_t i = block * kBlock; i < end; ++i)
+                if (records[i].schema().isEnvironment())
+                    slot.push_back(begun(records[i], ids[i], false));
+        };
+        const auto take_all = [&](std::size_t block) {
+            for (Begun& begun : slots[block % kBlocksAtOnce]) take(std::move(begun), false);
+        };
+        makeInOrder((records.size() + kBlock - 1) / kBlock, begin, take_all);
     }
 
     void giveShape(Element& element, Diagnostics& findings) const {

@@ -212,10 +212,10 @@ bool isSameRoom(const Scene& before, const std::vector<Record>& records,
     return i == before.records.size() && j == records.size();
 }
 
+/// The scene of records without those that are meta, but for `records` and `digest`.
 /// \param stored results about the walls, see Environment
-Scene makeScene(std::vector<Record> records, const Scene* before, std::string digest,
-                const DeviceCatalogue& devices, std::string_view stored = {}) {
-    std::erase_if(records, isMeta);
+Scene sceneOf(const std::vector<Record>& records, const Scene* before,
+              const DeviceCatalogue& devices, std::string_view stored = {}) {
     std::vector<std::string> ids = assignIds(records);
     Diagnostics findings;
     Placements placements = Resolver(records, ids, devices).resolve(findings);
@@ -223,10 +223,10 @@ Scene makeScene(std::vector<Record> records, const Scene* before, std::string di
     if (is_same) findings.throwIfAny();
     Environment room =
         is_same ? before->environment : makeEnvironment(records, ids, stored, findings);
-    return {.records = std::move(records),
+    return {.records = {},
             .ids = std::move(ids),
             .environment = std::move(room),
-            .digest = std::move(digest),
+            .digest = {},
             .sensors = std::move(placements.sensors),
             .pending = std::move(placements.pending),
             .robots = std::move(placements.robots),
@@ -271,21 +271,36 @@ Scene makeScene(const Document& environment, const Document* layout,
                 const DeviceCatalogue& devices) {
     checkIds(environment.records);
     if (layout != nullptr) checkIds(layout->records);
-    std::vector<Record> records =
-        layout == nullptr ? environment.records : joinRecords(environment.records, layout->records);
+    const std::vector<Record>& given = environment.records;
+    // Without a change they are copied while the scene is made of the given ones.
+    const bool is_changed = layout != nullptr || std::any_of(given.begin(), given.end(), isMeta);
+    std::vector<Record> records;
+    if (layout != nullptr)
+        records = joinRecords(given, layout->records);
+    else if (is_changed)
+        records = given;
+    std::erase_if(records, isMeta);
     std::optional<Scene> scene;
     std::string digest;
     const auto make = [&] {
-        scene = makeScene(std::move(records), nullptr, "", devices, environment.derived);
+        scene = sceneOf(is_changed ? records : given, nullptr, devices, environment.derived);
     };
-    const auto digest_all = [&] { digest = environmentDigest(environment.records); };
-    doBoth(environment.records.size() >= kManyRecords, make, digest_all);
+    const auto copy_and_digest = [&] {
+        if (!is_changed) records = given;
+        digest = environmentDigest(given);
+    };
+    doBoth(given.size() >= kManyRecords, make, copy_and_digest);
+    scene->records = std::move(records);
     scene->digest = std::move(digest);
     return *std::move(scene);
 }
 
 Scene makeScene(std::vector<Record> records, const Scene& before, const DeviceCatalogue& devices) {
-    return makeScene(std::move(records), &before, before.digest, devices);
+    std::erase_if(records, isMeta);
+    Scene scene = sceneOf(records, &before, devices);
+    scene.records = std::move(records);
+    scene.digest = before.digest;
+    return scene;
 }
 
 std::optional<EnvironmentReference> environmentReference(const Document& layout) {
