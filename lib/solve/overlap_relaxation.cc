@@ -115,9 +115,11 @@ void OverlapRelaxation::fillArea(const Area& area, std::size_t rank, const Maske
         const Bundle& bundle = area.bundles[i];
         const std::int64_t most = std::min(bundle.best, place.worth);
         if (bundle.best <= second) break;
-        if (bundle.ranks.back() <= rank || most - seen.of(bundle.common) <= second) continue;
+        if (bundle.ranks.back() <= rank || most <= second) continue;
+        const std::int64_t common = seen.of(bundle.common);
+        if (most - common <= second) continue;
         for (const std::uint32_t other : bundle.ranks) {
-            if (area.places[other].worth <= second) break;
+            if (area.places[other].worth - common <= second) break;
             if (other <= rank) continue;
             const std::int64_t worth =
                 area.places[other].worth - seen.of(seenFrom(area.places[other]));
@@ -147,10 +149,10 @@ std::int64_t OverlapRelaxation::reply(const Area& from, const MaskedSums& seen,
     for (const std::uint32_t i : from.bundle_order) {
         const Bundle& bundle = from.bundles[i];
         if (bundle.best <= best) break;
-        if (bundle.best - seen.of(bundle.common) <= best) continue;
+        const std::int64_t common = seen.of(bundle.common);
         for (const std::uint32_t own : bundle.ranks) {
             const Place& place = from.places[own];
-            if (place.value <= best) break;
+            if (place.value - common <= best) break;
             const std::int64_t value = place.value - seen.of(seenFrom(place));
             if (value <= best) continue;
             best = value;
