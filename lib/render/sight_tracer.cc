@@ -51,6 +51,7 @@ SightTracer::SightTracer(const RenderScene::Data& scene, const std::vector<bool>
                          double min_depth)
     : scene_(scene), hidden_(hidden), width_(scene.still->packet_width) {
     valid_.fill(-1);
+    far_.fill(static_cast<float>(kFarthest));
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         hits_.ray.mask[lane] = ~0U;
         hits_.ray.tnear[lane] = static_cast<float>(min_depth);
@@ -120,7 +121,7 @@ void SightTile::set(const EvenSightLines& lines, PixelPoint first, Vec3 shift) {
 void SightTracer::trace(SightTile& tile) {
     if (tile.has_new_origins) roundOrigins(tile, hits_);
     tile.has_new_origins = false;
-    roundRays(tile, 0, hits_);
+    roundRays(tile, far_, hits_);
     const SurfaceSet& solid = *scene_.still->solid;
     tracePacket(query_, solid.scene(), width_, valid_.data(), hits_);
     bool is_careful = solid.empty();

@@ -64,6 +64,7 @@ class SightTracer {
     EmbreeQuery query_;
     alignas(64) RTCRayHit16 hits_{};
     alignas(64) std::array<int, kLanes> valid_{};
+    alignas(64) std::array<float, kLanes> far_{};
 };
 
 }  // namespace ispace

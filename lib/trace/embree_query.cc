@@ -124,14 +124,13 @@ ISPACE_INLINE void gather(const Plane* planes, const double* margins, Hits& hits
 
 }  // namespace
 
-ISPACE_SIMD_CLONES void fillTile(const RayGrid& grid, int column, int row, RayPacket& packet) {
-    const int last_column = grid.columns - 1, last_row = grid.rows - 1;
+TileRow::TileRow(const RayGrid& grid, int row)
+    : corner(grid.corner), right(grid.right), last_column(grid.columns - 1) {
     for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
-        const Vec3 ray = grid.ray(std::min(column + lane % kTile, last_column),
-                                  std::min(row + lane / kTile, last_row));
-        packet.x[static_cast<std::size_t>(lane)] = ray.x;
-        packet.y[static_cast<std::size_t>(lane)] = ray.y;
-        packet.z[static_cast<std::size_t>(lane)] = ray.z;
+        const double j = std::min(row + lane / kTile, grid.rows - 1);
+        x[static_cast<std::size_t>(lane)] = j * grid.down.x;
+        y[static_cast<std::size_t>(lane)] = j * grid.down.y;
+        z[static_cast<std::size_t>(lane)] = j * grid.down.z;
     }
 }
 
@@ -143,20 +142,50 @@ ISPACE_SIMD_CLONES void roundOrigins(const RayPacket& packet, RTCRayHit16& rays)
     }
 }
 
-ISPACE_SIMD_CLONES void roundRays(const RayPacket& packet, double tail, RTCRayHit16& rays) {
+ISPACE_SIMD_CLONES void roundReach(const RayPacket& packet, double tail,
+                                   std::array<float, kLanes>& far) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const double reach = packet.reach[lane] * kFar + tail;
+        far[lane] = static_cast<float>(reach < kFarthest ? reach : kFarthest);
+    }
+}
+
+namespace {
+
+ISPACE_INLINE void roundDirections(const RayPacket& packet, const std::array<float, kLanes>& far,
+                                   RTCRayHit16& rays) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         rays.ray.dir_x[lane] = static_cast<float>(packet.x[lane]);
         rays.ray.dir_y[lane] = static_cast<float>(packet.y[lane]);
         rays.ray.dir_z[lane] = static_cast<float>(packet.z[lane]);
+        rays.ray.tfar[lane] = far[lane];
         rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    alignas(64) RayPacket::Lanes far;
+}
+
+/// Columns of a tile's rays from its first.
+alignas(64) constexpr RayPacket::Lanes kAside{0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+static_assert(kTile == 4);
+
+}  // namespace
+
+ISPACE_SIMD_CLONES void roundRays(const RayPacket& packet, const std::array<float, kLanes>& far,
+                                  RTCRayHit16& rays) {
+    roundDirections(packet, far, rays);
+}
+
+ISPACE_SIMD_CLONES void aimTile(const TileRow& row, int column,
+                                const std::array<float, kLanes>& far, RayPacket& packet,
+                                RTCRayHit16& rays) {
+    const Vec3 corner = row.corner, right = row.right;
+    const double first = column, last = row.last_column;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const double reach = packet.reach[lane] * kFar + tail;
-        far[lane] = reach < kFarthest ? reach : kFarthest;
+        const double unlimited = first + kAside[lane], i = unlimited < last ? unlimited : last;
+        packet.x[lane] = corner.x + i * right.x + row.x[lane];
+        packet.y[lane] = corner.y + i * right.y + row.y[lane];
+        packet.z[lane] = corner.z + i * right.z + row.z[lane];
     }
-    for (std::size_t lane = 0; lane < kLanes; ++lane)
-        rays.ray.tfar[lane] = static_cast<float>(far[lane]);
+    roundDirections(packet, far, rays);
 }
 
 ISPACE_SIMD_CLONES std::uint32_t meetPlanes(const RTCRayHit16& hits, const Plane* planes,
@@ -199,6 +228,48 @@ ISPACE_SIMD_CLONES std::uint32_t meetPlanes(const RTCRayHit16& hits, const Plane
     for (std::size_t lane = 0; lane < kLanes; ++lane)
         all |= care[lane] << static_cast<std::uint32_t>(lane);
     return all;
+}
+
+ISPACE_SIMD_CLONES bool meetOnePlane(const RTCRayHit16& hits, const Plane* planes,
+                                     const double* margins, const SureMeeting& sure,
+                                     RayPacket& packet) {
+    const std::uint32_t triangle = hits.hit.primID[0];
+    std::uint32_t other = 0, missed = ~0U;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        other |= (hits.hit.primID[lane] ^ triangle) | hits.hit.geomID[lane];
+        missed &= hits.hit.geomID[lane];
+    }
+    if (other != 0) {
+        if (missed != RTC_INVALID_GEOMETRY_ID) return false;
+        packet.multiples.fill(kNoReturn);
+        packet.slopes.fill(kNoReturn);
+        return true;
+    }
+    const Plane& plane = planes[triangle];
+    const double height =
+        plane.heightOver({packet.origin_x[0], packet.origin_y[0], packet.origin_z[0]});
+    if (!(std::fabs(height) > sure.clear)) return false;
+    alignas(64) std::array<float, kLanes> multiples, slopes;  // NOLINT: set in the loop
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const double slope = plane.normal.x * packet.x[lane] + plane.normal.y * packet.y[lane] +
+                             plane.normal.z * packet.z[lane];
+        multiples[lane] = static_cast<float>(height / slope);
+        slopes[lane] = static_cast<float>(std::fabs(slope));
+    }
+    // By more than rounding adds.
+    const auto least = static_cast<float>(margins[triangle] * sure.longest * kFar);
+    std::uint32_t doubt = 0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const float u = hits.hit.u[lane], v = hits.hit.v[lane], w = 1 - u - v;
+        const float low = u < v ? u : v;
+        const float edge = low < w ? low : w;
+        doubt |= edge * slopes[lane] > least ? 0U : 1U;
+        doubt |= multiples[lane] < sure.near ? 0U : 1U;
+    }
+    if (doubt != 0) return false;
+    packet.multiples = multiples;
+    packet.slopes = slopes;
+    return true;
 }
 
 }  // namespace ispace

@@ -205,19 +205,46 @@ struct alignas(64) RayPacket {
     }
 };
 
-/// The rays of a square tile of a picture; beyond its edges those at the edge.
+/// The rays of a picture go in square tiles of so many columns and rows; beyond its edges those at
+/// the edge.
 constexpr int kTile = 4;
-void fillTile(const RayGrid& grid, int column, int row, RayPacket& packet);
+
+/// What the rays of a row of tiles share.
+struct TileRow {
+    Vec3 corner, right;
+    double last_column;
+    alignas(64) RayPacket::Lanes x, y, z;  ///< what its row of pixels adds to each ray
+
+    TileRow(const RayGrid& grid, int row);
+};
 
 /// For Embree, in float32: where the rays begin.
 void roundOrigins(const RayPacket& packet, RTCRayHit16& rays);
-/// The rest of the rays. `tail` is added to the reach, which decides once the hits are known.
-void roundRays(const RayPacket& packet, double tail, RTCRayHit16& rays);
+/// How far they go. `tail` is added to the reach, which decides once the hits are known.
+void roundReach(const RayPacket& packet, double tail, std::array<float, kLanes>& far);
+/// The rest of the rays, as far as `far`.
+void roundRays(const RayPacket& packet, const std::array<float, kLanes>& far, RTCRayHit16& rays);
+/// The same with the rays of a tile, which are set.
+void aimTile(const TileRow& row, int column, const std::array<float, kLanes>& far,
+             RayPacket& packet, RTCRayHit16& rays);
 
 /// Where the rays meet the planes of the triangles hit; multiples are at most `most`.
 /// Planes nearer than `clear` to the origin need a closer look, as do hits near an edge.
 /// \return a bit for each lane that does
 std::uint32_t meetPlanes(const RTCRayHit16& hits, const Plane* planes, const double* margins,
                          double clear, float most, RayPacket& packet);
+
+/// What tells that rays from one origin meet a plane for sure.
+struct SureMeeting {
+    double clear;    ///< planes farther from the origin than this
+    double longest;  ///< no ray's direction is longer
+    float near;      ///< multiples below this
+};
+
+/// The same as meetPlanes() for what most packets come upon: all rays hit the one triangle, each
+/// for sure, or none hits any. \pre all rays have one origin, and the geometry hit is number 0
+/// \return whether it is so; otherwise nothing is set
+bool meetOnePlane(const RTCRayHit16& hits, const Plane* planes, const double* margins,
+                  const SureMeeting& sure, RayPacket& packet);
 
 }  // namespace ispace

@@ -17,6 +17,7 @@
 
 #include "trace/embree_query.h"
 #include "trace/rays.h"
+#include "trace/round_view.h"
 
 namespace ispace {
 
@@ -63,6 +64,12 @@ double shortestRay(const RayGrid& grid) {
     return size > 0 ? std::min(corner, std::fabs(dot(normal, grid.corner)) / size) : corner;
 }
 
+double longestRay(const RayGrid& grid) {
+    const int right = grid.columns - 1, low = grid.rows - 1;
+    return std::max({length(grid.corner), length(grid.ray(right, 0)), length(grid.ray(0, low)),
+                     length(grid.ray(right, low))});
+}
+
 void copyLanes(const Directions& directions, std::size_t first, std::size_t lanes,
                RayPacket& packet) {
     const auto copy = [first, lanes](const std::vector<double>& from, RayPacket::Lanes& to) {
@@ -86,11 +93,16 @@ struct EmbreeScene::Caster {
     const EmbreeScene& scene;
     const IgnoredSurfaces& ignored;
     PassingQuery query;
-    double tail;  ///< see roundRays()
+    double tail;  ///< see roundReach()
     float most;
+    SureMeeting sure;
+    bool is_alike = true;  ///< all rays have one origin and one reach
+    alignas(64) std::array<float, kLanes> far{};
     alignas(64) RTCRayHit16 hits{};
     alignas(64) std::array<int, kLanes> valid{};
     RayPacket packet;
+    bool needs_slopes = true;
+    RoundView round;  ///< the body met last
 
     Caster(const EmbreeScene& traced, const IgnoredSurfaces& surfaces, Point3 origin,
            double farthest)
@@ -98,15 +110,26 @@ struct EmbreeScene::Caster {
           ignored(surfaces),
           query(surfaces, origin),
           tail(8 * traced.set_.tolerance()),
-          most(static_cast<float>(farthest)) {
+          most(static_cast<float>(farthest)),
+          sure{.clear = std::max(surfaces.reach(), traced.set_.tolerance()),
+               .longest = 1 + kFarSlack,
+               .near = static_cast<float>(farthest >= 0 ? farthest * (1 - kFarSlack) : -1)} {
         // A limit that is no number, like a negative one, is never reached.
         packet.reach.fill(farthest >= 0 ? farthest * (1 + kFarSlack) : -1);
+        roundReach(packet, tail, far);
         setOrigins({&origin, 1});
         valid.fill(-1);
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             hits.ray.mask[lane] = ~0U;
             hits.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
         }
+    }
+
+    /// Lengths of the rays' directions.
+    void setLengths(double shortest, double longest) {
+        tail = shortest > 0 ? tail / shortest : kFarthest;
+        sure.longest = longest * (1 + kFarSlack);
+        roundReach(packet, tail, far);
     }
 
     /// The last one for all further lanes.
@@ -126,14 +149,66 @@ struct EmbreeScene::Caster {
     }
 
     void trace() {
+        roundRays(packet, far, hits);
+        meet();
+    }
+    /// The rays of a picture's tile.
+    void trace(const TileRow& row, int column) {
+        aimTile(row, column, far, packet, hits);
+        meet();
+    }
+
+    void meet() {
         const TriangleSet& set = scene.set_;
-        roundRays(packet, tail, hits);
         tracePacket(query, scene.scene_.get(), scene.width_, valid.data(), hits);
-        const double clear = std::max(ignored.reach(), set.tolerance());
-        std::uint32_t care =
-            meetPlanes(hits, set.planes().data(), set.margins().data(), clear, most, packet);
+        const Plane* const planes = set.planes().data();
+        const double* const margins = set.margins().data();
+        if (is_alike && meetOnePlane(hits, planes, margins, sure, packet)) return;
+        std::uint32_t care = meetPlanes(hits, planes, margins, sure.clear, most, packet);
+        if (is_alike && !needs_slopes) care = meetRounds(care);
         for (; care != 0; care &= care - 1)
             lookCloser(static_cast<std::size_t>(std::countr_zero(care)));
+    }
+
+    /// Round bodies that several rays hit.
+    /// \return the lanes that need a closer look still
+    std::uint32_t meetRounds(std::uint32_t care) {
+        std::uint32_t rest = 0;
+        while (care != 0) {
+            const std::uint32_t alike = lanesAlike(care);
+            care &= ~alike;
+            alignas(64) std::array<float, kLanes> multiples;  // NOLINT: set by meet()
+            if ((alike & (alike - 1)) == 0 || !round.meet(packet, multiples)) {
+                rest |= alike;
+                continue;
+            }
+            for (std::uint32_t lanes = alike; lanes != 0; lanes &= lanes - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+                packet.multiples[lane] = std::min(multiples[lane], most);
+                if (!(multiples[lane] < kNoReturn)) set(lane, traceAlone(lane, packet.ray(lane)));
+            }
+        }
+        return rest;
+    }
+
+    /// Of these lanes those that hit the same round body as the first, which becomes `round`; the
+    /// first alone if that is flat.
+    std::uint32_t lanesAlike(std::uint32_t lanes) {
+        const std::uint32_t first = lanes & (0U - lanes);
+        const auto body = [this](std::uint32_t lane) {
+            return scene.set_.roundOf(
+                hits.hit.primID[static_cast<std::size_t>(std::countr_zero(lane))]);
+        };
+        const RoundBody* const met = body(first);
+        if (met == nullptr) return first;
+        if (met != round.body()) {
+            const Point3 origin{packet.origin_x[0], packet.origin_y[0], packet.origin_z[0]};
+            round = RoundView(*met, origin, scene.ray_epsilon_);
+        }
+        std::uint32_t alike = 0;
+        for (; lanes != 0; lanes &= lanes - 1)
+            if (body(lanes) == met) alike |= lanes & (0U - lanes);
+        return alike;
     }
 
     /// A hit near a triangle's rim, on a round body, or on what may be ignored.
@@ -141,6 +216,10 @@ struct EmbreeScene::Caster {
         const Ray ray = packet.ray(lane);
         RayHit hit = ignored.meet(hits.hit.primID[lane], ray);
         if (hit.isNone()) hit = traceAlone(lane, ray);
+        set(lane, hit);
+    }
+
+    void set(std::size_t lane, const RayHit& hit) {
         packet.multiples[lane] = packet.slopes[lane] = kNoReturn;
         if (hit.isNone()) return;
         packet.multiples[lane] = std::min(static_cast<float>(hit.multiple), most);
@@ -213,6 +292,7 @@ void EmbreeScene::cast(Point3 origin, const Directions& directions, double most,
     }
     const IgnoredSurfaces ignored(scene_.get(), set_, ray_epsilon_, origin);
     Caster caster(*this, ignored, origin, most);
+    caster.needs_slopes = !results.cosines.empty();
     for (std::size_t first = 0; first < directions.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, directions.size() - first);
         if (lanes < kLanes) caster.keep(lanes);
@@ -228,6 +308,7 @@ void EmbreeScene::cast(std::span<const Point3> origins, const Directions& direct
     const IgnoredSurfaces nothing(set_, ray_epsilon_);
     const bool may_touch = mayTouch(origins);
     Caster caster(*this, nothing, origins.front(), most);
+    caster.is_alike = false;
     for (std::size_t first = 0; first < directions.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, directions.size() - first);
         if (may_touch && mayTouch(origins.subspan(first, lanes))) {
@@ -260,13 +341,13 @@ void EmbreeScene::cast(Point3 origin, const RayGrid& grid, double most,
     if (set_.size() == 0) return cast(origin, Directions(), most, results);
     const IgnoredSurfaces ignored(scene_.get(), set_, ray_epsilon_, origin);
     const auto columns = static_cast<std::size_t>(grid.columns);
-    const double shortest = shortestRay(grid);
+    const double shortest = shortestRay(grid), longest = longestRay(grid);
     const auto cast_row = [&](Caster& caster, int row) {
         const int high = std::min(kTile, grid.rows - row);
+        const TileRow tiles(grid, row);
         for (int column = 0; column < grid.columns; column += kTile) {
             const auto wide = static_cast<std::size_t>(std::min(kTile, grid.columns - column));
-            fillTile(grid, column, row, caster.packet);
-            caster.trace();
+            caster.trace(tiles, column);
             for (int k = 0; k < high; ++k)
                 caster.writeTileRow(
                     static_cast<std::size_t>(k),
@@ -278,7 +359,8 @@ void EmbreeScene::cast(Point3 origin, const RayGrid& grid, double most,
     tbb::parallel_for(tbb::blocked_range<int>(0, tile_rows, 8),
                       [&](const tbb::blocked_range<int>& rows) {
                           Caster caster(*this, ignored, origin, most);
-                          caster.tail = shortest > 0 ? caster.tail / shortest : 1e30;
+                          caster.setLengths(shortest, longest);
+                          caster.needs_slopes = !results.cosines.empty();
                           for (int i = rows.begin(); i != rows.end(); ++i)
                               cast_row(caster, i * kTile);
                       });
@@ -290,12 +372,14 @@ void EmbreeScene::query(Point3 origin, std::span<const Point3> targets,
     const IgnoredSurfaces ignored(scene_.get(), set_, ray_epsilon_, origin);
     Caster caster(*this, ignored, origin, 0);
     caster.most = kNoReturn;
+    caster.is_alike = false;
     for (std::size_t first = 0; first < targets.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, targets.size() - first);
         if (lanes < kLanes) caster.keep(lanes);
         for (std::size_t lane = 0; lane < kLanes; ++lane)
             caster.packet.aim(lane, targets[first + std::min(lane, lanes - 1)] - origin,
                               ray_epsilon_);
+        roundReach(caster.packet, caster.tail, caster.far);
         caster.trace();
         for (std::size_t lane = 0; lane < lanes; ++lane)
             seen[first + lane] = caster.packet.multiples[lane] == kNoReturn ? 1 : 0;

@@ -112,7 +112,8 @@ RayHit TriangleSet::meetFlat(std::size_t triangle, const Ray& ray) const {
 }
 
 RayHit TriangleSet::meetRound(std::size_t triangle, const Ray& ray, double ray_epsilon) const {
-    const auto& [curve, bottom, top] = rounds_[round_of_[triangle]];
+    const RoundBody& round = rounds_[round_of_[triangle]];
+    const auto& [curve, bottom, top] = round;
     const Vec2 q = curve.toUnit(ray.origin.onFloor() - curve.center);
     const Vec2 d = curve.toUnit({ray.direction.x, ray.direction.y});
     const double a = dot(d, d), b = dot(q, d), c = dot(q, q) - 1;
@@ -138,14 +139,14 @@ RayHit TriangleSet::meetRound(std::size_t triangle, const Ray& ray, double ray_e
     }
     const double enter = std::max(from, low), leave = std::min(to, high);
     if (!(enter <= leave && leave >= 0)) return {};
-    const double height = curve.heightOf(ray.origin.onFloor());
-    const double outside = std::max({height, z - top, bottom - z});
-    const bool touches = std::fabs(outside) <= ray_epsilon;
-    if (touches) {
+    bool touches = false;
+    if (!round.isFarOutside(q, z, ray_epsilon)) {
+        const double height = curve.heightOf(ray.origin.onFloor());
+        touches = std::fabs(std::max({height, z - top, bottom - z})) <= ray_epsilon;
         const bool goes_out = (std::fabs(height) <= ray_epsilon && b >= 0) ||
                               (std::fabs(z - top) <= ray_epsilon && rise > 0) ||
                               (std::fabs(bottom - z) <= ray_epsilon && rise < 0);
-        if (goes_out || leave * length(ray.direction) <= ray_epsilon) return {};
+        if (touches && (goes_out || leave * length(ray.direction) <= ray_epsilon)) return {};
     }
     const bool enters = enter >= 0 && !touches;
     const double multiple = enters ? enter : leave;

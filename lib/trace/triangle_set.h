@@ -19,6 +19,19 @@ namespace ispace {
 struct RoundBody {
     Ellipse curve;
     double bottom = 0, top = 0;
+
+    /// True only if p lies farther outside than `distance`, along the floor or upright: a quick
+    /// bound, which may be false for what lies a little farther. `unit`: p in the frame where the
+    /// curve is the unit disc.
+    [[nodiscard]] bool isFarOutside(Vec2 unit, double z, double distance) const {
+        if (z - top > distance || bottom - z > distance) return true;
+        // Ellipse::heightOf() is at least half_width (|u| - 1), where |u| <= 1 + (|u|^2 - 1) / 2.
+        const double over = dot(unit, unit) - 1;
+        const double narrow =
+            curve.half_width < curve.half_length ? curve.half_width : curve.half_length;
+        constexpr double kSlack = 1.001;
+        return over > 0 && over * narrow > kSlack * distance * (2 + over / 2);
+    }
 };
 
 /// Triangles in any order; vertices may be shared or not.
