@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/json_writer.h"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -42,6 +44,10 @@ std::size_t appendSpecial(std::string& out, std::string_view text) {
 }
 
 void appendQuoted(std::string& out, std::string_view text) {
+    if (std::all_of(text.begin(), text.end(), isPlain)) {
+        (out += '"').append(text) += '"';
+        return;
+    }
     out += '"';
     while (!text.empty()) {
         std::size_t plain = 0;
@@ -116,7 +122,9 @@ JsonWriter& JsonWriter::value(float number) {
 
 JsonWriter& JsonWriter::value(std::int64_t number) {
     separate();
-    text_ += std::to_string(number);
+    std::array<char, 24> digits;
+    text_.append(digits.data(),
+                 std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
     return *this;
 }
 

@@ -26,6 +26,27 @@ std::string_view shortest(Float value, std::array<char, kBuffer>& buffer) {
     return {buffer.data(), static_cast<std::size_t>(end - buffer.data())};
 }
 
+/// Up to three decimals, as most lengths have, without a search for the shortest digits: no other
+/// decimal of up to 15 digits reads as the same double. Appends nothing to other numbers.
+bool appendThousandths(std::string& out, double value) {
+    constexpr double kMostThousandths = 1e12, kThousand = 1000;
+    const double scaled = std::fabs(value) * kThousand;
+    if (!(scaled < kMostThousandths)) return false;
+    const auto thousandths = static_cast<std::int64_t>(scaled);
+    if (static_cast<double>(thousandths) / kThousand != std::fabs(value)) return false;
+    std::array<char, kBuffer> buffer;
+    char* end = buffer.data();
+    if (value < 0) *end++ = '-';
+    end = std::to_chars(end, buffer.data() + buffer.size(), thousandths / 1000).ptr;
+    if (auto rest = static_cast<int>(thousandths % 1000); rest != 0) {
+        *end++ = '.';
+        for (int unit = 100; rest != 0; rest %= unit, unit /= 10)
+            *end++ = static_cast<char>('0' + rest / unit);
+    }
+    out.append(buffer.data(), end);
+    return true;
+}
+
 }  // namespace
 
 std::optional<double> parseDouble(std::string_view text) {
@@ -68,11 +89,13 @@ std::optional<std::int64_t> parseInteger(std::string_view text) {
 }
 
 std::string formatDouble(double value) {
-    std::array<char, kBuffer> buffer;
-    return std::string(shortest(value, buffer));
+    std::string text;
+    appendDouble(text, value);
+    return text;
 }
 
 void appendDouble(std::string& out, double value) {
+    if (appendThousandths(out, value)) return;
     std::array<char, kBuffer> buffer;
     out += shortest(value, buffer);
 }

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
+#include <string>
 
 namespace ispace {
 
@@ -88,6 +90,27 @@ TEST(FormatDouble, RoundTripsOverAllMagnitudes) {
     for (const double edge : {std::numeric_limits<double>::max(), 5e-324,
                               std::numeric_limits<double>::min(), 1e15, 1e-5, 9.999999999999999e14})
         EXPECT_EQ(parseDouble(formatDouble(edge)), edge);
+}
+
+/// Numbers with few decimals are written another way than others: the digits are the same.
+TEST(Number, FewDecimalsAreShortestToo) {
+    std::mt19937_64 random(3);
+    const auto shortest = [](double value) {
+        std::array<char, 64> buffer;
+        const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                       std::chars_format::fixed);
+        return std::string(buffer.data(), end.ptr);
+    };
+    for (int i = 0; i < 200'000; ++i) {
+        const auto bits = static_cast<std::int64_t>(random());
+        const double whole = static_cast<double>(bits >> (i % 60));
+        for (const double unit : {1.0, 10.0, 100.0, 1000.0, 10000.0, 8.0}) {
+            for (const double value : {whole / unit, std::nextafter(whole / unit, 0)}) {
+                if (value == 0 || std::fabs(value) < 1e-5 || std::fabs(value) >= 1e15) continue;
+                ASSERT_EQ(formatDouble(value), shortest(value));
+            }
+        }
+    }
 }
 
 TEST(FormatFloat, RoundTripsAndIsShorterThanTheDouble) {

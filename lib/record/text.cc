@@ -32,7 +32,21 @@ std::string_view withoutMark(std::string_view bytes) {
     return bytes;
 }
 
+/// True of what most texts are: ASCII and its printed characters, tabs and newlines. Without
+/// branches, for many bytes at a time.
+static bool isSurelyText(std::string_view bytes) {
+    unsigned other = 0;
+    for (const char c : bytes) {
+        const auto byte = static_cast<unsigned char>(c);
+        const unsigned is_control = byte < 0x20 ? 1 : 0, is_beyond = byte >= 0x7f ? 1 : 0;
+        const unsigned is_space = byte == '\n' || byte == '\t' ? 1 : 0;
+        other |= (is_control & ~is_space) | is_beyond;
+    }
+    return other == 0;
+}
+
 void checkTextBytes(std::string_view bytes, const std::string& name) {
+    if (isSurelyText(bytes)) return;
     int line = 1;
     std::size_t line_begin = 0;
     for (std::size_t i = 0; i < bytes.size();) {
