@@ -20,7 +20,7 @@ using plane::twin;
 class Arrangement {
   public:
     explicit Arrangement(const std::vector<LinePiece>& pieces)
-        : points_(distinctEnds(pieces)), lines_(linesOf(pieces)), faces_(points_, lines_) {
+        : ends_(endsOf(pieces)), faces_(points_, lines_) {
         parent_.resize(faces_.count());
         std::iota(parent_.begin(), parent_.end(), Index{0});
     }
@@ -104,30 +104,44 @@ class Arrangement {
     }
 
   private:
-    static std::vector<Point2> distinctEnds(const std::vector<LinePiece>& pieces) {
+    /// The ends of the pieces, each once and sorted, and the pieces as lines between them.
+    struct Ends {
         std::vector<Point2> points;
-        points.reserve(2 * pieces.size());
-        for (const LinePiece& piece : pieces)
-            points.insert(points.end(), {piece.segment.a, piece.segment.b});
-        std::sort(points.begin(), points.end(), [](Point2 p, Point2 q) { return lexLess(p, q); });
-        points.erase(std::unique(points.begin(), points.end()), points.end());
-        return points;
-    }
-
-    [[nodiscard]] std::vector<plane::Line> linesOf(const std::vector<LinePiece>& pieces) const {
-        const auto index_of = [&](Point2 p) {
-            const auto it = std::lower_bound(points_.begin(), points_.end(), p,
-                                             [](Point2 q, Point2 r) { return lexLess(q, r); });
-            return static_cast<Index>(it - points_.begin());
-        };
         std::vector<plane::Line> lines;
-        lines.reserve(pieces.size());
-        for (const LinePiece& piece : pieces) {
-            const auto [from, to] =
-                std::minmax({index_of(piece.segment.a), index_of(piece.segment.b)});
-            lines.push_back({from, to});
+    };
+
+    /// \pre pieces are sorted by their lower ends, as noded() sorts them
+    static Ends endsOf(const std::vector<LinePiece>& pieces) {
+        struct Upper {
+            Point2 at;
+            Index piece;
+        };
+        std::vector<Upper> uppers;
+        uppers.reserve(pieces.size());
+        const auto lower = [&pieces](std::size_t i) {
+            const auto& [a, b] = pieces[i].segment;
+            return lexLess(b, a) ? b : a;
+        };
+        for (Index i = 0; i < pieces.size(); ++i) {
+            const auto& [a, b] = pieces[i].segment;
+            uppers.push_back({lexLess(b, a) ? a : b, i});
         }
-        return lines;
+        std::sort(uppers.begin(), uppers.end(),
+                  [](const Upper& s, const Upper& t) { return lexLess(s.at, t.at); });
+        Ends ends;
+        ends.points.reserve(pieces.size());
+        ends.lines.resize(pieces.size());
+        const auto number_of = [&points = ends.points](Point2 p) {
+            if (points.empty() || points.back() != p) points.push_back(p);
+            return static_cast<Index>(points.size() - 1);
+        };
+        std::size_t next = 0;
+        for (const Upper& upper : uppers) {
+            for (; next < pieces.size() && !lexLess(upper.at, lower(next)); ++next)
+                ends.lines[next].from = number_of(lower(next));
+            ends.lines[upper.piece].to = number_of(upper.at);
+        }
+        return ends;
     }
 
     [[nodiscard]] Index root(Index face) {
@@ -156,8 +170,9 @@ class Arrangement {
         return curve;
     }
 
-    std::vector<Point2> points_;
-    std::vector<plane::Line> lines_;
+    Ends ends_;
+    const std::vector<Point2>& points_ = ends_.points;
+    const std::vector<plane::Line>& lines_ = ends_.lines;
     plane::Faces<Point2> faces_;
     std::vector<Index> parent_;  // of each face: joined ones have the same
 };

@@ -65,13 +65,12 @@ class DistinctPoints {
     /// The point that stands for p: one that came before, or p itself.
     Point2 standing(Point2 p) {
         if (!(reach_ > 0)) return p;
-        const Point2 low = cellOf(p - Vec2{reach_, reach_}),
-                     high = cellOf(p + Vec2{reach_, reach_});
+        const auto [low, high] = cellsAbout(p);
         for (double x = low.x; x <= high.x; ++x) {
             for (double y = low.y; y <= high.y; ++y) {
                 for (std::size_t i = slotOf({x, y}); slots_[i] != kFree; i = next(i)) {
                     const Point2 other = points_[slots_[i]];
-                    if (distance(other, p) <= reach_) return other;
+                    if (other == p || distance(other, p) <= reach_) return other;
                 }
             }
         }
@@ -89,6 +88,16 @@ class DistinctPoints {
     [[nodiscard]] Point2 cellOf(Point2 p) const {
         const double size = kReachesPerCell * reach_;
         return {std::floor(p.x / size), std::floor(p.y / size)};
+    }
+    /// The first and the last of the cells that the points in reach may lie in.
+    [[nodiscard]] std::pair<Point2, Point2> cellsAbout(Point2 p) const {
+        const double size = kReachesPerCell * reach_;
+        const Point2 place{p.x / size, p.y / size}, cell{std::floor(place.x), std::floor(place.y)};
+        // Twice the reach from the sides of a cell: all is in it, whatever rounding does.
+        constexpr double kClear = 2 / kReachesPerCell;
+        const auto is_clear = [](double within) { return within > kClear && within < 1 - kClear; };
+        if (is_clear(place.x - cell.x) && is_clear(place.y - cell.y)) return {cell, cell};
+        return {cellOf(p - Vec2{reach_, reach_}), cellOf(p + Vec2{reach_, reach_})};
     }
     [[nodiscard]] std::size_t slotOf(Point2 cell) const {
         const auto x = std::bit_cast<std::uint64_t>(cell.x + 0.0);
@@ -244,26 +253,35 @@ class Cutter {
 
 /// Each piece once, whichever way it runs, in the order of their places.
 void mergeDoubles(std::vector<LinePiece>& pieces) {
-    std::erase_if(pieces, [](const LinePiece& p) { return p.segment.a == p.segment.b; });
-    std::sort(pieces.begin(), pieces.end(), [](const LinePiece& p, const LinePiece& q) {
-        const Segment2 s = ordered(p.segment), t = ordered(q.segment);
-        if (s.a != t.a) return lexLess(s.a, t.a);
-        if (s.b != t.b) return lexLess(s.b, t.b);
-        return p.line < q.line;
+    struct Place {
+        Segment2 segment;
+        Index line, piece;
+    };
+    std::vector<Place> places;
+    places.reserve(pieces.size());
+    for (Index i = 0; i < pieces.size(); ++i)
+        if (const Segment2& s = pieces[i].segment; s.a != s.b)
+            places.push_back({ordered(s), pieces[i].line, i});
+    std::sort(places.begin(), places.end(), [](const Place& p, const Place& q) {
+        if (p.segment.a != q.segment.a) return lexLess(p.segment.a, q.segment.a);
+        if (p.segment.b != q.segment.b) return lexLess(p.segment.b, q.segment.b);
+        return p.line != q.line ? p.line < q.line : p.piece < q.piece;
     });
-    std::size_t count = 0;
-    for (const LinePiece& piece : pieces) {
-        if (count == 0 || ordered(pieces[count - 1].segment) != ordered(piece.segment)) {
-            pieces[count++] = piece;
+    std::vector<LinePiece> merged;
+    merged.reserve(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const LinePiece& piece = pieces[places[i].piece];
+        if (i == 0 || places[i - 1].segment != places[i].segment) {
+            merged.push_back(piece);
             continue;
         }
-        LinePiece& all = pieces[count - 1];
+        LinePiece& all = merged.back();
         const int turn = all.segment == piece.segment ? 1 : -1;
         all.added += turn * piece.added;
         all.removed += turn * piece.removed;
         all.is_passage = all.is_passage && piece.is_passage;
     }
-    pieces.resize(count);
+    pieces = std::move(merged);
 }
 
 /// \return whether the pieces meet in common ends alone
