@@ -247,9 +247,8 @@ void mustFit(const Scene& scene, const Grid& grid) {
 }
 
 /// Exact metrics, or the reason why there are none.
-void tryExactMetrics(Coverage& coverage, const Environment& environment,
-                     const std::vector<Region>& free_floor, const std::vector<Zone>& zones,
-                     bool keep_depths) {
+void tryExactMetrics(Coverage& coverage, const Environment& environment, FloorCurves floor,
+                     const std::vector<Zone>& zones, bool keep_depths) {
     std::string& missing = coverage.report.exact_missing;
     for (const SensorView& view : coverage.sensors)
         if (!view.region) {
@@ -262,7 +261,7 @@ void tryExactMetrics(Coverage& coverage, const Environment& environment,
             return;
         }
     try {
-        addExactMetrics(coverage, environment, free_floor, zones, keep_depths);
+        addExactMetrics(coverage, environment, std::move(floor), zones, keep_depths);
     } catch (const FormatError& error) {
         missing = error.diagnostics().front().message;
     }
@@ -306,10 +305,12 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     mustFit(scene, grid);
     const auto level = environment.level(options.height);
     CoverageReport& report = coverage.report;
+    FloorCurves floor;
     runBoth([&] { coverage.sensors = Viewer(scene, worlds, grid, options).run(); },
             [&] {
                 coverage.target = makeTarget(environment, options.cells, options.height);
                 report.free_area = totalArea(level->freeFloor());
+                if (options.exact) floor = floorCurvesOf(environment, level->freeFloor());
             });
     coverage.sets = setsOf(coverage.sensors, grid);
 
@@ -326,7 +327,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     const std::vector<Zone> zones = zonesOf(environment);
     report.zones = zoneMetricsOf(environment, zones);
     if (options.exact)
-        tryExactMetrics(coverage, environment, level->freeFloor(), zones, options.keep_depths);
+        tryExactMetrics(coverage, environment, std::move(floor), zones, options.keep_depths);
     addCellMetrics(coverage, zones);
     addDensities(coverage, environment, level->freeFloor(), zones);
     if (options.parallax) addParallax(coverage, environment, *options.parallax);

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <utility>
 
 #include "cover/metrics.h"
+#include "env/level.h"
 #include "geom/boolean.h"
 #include "raster/morphology.h"
 #include "sense/ultrasound.h"
@@ -163,18 +165,15 @@ void forEachIndoorZone(const LayerLabel& label, Visit visit) {
 }
 
 /// All sets over indoor region, free floor and some zones.
-std::vector<Layer> layersOf(const Coverage& coverage, const Environment& environment,
-                            const std::vector<Region>& free_floor, std::span<const Zone> zones) {
+std::vector<Layer> layersOf(const Coverage& coverage, FloorCurves floor,
+                            std::span<const Zone> zones) {
     std::vector<Layer> layers;
     layers.reserve(coverage.sets.size() + 2 + zones.size());
     for (std::size_t i = 0; i < coverage.sets.size(); ++i)
         layers.push_back(
             {.curves = *coverage.sets[i].region, .number = static_cast<std::int64_t>(i) + 1});
-    layers.push_back(markLayer(curvesWithArcs(environment.indoor()), kIndoorMark));
-    std::vector<Curve> free;
-    for (const Region& piece : free_floor)
-        for (Curve& curve : curvesWithArcs(piece)) free.push_back(std::move(curve));
-    layers.push_back(markLayer(std::move(free), kFreeMark));
+    layers.push_back(markLayer(std::move(floor.indoor), kIndoorMark));
+    layers.push_back(markLayer(std::move(floor.free), kFreeMark));
     addZoneLayers(zones, layers);
     return layers;
 }
@@ -322,16 +321,25 @@ std::vector<ZoneMetrics> zoneMetricsOf(const Environment& environment,
     return metrics;
 }
 
-void addExactMetrics(Coverage& coverage, const Environment& environment,
-                     const std::vector<Region>& free_floor, const std::vector<Zone>& zones,
-                     bool keep_depths) {
+FloorCurves floorCurvesOf(const Environment& environment, const std::vector<Region>& free_floor) {
+    FloorCurves floor{curvesWithArcs(environment.indoor()), {}};
+    for (const Region& piece : free_floor)
+        for (Curve& curve : curvesWithArcs(piece)) floor.free.push_back(std::move(curve));
+    return floor;
+}
+
+void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCurves floor,
+                     const std::vector<Zone>& zones, bool keep_depths) {
     CoverageReport& report = coverage.report;
     Areas areas(coverage.sets.size());
+    const auto level = environment.level(coverage.target.height);
     std::optional<Overlay> main;  // with the first zones
     for (std::size_t first = 0; first == 0 || first < zones.size(); first += kZonesAtOnce) {
         const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
+        const bool is_last = first + kZonesAtOnce >= zones.size();
+        FloorCurves own = std::exchange(floor, is_last ? FloorCurves() : FloorCurves(floor));
         const std::vector<Layer> layers =
-            layersOf(coverage, environment, free_floor, std::span(zones).subspan(first, count));
+            layersOf(coverage, std::move(own), std::span(zones).subspan(first, count));
         ZoneAreas by_zone{std::vector<double>(count)};
         const auto add = [&](const LayerLabel& label, double area) {
             if (first == 0) areas.add(label, area);
@@ -339,8 +347,7 @@ void addExactMetrics(Coverage& coverage, const Environment& environment,
         };
         if (first > 0) {
             forEachArea(layers, add);
-        } else if (const auto& sheets = environment.slice(coverage.target.height).sheets;
-                   keep_depths) {
+        } else if (const auto& sheets = level->slice().sheets; keep_depths) {
             main.emplace(layers, sheets);
             main->addAreas(add);
         } else {

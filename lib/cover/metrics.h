@@ -26,11 +26,16 @@ std::vector<ZoneMetrics> zoneMetricsOf(const Environment& environment,
 /// Sets what the report says by cells, of a Coverage whose target, sensors and sets are there.
 void addCellMetrics(Coverage& coverage, const std::vector<Zone>& zones);
 
+/// Boundaries of the indoor region and of its free floor, arcs included.
+struct FloorCurves {
+    std::vector<Curve> indoor, free;
+};
+FloorCurves floorCurvesOf(const Environment& environment, const std::vector<Region>& free_floor);
+
 /// Makes the overlay, with depths or without, and sets what the report says in closed form.
 /// \pre all regions are known
-void addExactMetrics(Coverage& coverage, const Environment& environment,
-                     const std::vector<Region>& free_floor, const std::vector<Zone>& zones,
-                     bool keep_depths);
+void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCurves floor,
+                     const std::vector<Zone>& zones, bool keep_depths);
 
 /// A share of `whole`, from 0 to 1 whatever rounds; 0 of nothing
 double shareOf(double part, double whole);

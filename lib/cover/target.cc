@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "env/level.h"
 
 namespace ispace {
 
@@ -86,7 +87,7 @@ Target makeTarget(const Environment& environment, const CellChoice& cells, doubl
     target.height = height;
     target.indoor = cellsIn(target.grid, environment.indoor());
     target.free = target.indoor;
-    target.free -= cellsBlocked(target.grid, environment.slice(height).solids);
+    target.free -= cellsBlocked(target.grid, environment.level(height)->slice().solids);
     return target;
 }
 

@@ -2,7 +2,13 @@
 // Pictures as PNG and PDF, by the module that links Cairo.
 #include "draw/module/painting.h"
 
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "base/error.h"
 #include "base/message.h"
@@ -33,13 +39,60 @@ std::vector<Segment2> hatchOf(const Hatch& hatch, const Picture& picture,
     return hatchLines(hatch, visibleBox(picture, shape));
 }
 
+/// How many bands are worth their threads: each is as large as the picture while it is drawn.
+int bandsAtOnce(const Picture& picture) {
+    constexpr std::size_t kManyPoints = 10'000, kMost = 4;
+    constexpr double kMostPixels = 16e6;
+    if (picture.list().points.size() < kManyPoints ||
+        picture.width() * picture.height() > kMostPixels)
+        return 1;
+    const std::size_t threads =
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    return static_cast<int>(std::min(threads, kMost));
+}
+
+/// Bands with about as many points each.
+std::vector<Rows> bandsOf(const Picture& picture, int count) {
+    const int height = static_cast<int>(std::lround(picture.height()));
+    if (count < 2) return {{0, height}};
+    std::vector<std::size_t> points(static_cast<std::size_t>(height));  // by row
+    for (const Point2 p : picture.list().points)
+        if (p.y >= 0 && p.y < height) ++points[static_cast<std::size_t>(p.y)];
+    const std::size_t all = std::accumulate(points.begin(), points.end(), std::size_t{0});
+    std::vector<Rows> bands = {{0, height}};
+    std::size_t above = 0;
+    for (int row = 0; row < height; ++row) {
+        above += points[static_cast<std::size_t>(row)];
+        if (above * static_cast<std::size_t>(count) <= all * bands.size() || row + 1 == height ||
+            bands.size() == static_cast<std::size_t>(count))
+            continue;
+        bands.back().beyond = row + 1;
+        bands.push_back({row + 1, height});
+    }
+    return bands;
+}
+
 }  // namespace
 
 double textWidth(std::string_view text, const TextStyle& style) {
     return painting().text_width(printable(text), style);
 }
 
-Image rasterOf(const Picture& picture) { return painting().pixels(picture, hatchOf); }
+Image rasterOf(const Picture& picture) {
+    const std::vector<Rows> bands = bandsOf(picture, bandsAtOnce(picture));
+    std::vector<Image> images(bands.size());
+    tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t i) {
+        images[i] = painting().pixels(picture, hatchOf, bands[i]);
+    });
+    Image image = std::move(images.front());
+    for (std::size_t i = 1; i < bands.size(); ++i) {
+        const auto place = [&](int row) { return std::ptrdiff_t{image.width} * row; };
+        std::copy(images[i].pixels.begin() + place(bands[i].first),
+                  images[i].pixels.begin() + place(bands[i].beyond),
+                  image.pixels.begin() + place(bands[i].first));
+    }
+    return image;
+}
 
 std::string writePng(const Picture& picture) { return encodePng(rasterOf(picture)); }
 

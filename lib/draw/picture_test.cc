@@ -2,13 +2,16 @@
 #include "draw/picture.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <random>
 
 #include "base/error.h"
+#include "draw/raster.h"
 
 namespace ispace {
 namespace {
@@ -350,6 +353,39 @@ TEST(Picture, ClipsAndStrokesTakeManyCurves) {
     const Pixels pixels(lines.write(PictureFormat::Png));
     EXPECT_EQ(pixels.at(1, 5), 0xFF0000U);
     EXPECT_EQ(pixels.at(4, 5), 0xFF0000U);
+}
+
+/// One shape of each kind at random places of a page of 300 x 300.
+void drawAnything(Picture& picture, std::mt19937& random) {
+    std::uniform_real_distribution<double> place(-20, 320), share(0, 1);
+    const auto point = [&] { return Point2{place(random), place(random)}; };
+    const Polygon triangle = {point(), point(), point()};
+    const Color color{share(random), share(random), share(random), 0.3 + 0.7 * share(random)};
+    picture.area(triangle, {color.faded(0.2), Stroke{color, 8 * share(random), {9, 4}}});
+    picture.pushClip(triangle);
+    picture.circle(point(), 60 * share(random), {color, Stroke{color, 20 * share(random)}});
+    picture.pop();
+    picture.area(Polygon{point(), point(), point()}, {Hatch{color, 7, 2}});
+    picture.lines({point(), point(), point()}, {Stroke{color, 30 * share(random)}});
+    picture.sector(point(), 40, Angle::degrees(20), Angle::degrees(200), {color});
+    picture.image(point(), Image{2, 1, {0x0000FF, 0xFF0000}}, 9.5, 30);
+    picture.text(point(), "gÅ", {40 * share(random), true, Align::Center, color, palette::kWhite});
+}
+
+TEST(Picture, IsTheSameDrawnInBands) {
+    Picture few(300, 300), many(300, 300);
+    std::mt19937 random(3), again(3);
+    const std::vector<Point2> far(20'000, Point2{-500, -500});  // few points make one band
+    many.lines(far, {Stroke{palette::kInk}});
+    for (int i = 0; i < 60; ++i) {
+        drawAnything(few, random);
+        drawAnything(many, again);
+    }
+    const Image drawn = rasterOf(few);
+    for (const std::size_t threads : {1U, 2U, 3U, 8U}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        EXPECT_EQ(rasterOf(many).pixels, drawn.pixels) << threads << " threads";
+    }
 }
 
 TEST(Image, RefusesWhatIsNoWholePng) {

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "geom/overlay_cells.h"
@@ -85,9 +91,9 @@ struct Span {
 /// Ends of edges that lay along another before rounding: both were moved by at most half a step in
 /// x and in y.
 std::vector<Pass> passesOfEnds(const std::vector<Edge>& edges, const std::vector<Point>& points) {
+    constexpr std::size_t kAtOnce = 8192;  // edges
     const PointGrid grid(points);
-    std::vector<Pass> passes;
-    for (Index i = 0; i < edges.size(); ++i) {
+    const auto add_of = [&](Index i, std::vector<Pass>& passes) {
         const Span s(i, edges[i], points);
         const std::int64_t reach = s.reach(), square = s.dx() * s.dx() + s.dy() * s.dy();
         grid.forEachNear(s.a, s.b, [&](Point p, Index number) {
@@ -97,6 +103,18 @@ std::vector<Pass> passesOfEnds(const std::vector<Edge>& edges, const std::vector
             if ((is_near & int(at > 0) & int(at < square)) != 0) passes.push_back({i, number, at});
         });
         mustBeFew(passes.size());
+    };
+    std::vector<std::vector<Pass>> blocks(edges.size() / kAtOnce + 1);
+    std::atomic<std::size_t> count = 0;
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+        const std::size_t end = std::min(edges.size(), (b + 1) * kAtOnce);
+        for (std::size_t i = b * kAtOnce; i < end; ++i) add_of(static_cast<Index>(i), blocks[b]);
+        mustBeFew(count += blocks[b].size());
+    });
+    std::vector<Pass> passes = std::move(blocks.front());
+    for (std::size_t b = 1; b < blocks.size(); ++b) {
+        passes.insert(passes.end(), blocks[b].begin(), blocks[b].end());
+        blocks[b] = {};
     }
     return passes;
 }

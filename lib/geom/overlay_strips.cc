@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geom/overlay_strips.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -37,8 +39,9 @@ class EndRouter {
     EndRouter(const std::vector<Edge>& edges, const std::vector<Point>& points, SetStore& sets)
         : edges_(edges), points_(points), sets_(sets), by_x_(points.size()) {
         std::iota(by_x_.begin(), by_x_.end(), Index{0});
-        std::sort(by_x_.begin(), by_x_.end(),
-                  [&](Index i, Index k) { return points[i].x < points[k].x; });
+        tbb::parallel_sort(by_x_.begin(), by_x_.end(), [&](Index i, Index k) {
+            return points[i].x != points[k].x ? points[i].x < points[k].x : i < k;
+        });
     }
 
     std::vector<Edge> run() {
@@ -164,15 +167,16 @@ class Sweep {
 
     /// Makes strips with so many ends in each. False, with none, where they are too narrow.
     bool divide(std::size_t ends) {
-        std::vector<std::int32_t> xs;
-        xs.reserve(points_.size());
-        for (const Point p : points_) xs.push_back(p.x);
-        std::sort(xs.begin(), xs.end());
+        if (xs_.empty()) {
+            xs_.reserve(points_.size());
+            for (const Point p : points_) xs_.push_back(p.x);
+            tbb::parallel_sort(xs_.begin(), xs_.end());
+        }
         strips_.resize(1);
-        for (std::size_t i = ends; i + ends <= xs.size(); i += ends) {
-            if (xs[i] <= strips_.back().columns.first || xs[i] == xs.front()) continue;
-            strips_.back().columns.last = xs[i] - 1;
-            strips_.emplace_back().columns.first = xs[i];
+        for (std::size_t i = ends; i + ends <= xs_.size(); i += ends) {
+            if (xs_[i] <= strips_.back().columns.first || xs_[i] == xs_.front()) continue;
+            strips_.back().columns.last = xs_[i] - 1;
+            strips_.emplace_back().columns.first = xs_[i];
         }
         if (!areWide()) {
             strips_.clear();
@@ -191,21 +195,31 @@ class Sweep {
         last_of_.resize(edges_.size());
         const auto at_once =
             static_cast<std::size_t>(std::max(1, 2 * tbb::this_task_arena::max_concurrency()));
-        std::size_t found = 0, made = 0;
-        std::vector<std::function<void()>> products;
-        while (made < strips_.size()) {
+        // Strips before `made` are parts, those up to `known` become parts, all up to `found` have
+        // their ways, and the next ones get theirs: all at once.
+        std::size_t found = 0, known = 0, made = 0;
+        std::vector<std::function<void()>> products, earlier;
+        while (made < strips_.size() || !earlier.empty()) {
             const std::size_t goal = std::min(strips_.size(), found + at_once);
-            tbb::parallel_for(found, goal, [this](std::size_t i) { find(strips_[i]); });
+            const std::size_t parts = known - made;
+            products.assign(parts, {});
+            tbb::parallel_for(
+                tbb::blocked_range<std::size_t>(0, 1 + parts + (goal - found), 1),
+                [&](const auto& range) {
+                    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        if (i == 0)
+                            for (const auto& finish : earlier) finish();
+                        else if (i <= parts)
+                            products[i - 1] = partFrom(strips_[made + i - 1], visit);
+                        else
+                            find(strips_[found + i - 1 - parts]);
+                    }
+                },
+                tbb::simple_partitioner());
             for (; found < goal; ++found) link(found);
-            std::size_t known = made;
-            while (known < found && strips_[known].open == 0) ++known;
-            products.assign(known - made, {});
-            tbb::parallel_for(made, known, [&](std::size_t i) {
-                products[i - made] = visit(partOf(strips_[i]));
-                strips_[i] = Strip();
-            });
-            for (const auto& finish : products) finish();
             made = known;
+            while (known < found && strips_[known].open == 0) ++known;
+            earlier = std::move(products);
         }
     }
 
@@ -220,6 +234,12 @@ class Sweep {
         std::size_t count = 0;
         for (const Edge& edge : edges_) count += lastOf(edge) - firstOf(edge) + 1;
         return count <= kMostStrips * edges_.size();
+    }
+
+    std::function<void()> partFrom(Strip& strip, const PartVisitor& visit) const {
+        std::function<void()> finish = visit(partOf(strip));
+        strip = Strip();
+        return finish;
     }
 
     /// The ways of its edges, as far as they lie in it.
@@ -309,29 +329,30 @@ class Sweep {
     const std::vector<Point>& points_;
     const SetStore& sets_;
     std::vector<Strip> strips_;
-    std::vector<Last> last_of_;  // edges that lie in several strips
+    std::vector<Last> last_of_;     // edges that lie in several strips
+    std::vector<std::int32_t> xs_;  // of all points, ascending
 };
 
 }  // namespace
 
 void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTable table,
                  SetStore& sets, std::size_t at_least, const PartVisitor& visit) {
-    if (layers.size() < kManyLayers || table.points().size() < 2 * kQuick)
-        edges = merged(ledThroughEnds(edges, table.points()), table.points(), sets);
-    else
-        tbb::this_task_arena::isolate(
-            [&] { edges = EndRouter(edges, table.points(), sets).run(); });
-    std::size_t ends = at_least == 0 ? kQuick : at_least;
-    Sweep sweep(layers, edges, table.points(), sets);
-    bool is_divided = false;
-    while (!is_divided && 2 * ends <= table.points().size()) {
-        is_divided = sweep.divide(ends);
-        ends *= 2;
-    }
-    if (is_divided) {
-        tbb::this_task_arena::isolate([&] { sweep.run(visit); });
+    // Who waits in here does not begin with other work.
+    if (tbb::this_task_arena::isolate([&] {
+            if (layers.size() < kManyLayers || table.points().size() < 2 * kQuick)
+                edges = merged(ledThroughEnds(edges, table.points()), table.points(), sets);
+            else
+                edges = EndRouter(edges, table.points(), sets).run();
+            std::size_t ends = at_least == 0 ? kQuick : at_least;
+            Sweep sweep(layers, edges, table.points(), sets);
+            for (; 2 * ends <= table.points().size(); ends *= 2) {
+                if (!sweep.divide(ends)) continue;
+                sweep.run(visit);
+                return true;
+            }
+            return false;
+        }))
         return;
-    }
     const Ways ways = waysThroughPixels(edges, table, {});
     edges = merged(routed(edges, ways), table.points(), sets);
     std::vector<EdgeLabels> labels = labelsOf(layers, table.points(), edges, sets);

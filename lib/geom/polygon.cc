@@ -218,8 +218,14 @@ std::vector<double> evenLevels(const std::vector<Segment2>& edges) {
     return levels;
 }
 
+/// The middle of a chord of the region.
+struct Candidate {
+    Point2 at;
+    double room = 0;  ///< from there to an end of the chord
+};
+
 /// Middles of the longest chords of the region at a level, between these crossings of its boundary.
-void addChordMiddles(std::vector<double>& xs, double y, std::vector<Point2>& middles) {
+void addChordMiddles(std::vector<double>& xs, double y, std::vector<Candidate>& middles) {
     std::sort(xs.begin(), xs.end());
     std::vector<std::pair<double, Point2>> chords;
     for (std::size_t i = 1; i < xs.size(); i += 2)
@@ -227,12 +233,12 @@ void addChordMiddles(std::vector<double>& xs, double y, std::vector<Point2>& mid
     std::stable_sort(chords.begin(), chords.end(),
                      [](const auto& c, const auto& d) { return c.first > d.first; });
     chords.resize(std::min(chords.size(), kChordsPerLine));
-    for (const auto& [width, p] : chords) middles.push_back(p);
+    for (const auto& [width, p] : chords) middles.push_back({p, width / 2});
 }
 
 /// The same at some levels, one after another.
 void addChordMiddles(const std::vector<Segment2>& edges, std::span<const double> levels,
-                     std::vector<Point2>& middles) {
+                     std::vector<Candidate>& middles) {
     std::vector<std::pair<double, std::size_t>> by_height;
     for (std::size_t i = 0; i < levels.size(); ++i) by_height.emplace_back(levels[i], i);
     std::sort(by_height.begin(), by_height.end());
@@ -256,6 +262,11 @@ class Best {
         rounding_ *= 1e-12;
     }
 
+    void offer(const Candidate& candidate) {
+        // The ends of its chord are near enough to tell.
+        if (candidate.room < (1 - 1e-9) * clearance_ - rounding_) return;
+        offer(candidate.at);
+    }
     void offer(Point2 p) {
         const double distance = clearance(p);
         if (distance <= clearance_ || region_.locate(p) != Side::Inside) return;
@@ -289,24 +300,24 @@ class Best {
 };
 
 /// Candidates on scanlines, from both directions.
-std::vector<Point2> candidates(const Region& region, bool swapped, std::size_t most) {
+std::vector<Candidate> candidates(const Region& region, bool swapped, std::size_t most) {
     constexpr std::size_t kAtOnce = 64;  // levels
     const auto edges = edgesOf(region, swapped);
     auto levels = levelsBetweenVertices(edges, most);
     const auto even = evenLevels(edges);
     levels.insert(levels.end(), even.begin(), even.end());
-    std::vector<Point2> middles;
+    std::vector<Candidate> middles;
     for (std::size_t i = 0; i < levels.size(); i += kAtOnce)
         addChordMiddles(edges, std::span(levels).subspan(i, std::min(kAtOnce, levels.size() - i)),
                         middles);
     if (swapped)
-        for (Point2& p : middles) std::swap(p.x, p.y);
+        for (Candidate& c : middles) std::swap(c.at.x, c.at.y);
     return middles;
 }
 
 void scan(const Region& region, std::size_t most, Best& best) {
     constexpr std::size_t kManyEdges = 10'000;
-    std::vector<Point2> up, across;
+    std::vector<Candidate> up, across;
     const auto find_up = [&] { up = candidates(region, false, most); };
     const auto find_across = [&] { across = candidates(region, true, most); };
     if (best.edges() < kManyEdges) {
@@ -315,8 +326,8 @@ void scan(const Region& region, std::size_t most, Best& best) {
     } else {
         tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(find_up, find_across); });
     }
-    for (const std::vector<Point2>* found : {&up, &across})
-        for (const Point2 p : *found) best.offer(p);
+    for (const std::vector<Candidate>* found : {&up, &across})
+        for (const Candidate& candidate : *found) best.offer(candidate);
 }
 
 /// Middles of the triangles at the corners, and the doubles about them: where a region is so thin
@@ -332,7 +343,7 @@ void tryCorners(const Region& region, Best& best) {
                  {std::nextafter(center.x, -kFar), center.x, std::nextafter(center.x, kFar)}) {
                 for (const double y :
                      {std::nextafter(center.y, -kFar), center.y, std::nextafter(center.y, kFar)})
-                    best.offer({x, y});
+                    best.offer(Point2{x, y});
             }
         }
     };

@@ -151,6 +151,22 @@ TEST(InteriorPoint, isWellInside) {
     EXPECT_GT(clearance(ring, interiorPoint(ring)), 0.9);
 }
 
+/// As many edges as are looked at in two threads: a comb, whose widest gap is the place.
+TEST(InteriorPoint, isTheWidestPlaceOfManyEdges) {
+    Region comb{test::box(0, 0, 100, 10), {}};
+    Polygon& outline = comb.outline;
+    outline.pop_back();
+    const Point2 last{0, 10};
+    for (int i = 4000; i > 0; --i) {
+        const double x = i < 2000 ? i * 0.02 : 20 + i * 0.02;
+        outline.insert(outline.end(), {{x, 10}, {x, 1}, {x - 0.01, 1}, {x - 0.01, 10}});
+    }
+    outline.push_back(last);
+    const Point2 place = interiorPoint(comb);
+    EXPECT_EQ(comb.locate(place), Side::Inside);
+    EXPECT_GT(clearance(comb, place), 4.9);
+}
+
 TEST(InteriorPoint, isStrictlyInsideSlivers) {
     const Polygon slivers[] = {
         {{0, 0}, {1, 0}, {1, 1e-12}},

@@ -6,6 +6,11 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -18,6 +23,8 @@ namespace ispace {
 namespace {
 
 using Index = std::uint32_t;
+/// Lines' ends, or triangles, that are worth another thread.
+constexpr std::size_t kMany = 20'000;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Tds = CGAL::Triangulation_data_structure_2<
     CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>,
@@ -44,19 +51,33 @@ std::array<Point2, 4> cornersOf(const Box2& box) {
 }
 
 Delaunay triangulate(const std::vector<Segment2>& lines, const Box2& box) {
-    std::vector<Point2> points;
-    points.reserve(2 * lines.size());
+    // Ends of lines: first and last of each, as of a list of all.
+    struct End {
+        Point2 at;
+        Index number;
+    };
+    std::vector<End> ends;
+    ends.reserve(2 * lines.size());
     for (const auto& [a, b] : lines) {
-        points.push_back(a);
-        points.push_back(b);
+        ends.push_back({a, static_cast<Index>(ends.size())});
+        ends.push_back({b, static_cast<Index>(ends.size())});
     }
-    const auto less = [](Point2 a, Point2 b) { return lexLess(a, b); };
-    std::sort(points.begin(), points.end(), less);
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+    const auto less = [](const End& e, const End& f) {
+        return e.at != f.at ? lexLess(e.at, f.at) : e.number < f.number;
+    };
+    if (ends.size() < kMany)
+        std::sort(ends.begin(), ends.end(), less);
+    else
+        tbb::parallel_sort(ends.begin(), ends.end(), less);
     std::vector<std::pair<Kernel::Point_2, Index>> sites;
-    sites.reserve(points.size() + 4);
-    for (const Point2 p : points)
-        sites.push_back({Kernel::Point_2(p.x, p.y), static_cast<Index>(sites.size())});
+    sites.reserve(ends.size() + 4);
+    std::vector<Index> site_of(ends.size());
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const Point2 p = ends[i].at;
+        if (i == 0 || ends[i - 1].at != p)
+            sites.push_back({Kernel::Point_2(p.x, p.y), static_cast<Index>(sites.size())});
+        site_of[ends[i].number] = static_cast<Index>(sites.size() - 1);
+    }
     for (const Point2 p : cornersOf(box))
         sites.push_back({Kernel::Point_2(p.x, p.y), static_cast<Index>(sites.size())});
 
@@ -65,11 +86,8 @@ Delaunay triangulate(const std::vector<Segment2>& lines, const Box2& box) {
     std::vector<Delaunay::Vertex_handle> handles(sites.size());
     for (auto v = net.finite_vertices_begin(); v != net.finite_vertices_end(); ++v)
         handles[v->info()] = v;
-    const auto handle_of = [&](Point2 p) {
-        return handles[static_cast<std::size_t>(
-            std::lower_bound(points.begin(), points.end(), p, less) - points.begin())];
-    };
-    for (const auto& [a, b] : lines) net.insert_constraint(handle_of(a), handle_of(b));
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        net.insert_constraint(handles[site_of[2 * i]], handles[site_of[2 * i + 1]]);
     return net;
 }
 
@@ -158,7 +176,7 @@ SightMesh::SightMesh(std::span<const Segment2> all_lines) : in() {
     const auto portal_of = [](const Delaunay::Face_handle& face, int i) {
         return 3 * face->info() + static_cast<Index>(i);
     };
-    for (const auto& face : faces) {
+    const auto add_portals = [&](const Delaunay::Face_handle& face) {
         for (int i = 0; i < 3; ++i) {
             const Index edge = portal_of(face, i);
             const auto next = face->neighbor(i);
@@ -175,14 +193,25 @@ SightMesh::SightMesh(std::span<const Segment2> all_lines) : in() {
             portals[edge].corner = pointOf(face->vertex(i));
             portals[edge].behind = target;
             if (face->is_constrained(i)) {
-                // Once for both sides.
-                portals[edge].line = target < edge ? portals[target].line : finder.find(from, to);
+                if (target > edge) portals[edge].line = finder.find(from, to);
                 target = Portal::kBlocked | edge;
             }
             portals[beforeOf(edge)].right = target;
             portals[nextOf(edge)].left = target;
         }
-    }
+    };
+    // Not with other work: who builds this may hold what that waits for.
+    tbb::this_task_arena::isolate([&] {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), kMany),
+                          [&](const auto& range) {
+                              for (std::size_t i = range.begin(); i < range.end(); ++i)
+                                  add_portals(faces[i]);
+                          });
+    });
+    // Lines are found once for both sides.
+    for (Index edge = 0; edge < portals.size(); ++edge)
+        if (portals[edge].behind < edge && isLine(edge))
+            portals[edge].line = portals[portals[edge].behind].line;
     makeCells(faces.size());
 }
 

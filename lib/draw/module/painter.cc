@@ -5,6 +5,7 @@
 #include <cairo.h>
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -90,12 +91,20 @@ class Painter {
           owner_(cairo_create(surface), cairo_destroy),
           context_(owner_.get()) {}
 
+    /// What shows in none of these rows is left out: its page unit is the pixel. Cairo would round
+    /// a little differently if it had to clip.
+    void keepTo(Rows rows) {
+        if (rows.first > 0) first_ = rows.first;
+        if (rows.beyond < picture_.height()) beyond_ = rows.beyond;
+    }
+
     void paint() {
         cairo_set_fill_rule(context_, CAIRO_FILL_RULE_EVEN_ODD);
         cairo_set_line_join(context_, CAIRO_LINE_JOIN_ROUND);
         cairo_set_source_rgb(context_, 1, 1, 1);
         cairo_paint(context_);
-        for (const DisplayList::Shape& shape : list_.shapes) draw(shape);
+        for (const DisplayList::Shape& shape : list_.shapes)
+            if (mayShow(shape)) draw(shape);
         check(cairo_status(context_));
     }
 
@@ -129,6 +138,36 @@ class Painter {
                     std::visit([&](const auto& kind) { apply(kind, shape); }, ink);
                 cairo_new_path(context_);
         }
+    }
+
+    /// False if it lies above or below the rows.
+    [[nodiscard]] bool mayShow(const DisplayList::Shape& shape) const {
+        if (first_ == -kAll && beyond_ == kAll) return true;
+        double low = kAll, high = -kAll;
+        const auto add = [&](double y, double reach) {
+            low = std::min(low, y - reach);
+            high = std::max(high, y + reach);
+        };
+        switch (shape.kind) {
+            case Kind::Text:
+                add(list_.texts[shape.first].anchor.y, 2 * list_.texts[shape.first].style.size);
+                break;
+            case Kind::Area:
+            case Kind::Lines:
+                for (std::uint32_t i = shape.first; i < shape.last; ++i)
+                    for (const Point2 p : list_.curve(i)) add(p.y, 0);
+                break;
+            case Kind::Arc:
+                add(list_.arcs[shape.first].center.y, list_.arcs[shape.first].radius);
+                break;
+            default:
+                return true;
+        }
+        double reach = 2;
+        for (const Ink& ink : list_.inksOf(shape))
+            if (const auto* stroke = std::get_if<Stroke>(&ink))
+                reach = std::max(reach, stroke->width + 2);
+        return low - reach <= beyond_ && high + reach >= first_;
     }
 
     void addCurves(const DisplayList::Shape& shape, bool closed) {
@@ -226,13 +265,15 @@ class Painter {
     }
 
     static constexpr std::size_t kMany = 1024;  // points, for which memory was there
+    static constexpr double kAll = 1e9;         // rows
 
     const Picture& picture_;
     HatchOf& hatch_of_;
     const DisplayList& list_;
     Context owner_;
     cairo_t* context_;
-    std::size_t unchecked_ = kMany;  ///< points drawn since there was memory
+    double first_ = -kAll, beyond_ = kAll;  ///< rows that are drawn
+    std::size_t unchecked_ = kMany;         ///< points drawn since there was memory
 };
 
 double widthOf(const std::string& text, const TextStyle& style) {
@@ -244,7 +285,7 @@ double widthOf(const std::string& text, const TextStyle& style) {
     return width;
 }
 
-Image pixelsOf(const Picture& picture, HatchOf& hatch_of) {
+Image pixelsOf(const Picture& picture, HatchOf& hatch_of, Rows rows) {
     Image image{static_cast<int>(std::lround(picture.width())),
                 static_cast<int>(std::lround(picture.height())),
                 {}};
@@ -255,7 +296,9 @@ Image pixelsOf(const Picture& picture, HatchOf& hatch_of) {
                                             CAIRO_FORMAT_RGB24, image.width, image.height,
                                             static_cast<int>(width * sizeof(std::uint32_t))),
         cairo_surface_destroy);
-    Painter(picture, hatch_of, surface.get()).paint();
+    Painter painter(picture, hatch_of, surface.get());
+    painter.keepTo(rows);
+    painter.paint();
     cairo_surface_flush(surface.get());
     for (std::uint32_t& pixel : image.pixels) pixel &= 0xFFFFFFU;  // the rest is undefined
     return image;
