@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
+#include <cstdint>
 
 #include "base/simd.h"
 
@@ -11,15 +13,39 @@ namespace ispace {
 
 namespace {
 
+using noise_loops::kNoReturn;
 using noise_loops::Parameters;
 
 /// Elements that are dealt with together; a multiple of what random numbers are drawn in.
 constexpr std::size_t kBlock = 512;
+/// Elements without any return are left out, so many at once.
+constexpr std::size_t kPart = 64;
 
 ISPACE_SIMD_CLONES void disturb(const Parameters& parameters, std::size_t count,
                                 const float* normal, const float* uniform, const float* cosines,
                                 float* ranges) {
     noise_loops::apply(parameters, count, normal, uniform, cosines, ranges);
+}
+
+ISPACE_INLINE std::uint32_t limitPart(const Parameters& parameters, std::size_t count,
+                                      float* ranges) {
+    noise_loops::limit(parameters, count, ranges);
+    std::uint32_t any = 0;
+    for (std::size_t k = 0; k < count; ++k) any |= ranges[k] < kNoReturn ? 1U : 0U;
+    return any;
+}
+
+/// Takes what is out of range for no return.
+/// \return a bit for each part of kPart ranges that has a return
+ISPACE_SIMD_CLONES std::uint32_t partsWithReturns(const Parameters& parameters, std::size_t count,
+                                                  float* ranges) {
+    std::uint32_t parts = 0;
+    std::size_t begin = 0;
+    for (; begin + kPart <= count; begin += kPart)
+        parts |= limitPart(parameters, kPart, ranges + begin) << (begin / kPart);
+    if (begin < count)
+        parts |= limitPart(parameters, count - begin, ranges + begin) << (begin / kPart);
+    return parts;
 }
 
 Parameters parametersOf(const RangeNoise& noise, double min_range, double max_range) {
@@ -58,15 +84,25 @@ void addNoise(const RangeNoise& noise, double min_range, double max_range, const
     const RandomKey random = randomKey(key);
     alignas(64) std::array<float, kBlock> normal;   // NOLINT: drawn if needed
     alignas(64) std::array<float, kBlock> uniform;  // NOLINT
-    for (std::size_t k = 0; k < ranges.size(); k += kBlock) {
-        const std::size_t count = std::min(kBlock, ranges.size() - k);
+    const auto disturb_part = [&](std::size_t first, std::size_t count) {
         RandomDraws draws;
         if (spreads) draws.normal = std::span(normal).first(count);
         if (drops) draws.uniform = std::span(uniform).first(count);
-        draw(random, static_cast<std::uint32_t>(k), draws);
+        draw(random, static_cast<std::uint32_t>(first), draws);
         disturb(parameters, count, spreads ? normal.data() : nullptr,
-                drops ? uniform.data() : nullptr, grazes ? cosines.data() + k : nullptr,
-                ranges.data() + k);
+                drops ? uniform.data() : nullptr, grazes ? cosines.data() + first : nullptr,
+                ranges.data() + first);
+    };
+    for (std::size_t k = 0; k < ranges.size(); k += kBlock) {
+        const std::size_t count = std::min(kBlock, ranges.size() - k);
+        std::uint32_t parts = partsWithReturns(parameters, count, ranges.data() + k);
+        // Neighbouring parts at once.
+        while (parts != 0) {
+            const auto begin = static_cast<std::size_t>(std::countr_zero(parts));
+            const auto end = begin + static_cast<std::size_t>(std::countr_one(parts >> begin));
+            parts &= ~0U << end;
+            disturb_part(k + begin * kPart, std::min(count, end * kPart) - begin * kPart);
+        }
     }
 }
 

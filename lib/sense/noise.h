@@ -139,10 +139,10 @@ ISPACE_INLINE void keepInRange(const Parameters& parameters, std::size_t count,
     }
 }
 
-/// What a block of ranges goes through; arrays are null if not needed.
+/// What a block of ranges goes through once limit() has been applied; arrays are null if not
+/// needed.
 ISPACE_INLINE void apply(const Parameters& parameters, std::size_t count, const float* normal,
                          const float* uniform, const float* cosines, float* ranges) {
-    limit(parameters, count, ranges);
     const bool moves = normal != nullptr || parameters.bias != 0;
     if (moves) spread(parameters, count, normal, ranges);
     if (uniform != nullptr) drop(parameters, count, cosines, uniform, ranges);

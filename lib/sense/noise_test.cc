@@ -295,9 +295,31 @@ TEST(Noise, EachBeamIsOnItsOwn) {
         EXPECT_NE(noisy(everything(), ranges, cosines, key, 0.1, 10), whole);
 }
 
+TEST(Noise, ReturnsAreTheSameAmongAnyNumberOfOthers) {
+    std::mt19937_64 random(9);
+    std::uniform_real_distribution<float> range(0.5F, 9);
+    Floats all(5000), cosines(all.size());
+    for (float& r : all) r = range(random);
+    for (float& c : cosines) c = range(random) / 9;
+    const Floats whole = noisy(everything(), all, cosines, kKey, 0.1, 10);
+    for (int round = 0; round < 50; ++round) {
+        // Runs of any length that are out of range, or nothing.
+        Floats some = all;
+        for (std::size_t begin = random() % 400; begin < some.size(); begin += random() % 400) {
+            const std::size_t end = std::min(some.size(), begin + random() % 400);
+            const float other = round % 3 == 0 ? kNone : round % 3 == 1 ? 0.05F : 11.0F;
+            for (; begin < end; ++begin) some[begin] = other;
+        }
+        const Floats measured = noisy(everything(), some, cosines, kKey, 0.1, 10);
+        for (std::size_t i = 0; i < some.size(); ++i)
+            ASSERT_EQ(measured[i], some[i] == all[i] ? whole[i] : kNone) << round << ' ' << i;
+    }
+}
+
 [[gnu::noinline]] void applyPlainly(const noise_loops::Parameters& parameters, std::size_t count,
                                     const float* normal, const float* uniform, const float* cosines,
                                     float* ranges) {
+    noise_loops::limit(parameters, count, ranges);
     noise_loops::apply(parameters, count, normal, uniform, cosines, ranges);
 }
 
