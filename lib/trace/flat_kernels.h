@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 
 #include "base/simd.h"
 #include "geom/point.h"
 #include "trace/flat_tree.h"
+#include "trace/rays.h"
 
 namespace ispace {
 
@@ -32,8 +34,14 @@ constexpr double kFlatEdgeAngle = 1e-6;
 /// Least |cosine| between lines of one direction.
 constexpr double kFlatParallel = 1 - 1e-6;
 
-ISPACE_INLINE double flatMin(double a, double b) { return a < b ? a : b; }
-ISPACE_INLINE double flatMax(double a, double b) { return a > b ? a : b; }
+template <typename Real>
+ISPACE_INLINE Real flatMin(Real a, Real b) {
+    return a < b ? a : b;
+}
+template <typename Real>
+ISPACE_INLINE Real flatMax(Real a, Real b) {
+    return a > b ? a : b;
+}
 /// Chooses between two computed values without a branch, which would prevent vectorising: the
 /// compiler assumes that all arithmetic may trap.
 ISPACE_INLINE double flatChoice(bool first, double a, double b) {
@@ -45,28 +53,32 @@ ISPACE_INLINE double flatChoice(bool first, double a, double b) {
 /// A lower bound of the distance to a box, 0 if the origin is in it, at most 8 % too small: that of
 /// the octagon about the origin that touches the box. A box within another is never nearer, even
 /// with rounding, so skipping boxes changes nothing.
-ISPACE_INLINE double distanceOf(double left, double right, double low, double high) {
-    constexpr double kDiagonal = 0.70710678;
-    const double x = flatMax(flatMax(left, -right), 0.0);
-    const double y = flatMax(flatMax(low, -high), 0.0);
+template <typename Real>
+ISPACE_INLINE Real distanceOf(Real left, Real right, Real low, Real high) {
+    constexpr auto kDiagonal = static_cast<Real>(0.70710678);
+    const Real x = flatMax(flatMax(left, -right), Real{0});
+    const Real y = flatMax(flatMax(low, -high), Real{0});
     return flatMax(flatMax(x, y), kDiagonal * (x + y));
 }
 
 /// Direction of (x, y) in [-pi, pi], within 1e-5; 0 for the null vector (Abramowitz &
 /// Stegun, 4.4.47 and the quadrants).
-ISPACE_INLINE double angleOf(double x, double y) {
-    const double far = std::fabs(x), wide = std::fabs(y);
-    const double ratio = flatMin(far, wide) / flatMax(flatMax(far, wide), 1e-300);
-    const double square = ratio * ratio;
-    const double octant =
-        ratio *
-        (0.9998660 +
-         square * (-0.3302995 + square * (0.1801410 + square * (-0.0851330 + square * 0.0208351))));
+template <typename Real>
+ISPACE_INLINE Real angleOf(Real x, Real y) {
+    constexpr auto kPi = std::numbers::pi_v<Real>;
+    constexpr Real kTiny = sizeof(Real) == sizeof(float) ? Real(1e-30) : Real(1e-300);
+    const Real far = std::fabs(x), wide = std::fabs(y);
+    const Real ratio = flatMin(far, wide) / flatMax(flatMax(far, wide), kTiny);
+    const Real square = ratio * ratio;
+    const Real octant =
+        ratio * (Real(0.9998660) +
+                 square * (Real(-0.3302995) +
+                           square * (Real(0.1801410) +
+                                     square * (Real(-0.0851330) + square * Real(0.0208351)))));
     // Only constants are chosen between: that leaves no branches.
     const bool is_steep = wide > far, is_behind = x < 0;
-    const double quarter =
-        (is_steep ? std::numbers::pi / 2 : 0.0) + (is_steep ? -1.0 : 1.0) * octant;
-    const double half = (is_behind ? std::numbers::pi : 0.0) + (is_behind ? -1.0 : 1.0) * quarter;
+    const Real quarter = (is_steep ? kPi / 2 : Real{0}) + (is_steep ? Real{-1} : Real{1}) * octant;
+    const Real half = (is_behind ? kPi : Real{0}) + (is_behind ? Real{-1} : Real{1}) * quarter;
     return std::copysign(half, y);
 }
 
@@ -102,13 +114,18 @@ ISPACE_INLINE FlatLine lineFrom(const FlatTree::Leaf& leaf, int i, double ox, do
     return line;
 }
 
+/// Inverse range of the place where a ray along (x, y), which passes between its ends, meets a
+/// line.
+ISPACE_INLINE double inverseRangeBetween(const FlatLine& line, double x, double y) {
+    return flatMin(x * line.uy - y * line.ux, line.nearest);
+}
+
 /// Inverse range of the place where a ray along (x, y) meets the closed line; not positive if it
 /// does not.
 ISPACE_INLINE double inverseRangeAlong(const FlatLine& line, double x, double y) {
     const double from_a = line.ax * y - line.ay * x, to_b = x * line.by - y * line.bx;
-    const double steep = x * line.uy - y * line.ux;
     const bool is_between = (from_a >= -line.edge) & (to_b >= -line.edge);
-    return flatChoice(is_between, flatMin(steep, line.nearest), 0.0);
+    return flatChoice(is_between, inverseRangeBetween(line, x, y), 0.0);
 }
 
 /// True if the straight continuation of a line may pass within `ray_epsilon` of the origin: then
@@ -255,6 +272,25 @@ class FlatStack {
     int count_ = 0;
 };
 
+/// Ranges end at max_range as float32, so that what rounds to it is met. \pre max_range >= 0
+struct FlatLimit {
+    float range;
+    double inverse_range;  ///< of the first float32 beyond
+
+    explicit FlatLimit(double max_range)
+        : range(static_cast<float>(max_range)),
+          inverse_range(1 / static_cast<double>(std::nextafter(range, kNoReturn))) {}
+    [[nodiscard]] ISPACE_INLINE float rangeOf(double inverse_range_met) const {
+        const auto met = static_cast<float>(1 / inverse_range_met);
+        if (met > range) return kNoReturn;
+        return met;
+    }
+    [[nodiscard]] ISPACE_INLINE float cosineOf(float range_met, double cosine) const {
+        const double most = cosine < 1.0 ? cosine : 1.0;
+        return range_met < kNoReturn ? static_cast<float>(most) : 1.0F;
+    }
+};
+
 /// Beams from one origin at equal steps counter-clockwise, at most a full turn, and what they have
 /// met so far.
 struct alignas(64) FlatScan {
@@ -264,24 +300,41 @@ struct alignas(64) FlatScan {
     /// middle beams.
     static constexpr int kMin = 3;
     static constexpr double kMaxStep = 3, kMinStep = 1e-10;
+    /// Greatest coordinate, of lines and origin, that float32 leaves room for.
+    static constexpr double kMaxCoordinate = 1e15;
 
-    double x[kMax], y[kMax];     ///< unit vectors, as the ranges shall be for
-    double inverse_range[kMax];  ///< one over the range
-    double cosine[kMax];         ///< only if wanted
-    double least[kMax / kBlock];
+    const double *x, *y;                    ///< unit vectors, as the ranges shall be for
+    double inverse_range[kMax];             ///< one over the range
+    double* cosine;                         ///< kMax of them, if wanted
+    double last_x[kBlock], last_y[kBlock];  ///< of the last block if it is not full
+    /// Of a block's beams: nothing with an inverse range less than this shortens any.
+    float least[kMax / kBlock];
     int count;
-    double cos, sin;  ///< a vector along the middle
-    double rate;      ///< beams a radian
+    float cos, sin;  ///< a vector along the middle
+    float rate;      ///< beams a radian
 
-    /// Readies it for drawing, once count, x and y are set.
-    void begin(double step_radians, double min_inverse_range);
     [[nodiscard]] int blocks() const { return (count + kBlock - 1) / kBlock; }
+    [[nodiscard]] ISPACE_INLINE const double* blockOfX(int block) const {
+        return (block + 1) * kBlock <= count ? x + std::ptrdiff_t{block} * kBlock : last_x;
+    }
+    [[nodiscard]] ISPACE_INLINE const double* blockOfY(int block) const {
+        return (block + 1) * kBlock <= count ? y + std::ptrdiff_t{block} * kBlock : last_y;
+    }
 };
 
-/// Draws all lines into the scan, front to back.
-void drawLines(const FlatTree& tree, const FlatView& view, FlatScan& scan);
-/// The same with cosines: the largest among lines met at the same place.
-void drawLinesAndCosines(const FlatTree& tree, const FlatView& view, FlatScan& scan);
+/// What castScan() is given: unit vectors, and where the readings go.
+struct FlatBeams {
+    const double *x, *y;
+    int count;
+    double step;  ///< radians, positive
+    float* ranges;
+    float* cosines;  ///< or null
+};
+
+/// Casts a scan: draws all lines into it, front to back. Cosines are the largest among lines met at
+/// the same place. \pre no coordinate exceeds FlatScan::kMaxCoordinate
+void castScan(const FlatTree& tree, const FlatView& view, const FlatLimit& limit,
+              const FlatBeams& beams);
 
 /// Rays with an origin each, and what they have met so far.
 struct alignas(64) FlatPacket {

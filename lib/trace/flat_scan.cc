@@ -2,6 +2,7 @@
 #include "trace/flat_kernels.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,68 +15,88 @@ namespace ispace {
 namespace {
 
 constexpr int kWidth = FlatTree::kWidth;
-constexpr int kBlock = FlatScan::kBlock;
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr int kBlock = FlatScan::kBlock, kBlockBits = 3;
+static_assert(kBlock == 1 << kBlockBits);
+constexpr float kPi = std::numbers::pi_v<float>;
 /// Beams within this angle of a line's ends are tested, in radians: more than kFlatEdgeAngle and
 /// what angleOf() and the directions err.
-constexpr double kSlack = 2.5e-5;
+constexpr float kSlack = 2.5e-5F;
+/// More than what float32 rounds distances by.
+constexpr float kRounding = 1 + 2e-6F;
 
 /// What of a scan the loops over lanes need.
 struct Frame {
-    double cos, sin, rate, middle, count;
+    float cos, sin, rate, middle, count;
+    std::int32_t margin;  ///< beams by which spans may be too wide, at each end
     explicit Frame(const FlatScan& scan)
         : cos(scan.cos),
           sin(scan.sin),
           rate(scan.rate),
-          middle((scan.count - 1) * 0.5),
-          count(scan.count) {}
+          middle(static_cast<float>(scan.count + 1) * 0.5F),
+          count(static_cast<float>(scan.count)),
+          margin(static_cast<std::int32_t>(flatMin(2 * kSlack * rate, count)) + 2) {}
+    /// Of a direction, from the middle of the scan.
+    [[nodiscard]] ISPACE_INLINE float angle(float x, float y) const {
+        return angleOf(x * cos + y * sin, y * cos - x * sin);
+    }
     /// The number of beams before this angle, and a fraction.
-    [[nodiscard]] ISPACE_INLINE double beam(double angle) const {
-        return flatMin(flatMax(angle * rate + middle + 1, 0.0), count);
+    [[nodiscard]] ISPACE_INLINE float beam(float angle) const {
+        return flatMin(flatMax(angle * rate + middle, 0.0F), count);
     }
 };
 
-/// Beams of a scan, first > last if none; an angle behind the middle of the scan cuts the turn, so
+/// Directions a and b less than half a turn apart, counter-clockwise, of any length.
+struct alignas(64) Corners {
+    float ax[kWidth], ay[kWidth], bx[kWidth], by[kWidth];
+};
+
+/// Blocks of a scan, first > last if none; an angle behind the middle of the scan cuts the turn, so
 /// that there may be others at its other end.
 struct alignas(64) Spans {
     std::int32_t first[kWidth], last[kWidth], other_first[kWidth], other_last[kWidth];
+    /// Of the first span, those whose beams lie all well between a and b.
+    std::int32_t inner_first[kWidth], inner_last[kWidth];
 
-    /// Those between directions a and b less than half a turn apart, counter-clockwise.
-    ISPACE_INLINE void set(const Frame& frame, const double* ax, const double* ay, const double* bx,
-                           const double* by) {
-        double low[kWidth], high[kWidth], other_low[kWidth], other_high[kWidth];
+    ISPACE_INLINE void set(const Frame& frame, const Corners& corners) {
+        const std::int32_t margin = frame.margin;
+        alignas(32) float begin[kWidth], stop[kWidth], shift[kWidth];
         ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
-            const double from = angleOf(ax[i] * frame.cos + ay[i] * frame.sin,
-                                        ay[i] * frame.cos - ax[i] * frame.sin);
-            const double end = angleOf(bx[i] * frame.cos + by[i] * frame.sin,
-                                       by[i] * frame.cos - bx[i] * frame.sin);
+            const float from = frame.angle(corners.ax[i], corners.ay[i]);
+            const float end = frame.angle(corners.bx[i], corners.by[i]);
             // By half a turn at least, or it is rounding.
-            const double whole = end < from - 1 ? kTurn : 0.0;
-            const double begin = from - kSlack, stop = end + whole + kSlack;
-            const double back = begin < -std::numbers::pi ? kTurn : 1e9;
-            const double shift = stop > std::numbers::pi ? -kTurn : back;
-            low[i] = frame.beam(begin);
-            high[i] = frame.beam(stop);
-            other_low[i] = frame.beam(begin + shift);
-            other_high[i] = frame.beam(stop + shift);
+            const float whole = end < from - 1 ? 2 * kPi : 0.0F;
+            begin[i] = from - kSlack;
+            stop[i] = end + whole + kSlack;
+            const float back = begin[i] < -kPi ? 2 * kPi : 1e9F;
+            shift[i] = stop[i] > kPi ? -2 * kPi : back;
         }
         ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
-            first[i] = static_cast<std::int32_t>(low[i]);
-            last[i] = static_cast<std::int32_t>(high[i]) - 1;
-            other_first[i] = static_cast<std::int32_t>(other_low[i]);
-            other_last[i] = static_cast<std::int32_t>(other_high[i]) - 1;
+            const auto low = static_cast<std::int32_t>(frame.beam(begin[i]));
+            const auto high = static_cast<std::int32_t>(frame.beam(stop[i]));
+            first[i] = low >> kBlockBits;
+            last[i] = low < high ? (high - 1) >> kBlockBits : -1;
+            inner_first[i] = (low + margin + kBlock - 1) >> kBlockBits;
+            // A line on the cut and seen from its edge may seem to span a full turn.
+            inner_last[i] =
+                stop[i] - begin[i] < kPi + 0.1F ? ((high - margin) >> kBlockBits) - 1 : -1;
+        }
+        ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
+            const auto low = static_cast<std::int32_t>(frame.beam(begin[i] + shift[i]));
+            const auto high = static_cast<std::int32_t>(frame.beam(stop[i] + shift[i]));
+            other_first[i] = low >> kBlockBits;
+            other_last[i] = low < high ? (high - 1) >> kBlockBits : -1;
         }
     }
 };
 
 /// A node or leaf to be visited, and the blocks of beams it may shorten.
 struct Waiting {
-    double inverse_range;
+    float inverse_range;
     std::int32_t child;
-    std::int16_t first, last, other_first, other_last;
+    std::int32_t first, last, other_first, other_last;
 };
 
-ISPACE_INLINE bool isSeen(const FlatScan& scan, int first, int last, double inverse_range) {
+ISPACE_INLINE bool isSeen(const FlatScan& scan, int first, int last, float inverse_range) {
     for (int block = first; block <= last; ++block)
         if (scan.least[block] <= inverse_range) return true;
     return false;
@@ -89,50 +110,80 @@ ISPACE_INLINE bool isSeen(const FlatScan& scan, const Waiting& box) {
 /// Lines of a leaf, a component an array.
 struct alignas(64) Lines {
     double ax[kWidth], ay[kWidth], bx[kWidth], by[kWidth], ux[kWidth], uy[kWidth];
-    double nearest[kWidth], height[kWidth], edge[kWidth], stops[kWidth];
-    Spans spans;
+    double nearest[kWidth], height[kWidth], edge[kWidth];
+    float most[kWidth];  ///< upper bound of the nearest, in float32
 
     ISPACE_INLINE FlatLine operator[](int i) const {
         return {ax[i], ay[i], bx[i], by[i], ux[i], uy[i], nearest[i], height[i], edge[i], true};
     }
 };
 
-/// Draws a line into a block; returns the least inverse range of it.
-template <bool kCosines>
-ISPACE_INLINE double drawBlock(FlatScan& scan, int block, const FlatLine& line) {
+ISPACE_INLINE float leastOf(const double* eight) {
+    double four[4], two[2];
+    ISPACE_LANES for (int i = 0; i < 4; ++i) four[i] = flatMin(eight[i], eight[i + 4]);
+    ISPACE_LANES for (int i = 0; i < 2; ++i) two[i] = flatMin(four[i], four[i + 2]);
+    return static_cast<float>(flatMin(two[0], two[1]));
+}
+
+/// Draws a line into a block. `kInner`: all its beams pass well between the ends of the line.
+template <bool kCosines, bool kInner>
+ISPACE_INLINE void drawBlock(FlatScan& scan, int block, const FlatLine& line) {
     const std::ptrdiff_t begin = std::ptrdiff_t{block} * kBlock;
-    const double* const x = scan.x + begin;
-    const double* const y = scan.y + begin;
-    double* const inverse_range = scan.inverse_range + begin;
-    double* const cosine = scan.cosine + begin;
-    double least[kBlock];
+    const double* const __restrict x = scan.blockOfX(block);
+    const double* const __restrict y = scan.blockOfY(block);
+    double* const __restrict inverse_range = scan.inverse_range + begin;
+    [[maybe_unused]] double* const __restrict cosine = scan.cosine + begin;
+    double met[kBlock], least[kBlock];
     ISPACE_LANES for (int i = 0; i < kBlock; ++i) {
-        const double here = inverseRangeAlong(line, x[i], y[i]);
+        const double here =
+            kInner ? inverseRangeBetween(line, x[i], y[i]) : inverseRangeAlong(line, x[i], y[i]);
         const double old = inverse_range[i];
         if constexpr (kCosines) {
             const double incidence = here * line.height;
             const double tied = flatChoice(here == old, flatMax(incidence, cosine[i]), cosine[i]);
             cosine[i] = flatChoice(here > old, incidence, tied);
         }
+        met[i] = here;
         least[i] = flatMax(here, old);
         inverse_range[i] = least[i];
     }
-    double four[4];
-    for (int i = 0; i < 4; ++i) four[i] = flatMin(least[i], least[i + 4]);
-    return flatMin(flatMin(four[0], four[2]), flatMin(four[1], four[3]));
+    // Between two of its beams a line is nowhere farther than at both of them.
+    const auto ends = static_cast<float>(flatMin(met[0], met[kBlock - 1]));
+    scan.least[block] = kInner ? flatMax(ends, scan.least[block]) : leastOf(least);
 }
 
+/// Draws a line into those of some blocks that it may shorten.
+template <bool kCosines, bool kInner>
+ISPACE_INLINE void drawBlocks(FlatScan& scan, int first, int last, float most,
+                              const FlatLine& line) {
+    for (int block = first; block <= last; ++block)
+        if (scan.least[block] <= most) drawBlock<kCosines, kInner>(scan, block, line);
+}
+
+/// Draws line i of a leaf.
 template <bool kCosines>
-ISPACE_INLINE void drawSpan(FlatScan& scan, int first, int last, const FlatLine& line) {
-    for (int block = first / kBlock; block <= last / kBlock; ++block)
-        if (scan.least[block] <= line.nearest)
-            scan.least[block] = drawBlock<kCosines>(scan, block, line);
+ISPACE_INLINE void drawLine(FlatScan& scan, const Spans& spans, int i, float most,
+                            const FlatLine& line) {
+    const int first = spans.first[i], last = spans.last[i];
+    const int inner_first = spans.inner_first[i], inner_last = spans.inner_last[i];
+    if (inner_first > inner_last) {
+        drawBlocks<kCosines, false>(scan, first, last, most, line);
+    } else {
+        drawBlocks<kCosines, false>(scan, first, inner_first - 1, most, line);
+        drawBlocks<kCosines, true>(scan, inner_first, inner_last, most, line);
+        drawBlocks<kCosines, false>(scan, inner_last + 1, last, most, line);
+    }
+    drawBlocks<kCosines, false>(scan, spans.other_first[i], spans.other_last[i], most, line);
 }
 
 template <bool kCosines>
 ISPACE_INLINE void drawLeaf(const FlatTree& tree, const FlatView& view, const FlatTree::Leaf& leaf,
                             const Frame& frame, FlatScan& scan) {
     Lines lines;
+    Corners corners;
+    Spans spans;
+    // Nearer than this to being seen from its edge, a line may stop nothing.
+    const double thin = flatMax(2 * kFlatEdge, 1.001 * view.ray_epsilon);
     ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
         const FlatLine line = lineFrom(leaf, i, view.x, view.y);
         lines.ax[i] = line.ax;
@@ -144,87 +195,100 @@ ISPACE_INLINE void drawLeaf(const FlatTree& tree, const FlatView& view, const Fl
         lines.nearest[i] = line.nearest;
         lines.height[i] = line.height;
         lines.edge[i] = line.edge;
-        lines.stops[i] = line.stops ? 1.0 : 0.0;
     }
-    lines.spans.set(frame, lines.ax, lines.ay, lines.bx, lines.by);
-    const Spans& spans = lines.spans;
+    ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
+        corners.ax[i] = static_cast<float>(lines.ax[i]);
+        corners.ay[i] = static_cast<float>(lines.ay[i]);
+        corners.bx[i] = static_cast<float>(lines.bx[i]);
+        corners.by[i] = static_cast<float>(lines.by[i]);
+        lines.most[i] = static_cast<float>(lines.nearest[i]) * kRounding;
+    }
+    spans.set(frame, corners);
     for (int i = 0; i < leaf.count; ++i) {
         const bool plain = spans.first[i] <= spans.last[i];
         const bool other = spans.other_first[i] <= spans.other_last[i];
-        if (lines.stops[i] == 0 || (!plain && !other)) continue;
-        if (mayContinueTouched(lines.height[i], view.ray_epsilon) &&
-            continuesTouched(tree, leaf, i, view.x, view.y, view.ray_epsilon))
-            continue;
-        const FlatLine line = lines[i];
-        if (plain) drawSpan<kCosines>(scan, spans.first[i], spans.last[i], line);
-        if (other) drawSpan<kCosines>(scan, spans.other_first[i], spans.other_last[i], line);
+        if (!plain && !other) continue;
+        if (!(lines.height[i] > thin)) {
+            if (!lineFrom(leaf, i, view.x, view.y).stops) continue;
+            if (mayContinueTouched(lines.height[i], view.ray_epsilon) &&
+                continuesTouched(tree, leaf, i, view.x, view.y, view.ray_epsilon))
+                continue;
+        }
+        drawLine<kCosines>(scan, spans, i, lines.most[i], lines[i]);
     }
 }
 
 /// Draws a round body into blocks of beams.
 template <bool kCosines>
-void drawRound(FlatScan& scan, int first, int last, double nearest, const RoundFrom& round) {
+void drawRound(FlatScan& scan, int first, int last, float most, const RoundFrom& round) {
     for (int block = first; block <= last; ++block) {
-        if (scan.least[block] > nearest) continue;
-        double least = 1e300;
-        for (int i = block * kBlock; i < (block + 1) * kBlock; ++i) {
-            const RoundFrom::Hit met = round.meet<kCosines>(scan.x[i], scan.y[i]);
-            const double old = scan.inverse_range[i];
-            if (kCosines && met.inverse_range >= old)
-                scan.cosine[i] =
-                    met.inverse_range > old ? met.cosine : std::max(met.cosine, scan.cosine[i]);
-            scan.inverse_range[i] = std::max(met.inverse_range, old);
-            least = std::min(least, scan.inverse_range[i]);
+        if (scan.least[block] > most) continue;
+        const double* const x = scan.blockOfX(block);
+        const double* const y = scan.blockOfY(block);
+        const std::ptrdiff_t begin = std::ptrdiff_t{block} * kBlock;
+        for (int i = 0; i < kBlock; ++i) {
+            const RoundFrom::Hit met = round.meet<kCosines>(x[i], y[i]);
+            double& inverse_range = scan.inverse_range[begin + i];
+            if (kCosines && met.inverse_range >= inverse_range) {
+                double& cosine = scan.cosine[begin + i];
+                cosine =
+                    met.inverse_range > inverse_range ? met.cosine : std::max(met.cosine, cosine);
+            }
+            inverse_range = std::max(met.inverse_range, inverse_range);
         }
-        scan.least[block] = least;
+        scan.least[block] = leastOf(scan.inverse_range + begin);
     }
 }
 
 struct Stack {
-    Waiting entries[FlatTree::kStack];
+    Waiting entries[FlatTree::kStack + kWidth];
     int count = 0;
 };
 
 /// Puts those children on the stack that may shorten beams, the nearest on top.
 ISPACE_INLINE void visit(const FlatTree::Node& node, const FlatView& view, const Frame& frame,
                          const FlatScan& scan, Stack& stack) {
-    alignas(64) double inverse_range[kWidth];
-    alignas(64) double ax[kWidth], ay[kWidth], bx[kWidth], by[kWidth];
+    alignas(64) float inverse_range[kWidth];
+    Corners corners;
     Spans spans;
     ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
-        const double left = node.left[i] - view.x, right = node.right[i] - view.x;
-        const double low = node.low[i] - view.y, high = node.high[i] - view.y;
-        inverse_range[i] = 1 / distanceOf(left, right, low, high);
+        const auto left = static_cast<float>(node.left[i] - view.x);
+        const auto right = static_cast<float>(node.right[i] - view.x);
+        const auto low = static_cast<float>(node.low[i] - view.y);
+        const auto high = static_cast<float>(node.high[i] - view.y);
+        inverse_range[i] = kRounding / distanceOf(left, right, low, high);
         // The corners between which the box is seen.
         const bool above = low > 0, below = high<0, east = left> 0, west = right < 0;
-        ax[i] = above ? right : (below ? left : (east ? left : right));
-        bx[i] = above ? left : (below ? right : (east ? left : right));
-        ay[i] = east ? low : (west ? high : (above ? low : high));
-        by[i] = east ? high : (west ? low : (above ? low : high));
+        corners.ax[i] = above ? right : (below ? left : (east ? left : right));
+        corners.bx[i] = above ? left : (below ? right : (east ? left : right));
+        corners.ay[i] = east ? low : (west ? high : (above ? low : high));
+        corners.by[i] = east ? high : (west ? low : (above ? low : high));
     }
-    spans.set(frame, ax, ay, bx, by);
-    const int bottom = stack.count;
-    for (int i = 0; i < node.count; ++i) {
-        Waiting next{};
-        next.inverse_range = inverse_range[i];
-        next.child = node.child[i];
-        const bool around = inverse_range[i] > 1e300;
-        const bool plain = spans.first[i] <= spans.last[i];
-        const bool other = spans.other_first[i] <= spans.other_last[i];
-        if (!around && !plain && !other) continue;
-        const auto block = [](int beam) { return static_cast<std::int16_t>(beam / kBlock); };
-        next.first = around ? std::int16_t{0} : block(spans.first[i]);
-        next.last = around ? block(scan.count - 1)
-                           : static_cast<std::int16_t>(plain ? block(spans.last[i]) : -1);
-        next.other_first = block(spans.other_first[i]);
-        next.other_last = static_cast<std::int16_t>(other ? block(spans.other_last[i]) : -1);
-        if (!isSeen(scan, next)) continue;
-        int place = stack.count++;
-        for (; place > bottom && stack.entries[place - 1].inverse_range > next.inverse_range;
-             --place)
-            stack.entries[place] = stack.entries[place - 1];
-        stack.entries[place] = next;
+    spans.set(frame, corners);
+    // Sorted without branches, as none could be foreseen: by distance, not exactly, and those that
+    // no beam sees last. Keys of one node differ.
+    alignas(32) std::int32_t key[kWidth], rank[kWidth], last[kWidth];
+    const int blocks = scan.blocks();
+    int count = 0;
+    ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
+        const bool around = inverse_range[i] > 1e6F;
+        spans.first[i] = around ? 0 : spans.first[i];
+        spans.last[i] = around ? blocks - 1 : spans.last[i];
+        last[i] = i < node.count ? flatMax(spans.last[i], spans.other_last[i]) : -1;
+        key[i] = last[i] >= 0 ? (std::bit_cast<std::int32_t>(inverse_range[i]) & ~7) | i
+                              : 0x7ffffff8 | i;
+        rank[i] = 0;
     }
+    ISPACE_LANES for (int i = 0; i < kWidth; ++i) count += last[i] >= 0 ? 1 : 0;
+    for (int k = 0; k < kWidth; ++k) {
+        const std::int32_t other = key[k];
+        ISPACE_LANES for (int i = 0; i < kWidth; ++i) rank[i] += other < key[i] ? 1 : 0;
+    }
+    for (int i = 0; i < kWidth; ++i)
+        stack.entries[stack.count + rank[i]] = {inverse_range[i],     node.child[i],
+                                                spans.first[i],       spans.last[i],
+                                                spans.other_first[i], spans.other_last[i]};
+    stack.count += count;
 }
 
 template <bool kCosines>
@@ -234,17 +298,18 @@ ISPACE_INLINE void drawTree(const FlatTree& tree, const FlatView& view, FlatScan
     Stack stack;
     visit(tree.nodes.front(), view, frame, scan, stack);
     while (stack.count > 0) {
-        const Waiting box = stack.entries[--stack.count];
+        const Waiting& box = stack.entries[--stack.count];
         if (!isSeen(scan, box)) continue;
-        if (box.child >= 0)
-            visit(tree.node(box.child), view, frame, scan, stack);
+        const std::int32_t child = box.child;
+        if (child >= 0)
+            visit(tree.node(child), view, frame, scan, stack);
         else
-            drawLeaf<kCosines>(tree, view, tree.leaf(box.child), frame, scan);
+            drawLeaf<kCosines>(tree, view, tree.leaf(child), frame, scan);
     }
     if (tree.round_root < 0) return;
     visit(tree.node(tree.round_root), view, frame, scan, stack);
     while (stack.count > 0) {
-        const Waiting box = stack.entries[--stack.count];
+        const Waiting& box = stack.entries[--stack.count];
         if (!isSeen(scan, box)) continue;
         if (box.child >= 0) {
             visit(tree.node(box.child), view, frame, scan, stack);
@@ -256,30 +321,54 @@ ISPACE_INLINE void drawTree(const FlatTree& tree, const FlatView& view, FlatScan
     }
 }
 
+template <bool kCosines>
+ISPACE_INLINE void drawScan(const FlatTree& tree, const FlatView& view, const FlatLimit& limit,
+                            const FlatBeams& beams) {
+    const auto count = static_cast<std::size_t>(beams.count);
+    FlatScan scan;
+    alignas(64) double cosine[kCosines ? FlatScan::kMax : 1];
+    scan.x = beams.x;
+    scan.y = beams.y;
+    scan.cosine = cosine;
+    scan.count = beams.count;
+    const int i = (scan.count - 1) / 2, j = scan.count / 2;
+    scan.cos = static_cast<float>(beams.x[i] + beams.x[j]);
+    scan.sin = static_cast<float>(beams.y[i] + beams.y[j]);
+    scan.rate = static_cast<float>(1 / beams.step);
+    for (int k = 0; k < kBlock; ++k) {
+        const int beam = std::min((scan.blocks() - 1) * kBlock + k, scan.count - 1);
+        scan.last_x[k] = beams.x[beam];
+        scan.last_y[k] = beams.y[beam];
+    }
+    std::fill_n(scan.inverse_range, scan.blocks() * kBlock, limit.inverse_range);
+    std::fill_n(scan.least, scan.blocks(), static_cast<float>(limit.inverse_range));
+    if constexpr (kCosines) std::fill_n(scan.cosine, scan.blocks() * kBlock, 0.0);
+    drawTree<kCosines>(tree, view, scan);
+    float* const ranges = beams.ranges;
+    for (std::size_t k = 0; k < count; ++k) ranges[k] = limit.rangeOf(scan.inverse_range[k]);
+    if constexpr (kCosines)
+        for (std::size_t k = 0; k < count; ++k)
+            beams.cosines[k] = limit.cosineOf(ranges[k], scan.cosine[k]);
+}
+
+ISPACE_SIMD_CLONES
+void castRanges(const FlatTree& tree, const FlatView& view, const FlatLimit& limit,
+                const FlatBeams& beams) {
+    drawScan<false>(tree, view, limit, beams);
+}
+
+ISPACE_SIMD_CLONES
+void castCosines(const FlatTree& tree, const FlatView& view, const FlatLimit& limit,
+                 const FlatBeams& beams) {
+    drawScan<true>(tree, view, limit, beams);
+}
+
 }  // namespace
 
-void FlatScan::begin(double step_radians, double min_inverse_range) {
-    const int i = (count - 1) / 2, j = count / 2;
-    cos = x[i] + x[j];
-    sin = y[i] + y[j];
-    rate = 1 / step_radians;
-    for (int k = count; k < blocks() * kBlock; ++k) {
-        x[k] = x[count - 1];
-        y[k] = y[count - 1];
-    }
-    std::fill_n(inverse_range, blocks() * kBlock, min_inverse_range);
-    std::fill_n(least, blocks(), min_inverse_range);
-}
-
-ISPACE_SIMD_CLONES
-void drawLines(const FlatTree& tree, const FlatView& view, FlatScan& scan) {
-    drawTree<false>(tree, view, scan);
-}
-
-ISPACE_SIMD_CLONES
-void drawLinesAndCosines(const FlatTree& tree, const FlatView& view, FlatScan& scan) {
-    std::fill_n(scan.cosine, scan.blocks() * kBlock, 0.0);
-    drawTree<true>(tree, view, scan);
+void castScan(const FlatTree& tree, const FlatView& view, const FlatLimit& limit,
+              const FlatBeams& beams) {
+    beams.cosines == nullptr ? castRanges(tree, view, limit, beams)
+                             : castCosines(tree, view, limit, beams);
 }
 
 }  // namespace ispace

@@ -123,31 +123,13 @@ FlatHit firstLine(const FlatTree& tree, const FlatView& view, double x, double y
 
 namespace {
 
-/// Ranges end at max_range as float32, so that what rounds to it is met. \pre max_range >= 0
-struct Limit {
-    float range;
-    double inverse_range;  ///< of the first float32 beyond
-
-    explicit Limit(double max_range)
-        : range(static_cast<float>(max_range)),
-          inverse_range(1 / static_cast<double>(std::nextafter(range, kNoReturn))) {}
-    [[nodiscard]] float rangeOf(double inverse_range_met) const {
-        const auto met = static_cast<float>(1 / inverse_range_met);
-        if (met > range) return kNoReturn;
-        return met;
-    }
-    [[nodiscard]] float cosineOf(float range_met, double cosine) const {
-        return range_met < kNoReturn ? static_cast<float>(std::min(cosine, 1.0)) : 1.0F;
-    }
-};
-
 /// Rays, and where their readings go.
 struct Cast {
     const Point2* origins;
     bool is_one_origin;
     const Directions& directions;
     double ray_epsilon;
-    Limit limit;
+    FlatLimit limit;
     float* ranges;
     float* cosines;  ///< or null
 
@@ -160,15 +142,31 @@ bool isScan(const Directions& directions) {
     return step >= FlatScan::kMinStep && step <= FlatScan::kMaxStep;
 }
 
+bool isForScan(double coordinate) { return std::fabs(coordinate) <= FlatScan::kMaxCoordinate; }
+
+bool isForScan(const FlatTree::Node& node) {
+    for (int i = 0; i < node.count; ++i)
+        for (const double at : {node.left[i], node.right[i], node.low[i], node.high[i]})
+            if (!isForScan(at)) return false;
+    return true;
+}
+
+/// Whether all of it is.
+bool isForScan(const FlatTree& tree) {
+    return (tree.nodes.empty() || isForScan(tree.nodes.front())) &&
+           (tree.round_root < 0 || isForScan(tree.node(tree.round_root)));
+}
+
 }  // namespace
 
 struct FlatWorld::Data {
     FlatTree tree;
 
     double widest_packet;
+    bool is_for_scan;
 
     Data(std::span<const Segment2> lines, std::span<const Ellipse> rounds)
-        : tree(lines, rounds), widest_packet(widestPacket(tree)) {}
+        : tree(lines, rounds), widest_packet(widestPacket(tree)), is_for_scan(isForScan(tree)) {}
 
     void castRay(const Cast& cast, std::size_t i) const {
         const Point2 origin = cast.origin(i);
@@ -231,30 +229,30 @@ struct FlatWorld::Data {
     }
 
     /// Beams begin .. begin + count - 1 of a scan.
-    void castScan(const FlatView& view, const Directions& directions, const Limit& limit,
+    void castPart(const FlatView& view, const Directions& directions, const FlatLimit& limit,
                   std::size_t begin, std::size_t count, float* ranges, float* cosines) const {
-        FlatScan scan;
-        scan.count = static_cast<int>(count);
         const double step = directions.arc->step.radians();
-        const double* const x = directions.x.data() + begin;
-        const double* const y = directions.y.data() + begin;
-        if (step > 0) {
-            std::copy_n(x, count, scan.x);
-            std::copy_n(y, count, scan.y);
-        } else {
-            std::reverse_copy(x, x + count, scan.x);
-            std::reverse_copy(y, y + count, scan.y);
-        }
-        scan.begin(std::fabs(step), limit.inverse_range);
-        cosines == nullptr ? drawLines(tree, view, scan) : drawLinesAndCosines(tree, view, scan);
-        for (std::size_t i = 0; i < count; ++i)
-            ranges[begin + i] = limit.rangeOf(scan.inverse_range[i]);
-        if (cosines != nullptr)
-            for (std::size_t i = 0; i < count; ++i)
-                cosines[begin + i] = limit.cosineOf(ranges[begin + i], scan.cosine[i]);
-        if (step > 0) return;
-        std::reverse(ranges + begin, ranges + begin + count);
-        if (cosines != nullptr) std::reverse(cosines + begin, cosines + begin + count);
+        const FlatBeams beams{directions.x.data() + begin,
+                              directions.y.data() + begin,
+                              static_cast<int>(count),
+                              std::fabs(step),
+                              ranges + begin,
+                              cosines == nullptr ? nullptr : cosines + begin};
+        step > 0 ? castScan(tree, view, limit, beams) : castReversed(view, limit, beams);
+    }
+
+    /// Of beams at clockwise steps.
+    [[gnu::noinline]] void castReversed(const FlatView& view, const FlatLimit& limit,
+                                        const FlatBeams& beams) const {
+        FlatBeams reversed = beams;
+        double x[FlatScan::kMax], y[FlatScan::kMax];
+        std::reverse_copy(beams.x, beams.x + beams.count, x);
+        std::reverse_copy(beams.y, beams.y + beams.count, y);
+        reversed.x = x;
+        reversed.y = y;
+        castScan(tree, view, limit, reversed);
+        std::reverse(beams.ranges, beams.ranges + beams.count);
+        if (beams.cosines != nullptr) std::reverse(beams.cosines, beams.cosines + beams.count);
     }
 };
 
@@ -273,15 +271,15 @@ void FlatWorld::cast(Point2 origin, const Directions& directions, double max_ran
         std::fill(cosines.begin(), cosines.end(), 1.0F);
         return;
     }
-    const Limit limit(max_range);
+    const FlatLimit limit(max_range);
     const FlatView view{origin.x, origin.y, ray_epsilon};
     const std::size_t size = directions.size();
-    if (isScan(directions)) {
+    if (isScan(directions) && data_->is_for_scan && isForScan(origin.x) && isForScan(origin.y)) {
         // Of one size, so that none has too few beams.
         const std::size_t parts = (size + FlatScan::kMax - 1) / FlatScan::kMax;
         for (std::size_t part = 0; part < parts; ++part) {
             const std::size_t begin = size * part / parts, end = size * (part + 1) / parts;
-            data_->castScan(view, directions, limit, begin, end - begin, ranges.data(),
+            data_->castPart(view, directions, limit, begin, end - begin, ranges.data(),
                             cosines.empty() ? nullptr : cosines.data());
         }
         return;
@@ -300,7 +298,7 @@ void FlatWorld::cast(std::span<const Point2> origins, const Directions& directio
         std::fill(cosines.begin(), cosines.end(), 1.0F);
         return;
     }
-    data_->castRays({origins.data(), false, directions, ray_epsilon, Limit(max_range),
+    data_->castRays({origins.data(), false, directions, ray_epsilon, FlatLimit(max_range),
                      ranges.data(), cosines.empty() ? nullptr : cosines.data()});
 }
 

@@ -159,6 +159,37 @@ TEST(FlatWorld, AFullTurnMeetsWhatBeginsWhereItEnds) {
     }
 }
 
+TEST(FlatWorld, ALineAlongTheCutOfAFanStopsNothingAhead) {
+    std::mt19937_64 random(8);
+    std::uniform_real_distribution<double> turn(-180, 180), exponent(-8.9, -5);
+    for (int i = 0; i < 2000; ++i) {
+        // Seen almost from its edge, straight behind the middle of a full turn.
+        const Pose2 pose{{0.3, -0.7}, Angle::degrees(i % 4 == 0 ? 7.5 * i : turn(random))};
+        const double height = (i % 2 == 0 ? 1 : -1) * std::pow(10, exponent(random));
+        const FlatWorld world(
+            {{Segment2{pose * Point2{-70, height}, pose * Point2{-119, height}}}});
+        const Directions beams =
+            scan(pose.heading - Angle::degrees(180), Angle::degrees(4.5), i % 3 == 0 ? 80 : 81);
+        const Seen seen = cast(world, pose.position, beams);
+        EXPECT_EQ(castApart(world, pose.position, beams), seen) << i;
+        EXPECT_TRUE(std::isinf(seen.ranges[40])) << i;
+    }
+}
+
+TEST(FlatWorld, FansAmongLinesBeyondFloat32) {
+    // Fans have room for a part of float64's range only; what is farther out they meet all the
+    // same.
+    const Directions beams = scan(Angle::degrees(-45), Angle::degrees(0.5), 181);
+    for (const double far : {1e3, 1e14, 1e16, 1e30, 1e50}) {
+        const FlatWorld world(Lines{{{5, -1}, {5, far}}, {{far, -far}, {far, far}}});
+        const Seen seen = cast(world, {0, 0}, beams);
+        EXPECT_EQ(castApart(world, {0, 0}, beams), seen) << far;
+        EXPECT_EQ(seen.ranges[90], 5) << far;
+    }
+    const FlatWorld here(Lines{{{1e17 + 1024, -1e3}, {1e17 + 1024, 1e3}}});
+    EXPECT_EQ(cast(here, {1e17, 0}, beams).ranges[90], 1024);
+}
+
 TEST(FlatWorld, NothingStopsNothing) {
     for (const Lines& lines : {Lines{}, Lines{{{1, 1}, {1, 1}}}, Lines(20, {{2, 0}, {2, 0}})}) {
         const FlatWorld world(lines);

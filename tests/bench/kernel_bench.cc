@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small things that much time goes into: PNG, beside libpng's own choice of filters and level,
-// which is Cairo's, too; random numbers of noise, beside plain C++ for any processor; and places of
-// mesh files that are equal, beside sorting.
+// which is Cairo's, too; random numbers of noise, beside plain C++ for any processor; places of
+// mesh files that are equal, beside sorting; and level fans in small plans, beside a kernel in
+// float32.
 #include <png.h>
 
 #include <algorithm>
@@ -10,23 +11,30 @@
 #include <functional>
 #include <memory>
 #include <numeric>
+#include <optional>
+#include <random>
 
+#include "base/number.h"
 #include "base/random.h"
 #include "bench_scenes.h"
 #include "bench_table.h"
 #include "cover/map.h"
+#include "embree_raw.h"
+#include "fan_prototype.h"
 #include "geom/weld.h"
 #include "raster/encode.h"
 #include "render/render.h"
 #include "sense/depth.h"
 #include "sense/photo.h"
 #include "sense/reading_picture.h"
+#include "sense/scan.h"
+#include "trace/flat_world.h"
 
 namespace {
 
 using namespace ispace;
 
-constexpr int kRounds = 5;
+constexpr int kRounds = 5, kFanRounds = 100;
 
 void fail(const std::string& name) {
     std::fprintf(stderr, "%s: both ways differ\n", name.c_str());
@@ -182,6 +190,114 @@ void measureWelding(benchmark::State& state) {
     measure(state, contest, std::to_string(corners.size()) + " corners of triangles", 1e-3, "");
 }
 
+/// A room of 20 m x 15 m with so many boxes, and fans of one heading at places all over it: their
+/// directions are the same and stay in the caches.
+class FansInARoom {
+  public:
+    FansInARoom(int boxes, int beams)
+        : scene_(bench::sceneOfText(textOf(boxes))),
+          slice_(scene_.environment.slice(kScanHeight)),
+          lines_(slice_.straightLines()),
+          world_(lines_),
+          prototype_(lines_),
+          raw_(bench::RawEmbree::ofSlice(slice_)),
+          sensors_(bench::fans(scene_, 200, true)),
+          ranges_(static_cast<std::size_t>(beams) + bench::FanPrototype::Fan::kBlock) {
+        for (Sensor& sensor : sensors_) {
+            sensor.pose.heading = {};
+            auto& laser = sensor.as<Laser>();
+            laser.beams = beams;
+            if (beams < 1000) {
+                laser.first = Angle::degrees(-90);
+                laser.step = Angle::degrees(180.0 / (beams - 1));
+            }
+        }
+        raw_.prepare(sensors_);
+        directions_ = Beams(sensors_.front().as<Laser>(), false).at(sensors_.front().pose);
+        fan_.emplace(directions_);
+        verify();
+    }
+
+    [[nodiscard]] std::size_t lines() const { return lines_.size(); }
+    /// Of all fans.
+    [[nodiscard]] double beams() const {
+        return static_cast<double>(sensors_.size() * directions_.size());
+    }
+    void castAll() {
+        for (std::size_t i = 0; i < sensors_.size(); ++i) cast(i);
+    }
+    void castAllByPrototype() {
+        for (std::size_t i = 0; i < sensors_.size(); ++i) castByPrototype(i);
+    }
+    void castAllByEmbree() { raw_.trace(0, raw_.packets()); }
+
+  private:
+    static std::string textOf(int boxes) {
+        std::mt19937_64 random(5);
+        std::uniform_real_distribution<double> x(0.5, 19.5), y(0.5, 14.5), side(0.2, 0.7),
+            turn(0, 90);
+        std::string text = "#env 1\nfence path=0,0;20,0;20,15;0,15 closed=yes\n";
+        for (int i = 0; i < boxes; ++i) {
+            text += "cube at=" + formatDouble(x(random)) + ',' + formatDouble(y(random));
+            text += " size=" + formatDouble(side(random)) + ',' + formatDouble(side(random));
+            text += " heading=" + formatDouble(turn(random)) + '\n';
+        }
+        return text;
+    }
+    [[nodiscard]] Point2 place(std::size_t i) const { return sensors_[i].pose.position.onFloor(); }
+    void cast(std::size_t i) {
+        world_.cast(place(i), directions_, kRange, kRayEpsilon, std::span(ranges_).first(size()),
+                    {});
+    }
+    void castByPrototype(std::size_t i) { prototype_.cast(place(i), *fan_, kRange, ranges_); }
+    [[nodiscard]] std::size_t size() const { return directions_.size(); }
+    void verify() {
+        std::vector<float> ours, others;
+        for (std::size_t i = 0; i < sensors_.size(); ++i) {
+            cast(i);
+            for (std::size_t k = 0; k < size(); ++k) ours.push_back(ranges_[k]);
+            castByPrototype(i);
+            for (std::size_t k = 0; k < size(); ++k) others.push_back(ranges_[k]);
+        }
+        bench::mustAgree("prototype of fans", ours, others);
+        bench::mustAgree("fans", ours, raw_.ranges());
+    }
+
+    static constexpr float kRange = 30;
+    Scene scene_;
+    Slice slice_;
+    std::vector<Segment2> lines_;
+    FlatWorld world_;
+    bench::FanPrototype prototype_;
+    bench::RawEmbree raw_;
+    std::vector<Sensor> sensors_;
+    Directions directions_;
+    std::optional<bench::FanPrototype::Fan> fan_;
+    std::vector<float> ranges_;
+};
+
+void measureFans(benchmark::State& state, int boxes, int beams) {
+    FansInARoom fans(boxes, beams);
+    bench::Contest contest;
+    contest.add([&] { fans.castAll(); });
+    contest.add([&] { fans.castAllByPrototype(); });
+    contest.add([&] { fans.castAllByEmbree(); });
+    for (auto _ : state) {
+        contest.round();
+        state.SetIterationTime(contest.last(0));
+    }
+    const auto rate = [&](std::size_t way) { return fans.beams() / contest.quickest(way) / 1e6; };
+    state.counters["ours"] = rate(0);
+    state.counters["prototype"] = rate(1);
+    state.counters["embree"] = rate(2);
+    state.SetLabel(
+        bench::leftCell(
+            std::to_string(fans.lines()) + " lines, " + std::to_string(beams) + " beams", 34) +
+        bench::cell(rate(0), 1, 9) + bench::cell(rate(1), 1, 9) +
+        bench::cell(rate(0) / rate(1), 2, 8) + bench::cell(rate(2), 1, 9) +
+        bench::cell(rate(0) / rate(2), 2, 8));
+}
+
 std::string heading(const std::string& what, const std::string& other, const std::string& more) {
     return bench::leftCell(what, 34) + bench::cell("ours", 9) + bench::cell(other, 9) +
            bench::cell("ratio", 8) + more;
@@ -193,7 +309,7 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     const auto add = [](const std::string& name, std::function<void(benchmark::State&)> run) {
-        benchmark::RegisterBenchmark(name.c_str(), std::move(run))
+        return benchmark::RegisterBenchmark(name.c_str(), std::move(run))
             ->Iterations(kRounds)
             ->UseManualTime();
     };
@@ -207,10 +323,18 @@ int main(int argc, char** argv) {
         add("random/" + std::to_string(i),
             [i](benchmark::State& state) { measureDraws(state, i); });
     add("weld/globe", measureWelding);
-    bench::TableReporter table({{"png", heading("PNG, milliseconds", "default",
-                                                bench::cell("kB", 8) + bench::cell("larger", 10))},
-                                {"random", heading("Philox, nanoseconds an element", "plain", "")},
-                                {"weld", heading("Welding, milliseconds", "sorting", "")}});
+    for (const int boxes : {11, 71, 300})
+        for (const int beams : {181, 1081})
+            add("fans/" + std::to_string(boxes) + '/' + std::to_string(beams),
+                [=](benchmark::State& state) { measureFans(state, boxes, beams); })
+                ->Iterations(kFanRounds);
+    bench::TableReporter table(
+        {{"png", heading("PNG, milliseconds", "default",
+                         bench::cell("kB", 8) + bench::cell("larger", 10))},
+         {"random", heading("Philox, nanoseconds an element", "plain", "")},
+         {"weld", heading("Welding, milliseconds", "sorting", "")},
+         {"fans", heading("Level fans, million beams a second", "float32",
+                          bench::cell("Embree", 9) + bench::cell("ratio", 8))}});
     benchmark::RunSpecifiedBenchmarks(&table);
     return 0;
 }
