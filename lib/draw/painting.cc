@@ -51,7 +51,33 @@ int bandsAtOnce(const Picture& picture) {
     return static_cast<int>(std::min(threads, kMost));
 }
 
-/// Bands with about as many points each.
+/// Points of shapes that show in several bands, once for each band but one.
+std::size_t pointsAgain(const Picture& picture, const std::vector<Rows>& bands) {
+    const DisplayList& list = picture.list();
+    const auto band_of = [&](double y) {
+        const auto next = std::upper_bound(bands.begin() + 1, bands.end(), y,
+                                           [](double v, const Rows& b) { return v < b.first; });
+        return next - bands.begin();
+    };
+    std::size_t again = 0;
+    for (const DisplayList::Shape& shape : list.shapes) {
+        const bool has_curves =
+            shape.kind == DisplayList::Kind::Area || shape.kind == DisplayList::Kind::Lines;
+        if (!has_curves) continue;
+        double low = picture.height(), high = 0;
+        for (std::uint32_t i = shape.first; i < shape.last; ++i)
+            for (const Point2 p : list.curve(i)) {
+                low = std::min(low, p.y);
+                high = std::max(high, p.y);
+            }
+        if (low < high)
+            again += static_cast<std::size_t>(band_of(high) - band_of(low)) *
+                     (list.ends[shape.last] - list.ends[shape.first]);
+    }
+    return again;
+}
+
+/// Bands with about as many points each; one where these would draw much of the same.
 std::vector<Rows> bandsOf(const Picture& picture, int count) {
     const int height = static_cast<int>(std::lround(picture.height()));
     if (count < 2) return {{0, height}};
@@ -69,6 +95,7 @@ std::vector<Rows> bandsOf(const Picture& picture, int count) {
         bands.back().beyond = row + 1;
         bands.push_back({row + 1, height});
     }
+    if (4 * pointsAgain(picture, bands) > all) return {{0, height}};
     return bands;
 }
 
