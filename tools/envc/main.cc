@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // envc: compiles rooms and layouts into a model, checks, converts, edits and draws them.
-#include <malloc.h>
-
 #include <filesystem>
-#include <limits>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,6 +14,7 @@
 #include "cli/run_tool.h"
 #include "env/info.h"
 #include "envc/options.h"
+#include "envc/product.h"
 #include "io/exporters.h"
 #include "io/input.h"
 #include "layout/check_scene.h"
@@ -27,14 +24,6 @@ namespace {
 
 using namespace ispace;
 namespace fs = std::filesystem;
-
-/// The file that stands beside the product; "" for none.
-std::string besideOf(const EnvcOptions& options) {
-    const ExportFormat& format = *options.format;
-    const bool is_none =
-        format.beside_suffix.empty() || (isStream(options.common.output) && !format.needs_beside);
-    return is_none ? "" : withSuffix(options.common.output, format.beside_suffix.data());
-}
 
 Document readModel(const EnvcOptions& options) {
     InputRequest request;
@@ -52,31 +41,6 @@ Document readModel(const EnvcOptions& options) {
     if (!options.check) warn(options.common, "envc", document.warnings);
     for (const std::string& note : document.notes) talk(options.common, "envc", note);
     return document;
-}
-
-void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document) {
-    if (options.format->write_to != nullptr) {
-        OutputFile file(options.common.output);
-        options.format->write_to(scene, document,
-                                 [&file](std::string_view bytes) { file.write(bytes); });
-        file.commit();
-        return;
-    }
-    const std::string beside = besideOf(options);
-    ExportOptions how{options.slice,
-                      options.import.resolution,
-                      options.width,
-                      "",
-                      fs::path(beside).filename().string(),
-                      options.zones};
-    if (!isStream(options.inputs.front())) how.title = baseName(options.inputs.front());
-    const ExportedFiles files = options.format->write(scene, document, how);
-    if (!files.left_out.empty()) warn(options.common, "envc", files.left_out);
-    if (beside.empty() || files.beside.empty())
-        writeAll(options.common.output, files.product);
-    else
-        writeTogether(std::vector<NamedBytes>{{beside, files.beside},
-                                              {options.common.output, files.product}});
 }
 
 /// Names of files in a product are relative to its folder.
@@ -149,6 +113,7 @@ void envc(const EnvcOptions& options) {
     limitThreads(options.common.threads);
     claimOutputs(options.common);
     if (format != nullptr) claimOutput(besideOf(options), std::string(format->beside_role));
+    keepMemory(options.inputs);
     Document document = readModel(options);
     std::vector<std::string> files = options.inputs;
     files.insert(files.end(), document.sources.begin(), document.sources.end());
@@ -159,19 +124,8 @@ void envc(const EnvcOptions& options) {
     writeDependencies(options.common, files);
 }
 
-/// Large rooms come and go through a few hundred megabytes: what is let go of is used again, and
-/// not given back to the system, which would have to clear it anew.
-void keepMemory() {
-#ifdef __GLIBC__
-    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);
-    mallopt(M_TOP_PAD, 64 << 20);
-#endif
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-    keepMemory();
     return ispace::runTool("envc", [&] { envc(ispace::parseEnvcOptions(argc, argv)); });
 }
