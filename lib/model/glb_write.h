@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <functional>
 #include <string>
-#include <string_view>
 
+#include "base/byte_sink.h"
 #include "layout/scene.h"
 #include "record/record.h"
 
@@ -16,9 +15,6 @@ struct FloorPicture {
     Box2 limits;
     std::string png;
 };
-
-/// Takes the bytes of a file as they come.
-using ByteSink = std::function<void(std::string_view)>;
 
 /// The compiled form: binary glTF 2.0, one named node per element (and sensor body), shared
 /// materials with colours, normals, metres, +Y up; the records of `document` as canonical text
