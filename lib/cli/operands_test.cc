@@ -81,9 +81,9 @@ TEST_F(Operands, TheLayoutNamesItsEnvironmentRelativeToItself) {
 }
 
 TEST_F(Operands, TheDigestMustMatch) {
-    const std::string digest = readScene({{"seeing.env"}}).scene.digest;
+    const std::string digest = readScene({{"seeing.env"}}).scene.digest();
     writeLayout("layout.3dm", "environment file=room.env digest=" + digest + "\n");
-    EXPECT_EQ(readScene({{"layout.3dm"}}).scene.digest, digest);
+    EXPECT_EQ(readScene({{"layout.3dm"}}).scene.digest(), digest);
     EXPECT_THROW(readScene({{"other.env", "layout.3dm"}}), FormatError);
     EXPECT_EQ(readScene({{"other.env", "layout.3dm"}, true}).environment_operand, "other.env");
 }

@@ -314,7 +314,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
             });
     coverage.sets = setsOf(coverage.sensors, grid);
 
-    report.digest = scene.digest;
+    report.digest = scene.digest();
     report.limits = environment.limits();
     report.grid = grid;
     report.height = options.height;

@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are kept as t
 
 /// Of what is derived. Whatever changes a result for some plan must raise it: derived_walls_test
 /// compares the results of this version with what they were.
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 
 /// Where a wall line is, in the order of the plan. Without gaps, to be hashed.
 struct KeyLine {
@@ -266,6 +266,24 @@ Regions takeRegions(Reader& in, const Box2& box) {
     return regions;
 }
 
+void addOrder(Writer& out, const KnownOrder& known) {
+    out.add(known.low);
+    out.add(known.high);
+    out.addList<std::uint32_t>(known.order.items);
+    out.addList<std::uint8_t>(known.order.shape);
+}
+
+std::shared_ptr<const KnownOrder> takeOrder(Reader& in) {
+    const auto known = std::make_shared<KnownOrder>();
+    known->low = in.take<std::uint64_t>();
+    known->high = in.take<std::uint64_t>();
+    known->order.items = in.takeList<std::uint32_t>();
+    known->order.shape = in.takeList<std::uint8_t>();
+    if (known->order.items.empty()) return nullptr;
+    if (!known->order.isOf(known->order.items.size())) in.fail();
+    return known;
+}
+
 }  // namespace
 
 std::string storedWalls(const WallsKey& key, std::span<const Segment2> lines,
@@ -279,6 +297,7 @@ std::string storedWalls(const WallsKey& key, std::span<const Segment2> lines,
     out.addCount(derived.floor.size());
     for (const Triangulation& part : derived.floor)
         out.addList<std::array<std::uint32_t, 3>>(part.triangles);
+    addOrder(out, derived.order);
     std::string stored = out.take();
     seal(stored);
     return stored;
@@ -298,6 +317,7 @@ std::optional<DerivedWalls> restoredWalls(std::string_view bytes, const WallsKey
     derived.floor.resize(in.takeCount(sizeof(std::uint32_t)));
     for (DerivedWalls::Triangles& part : derived.floor)
         part = in.takeList<std::array<std::uint32_t, 3>>();
+    derived.order = takeOrder(in);
     if (!in.isAtEnd() || !isFinite(derived.enclosure.inside) ||
         derived.enclosure.indoor.locate(derived.enclosure.inside) != Side::Inside)
         return std::nullopt;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "env/enclosure.h"
+#include "env/known_order.h"
 #include "env/openings.h"
 #include "env/walls.h"
 #include "geom/planar_map.h"
@@ -30,7 +32,7 @@ WallsKey keyOf(const WallPlan& plan, std::span<const Element> elements,
                std::span<const Opening> openings, std::span<const Record* const> inside);
 
 /// What takes longest to find about walls, and is quickly read again: how their lines are welded,
-/// what they enclose, and the triangles of its floor.
+/// what they enclose, the triangles of its floor, and how rays find lines.
 struct DerivedWalls {
     using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
@@ -38,6 +40,8 @@ struct DerivedWalls {
     Enclosure enclosure;
     /// Of each part of the region, as triangulate() numbers its vertices; empty: not known.
     std::vector<Triangles> floor;
+    /// Of the lines at the usual height, walls and things; null: not known.
+    std::shared_ptr<const KnownOrder> order;
 };
 
 /// The same where an environment has it.
@@ -47,6 +51,7 @@ struct DerivedView {
     const Regions& indoor;
     Point2 inside;
     std::span<const Triangulation> floor;
+    const KnownOrder& order;
 };
 
 /// Results as they are kept in a file, little-endian: a checksum of all that follows, the key,

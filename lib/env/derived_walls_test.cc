@@ -97,6 +97,29 @@ bool isUsed(const std::string& plan, const std::string& stored, Point2 mark) {
     return withStored(plan, stored).inside() == mark;
 }
 
+/// Whether rays at this height find their tree in what is stored, which then is one of their lines.
+bool knowsOrder(const Environment& room, double height) {
+    const Slice slice = room.slice(height);
+    const std::vector<Segment2> lines = slice.straightLines();
+    const BoxOrder* const order = slice.order == nullptr ? nullptr : slice.order->find(lines);
+    if (order == nullptr) return false;
+    EXPECT_TRUE(order->isOf(lines.size()));
+    return true;
+}
+
+TEST(DerivedWalls, OrdersAreOfTheLinesOfAHeight) {
+    const std::string walls = "ispace size=8,6\nwall from=1,1 to=2,2 height=1\n";
+    const std::string stored = environment(walls).stored();
+    const Environment same = withStored(walls, stored);
+    EXPECT_TRUE(knowsOrder(same, 0.15));
+    EXPECT_TRUE(knowsOrder(same, 0.9));  // the same lines
+    EXPECT_FALSE(knowsOrder(same, 1.5));
+    // What stands there counts, though the walls are the same.
+    const Environment more = withStored(walls + "cube at=3,3\n", stored);
+    EXPECT_FALSE(knowsOrder(more, 0.15));
+    EXPECT_EQ(more.stored(), environment(walls + "cube at=3,3\n").stored());
+}
+
 TEST(DerivedWalls, GiveTheSameRoom) {
     for (const std::string& plan : plans()) {
         const Environment derived = environment(plan);
@@ -113,6 +136,8 @@ TEST(DerivedWalls, GiveTheSameRoom) {
         const Point2 mark{third(&Point3::x), third(&Point3::y)};
         ASSERT_EQ(part.locate(mark), Side::Inside);
         EXPECT_TRUE(isUsed(plan, marked(derived, mark), mark)) << plan.substr(0, 80);
+        EXPECT_TRUE(knowsOrder(withStored(plan, stored), kScanHeight)) << plan.substr(0, 80);
+        EXPECT_FALSE(knowsOrder(derived, kScanHeight)) << plan.substr(0, 80);
     }
 }
 
@@ -193,6 +218,7 @@ TEST(DerivedWalls, LiesWithTheRightChecksumDoNoHarm) {
             ASSERT_GT(room.indoor().area(), 0);
             ASSERT_LE(bounds(room.indoor()).high.x, room.limits().high.x + 0.01);
             ASSERT_NEAR(room.limits().high.x, derived.limits().high.x, 1e-5);
+            static_cast<void>(knowsOrder(room, kScanHeight));
             try {
                 static_cast<void>(room.floor());
                 static_cast<void>(difference(room.indoor(), {}));
@@ -223,7 +249,7 @@ TEST(DerivedWalls, AreWhatTheyWereInThisVersion) {
     for (const std::size_t i : {0U, 2U, 3U, 4U, 5U, 7U})  // those whose numbers no machine rounds
         all += environment(plans()[i]).stored();
     EXPECT_EQ(sha256(all),
-              "sha256:dbf699a5c14b205a186f658931f61a9d53ffb9c58c5f9907679cc4a361985b92");
+              "sha256:00ccc05d91f61244f75878eff2464edd2e447d50ec950a95bccc83ce970f0b47");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "env/room_builder.h"
 #include "env/slice.h"
 #include "geom/triangulation.h"
+#include "record/text.h"
 
 namespace ispace {
 
@@ -40,6 +41,7 @@ struct Environment::Data::Derivation {
     std::vector<Segment2> lines;      ///< of the walls, before they were welded
     std::vector<std::size_t> source;  ///< of each wall line
     std::vector<DerivedWalls::Triangles> floor;
+    std::shared_ptr<const KnownOrder> order;
 };
 
 Environment::Environment(std::span<const Record> records, std::span<const std::string> ids,
@@ -56,7 +58,7 @@ Environment::Environment(std::span<const Record> records, std::span<const std::s
     data->wall_lines = std::move(derived.welded.pieces);
     data->derivation = std::make_shared<const Data::Derivation>(
         Data::Derivation{room.key, std::move(room.lines), std::move(derived.welded.source),
-                         std::move(derived.floor)});
+                         std::move(derived.floor), std::move(derived.order)});
     data_ = std::move(data);
     levels_ = std::make_shared<Levels>();
 }
@@ -79,9 +81,21 @@ Mesh Environment::floor() const { return floorMesh(data_->floorParts()); }
 
 std::string Environment::stored() const {
     const Data& data = *data_;
-    return storedWalls(
-        data.derivation->key, data.derivation->lines,
-        {data.wall_lines, data.derivation->source, data.indoor, data.inside, data.floorParts()});
+    const Data::Derivation& known = *data.derivation;
+    const std::vector<Segment2> lines = slice(kScanHeight).straightLines();
+    const bool is_of_these = known.order != nullptr && known.order->find(lines) != nullptr;
+    return storedWalls(known.key, known.lines,
+                       {data.wall_lines, known.source, data.indoor, data.inside, data.floorParts(),
+                        is_of_these ? *known.order : KnownOrder::of(lines)});
+}
+
+const std::string& Environment::digest() const {
+    return data_->digest.get([this] {
+        std::vector<const Record*> records;
+        records.reserve(elements().size());
+        for (const Element& element : elements()) records.push_back(&element.record);
+        return environmentDigest(records);
+    });
 }
 
 const RegionIndex& Environment::Data::indoorIndex() const {
@@ -91,6 +105,7 @@ const RegionIndex& Environment::Data::indoorIndex() const {
 Slice Environment::Data::slice(double at) const {
     Slice slice;
     slice.height = at;
+    slice.order = derivation->order;
     const auto add_sheet = [&](const Sheet& sheet, std::size_t owner) {
         if (!isAmong(Surfaces::Opaque, sheet)) return;
         slice.sheets.push_back(sheet.line);

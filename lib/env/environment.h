@@ -63,6 +63,8 @@ class Environment {
     [[nodiscard]] const std::vector<Segment2>& wallLines() const { return data_->wall_lines; }
     /// What took longest to derive, for a file; see env/derived_walls.h.
     [[nodiscard]] std::string stored() const;
+    /// Of its records, see environmentDigest(). Computed when it is first asked for; thread-safe.
+    [[nodiscard]] const std::string& digest() const;
     /// Height of the highest wall, in metres.
     [[nodiscard]] double height() const { return data_->height; }
 
@@ -93,6 +95,7 @@ class Environment {
         /// The triangles of each part of the region.
         [[nodiscard]] const std::vector<Triangulation>& floorParts() const;
         Lazy<std::vector<Triangulation>> floor = {};
+        Lazy<std::string> digest = {};
         struct Derivation;
         std::shared_ptr<const Derivation> derivation = {};
     };

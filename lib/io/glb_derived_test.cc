@@ -32,7 +32,7 @@ Document plain(Document document) {
 
 /// Whether all that is drawn, and all that is derived, is the same.
 bool areSame(const Scene& a, const Scene& b, const Document& document) {
-    return writeGlb(a, document) == writeGlb(b, document) && a.digest == b.digest &&
+    return writeGlb(a, document) == writeGlb(b, document) && a.digest() == b.digest() &&
            a.environment.wallLines() == b.environment.wallLines();
 }
 

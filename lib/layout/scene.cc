@@ -226,7 +226,6 @@ Scene sceneOf(const std::vector<Record>& records, const Scene* before,
     return {.records = {},
             .ids = std::move(ids),
             .environment = std::move(room),
-            .digest = {},
             .sensors = std::move(placements.sensors),
             .pending = std::move(placements.pending),
             .robots = std::move(placements.robots),
@@ -281,17 +280,18 @@ Scene makeScene(const Document& environment, const Document* layout,
         records = given;
     std::erase_if(records, isMeta);
     std::optional<Scene> scene;
-    std::string digest;
     const auto make = [&] {
         scene = sceneOf(is_changed ? records : given, nullptr, devices, environment.derived);
     };
-    const auto copy_and_digest = [&] {
+    const auto copy = [&] {
         if (!is_changed) records = given;
-        digest = environmentDigest(given);
     };
-    doBoth(given.size() >= kManyRecords, make, copy_and_digest);
+    doBoth(given.size() >= kManyRecords, make, copy);
     scene->records = std::move(records);
-    scene->digest = std::move(digest);
+    const auto is_of_room = [](const Record& record) { return record.schema().isEnvironment(); };
+    if (layout != nullptr &&
+        std::any_of(layout->records.begin(), layout->records.end(), is_of_room))
+        scene->digest_of_other = environmentDigest(given);
     return *std::move(scene);
 }
 
@@ -299,7 +299,8 @@ Scene makeScene(std::vector<Record> records, const Scene& before, const DeviceCa
     std::erase_if(records, isMeta);
     Scene scene = sceneOf(records, &before, devices);
     scene.records = std::move(records);
-    scene.digest = before.digest;
+    const bool is_same = &scene.environment.elements() == &before.environment.elements();
+    scene.digest_of_other = is_same ? before.digest_of_other : before.digest();
     return scene;
 }
 

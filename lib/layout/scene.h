@@ -40,12 +40,18 @@ struct Scene {
     std::vector<Record> records;         ///< joined, without `environment` and `result`
     std::vector<std::string> ids;        ///< of each record
     Environment environment;             ///< of the joined records
-    std::string digest;                  ///< of ENV alone, see environmentDigest
     std::vector<Sensor> sensors;         ///< with a place, or on what has one, in order
     std::vector<PendingSensor> pending;  ///< those without a place that arrange can place, in order
     std::vector<PlacedRobot> robots;     ///< in order
     std::vector<PlacedPerson> people;    ///< in order
     std::vector<Placed> placed;          ///< all of them and everything else with a place, in order
+    /// digest() where layout or edits changed what it is of; else "".
+    std::string digest_of_other = {};
+
+    /// Of ENV alone, see environmentDigest(). Computed when it is first asked for; thread-safe.
+    [[nodiscard]] const std::string& digest() const {
+        return digest_of_other.empty() ? environment.digest() : digest_of_other;
+    }
 };
 
 /// The placed sensors whose model is of this type, in order.

@@ -31,7 +31,7 @@ TEST(MakeScene, EnvironmentAlone) {
     EXPECT_EQ(made.environment.elements().size(), 3U);
     EXPECT_TRUE(made.sensors.empty());
     EXPECT_TRUE(made.pending.empty());
-    EXPECT_EQ(made.digest, environmentDigest(roomDocument(kRoom).records));
+    EXPECT_EQ(made.digest(), environmentDigest(roomDocument(kRoom).records));
 }
 
 TEST(MakeScene, OfChangedRecordsSharesTheRoom) {
@@ -46,7 +46,7 @@ TEST(MakeScene, OfChangedRecordsSharesTheRoom) {
     EXPECT_TRUE(shares(moved));
     EXPECT_EQ(moved.sensors[0].pose.position.x, 3);
     EXPECT_EQ(moved.robots.size(), 1U);
-    EXPECT_EQ(moved.digest, before.digest);
+    EXPECT_EQ(moved.digest(), before.digest());
     EXPECT_TRUE(shares(changed(kRoom, "")));
     EXPECT_FALSE(shares(changed(kRoom + "desk id=e at=7,4\n", "")));
     EXPECT_FALSE(shares(changed("ispace id=room at=4,3 size=8,6\ndesk at=2,2\n", "")));
@@ -63,7 +63,7 @@ TEST(MakeScene, OfChangedRecordsSharesTheRoom) {
 
 TEST(MakeScene, PicturesDoNotCountInTheDigest) {
     const auto digest = [](const std::string& cube) {
-        return scene("ispace size=4,4\ncube " + cube + "\n").digest;
+        return scene("ispace size=4,4\ncube " + cube + "\n").digest();
     };
     EXPECT_EQ(digest("size=1 texture=a.png"), digest("size=1"));
     EXPECT_NE(digest("size=2"), digest("size=1"));
@@ -105,10 +105,10 @@ TEST(MakeScene, AutomaticIdsAreNeverReplacedAndSkipWrittenOnes) {
 }
 
 TEST(MakeScene, DigestIsOfTheEnvironmentBeforeTheLayout) {
-    const std::string plain = scene(kRoom).digest;
-    EXPECT_EQ(scene(kRoom, "desk id=d at=6,5\nlaser at=1,1\n").digest, plain);
-    EXPECT_EQ(scene(kRoom + "laser at=1,1\n").digest, plain);
-    EXPECT_NE(scene(kRoom + "chair at=1,1\n").digest, plain);
+    const std::string plain = scene(kRoom).digest();
+    EXPECT_EQ(scene(kRoom, "desk id=d at=6,5\nlaser at=1,1\n").digest(), plain);
+    EXPECT_EQ(scene(kRoom + "laser at=1,1\n").digest(), plain);
+    EXPECT_NE(scene(kRoom + "chair at=1,1\n").digest(), plain);
 }
 
 TEST(MakeScene, SensorsOfTheEnvironmentCanBeMovedByTheLayout) {
@@ -144,7 +144,7 @@ TEST(MakeScene, RobotsInOrder) {
     EXPECT_EQ(made.robots[1].place.line, 2);
     EXPECT_EQ(made.robots[2].id, "robot2");
     EXPECT_EQ(made.robots[2].pose, Pose2());
-    EXPECT_EQ(made.digest, scene(kRoom).digest) << "robots belong to the layout";
+    EXPECT_EQ(made.digest(), scene(kRoom).digest()) << "robots belong to the layout";
     EXPECT_TRUE(made.sensors.empty());
 }
 

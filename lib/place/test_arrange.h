@@ -64,7 +64,7 @@ inline Arrangement arranged(const Scene& scene, const std::vector<SensorGroup>& 
 }
 
 inline LayoutParts partsOf(const Scene& scene) {
-    return {{"arrange room.glb"}, "room.glb", scene.digest, "all", "swap"};
+    return {{"arrange room.glb"}, "room.glb", scene.digest(), "all", "swap"};
 }
 
 /// What `coverage` reports of the arranged scene.

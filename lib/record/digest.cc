@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "record/text.h"
 
@@ -74,10 +75,18 @@ std::string sha256(std::string_view bytes) {
 }
 
 std::string environmentDigest(std::span<const Record> records) {
+    std::vector<const Record*> all;
+    all.reserve(records.size());
+    for (const Record& record : records) all.push_back(&record);
+    return environmentDigest(all);
+}
+
+std::string environmentDigest(std::span<const Record* const> records) {
     constexpr std::size_t kBlock = 1 << 16;
     Sha256 digest;
     std::string text;
-    for (const Record& record : records) {
+    for (const Record* const next : records) {
+        const Record& record = *next;
         if (!record.schema().isEnvironment()) continue;
         if (record.mesh() != nullptr)
             appendRecord(text, byContent(record));

@@ -123,5 +123,6 @@ std::string meshDigest(const TriangleMesh& mesh);
 /// environment records, in file order; placements, results and history do not count. A file that is
 /// loaded counts by its content: its name gives way to `digest`.
 std::string environmentDigest(std::span<const Record> records);
+std::string environmentDigest(std::span<const Record* const> records);
 
 }  // namespace ispace

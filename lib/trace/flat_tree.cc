@@ -2,15 +2,10 @@
 #include "trace/flat_tree.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
+#include <cassert>
 #include <cmath>
-#include <cstdint>
-#include <limits>
-#include <tuple>
 #include <utility>
 
-#include "base/simd.h"
 #include "geom/point.h"
 
 namespace ispace {
@@ -18,263 +13,92 @@ namespace ispace {
 namespace {
 
 constexpr std::size_t kWidth = FlatTree::kWidth;
-/// From this depth on ranges are halved, whatever their shape.
-constexpr int kDeep = 12;
-constexpr std::uint32_t kBins = 32;
+static_assert(kWidth == BoxOrder::kWidth && FlatTree::kDepth == BoxOrder::kDepth);
 
-/// Two numbers of a box.
-using Pair = double __attribute__((vector_size(16)));
-
-ISPACE_INLINE void lower(Pair& a, const Pair& b) { a = b < a ? b : a; }
-
-/// A box with its upper ends negated, so that boxes are merged by minima alone.
-struct Extent {
-    Pair low = {kNone, kNone}, high = {kNone, kNone};
-
-    static constexpr double kNone = std::numeric_limits<double>::infinity();
-    Extent() = default;
-    explicit Extent(const Box2& box) : low{box.low.x, box.low.y}, high{-box.high.x, -box.high.y} {}
-
-    ISPACE_INLINE void add(const Extent& other) {
-        lower(low, other.low);
-        lower(high, other.high);
-    }
-    [[nodiscard]] double wide() const { return -high[0] - low[0]; }
-    [[nodiscard]] double tall() const { return -high[1] - low[1]; }
-    [[nodiscard]] double halfPerimeter() const { return wide() - high[1] - low[1]; }
-};
-
-/// A line or a round body, which splits only move by its box.
-struct Item {
-    Extent box;
-    std::uint32_t index = 0;
-
-    /// Times two.
-    [[nodiscard]] ISPACE_INLINE Pair middle() const { return box.low - box.high; }
-};
-
-struct Group {
-    std::size_t begin = 0, end = 0;
-    Extent box;
-    [[nodiscard]] std::size_t size() const { return end - begin; }
-};
-
-/// What a group costs: how likely it is met, times the vectors of lines in it.
-double cost(const Extent& box, std::size_t size) {
-    const std::size_t vectors = (size + kWidth - 1) / kWidth;
-    return box.halfPerimeter() * static_cast<double>(vectors);
-}
-
-/// Bins side by side along an axis.
-struct Axis {
-    double low = 0, scale = 0;
-
-    /// \param middle of an item
-    [[nodiscard]] ISPACE_INLINE std::uint32_t binOf(double middle) const {
-        const double place = (middle - low) * scale;
-        // As integers, which order those from 0 on alike.
-        return std::min(static_cast<std::uint32_t>(static_cast<std::int32_t>(place)), kBins - 1);
-    }
-};
-
-/// A cut between bins along an axis: items with smaller bins go left.
-struct Cut {
-    std::size_t axis = 0;
-    Axis bins;
-    std::uint32_t bin = 0;  ///< 0: there is none
-    double cost = std::numeric_limits<double>::infinity();
-    Extent left, right;
-};
-
-/// The items of a group, sorted into bins along an axis.
-struct Bins {
-    std::uint32_t used = 0;  ///< a bit for each bin that has items; what others hold is old
-    std::array<Extent, kBins> boxes;
-    std::array<std::uint32_t, kBins> sizes;
-
-    ISPACE_INLINE void add(std::uint32_t bin, const Extent& box) {
-        const std::uint32_t bit = 1U << bin;
-        if ((used & bit) == 0) {
-            used |= bit;
-            boxes[bin] = box;
-            sizes[bin] = 1;
-        } else {
-            boxes[bin].add(box);
-            ++sizes[bin];
-        }
-    }
-
-    /// Puts the cheapest cut into `best` where it is cheaper.
-    void cheapen(std::size_t axis, const Axis& bins, Cut& best) const {
-        // What lies right of each bin that has items, then what lies left.
-        std::array<double, kBins> right_costs;
-        std::array<Extent, kBins> rights;
-        Extent box;
-        std::size_t size = 0;
-        const auto last = static_cast<std::uint32_t>(std::bit_width(used)) - 1;
-        for (std::uint32_t left = used & ~(1U << last), bin = last; left != 0;) {
-            box.add(boxes[bin]);
-            size += sizes[bin];
-            bin = static_cast<std::uint32_t>(std::bit_width(left)) - 1;
-            left &= ~(1U << bin);
-            rights[bin] = box;
-            right_costs[bin] = cost(box, size);
-        }
-        box = {};
-        size = 0;
-        for (std::uint32_t left = used & ~(1U << last); left != 0; left &= left - 1) {
-            const auto bin = static_cast<std::uint32_t>(std::countr_zero(left));
-            box.add(boxes[bin]);
-            size += sizes[bin];
-            const double here = cost(box, size) + right_costs[bin];
-            if (here < best.cost) best = {axis, bins, bin + 1, here, box, rights[bin]};
-        }
-    }
-};
-
+/// Makes nodes as an order has them.
 class Builder {
   public:
-    /// `most`: items that make a leaf, of lines or, if 1, of a round body. \param lines those of
-    /// the items
-    Builder(std::vector<Item> items, std::span<const Segment2> lines, FlatTree& tree,
-            std::size_t most)
-        : items_(std::move(items)), lines_(lines), tree_(tree), most_(most) {}
+    Builder(const BoxOrder& order, FlatTree& tree) : order_(order), tree_(tree) {}
 
-    /// \return the root \pre there are items
-    std::int32_t build() { return node(group(0, items_.size()), 0); }
+    /// Calls put_leaf(indices) -> Box2 for each leaf in order. \return the root
+    template <typename PutLeaf>
+    std::int32_t build(PutLeaf put_leaf) {
+        return node(put_leaf).first;
+    }
 
   private:
-    [[nodiscard]] Group group(std::size_t begin, std::size_t end) const {
-        Group out{begin, end, {}};
-        for (std::size_t i = begin; i < end; ++i) out.box.add(items_[i].box);
-        return out;
-    }
-
-    /// The cheapest cut along one axis or the other.
-    [[nodiscard]] Cut cheapestCut(const Group& all) {
-        const std::span items = std::span(items_).subspan(all.begin, all.size());
-        Pair low = items.front().middle(), high = -low;
-        for (const Item& item : items) {
-            const Pair middle = item.middle();
-            lower(low, middle);
-            lower(high, -middle);
-        }
-        std::array<Axis, 2> axes;
-        for (const std::size_t axis : {0U, 1U}) {
-            axes[axis].low = low[axis];
-            // Without extent all are in the first bin.
-            if (low[axis] < -high[axis])
-                axes[axis].scale = static_cast<double>(kBins) / (-high[axis] - low[axis]);
-            bins_[axis].used = 0;
-        }
-        for (const Item& item : items) {
-            const Pair middle = item.middle();
-            bins_[0].add(axes[0].binOf(middle[0]), item.box);
-            bins_[1].add(axes[1].binOf(middle[1]), item.box);
-        }
-        Cut best;
-        for (const std::size_t axis : {0U, 1U}) bins_[axis].cheapen(axis, axes[axis], best);
-        return best;
-    }
-
-    /// Reorders the items of a group into two.
-    std::pair<Group, Group> split(const Group& all, int depth) {
-        const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(all.begin);
-        const auto end = items_.begin() + static_cast<std::ptrdiff_t>(all.end);
-        if (depth < kDeep) {
-            const Cut cut = cheapestCut(all);
-            if (cut.bin > 0) {
-                const auto is_left = [&cut](const Item& item) {
-                    return cut.bins.binOf(item.middle()[cut.axis]) < cut.bin;
-                };
-                const auto middle =
-                    static_cast<std::size_t>(std::partition(begin, end, is_left) - items_.begin());
-                return {{all.begin, middle, cut.left}, {middle, all.end, cut.right}};
-            }
-        }
-        const auto axis = static_cast<std::size_t>(all.box.tall() > all.box.wide());
-        const auto middle = begin + (end - begin) / 2;
-        std::nth_element(begin, middle, end, [axis](const Item& a, const Item& b) {
-            return a.middle()[axis] < b.middle()[axis];
-        });
-        const auto at = static_cast<std::size_t>(middle - items_.begin());
-        return {group(all.begin, at), group(at, all.end)};
-    }
-
-    /// Up to eight parts of a group.
-    struct Parts {
-        std::array<Group, kWidth> groups;
-        std::size_t count = 1;
-    };
-
-    /// Splits what is most expensive until there are eight parts.
-    Parts parts(const Group& all, int depth) {
-        Parts out{{all}};
-        std::array<double, kWidth> costs{};  // of those that may be split; else below 0
-        const auto rate = [&](std::size_t i) {
-            const Group& group = out.groups[i];
-            costs[i] = group.size() <= most_ ? -1
-                       : depth < kDeep       ? cost(group.box, group.size())
-                                             : static_cast<double>(group.size());
-        };
-        for (rate(0); out.count < kWidth; ++out.count) {
-            const auto most = static_cast<std::size_t>(
-                std::max_element(costs.begin(), costs.begin() + out.count) - costs.begin());
-            if (costs[most] < 0) break;
-            std::tie(out.groups[most], out.groups[out.count]) = split(out.groups[most], depth);
-            rate(most);
-            rate(out.count);
-        }
-        return out;
-    }
-
-    std::int32_t node(const Group& all, int depth) {
-        const auto [groups, count] = parts(all, depth);
-        const std::size_t index = tree_.nodes.size();
+    template <typename PutLeaf>
+    std::pair<std::int32_t, Box2> node(PutLeaf& put_leaf) {
+        const auto index = static_cast<std::int32_t>(tree_.nodes.size());
         tree_.nodes.emplace_back();
         FlatTree::Node made{};
+        const std::uint8_t* const sizes = order_.shape.data() + place_ + 1;
+        const std::size_t count = sizes[-1];
+        place_ += 1 + count;
         made.count = static_cast<std::int32_t>(count);
-        for (std::size_t i = 0; i < kWidth; ++i) {
-            const Extent& box = groups[i < count ? i : 0].box;
-            made.left[i] = box.low[0];
-            made.right[i] = -box.high[0];
-            made.low[i] = box.low[1];
-            made.high[i] = -box.high[1];
-            if (i < count)
-                made.child[i] =
-                    groups[i].size() > most_ ? node(groups[i], depth + 1) : leaf(groups[i]);
+        Box2 all;
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto [child, box] = sizes[i] == 0 ? node(put_leaf) : leaf(sizes[i], put_leaf);
+            made.child[i] = child;
+            put(made, i, box);
+            all.add(box.low);
+            all.add(box.high);
         }
-        tree_.nodes[index] = made;
-        return static_cast<std::int32_t>(index);
+        for (std::size_t i = count; i < kWidth; ++i)
+            put(made, i, {{made.left[0], made.low[0]}, {made.right[0], made.high[0]}});
+        tree_.nodes[static_cast<std::size_t>(index)] = made;
+        return {index, all};
     }
 
-    std::int32_t leaf(const Group& all) {
-        if (most_ == 1) return ~static_cast<std::int32_t>(items_[all.begin].index);
-        FlatTree::Leaf made{};
-        made.count = static_cast<std::int32_t>(all.size());
-        for (std::size_t i = 0; i < kWidth; ++i) {
-            const bool is_used = i < all.size();
-            const Segment2& given = lines_[items_[is_used ? all.begin + i : all.begin].index];
-            const Segment2 line = lexLess(given.a, given.b) ? given : Segment2{given.b, given.a};
-            const Point2 b = is_used ? line.b : line.a;
-            made.ax[i] = line.a.x;
-            made.ay[i] = line.a.y;
-            made.bx[i] = b.x;
-            made.by[i] = b.y;
-            // Not std::hypot, whose last bit is nobody's promise.
-            const Vec2 along = b - line.a;
-            made.length[i] = std::sqrt(dot(along, along));
-        }
-        tree_.leaves.push_back(made);
-        return ~static_cast<std::int32_t>(tree_.leaves.size() - 1);
+    template <typename PutLeaf>
+    std::pair<std::int32_t, Box2> leaf(std::size_t size, PutLeaf& put_leaf) {
+        const std::span<const std::uint32_t> items(order_.items.data() + item_, size);
+        item_ += size;
+        return put_leaf(items);
     }
 
-    std::vector<Item> items_;
-    std::span<const Segment2> lines_;
+    static void put(FlatTree::Node& node, std::size_t child, const Box2& box) {
+        node.left[child] = box.low.x;
+        node.right[child] = box.high.x;
+        node.low[child] = box.low.y;
+        node.high[child] = box.high.y;
+    }
+
+    const BoxOrder& order_;
     FlatTree& tree_;
-    std::size_t most_;
-    std::array<Bins, 2> bins_;
+    std::size_t place_ = 0, item_ = 0;
 };
+
+FlatTree::Leaf leafOf(std::span<const std::uint32_t> items, std::span<const Segment2> lines) {
+    FlatTree::Leaf made{};
+    made.count = static_cast<std::int32_t>(items.size());
+    for (std::size_t i = 0; i < kWidth; ++i) {
+        const bool is_used = i < items.size();
+        const Segment2& given = lines[items[is_used ? i : 0]];
+        const Segment2 line = lexLess(given.a, given.b) ? given : Segment2{given.b, given.a};
+        const Point2 b = is_used ? line.b : line.a;
+        made.ax[i] = line.a.x;
+        made.ay[i] = line.a.y;
+        made.bx[i] = b.x;
+        made.by[i] = b.y;
+        // Not std::hypot, whose last bit is nobody's promise.
+        const Vec2 along = b - line.a;
+        made.length[i] = std::sqrt(dot(along, along));
+    }
+    return made;
+}
+
+Box2 boxOf(const FlatTree::Leaf& leaf) {
+    Box2 box;
+    // Lines beyond the last one are points of the first.
+    for (std::size_t i = 0; i < kWidth; ++i) {
+        box.low.x = std::min(box.low.x, leaf.ax[i]);
+        box.high.x = std::max(box.high.x, leaf.bx[i]);
+        box.low.y = std::min({box.low.y, leaf.ay[i], leaf.by[i]});
+        box.high.y = std::max({box.high.y, leaf.ay[i], leaf.by[i]});
+    }
+    return box;
+}
 
 /// What rays meet of round bodies, computed with rounding, lies in these boxes.
 Box2 boxOf(const Ellipse& round) {
@@ -290,28 +114,42 @@ FlatTree::Round unitMapOf(const Ellipse& round) {
             s / round.half_length, -s / round.half_width, c / round.half_width};
 }
 
+bool isPoint(const Segment2& line) { return line.a == line.b; }
+
+void addLines(std::span<const Segment2> lines, const BoxOrder& order, FlatTree& tree) {
+    tree.leaves.reserve(order.shape.size());
+    Builder(order, tree).build([&](std::span<const std::uint32_t> items) {
+        tree.leaves.push_back(leafOf(items, lines));
+        return std::pair{~static_cast<std::int32_t>(tree.leaves.size() - 1),
+                         boxOf(tree.leaves.back())};
+    });
+}
+
 }  // namespace
 
-FlatTree::FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies) {
-    std::vector<Item> items;
-    items.reserve(lines.size());
-    for (std::size_t i = 0; i < lines.size(); ++i)
-        if (lines[i].a != lines[i].b)
-            items.push_back({Extent(bounds(lines[i])), static_cast<std::uint32_t>(i)});
-    if (!items.empty()) {
-        // Most leaves have five to seven lines.
-        leaves.reserve(items.size() / 5 + 1);
-        Builder(std::move(items), lines, *this, kWidth).build();
+FlatTree::FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies,
+                   const BoxOrder* order) {
+    assert(order == nullptr || order->isOf(lines.size()));
+    if (std::any_of(lines.begin(), lines.end(), isPoint)) {
+        std::vector<Segment2> some(lines.begin(), lines.end());
+        std::erase_if(some, isPoint);
+        if (!some.empty()) addLines(some, orderOf(some), *this);
+    } else if (!lines.empty()) {
+        addLines(lines, order != nullptr ? *order : orderOf(lines), *this);
     }
     if (round_bodies.empty()) return;
     if (nodes.empty()) nodes.push_back({});
-    items.clear();
+    std::vector<Box2> boxes;
+    boxes.reserve(round_bodies.size());
     rounds.reserve(round_bodies.size());
-    for (std::size_t i = 0; i < round_bodies.size(); ++i) {
-        items.push_back({Extent(boxOf(round_bodies[i])), static_cast<std::uint32_t>(i)});
-        rounds.push_back(unitMapOf(round_bodies[i]));
+    for (const Ellipse& round : round_bodies) {
+        boxes.push_back(boxOf(round));
+        rounds.push_back(unitMapOf(round));
     }
-    round_root = Builder(std::move(items), {}, *this, 1).build();
+    const BoxOrder round_order = orderOf(boxes, 1);
+    round_root = Builder(round_order, *this).build([&](std::span<const std::uint32_t> items) {
+        return std::pair{~static_cast<std::int32_t>(items.front()), boxes[items.front()]};
+    });
 }
 
 }  // namespace ispace

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "geom/box_order.h"
 #include "geom/curve.h"
 #include "geom/polygon.h"
 
@@ -39,8 +40,11 @@ struct FlatTree {
         double cx, cy, xx, xy, yx, yy;
     };
 
-    /// By binned surface area heuristic. O(n log n)
-    explicit FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies = {});
+    /// \param order that of the lines, if it is known; null: orderOf() them, unless there are
+    /// points
+    ///        among them. O(n log n), O(n) with an order \pre order->isOf(lines.size())
+    explicit FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies = {},
+                      const BoxOrder* order = nullptr);
 
     /// Of a child.
     [[nodiscard]] const Node& node(std::int32_t child) const {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "geom/box_order.h"
 #include "geom/curve.h"
 #include "geom/polygon.h"
 #include "trace/rays.h"
@@ -27,7 +28,9 @@ namespace ispace {
 /// the processor.
 class FlatWorld {
   public:
-    explicit FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});
+    /// \param order that of the lines, if it is known, see FlatTree
+    explicit FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {},
+                       const BoxOrder* order = nullptr);
     FlatWorld(FlatWorld&&) noexcept;
     FlatWorld& operator=(FlatWorld&&) noexcept;
     ~FlatWorld();

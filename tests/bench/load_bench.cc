@@ -61,7 +61,7 @@ Compiled compile(const std::string& name, const std::string& folder, const Docum
     writeAll(compiled.text, writeRecordText(document));
     // What is loaded is what was compiled.
     const Scene again = makeScene(reading(compiled.file), nullptr, DeviceCatalogue());
-    if (again.ids == scene.ids && again.digest == scene.digest &&
+    if (again.ids == scene.ids && again.digest() == scene.digest() &&
         again.environment.indoor().area() == scene.environment.indoor().area())
         return compiled;
     std::fprintf(stderr, "load: %s is not what was compiled\n", name.c_str());

@@ -103,6 +103,10 @@ void tryDerived(const Document& document) {
     require(told.indoor().locate(told.inside()) == Side::Inside, "an inside point outside");
     (void)told.floor();
     (void)told.level(kScanHeight)->freeFloor();
+    const Slice slice = told.slice(kScanHeight);
+    const std::vector<Segment2> lines = slice.straightLines();
+    const BoxOrder* const order = slice.order == nullptr ? nullptr : slice.order->find(lines);
+    require(order == nullptr || order->isOf(lines.size()), "a tree that is none of the lines");
     (void)told.level(kScanHeight)->isFree(told.inside());
     (void)told.stored();
 }

@@ -32,7 +32,7 @@ JobId arrangeJob(const ArrangeCommand& command, const SceneInput& input,
     job.tool = "arrange";
     if (input.layout) job.history = input.layout->history;
     job.history.push_back(command.historyLine(input.named));
-    job.room = input.scene.digest;
+    job.room = input.scene.digest();
     std::string all;
     for (const Document* document : {&input.environment, input.layout ? &*input.layout : nullptr})
         if (document != nullptr)

@@ -35,7 +35,7 @@ void writeLayout(const ArrangeCommand& command, const ArrangeWork& work,
     const SceneInput& input = work.input;
     LayoutParts parts{input.layout ? input.layout->history : History(),
                       environmentFileFor(options.common.output, input.environment_operand),
-                      input.scene.digest, std::string(nameOf(work.how.strategy)),
+                      input.scene.digest(), std::string(nameOf(work.how.strategy)),
                       std::string(nameOf(work.how.search.optimizer))};
     parts.history.push_back(command.historyLine(input.named));
     const Document layout =

@@ -90,7 +90,7 @@ void compile(const EnvcOptions& options, Document document) {
     const auto& [compiled, scene] = makeRoom(std::move(document), devices);
     const std::string& output = options.common.output;
     if (options.info) {
-        const EnvironmentInfo info = describe(scene.environment, scene.records, scene.digest);
+        const EnvironmentInfo info = describe(scene.environment, scene.records, scene.digest());
         writeAll(output, options.json ? infoJson(info) : infoText(info));
     } else {
         writeProduct(options, scene, compiled);

@@ -220,7 +220,7 @@ JobId readingsJob(const ScanCommand& command, const SceneInput& input, const Rea
     JobId job;
     job.tool = "scan";
     job.history = formatOptions(command, input).history;
-    job.room = input.scene.digest;
+    job.room = input.scene.digest();
     std::string all;
     for (const Document* document : {&input.environment, input.layout ? &*input.layout : nullptr})
         if (document != nullptr)
