@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace ispace {
@@ -43,7 +44,8 @@ class JsonWriter {
     }
 
     [[nodiscard]] const std::string& text() const { return text_; }
-    std::string take() { return std::move(text_); }
+    /// What is written so far; writing may go on, as if it still stood before.
+    std::string take() { return std::exchange(text_, {}); }
 
   private:
     void separate();

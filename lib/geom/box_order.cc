@@ -267,6 +267,8 @@ class ShapeReader {
         if (depth == BoxOrder::kDepth || rest_.empty()) return false;
         const std::size_t count = rest_.front();
         if (count == 0 || count > kWidth || count >= rest_.size()) return false;
+        // Below the root a node divides: else few boxes could be a tree of very many nodes.
+        if (count == 1 && depth > 0) return false;
         const auto children = rest_.subspan(1, count);
         rest_ = rest_.subspan(1 + count);
         return std::all_of(children.begin(), children.end(), [&](std::uint8_t size) {

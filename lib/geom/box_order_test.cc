@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -79,18 +80,27 @@ TEST(BoxOrder, WhatIsNoTreeOfTheseIsTold) {
 }
 
 TEST(BoxOrder, IsNoDeeperThanWhoFollowsItMayGo) {
-    // A chain of nodes with a single child each, and a leaf at the end.
-    const auto chain = [](int nodes) {
-        BoxOrder order{{0}, {}};
-        for (int i = 0; i < nodes; ++i) {
-            order.shape.push_back(1);
-            order.shape.push_back(i + 1 == nodes ? 1 : 0);
+    // Nodes below each other, each with a leaf of one box and the next node, or a leaf at the end.
+    const auto is_tree = [](std::size_t nodes) {
+        BoxOrder order;
+        for (std::size_t i = 0; i < nodes; ++i) {
+            const std::uint8_t next = i + 1 == nodes ? 1 : 0;
+            order.shape.insert(order.shape.end(), {2, 1, next});
         }
-        return order;
+        order.items.resize(nodes + 1);
+        std::iota(order.items.begin(), order.items.end(), 0U);
+        return order.isOf(nodes + 1);
     };
-    EXPECT_TRUE(chain(BoxOrder::kDepth).isOf(1));
-    EXPECT_FALSE(chain(BoxOrder::kDepth + 1).isOf(1));
-    EXPECT_FALSE(chain(100'000).isOf(1));
+    EXPECT_TRUE(is_tree(BoxOrder::kDepth));
+    EXPECT_FALSE(is_tree(BoxOrder::kDepth + 1));
+    EXPECT_FALSE(is_tree(100'000));
+}
+
+TEST(BoxOrder, HasNoNodesThatDivideNothing) {
+    EXPECT_TRUE((BoxOrder{{0}, {1, 1}}.isOf(1)));
+    EXPECT_FALSE((BoxOrder{{0}, {1, 0, 1, 1}}.isOf(1)));
+    EXPECT_TRUE((BoxOrder{{0, 1, 2}, {2, 0, 1, 2, 1, 1}}.isOf(3)));
+    EXPECT_FALSE((BoxOrder{{0, 1}, {2, 0, 1, 1, 1}}.isOf(2)));
 }
 
 }  // namespace

@@ -24,17 +24,9 @@ std::string hexByte(unsigned char byte) {
     return text.data();
 }
 
-}  // namespace
-
-std::string_view withoutMark(std::string_view bytes) {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
-    return bytes;
-}
-
 /// True of what most texts are: ASCII and its printed characters, tabs and newlines. Without
 /// branches, for many bytes at a time.
-static bool isSurelyText(std::string_view bytes) {
+bool isSurelyText(std::string_view bytes) {
     unsigned other = 0;
     for (const char c : bytes) {
         const auto byte = static_cast<unsigned char>(c);
@@ -43,6 +35,14 @@ static bool isSurelyText(std::string_view bytes) {
         other |= (is_control & ~is_space) | is_beyond;
     }
     return other == 0;
+}
+
+}  // namespace
+
+std::string_view withoutMark(std::string_view bytes) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
+    return bytes;
 }
 
 void checkTextBytes(std::string_view bytes, const std::string& name) {

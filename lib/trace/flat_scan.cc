@@ -132,7 +132,7 @@ ISPACE_INLINE void drawBlock(FlatScan& scan, int block, const FlatLine& line) {
     const double* const __restrict x = scan.blockOfX(block);
     const double* const __restrict y = scan.blockOfY(block);
     double* const __restrict inverse_range = scan.inverse_range + begin;
-    [[maybe_unused]] double* const __restrict cosine = scan.cosine + begin;
+    [[maybe_unused]] double* const __restrict cosine = kCosines ? scan.cosine + begin : nullptr;
     double met[kBlock], least[kBlock];
     ISPACE_LANES for (int i = 0; i < kBlock; ++i) {
         const double here =

@@ -40,9 +40,9 @@ struct FlatTree {
         double cx, cy, xx, xy, yx, yy;
     };
 
-    /// \param order that of the lines, if it is known; null: orderOf() them, unless there are
-    /// points
-    ///        among them. O(n log n), O(n) with an order \pre order->isOf(lines.size())
+    /// \param order that of the lines if it is known; null: it is found. Not used if some lines
+    ///        are points. \pre order->isOf(lines.size())
+    /// O(n log n), O(n) with an order.
     explicit FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies = {},
                       const BoxOrder* order = nullptr);
 
