@@ -5,6 +5,7 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -219,6 +220,10 @@ void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sens
     tbb::concurrent_queue<Batch> spare;
     // What comes before a bad pose is written, for any number of threads.
     std::exception_ptr failure;
+    // Not thrown in the pipeline, which would cancel the loops of readings that others are taking:
+    // these would go on with half of one.
+    std::exception_ptr write_failure;
+    std::atomic<bool> is_over = false;
     const auto read = [&](tbb::flow_control& control) -> Batch {
         Batch batch;
         if (!spare.try_pop(batch)) batch = std::make_shared<Readings>();
@@ -227,7 +232,7 @@ void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sens
         batch->clouds.clear();
         batch->jobs.clear();
         try {
-            if (!failure) source.next(most, batch->jobs);
+            if (!failure && !is_over) source.next(most, batch->jobs);
         } catch (...) {
             failure = std::current_exception();
         }
@@ -256,8 +261,14 @@ void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sens
         return batch;
     };
     const auto deliver_batch = [&](const Batch& batch) {
-        write(*batch);
-        progress.advance(static_cast<std::int64_t>(batch->jobs.size()));
+        if (is_over) return;
+        try {
+            write(*batch);
+            progress.advance(static_cast<std::int64_t>(batch->jobs.size()));
+        } catch (...) {
+            write_failure = std::current_exception();
+            is_over = true;
+        }
         spare.push(batch);
     };
     tbb::parallel_pipeline(
@@ -265,6 +276,7 @@ void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sens
         tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order, read) &
             tbb::make_filter<Batch, Batch>(tbb::filter_mode::parallel, take) &
             tbb::make_filter<Batch, void>(tbb::filter_mode::serial_in_order, deliver_batch));
+    if (write_failure) std::rethrow_exception(write_failure);
     if (failure) std::rethrow_exception(failure);
 }
 

@@ -94,3 +94,9 @@ for format in raw pcd png jsonl; do
     [ ! -e disk/all ] || fail "$format: half a file"
     [ -z "$(find disk -name '.ispace*')" ] || fail "left behind: $(ls -A disk)"
 done
+# Nobody goes on with half of a reading that another thread was about to take.
+for _ in 1 2 3 4 5; do
+    rm -rf disk/*
+    expect_status 1 scan "$room" two.3dm --frames 500 --select '[k]' --to png -j 4 -o disk/
+    one_error scan "png, four threads"
+done
