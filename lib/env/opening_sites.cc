@@ -2,9 +2,7 @@
 #include "env/opening_sites.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -21,8 +19,6 @@ namespace {
 /// thirty, since its ends may be off the line.
 constexpr double kParallel = std::numbers::pi / 180, kAlmostParallel = 30 * kParallel;
 
-constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
-
 Point2 pointOf(const Tuple& tuple) { return {tuple[0], tuple[1]}; }
 
 OpeningSite siteAround(std::size_t line, double middle, const Record& record) {
@@ -34,32 +30,15 @@ OpeningSite siteAround(std::size_t line, double middle, const Record& record) {
 
 OpeningSites::OpeningSites(std::span<const Element> elements, const WallPlan& plan,
                            Diagnostics& findings)
-    : elements_(elements), plan_(plan), findings_(findings) {
+    : elements_(elements), plan_(plan), findings_(findings), by_id_(elements.size(), {elements}) {
     starts_.reserve(plan.lines.size() + 1);
     starts_.push_back(0);
     for (const auto& [a, b] : plan.lines) starts_.push_back(starts_.back() + distance(a, b));
-    by_id_.assign(std::bit_ceil(2 * elements.size() + 1), kFree);
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-        std::size_t slot = slotOf(elements[i].id);
-        while (by_id_[slot] != kFree) slot = (slot + 1) & (by_id_.size() - 1);
-        by_id_[slot] = static_cast<std::uint32_t>(i);
-    }
 }
 
 const SegmentGrid& OpeningSites::grid() const {
     if (!grid_) grid_.emplace(plan_.lines, kWeldDistance);
     return *grid_;
-}
-
-std::size_t OpeningSites::slotOf(std::string_view id) const {
-    return std::hash<std::string_view>{}(id) & (by_id_.size() - 1);
-}
-
-const Element* OpeningSites::elementOf(std::string_view id) const {
-    std::size_t slot = slotOf(id);
-    while (by_id_[slot] != kFree && elements_[by_id_[slot]].id != id)
-        slot = (slot + 1) & (by_id_.size() - 1);
-    return by_id_[slot] == kFree ? nullptr : &elements_[by_id_[slot]];
 }
 
 std::optional<OpeningSite> OpeningSites::find(const Element& opening) const {
@@ -103,20 +82,19 @@ bool OpeningSites::hasOnePlace(const Record& record) const {
 std::optional<OpeningSites::Lines> OpeningSites::linesOf(const Element& opening) const {
     if (!opening.record.has("wall")) return Lines{0, plan_.lines.size()};
     const std::string& id = opening.record.text("wall");
-    const Element* const found = elementOf(id);
-    if (found == nullptr) {
+    const std::optional<std::size_t> found = by_id_.find(id);
+    if (!found) {
         fail(opening, "wall", "`wall`: nothing has the id `" + id + '`' + hintFor(id));
         return std::nullopt;
     }
-    const Element& wall = *found;
+    const Element& wall = elements_[*found];
     if (!isWall(wall.record)) {
         fail(opening, "wall",
              "`wall`: " + id + " is a " + wall.record.keyword() + "; a " +
                  opening.record.keyword() + " is in a wall, fence or ispace");
         return std::nullopt;
     }
-    const auto [first, last] = std::equal_range(plan_.owner.begin(), plan_.owner.end(),
-                                                static_cast<std::size_t>(found - elements_.data()));
+    const auto [first, last] = std::equal_range(plan_.owner.begin(), plan_.owner.end(), *found);
     if (first == last) return std::nullopt;  // that has a finding of its own
     return Lines{static_cast<std::size_t>(first - plan_.owner.begin()),
                  static_cast<std::size_t>(last - plan_.owner.begin()), &wall};

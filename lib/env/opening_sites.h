@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +12,7 @@
 #include "env/environment.h"
 #include "env/walls.h"
 #include "geom/spatial_index.h"
+#include "record/id_table.h"
 
 namespace ispace {
 
@@ -44,9 +44,12 @@ class OpeningSites {
     };
 
     [[nodiscard]] const SegmentGrid& grid() const;
-    [[nodiscard]] std::size_t slotOf(std::string_view id) const;
-    /// The element with this id, null for none.
-    [[nodiscard]] const Element* elementOf(std::string_view id) const;
+    /// For the table of ids.
+    struct IdOfElement {
+        std::span<const Element> elements;
+        std::string_view operator()(std::size_t i) const { return elements[i].id; }
+    };
+
     void fail(const Element& opening, std::string_view key, std::string message) const;
     [[nodiscard]] bool hasOnePlace(const Record& record) const;
     [[nodiscard]] std::optional<Lines> linesOf(const Element& opening) const;
@@ -72,8 +75,8 @@ class OpeningSites {
     const WallPlan& plan_;
     Diagnostics& findings_;
     mutable std::optional<SegmentGrid> grid_;  // made when first asked for
-    std::vector<double> starts_;        // of each line when all are laid end to end, and the end
-    std::vector<std::uint32_t> by_id_;  // elements by hash: open addressing, at most half full
+    std::vector<double> starts_;  // of each line when all are laid end to end, and the end
+    IdTable<IdOfElement> by_id_;
 };
 
 }  // namespace ispace

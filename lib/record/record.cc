@@ -2,10 +2,8 @@
 #include "record/record.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -15,6 +13,7 @@
 #include <utility>
 
 #include "record/collector.h"
+#include "record/id_table.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -222,44 +221,10 @@ void checkIds(const std::vector<Record>& records) {
     findings.throwIfAny();
 }
 
-namespace {
-
-/// The written ids of records, to be asked for very often: a table with open addressing, at most
-/// half full.
-class IdTable {
-  public:
-    explicit IdTable(const std::vector<Record>& records) : records_(records) {
-        slots_.assign(std::bit_ceil(2 * records.size() + 1), kFree);
-        for (std::size_t i = 0; i < records.size(); ++i) {
-            if (!records[i].has("id")) continue;
-            std::size_t slot = slotOf(records[i].text("id"));
-            while (slots_[slot] != kFree) slot = next(slot);
-            slots_[slot] = static_cast<std::uint32_t>(i);
-        }
-    }
-    [[nodiscard]] bool contains(std::string_view id) const {
-        std::size_t slot = slotOf(id);
-        while (slots_[slot] != kFree && records_[slots_[slot]].text("id") != id) slot = next(slot);
-        return slots_[slot] != kFree;
-    }
-
-  private:
-    static constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
-    [[nodiscard]] std::size_t slotOf(std::string_view id) const {
-        return hashOf(id) & (slots_.size() - 1);
-    }
-    [[nodiscard]] std::size_t next(std::size_t slot) const {
-        return (slot + 1) & (slots_.size() - 1);
-    }
-
-    const std::vector<Record>& records_;
-    std::vector<std::uint32_t> slots_;
-};
-
-}  // namespace
-
 std::vector<std::string> assignIds(const std::vector<Record>& records) {
-    const IdTable taken(records);
+    const IdTable taken(records.size(), [&records](std::size_t i) {
+        return records[i].has("id") ? std::string_view(records[i].text("id")) : std::string_view();
+    });
     // Automatic ids are unlike each other but where a keyword ends in a digit ("a" 11, "a1" 1).
     const bool may_meet = std::any_of(records.begin(), records.end(), [](const Record& record) {
         return record.keyword().back() >= '0' && record.keyword().back() <= '9';
@@ -273,7 +238,7 @@ std::vector<std::string> assignIds(const std::vector<Record>& records) {
         while (id.empty()) {
             id = record.keyword();
             id += std::to_string(++count[record.keyword()]);
-            if (taken.contains(id) || (may_meet && !made.insert(id).second)) id.clear();
+            if (taken.find(id) || (may_meet && !made.insert(id).second)) id.clear();
         }
         ids.push_back(std::move(id));
     }
