@@ -118,6 +118,10 @@ TEST(DerivedWalls, OrdersAreOfTheLinesOfAHeight) {
     const Environment more = withStored(walls + "cube at=3,3\n", stored);
     EXPECT_FALSE(knowsOrder(more, 0.15));
     EXPECT_EQ(more.stored(), environment(walls + "cube at=3,3\n").stored());
+    // As many lines, but others.
+    const std::string cube = "cube at=3,3\n", moved = "cube at=3.5,3\n";
+    EXPECT_TRUE(knowsOrder(withStored(walls + cube, more.stored()), 0.15));
+    EXPECT_FALSE(knowsOrder(withStored(walls + moved, more.stored()), 0.15));
 }
 
 TEST(DerivedWalls, GiveTheSameRoom) {
