@@ -311,6 +311,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
                 coverage.target = makeTarget(environment, options.cells, options.height);
                 report.free_area = totalArea(level->freeFloor());
                 if (options.exact) floor = floorCurvesOf(environment, level->freeFloor());
+                static_cast<void>(scene.digest());  // is kept
             });
     coverage.sets = setsOf(coverage.sensors, grid);
 

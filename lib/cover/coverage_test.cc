@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "cover/coverage_formats.h"
 #include "cover/test_scenes.h"
+#include "env/level.h"
 
 namespace ispace {
 namespace {
@@ -123,6 +124,30 @@ TEST(Coverage, SameForAnyNumberOfThreads) {
     };
     const std::string one = with_threads(1);
     for (int run = 0; run < 3; ++run) EXPECT_EQ(with_threads(4), one);
+}
+
+/// As many lines, round bodies and edges of free floor as are worth several threads.
+TEST(Coverage, SameForAnyNumberOfThreadsInALargeHall) {
+    constexpr int kSide = 52;
+    const auto size = std::to_string(3 * kSide);
+    std::string lines = "ispace size=" + size + ',' + size + '\n';
+    for (int i = 0; i < kSide * kSide; ++i) {
+        const std::string at = std::to_string(3 * (i % kSide) - 3 * kSide / 2 + 1) + ',' +
+                               std::to_string(3 * (i / kSide) - 3 * kSide / 2 + 1);
+        lines += (i % 2 == 0 ? "table at=" : "desk heading=" + std::to_string(i % 90) + " at=") +
+                 at + '\n';
+    }
+    lines += "laser at=0,0 fov=270\nlaser at=30,20 fov=180 heading=70 range=20\n";
+    const auto with_threads = [&lines](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        const Scene scene = sceneOf(lines);  // what is known of it is made anew
+        const Coverage coverage = coverageOf(scene);
+        EXPECT_GT(scene.environment.level(kScanHeight)->slice().straightLines().size(), 20'000U);
+        EXPECT_FALSE(coverage.report.unseen.empty());
+        return coverageJson(coverage.report) + coverageCsv(coverage);
+    };
+    const std::string one = with_threads(1);
+    for (const std::size_t threads : {2U, 3U}) EXPECT_EQ(with_threads(threads), one);
 }
 
 TEST(Coverage, OneCellWillDo) {

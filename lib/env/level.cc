@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "env/level.h"
 
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+
 #include <cassert>
 #include <utility>
 
@@ -40,6 +43,14 @@ const PolygonIndex& Level::solids() const {
 
 const VisibilityMap& Level::sight() const {
     return sight_.get([this] { return VisibilityMap(slice().straightLines(), slice().curves()); });
+}
+
+void Level::prepareSight() const {
+    // Who waits in here does not begin with other work.
+    tbb::this_task_arena::isolate([this] {
+        tbb::parallel_invoke([this] { static_cast<void>(solids()); },
+                             [this] { static_cast<void>(sight()); });
+    });
 }
 
 bool Level::isFree(Point2 p) const {

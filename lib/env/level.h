@@ -38,7 +38,7 @@ class Level {
     void query(Point2 viewpoint, double max_range, VisibleRegion& region) const;
 
     /// Makes what query() looks into, which takes longer than many queries.
-    void prepareSight() const { static_cast<void>(sight()); }
+    void prepareSight() const;
 
     /// How many lines the slice has; 0 until it is made.
     [[nodiscard]] std::size_t linesMade() const;

@@ -7,11 +7,13 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <memory>
 #include <numeric>
 #include <utility>
 
+#include "geom/in_order.h"
 #include "geom/overlay_cells.h"
 
 namespace ispace::lattice {
@@ -24,6 +26,8 @@ constexpr std::size_t kQuick = 2048;
 constexpr std::size_t kManyLayers = 256;
 /// Strips in which an edge lies, on average, at most.
 constexpr std::size_t kMostStrips = 6;
+/// Points that a thread takes at once.
+constexpr std::size_t kAtOnce = 16'384;
 
 /// Edges that are led through ends together: about as long and at about the same place, in x.
 struct Bundle {
@@ -178,57 +182,63 @@ class Sweep {
             strips_.back().columns.last = xs_[i] - 1;
             strips_.emplace_back().columns.first = xs_[i];
         }
+        findStrips();
         if (!areWide()) {
             strips_.clear();
             return false;
         }
-        for (Index i = 0; i < points_.size(); ++i)
-            strips_[stripAt(strips_, points_[i].x)].points.push_back(i);
+        for (Index i = 0; i < points_.size(); ++i) strips_[strip_of_[i]].points.push_back(i);
         for (Index i = 0; i < edges_.size(); ++i) {
-            const std::size_t last = lastOf(edges_[i]);
-            for (std::size_t k = firstOf(edges_[i]); k <= last; ++k) strips_[k].edges.push_back(i);
+            const Index last = lastOf(edges_[i]);
+            for (Index k = firstOf(edges_[i]); k <= last; ++k) strips_[k].edges.push_back(i);
         }
         return true;
     }
 
     void run(const PartVisitor& visit) {
         last_of_.resize(edges_.size());
-        const auto at_once =
-            static_cast<std::size_t>(std::max(1, 2 * tbb::this_task_arena::max_concurrency()));
+        const auto at_once = 8 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+        InOrder products(strips_.size());
         // Strips before `made` are parts, those up to `known` become parts, all up to `found` have
         // their ways, and the next ones get theirs: all at once.
         std::size_t found = 0, known = 0, made = 0;
-        std::vector<std::function<void()>> products, earlier;
-        while (made < strips_.size() || !earlier.empty()) {
+        while (made < strips_.size()) {
             const std::size_t goal = std::min(strips_.size(), found + at_once);
             const std::size_t parts = known - made;
-            products.assign(parts, {});
+            // One after another, whoever makes them, so that their products need not wait.
+            std::atomic<std::size_t> next = 0;
             tbb::parallel_for(
-                tbb::blocked_range<std::size_t>(0, 1 + parts + (goal - found), 1),
+                tbb::blocked_range<std::size_t>(0, parts + (goal - found), 1),
                 [&](const auto& range) {
-                    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                        if (i == 0)
-                            for (const auto& finish : earlier) finish();
-                        else if (i <= parts)
-                            products[i - 1] = partFrom(strips_[made + i - 1], visit);
+                    for (std::size_t k = range.begin(); k < range.end(); ++k) {
+                        const std::size_t i = next++;
+                        if (i < parts)
+                            products.add(made + i, partFrom(strips_[made + i], visit));
                         else
-                            find(strips_[found + i - 1 - parts]);
+                            find(strips_[found + i - parts]);
                     }
                 },
                 tbb::simple_partitioner());
             for (; found < goal; ++found) link(found);
             made = known;
             while (known < found && strips_[known].open == 0) ++known;
-            earlier = std::move(products);
         }
     }
 
   private:
-    [[nodiscard]] std::size_t firstOf(const Edge& edge) const {
-        return stripAt(strips_, points_[edge.from].x);
-    }
-    [[nodiscard]] std::size_t lastOf(const Edge& edge) const {
-        return stripAt(strips_, points_[edge.to].x);
+    [[nodiscard]] Index firstOf(const Edge& edge) const { return strip_of_[edge.from]; }
+    [[nodiscard]] Index lastOf(const Edge& edge) const { return strip_of_[edge.to]; }
+    void findStrips() {
+        strip_of_.resize(points_.size());
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points_.size(), kAtOnce),
+                          [&](const auto& range) {
+                              std::size_t strip = 0;  // neighbours are mostly in the same
+                              for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                                  if (!strips_[strip].columns.hold(points_[i]))
+                                      strip = stripAt(strips_, points_[i].x);
+                                  strip_of_[i] = static_cast<Index>(strip);
+                              }
+                          });
     }
     [[nodiscard]] bool areWide() const {
         std::size_t count = 0;
@@ -329,6 +339,7 @@ class Sweep {
     const std::vector<Point>& points_;
     const SetStore& sets_;
     std::vector<Strip> strips_;
+    std::vector<Index> strip_of_;   // of each point
     std::vector<Last> last_of_;     // edges that lie in several strips
     std::vector<std::int32_t> xs_;  // of all points, ascending
 };

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geom/plane_graph.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
+
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -104,8 +109,34 @@ std::vector<Index> Graph<P>::linesBelow(const std::vector<Index>& vertices) cons
     return below;
 }
 
+/// Lines bear only on points above them: in stretches of x, several at once.
 template <typename P>
 void Graph<P>::sweepBelow(const std::vector<Index>& vertices, std::vector<Index>& below) const {
+    constexpr std::size_t kMany = 20'000;  // lines
+    const auto stretches = lines_.size() < kMany
+                               ? std::size_t{1}
+                               : static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    std::vector<decltype(P::x)> xs, last;  // where lines begin; ends of all stretches but the last
+    if (stretches > 1) {
+        xs.reserve(lines_.size());
+        for (const Line& line : lines_) xs.push_back(points_[line.from].x);
+        tbb::this_task_arena::isolate([&] { tbb::parallel_sort(xs.begin(), xs.end()); });
+        for (std::size_t i = 1; i < stretches; ++i) last.push_back(xs[i * xs.size() / stretches]);
+    }
+    const auto sweep = [&](std::size_t i) {
+        using Limits = std::numeric_limits<decltype(P::x)>;
+        constexpr auto kFirst = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
+        sweepBelow(vertices, i == 0 ? kFirst : last[i - 1],
+                   i == last.size() ? Limits::max() : last[i], below);
+    };
+    if (stretches == 1) return sweep(0);
+    tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, stretches, sweep); });
+}
+
+/// For points with after < x <= last.
+template <typename P>
+void Graph<P>::sweepBelow(const std::vector<Index>& vertices, decltype(P::x) after,
+                          decltype(P::x) last, std::vector<Index>& below) const {
     enum Kind { Ask, End, Begin };
     struct Event {
         decltype(P::x) x;
@@ -113,11 +144,14 @@ void Graph<P>::sweepBelow(const std::vector<Index>& vertices, std::vector<Index>
         Index index;
     };
     std::vector<Event> events;
-    events.reserve(vertices.size() + 2 * lines_.size());
-    for (Index k = 0; k < vertices.size(); ++k) events.push_back({points_[vertices[k]].x, Ask, k});
+    events.reserve(lines_.size());
+    for (Index k = 0; k < vertices.size(); ++k)
+        if (const auto x = points_[vertices[k]].x; after < x && x <= last)
+            events.push_back({x, Ask, k});
+    if (events.empty()) return;
     for (Index i = 0; i < lines_.size(); ++i) {
         const auto x0 = points_[lines_[i].from].x, x1 = points_[lines_[i].to].x;
-        if (x0 == x1) continue;
+        if (x0 == x1 || x1 <= after || x0 >= last) continue;
         events.push_back({x0, Begin, i});
         events.push_back({x1, End, i});
     }

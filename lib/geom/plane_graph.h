@@ -64,6 +64,8 @@ class Graph {
   private:
     void sortAbout(Index vertex, Index from, Index to);
     void sweepBelow(const std::vector<Index>& vertices, std::vector<Index>& below) const;
+    void sweepBelow(const std::vector<Index>& vertices, decltype(P::x) after, decltype(P::x) last,
+                    std::vector<Index>& below) const;
 
     const std::vector<P>& points_;
     const std::vector<Line>& lines_;

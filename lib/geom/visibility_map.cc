@@ -6,6 +6,9 @@
 #pragma GCC optimize("no-tree-slp-vectorize")
 #endif
 
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -179,14 +182,33 @@ ISPACE_SIMD_CLONES [[gnu::flatten]] void queryBounded(const Query& query) {
 }  // namespace
 
 struct VisibilityMap::Data {
-    Data(std::span<const Segment2> lines, std::span<const Ellipse> ellipses)
-        : mesh(lines), rounds(ellipses, static_cast<Index>(lines.size())) {}
+    Data(SightMesh mesh_, RoundBodies rounds_)
+        : mesh(std::move(mesh_)), rounds(std::move(rounds_)) {}
     SightMesh mesh;
     RoundBodies rounds;
+
+    static std::unique_ptr<Data> of(std::span<const Segment2> lines,
+                                    std::span<const Ellipse> ellipses) {
+        constexpr std::size_t kMany = 1000;
+        std::optional<RoundBodies> rounds;
+        const auto make_rounds = [&] {
+            rounds.emplace(ellipses, static_cast<Index>(lines.size()));
+        };
+        std::optional<SightMesh> mesh;
+        const auto make_mesh = [&] { mesh.emplace(lines); };
+        if (ellipses.size() < kMany) {
+            make_rounds();
+            make_mesh();
+        } else {
+            // Who waits in here does not begin with other work.
+            tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(make_rounds, make_mesh); });
+        }
+        return std::make_unique<Data>(std::move(*mesh), std::move(*rounds));
+    }
 };
 
 VisibilityMap::VisibilityMap(std::span<const Segment2> lines, std::span<const Ellipse> rounds)
-    : data_(std::make_unique<Data>(lines, rounds)) {}
+    : data_(Data::of(lines, rounds)) {}
 VisibilityMap::VisibilityMap(VisibilityMap&&) noexcept = default;
 VisibilityMap& VisibilityMap::operator=(VisibilityMap&&) noexcept = default;
 VisibilityMap::~VisibilityMap() = default;

@@ -8,14 +8,17 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "geom/arrangement.h"
+#include "geom/in_circle.h"
 #include "geom/spatial_index.h"
 
 namespace ispace {
@@ -25,7 +28,38 @@ namespace {
 using Index = std::uint32_t;
 /// Lines' ends, or triangles, that are worth another thread.
 constexpr std::size_t kMany = 20'000;
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Doubles = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// Plans are full of rectangles, whose corners lie on a circle or next to it. Where doubles cannot
+/// tell, pairs of doubles mostly can, and in a small part of the time that exact numbers take.
+struct Kernel : Doubles {
+    struct Side_of_oriented_circle_2 {            // NOLINT: CGAL's names
+        using result_type = CGAL::Oriented_side;  // NOLINT
+        CGAL::Oriented_side operator()(const Point_2& a, const Point_2& b, const Point_2& c,
+                                       const Point_2& p) const {
+            const int side =
+                surelyInCircle({a.x(), a.y()}, {b.x(), b.y()}, {c.x(), c.y()}, {p.x(), p.y()});
+            if (side != 0) return side > 0 ? CGAL::ON_POSITIVE_SIDE : CGAL::ON_NEGATIVE_SIDE;
+            return Doubles().side_of_oriented_circle_2_object()(a, b, c, p);
+        }
+    };
+    [[nodiscard]] Side_of_oriented_circle_2 side_of_oriented_circle_2_object() const { return {}; }
+};
+
+}  // namespace
+
+}  // namespace ispace
+
+/// Looks for triangles as with the kernel that it is made of: first with rounded turns.
+template <>
+struct CGAL::Triangulation_structural_filtering_traits<ispace::Kernel> {
+    using Use_structural_filtering_tag = CGAL::Tag_true;  // NOLINT: CGAL looks for it
+};
+
+namespace ispace {
+
+namespace {
+
 using Tds = CGAL::Triangulation_data_structure_2<
     CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>,
     CGAL::Constrained_triangulation_face_base_2<
@@ -50,7 +84,25 @@ std::array<Point2, 4> cornersOf(const Box2& box) {
     return {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
 }
 
-Delaunay triangulate(const std::vector<Segment2>& lines, const Box2& box) {
+/// By a total order, with the help of other threads if they are many.
+template <typename T, typename Less>
+void sortMany(std::vector<T>& items, Less less) {
+    if (items.size() < kMany)
+        std::sort(items.begin(), items.end(), less);
+    else
+        tbb::parallel_sort(items.begin(), items.end(), less);
+}
+
+/// Runs both, the second here; at once if it is worth it.
+template <typename F, typename G>
+void runBoth(bool is_worth_it, F f, G g) {
+    if (is_worth_it) return tbb::parallel_invoke(f, g);
+    f();
+    g();
+}
+
+/// \param net empty: it is filled in place, as to move it is to copy it, in another order.
+void triangulate(const std::vector<Segment2>& lines, const Box2& box, Delaunay& net) {
     // Ends of lines: first and last of each, as of a list of all.
     struct End {
         Point2 at;
@@ -65,10 +117,7 @@ Delaunay triangulate(const std::vector<Segment2>& lines, const Box2& box) {
     const auto less = [](const End& e, const End& f) {
         return e.at != f.at ? lexLess(e.at, f.at) : e.number < f.number;
     };
-    if (ends.size() < kMany)
-        std::sort(ends.begin(), ends.end(), less);
-    else
-        tbb::parallel_sort(ends.begin(), ends.end(), less);
+    sortMany(ends, less);
     std::vector<std::pair<Kernel::Point_2, Index>> sites;
     sites.reserve(ends.size() + 4);
     std::vector<Index> site_of(ends.size());
@@ -81,20 +130,23 @@ Delaunay triangulate(const std::vector<Segment2>& lines, const Box2& box) {
     for (const Point2 p : cornersOf(box))
         sites.push_back({Kernel::Point_2(p.x, p.y), static_cast<Index>(sites.size())});
 
-    Delaunay net;
     net.insert(sites.begin(), sites.end());
     std::vector<Delaunay::Vertex_handle> handles(sites.size());
     for (auto v = net.finite_vertices_begin(); v != net.finite_vertices_end(); ++v)
         handles[v->info()] = v;
     for (std::size_t i = 0; i < lines.size(); ++i)
         net.insert_constraint(handles[site_of[2 * i]], handles[site_of[2 * i + 1]]);
-    return net;
 }
 
 /// Triangles along a curve that fills the plane (Morton), so that neighbours lie near each other in
 /// memory; numbered in that order.
 std::vector<Delaunay::Face_handle> numberedFaces(const Delaunay& net, const Box2& box) {
-    std::vector<std::pair<std::uint64_t, Delaunay::Face_handle>> order;
+    struct Place {
+        std::uint64_t code;
+        Index number;  // as the net lists them
+        Delaunay::Face_handle face;
+    };
+    std::vector<Place> order;
     order.reserve(net.number_of_faces());
     const auto step = [](double offset, double extent) {
         const double share = offset / extent;  // of the extent, within [0, 1]
@@ -105,15 +157,16 @@ std::vector<Delaunay::Face_handle> numberedFaces(const Delaunay& net, const Box2
         const Vec2 c = pointOf(f->vertex(2)) - box.low;
         order.push_back({mortonCode(step((a.x + b.x + c.x) / 3, box.width()),
                                     step((a.y + b.y + c.y) / 3, box.depth())),
-                         f});
+                         static_cast<Index>(order.size()), f});
     }
-    std::stable_sort(order.begin(), order.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    sortMany(order, [](const Place& a, const Place& b) {
+        return a.code != b.code ? a.code < b.code : a.number < b.number;
+    });
     std::vector<Delaunay::Face_handle> faces;
     faces.reserve(order.size());
-    for (const auto& [place, face] : order) {
-        face->info() = static_cast<Index>(faces.size());
-        faces.push_back(face);
+    for (const Place& place : order) {
+        place.face->info() = static_cast<Index>(faces.size());
+        faces.push_back(place.face);
     }
     return faces;
 }
@@ -169,10 +222,21 @@ SightMesh::SightMesh(std::span<const Segment2> all_lines) : in() {
         cells_box.add(piece.segment.b);
     }
     box = boxAround(cells_box);
-    const Delaunay net = triangulate(lines, box);
-    const std::vector<Delaunay::Face_handle> faces = numberedFaces(net, box);
-    const LineFinder finder(lines, names);
-    portals.resize(3 * faces.size());
+    // Not with other work: who builds this may hold what that waits for.
+    tbb::this_task_arena::isolate([&] { makeTriangles(lines, names); });
+}
+
+void SightMesh::makeTriangles(const std::vector<Segment2>& lines, const std::vector<Index>& names) {
+    const bool are_many = lines.size() >= kMany;
+    std::optional<LineFinder> finder;
+    std::optional<Delaunay> net;
+    runBoth(
+        are_many, [&] { finder.emplace(lines, names); },
+        [&] { triangulate(lines, box, net.emplace()); });
+    std::vector<Delaunay::Face_handle> faces;
+    runBoth(
+        are_many, [&] { portals.resize(3 * net->number_of_faces()); },
+        [&] { faces = numberedFaces(*net, box); });
     const auto portal_of = [](const Delaunay::Face_handle& face, int i) {
         return 3 * face->info() + static_cast<Index>(i);
     };
@@ -183,7 +247,7 @@ SightMesh::SightMesh(std::span<const Segment2> all_lines) : in() {
             const Point2 from = pointOf(face->vertex(CGAL::Triangulation_cw_ccw_2::ccw(i)));
             const Point2 to = pointOf(face->vertex(CGAL::Triangulation_cw_ccw_2::cw(i)));
             Index target = Portal::kFree;
-            if (net.is_infinite(next)) {
+            if (net->is_infinite(next)) {
                 // Counter-clockwise: along the lower side in x, along the right one in y.
                 const bool level = from.y == to.y;
                 in[level ? (to.x > from.x ? 0U : 2U) : (to.y > from.y ? 1U : 3U)] = edge;
@@ -193,26 +257,24 @@ SightMesh::SightMesh(std::span<const Segment2> all_lines) : in() {
             portals[edge].corner = pointOf(face->vertex(i));
             portals[edge].behind = target;
             if (face->is_constrained(i)) {
-                if (target > edge) portals[edge].line = finder.find(from, to);
+                if (target > edge) portals[edge].line = finder->find(from, to);
                 target = Portal::kBlocked | edge;
             }
             portals[beforeOf(edge)].right = target;
             portals[nextOf(edge)].left = target;
         }
     };
-    // Not with other work: who builds this may hold what that waits for.
-    tbb::this_task_arena::isolate([&] {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), kMany),
-                          [&](const auto& range) {
-                              for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  add_portals(faces[i]);
-                          });
-    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), kMany),
+                      [&](const auto& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i)
+                              add_portals(faces[i]);
+                      });
     // Lines are found once for both sides.
     for (Index edge = 0; edge < portals.size(); ++edge)
         if (portals[edge].behind < edge && isLine(edge))
             portals[edge].line = portals[portals[edge].behind].line;
-    makeCells(faces.size());
+    runBoth(
+        are_many, [&] { net.reset(); }, [&] { makeCells(faces.size()); });
 }
 
 std::size_t SightMesh::cellOf(Point2 p) const {
@@ -238,17 +300,26 @@ void SightMesh::makeCells(std::size_t count) {
     if (width > 0) columns_per_metre = columns / width;
     if (depth > 0) rows_per_metre = rows / depth;
     cells.resize(std::size_t{columns} * rows);
-    // To and fro, so that the next cell is near.
-    Index triangle = 0;
-    for (Index row = 0; row < rows; ++row) {
-        for (Index i = 0; i < columns; ++i) {
-            const Index column = row % 2 == 0 ? i : columns - 1 - i;
-            const Point2 center{cells_box.low.x + (column + 0.5) / columns * width,
-                                cells_box.low.y + (row + 0.5) / rows * depth};
-            triangle = locateFrom(center, triangle);
-            cells[std::size_t{row} * columns + column] = triangle;
+    // To and fro, so that the next cell is near; several blocks of rows at once.
+    constexpr Index kRows = 64;
+    const auto place = [&](Index column, Index row) {
+        return Point2{cells_box.low.x + (column + 0.5) / columns * width,
+                      cells_box.low.y + (row + 0.5) / rows * depth};
+    };
+    std::vector<Index> first((rows + kRows - 1) / kRows, 0);
+    for (Index i = 1; i < first.size(); ++i)
+        first[i] = locateFrom(place(0, i * kRows), first[i - 1]);
+    tbb::parallel_for(std::size_t{0}, first.size(), [&](std::size_t block) {
+        Index triangle = first[block];
+        const auto begin = static_cast<Index>(block) * kRows;
+        for (Index row = begin; row < std::min(rows, begin + kRows); ++row) {
+            for (Index i = 0; i < columns; ++i) {
+                const Index column = row % 2 == 0 ? i : columns - 1 - i;
+                triangle = locateFrom(place(column, row), triangle);
+                cells[std::size_t{row} * columns + column] = triangle;
+            }
         }
-    }
+    });
 }
 
 Index SightMesh::locateFrom(Point2 p, Index triangle) const {
@@ -277,83 +348,6 @@ Index SightMesh::locateFrom(Point2 p, Index triangle) const {
         if (!is_right(3 * triangle) && !is_right(3 * triangle + 1) && !is_right(3 * triangle + 2))
             return triangle;
     return 0;
-}
-
-namespace {
-
-using Index = std::uint32_t;
-
-double squaredLength(Vec2 v) { return dot(v, v); }
-
-constexpr double kSquaredEpsilon = kRayEpsilon * kRayEpsilon;
-
-}  // namespace
-
-void TouchedLines::gather(Point2 p, Index triangle) {
-    lines_.clear();
-    triangles_.clear();
-    many_.clear();
-    add(triangle);
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-        for (Index edge = 3 * triangles_[i], k = 0; k < 3; ++k, ++edge) {
-            if (squaredDistance(p, edge) > kSquaredEpsilon) continue;
-            if (mesh_.isLine(edge)) lines_.push_back(edge);
-            const Index behind = mesh_.portals[edge].behind;
-            if (behind != Portal::kFree) add(behind / 3);
-        }
-    }
-}
-
-Point2 TouchedLines::moved(Point2 p) const {
-    double least = kSquaredEpsilon;
-    Point2 nearest = p;
-    bool is_vertex = false;
-    for (const Index edge : lines_) {
-        for (const Index end : {nextOf(edge), beforeOf(edge)}) {
-            const double squared = squaredLength(mesh_.portals[end].corner - p);
-            if (!(squared <= least)) continue;
-            least = squared;
-            nearest = mesh_.portals[end].corner;
-            is_vertex = true;
-        }
-    }
-    if (is_vertex) return nearest;
-    least = std::numeric_limits<double>::infinity();
-    for (const Index edge : lines_) {
-        const double squared = squaredDistance(p, edge);
-        if (!(squared < least)) continue;
-        least = squared;
-        nearest = nearestPoint(wallOf(edge), p);
-    }
-    return nearest;
-}
-
-std::span<const Index> TouchedLines::bothSides() {
-    const std::size_t count = lines_.size();
-    for (std::size_t i = 0; i < count; ++i) lines_.push_back(mesh_.portals[lines_[i]].behind);
-    std::sort(lines_.begin(), lines_.end());
-    lines_.erase(std::unique(lines_.begin(), lines_.end()), lines_.end());
-    return lines_;
-}
-
-Segment2 TouchedLines::wallOf(Index edge) const {
-    return {mesh_.portals[nextOf(edge)].corner, mesh_.portals[beforeOf(edge)].corner};
-}
-
-double TouchedLines::squaredDistance(Point2 p, Index edge) const {
-    return squaredLength(nearestPoint(wallOf(edge), p) - p);
-}
-
-void TouchedLines::add(Index triangle) {
-    // Seldom more than a few.
-    constexpr std::size_t kFew = 32;
-    if (triangles_.size() < kFew) {
-        if (std::find(triangles_.begin(), triangles_.end(), triangle) != triangles_.end()) return;
-    } else {
-        if (many_.empty()) many_.insert(triangles_.begin(), triangles_.end());
-        if (!many_.insert(triangle).second) return;
-    }
-    triangles_.push_back(triangle);
 }
 
 }  // namespace ispace

@@ -83,6 +83,8 @@ struct SightMesh {
 
   private:
     [[nodiscard]] std::size_t cellOf(Point2 p) const;
+    /// Of lines that meet at common ends only. \param names the line that each is a piece of
+    void makeTriangles(const std::vector<Segment2>& lines, const std::vector<std::uint32_t>& names);
     void makeCells(std::size_t count);
 };
 

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/in_circle.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace ispace {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+int exactly(Point2 a, Point2 b, Point2 c, Point2 d) {
+    const auto at = [](Point2 p) { return Kernel::Point_2(p.x, p.y); };
+    return static_cast<int>(
+        Kernel().side_of_oriented_circle_2_object()(at(a), at(b), at(c), at(d)));
+}
+
+TEST(InCircle, CornersOfUprightRectanglesAreNotTold) {
+    EXPECT_EQ(surelyInCircle({0, 0}, {4, 0}, {4, 3}, {0, 3}), 0);
+    EXPECT_EQ(surelyInCircle({0.1, 0.2}, {7.3, 0.2}, {7.3, 5.9}, {0.1, 5.9}), 0);
+}
+
+TEST(InCircle, ToldApartByOneUnitInTheLastPlace) {
+    const double high = std::nextafter(3.0, 4), low = std::nextafter(3.0, 2);
+    EXPECT_EQ(surelyInCircle({0, 0}, {4, 0}, {4, 3}, {0, high}), -1);
+    EXPECT_EQ(surelyInCircle({0, 0}, {4, 0}, {4, 3}, {0, low}), 1);
+    EXPECT_EQ(surelyInCircle({4, 3}, {4, 0}, {0, 0}, {0, low}), -1) << "clockwise";
+}
+
+TEST(InCircle, FarTooLargeOrSmallNumbersAreNotTold) {
+    for (const double s : {1e-120, 1e-300, 1e160, 1e300})
+        EXPECT_EQ(surelyInCircle({0, 0}, {4 * s, 0}, {4 * s, 3 * s}, {s, s}), 0) << s;
+}
+
+/// What is told is right, and corners of turned rectangles mostly are told.
+TEST(InCircle, AgreesWithExactNumbersNextToCircles) {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> unit(0, 1);
+    int told = 0, off = 0;
+    constexpr int kRounds = 100'000;
+    for (int i = 0; i < kRounds; ++i) {
+        const double scale = std::pow(10, 12 * unit(random) - 6), far = 300 * unit(random);
+        const double angle = 2 * std::numbers::pi * unit(random);
+        const double x = scale * std::cos(angle), y = scale * std::sin(angle);
+        const double share = unit(random);
+        const Point2 a{far, -far};
+        const Point2 b{a.x + x, a.y + y}, d{a.x - share * y, a.y + share * x};
+        const Point2 c{b.x - share * y, b.y + share * x};
+        const int side = surelyInCircle(a, b, c, d), exact = exactly(a, b, c, d);
+        if (side != 0) {
+            ASSERT_EQ(side, exact) << i;
+        }
+        told += side != 0 ? 1 : 0;
+        off += exact != 0 ? 1 : 0;
+    }
+    EXPECT_GT(off, kRounds / 2);
+    EXPECT_GT(told, off * 99 / 100);
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+
+#include "geom/polygon.h"
+#include "geom/predicates.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::size_t kLevels = 24;        // scanlines per direction, of each kind
+constexpr std::size_t kManyLevels = 2000;  // the same where the first ones found nothing
+constexpr std::size_t kChordsPerLine = 3;  // the longest are tried
+
+/// The region's edges; `swapped`: with x and y exchanged, so that one scan serves both directions.
+std::vector<Segment2> edgesOf(const Region& region, bool swapped) {
+    std::vector<Segment2> edges;
+    region.forEachEdge([&](const Segment2& e) {
+        edges.push_back(swapped ? Segment2{{e.a.y, e.a.x}, {e.b.y, e.b.x}} : e);
+    });
+    return edges;
+}
+
+double middle(double a, double b) { return a / 2 + b / 2; }
+
+/// Levels halfway between neighbouring vertices, at most `most` of them, widest steps first: each
+/// of them holds a chord of the region.
+std::vector<double> levelsBetweenVertices(const std::vector<Segment2>& edges, std::size_t most) {
+    std::vector<double> ys;
+    ys.reserve(edges.size());
+    for (const Segment2& e : edges) ys.push_back(e.a.y);
+    std::sort(ys.begin(), ys.end());
+    ys.erase(std::unique(ys.begin(), ys.end()), ys.end());
+    std::vector<std::size_t> steps;
+    for (std::size_t i = 1; i < ys.size(); ++i) steps.push_back(i);
+    const auto last = steps.begin() + static_cast<std::ptrdiff_t>(std::min(steps.size(), most));
+    std::partial_sort(steps.begin(), last, steps.end(), [&](std::size_t i, std::size_t k) {
+        const double wide = ys[i] - ys[i - 1], other = ys[k] - ys[k - 1];
+        return wide != other ? wide > other : i < k;
+    });
+    steps.erase(last, steps.end());
+    std::vector<double> levels;
+    levels.reserve(steps.size());
+    for (const std::size_t i : steps) levels.push_back(middle(ys[i - 1], ys[i]));
+    return levels;
+}
+
+std::vector<double> evenLevels(const std::vector<Segment2>& edges) {
+    Box2 box;
+    for (const Segment2& e : edges) box.add(e.a);
+    std::vector<double> levels;
+    for (std::size_t i = 0; i < kLevels; ++i) {
+        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(kLevels);
+        levels.push_back(box.low.y + share * box.depth());
+    }
+    return levels;
+}
+
+/// The middle of a chord of the region.
+struct Candidate {
+    Point2 at;
+    double room = 0;  ///< from there to an end of the chord
+};
+
+/// Middles of the longest chords of the region at a level, between these crossings of its boundary.
+void addChordMiddles(std::vector<double>& xs, double y, std::vector<Candidate>& middles) {
+    std::sort(xs.begin(), xs.end());
+    std::vector<std::pair<double, Point2>> chords;
+    for (std::size_t i = 1; i < xs.size(); i += 2)
+        chords.push_back({xs[i] - xs[i - 1], {middle(xs[i - 1], xs[i]), y}});
+    std::stable_sort(chords.begin(), chords.end(),
+                     [](const auto& c, const auto& d) { return c.first > d.first; });
+    chords.resize(std::min(chords.size(), kChordsPerLine));
+    for (const auto& [width, p] : chords) middles.push_back({p, width / 2});
+}
+
+/// The same at some levels, one after another.
+void addChordMiddles(const std::vector<Segment2>& edges, std::span<const double> levels,
+                     std::vector<Candidate>& middles) {
+    std::vector<std::pair<double, std::size_t>> by_height;
+    for (std::size_t i = 0; i < levels.size(); ++i) by_height.emplace_back(levels[i], i);
+    std::sort(by_height.begin(), by_height.end());
+    std::vector<std::vector<double>> xs(levels.size());
+    for (const auto& [a, b] : edges) {
+        const double low = std::min(a.y, b.y), high = std::max(a.y, b.y);
+        auto level = std::lower_bound(by_height.begin(), by_height.end(), low,
+                                      [](const auto& l, double y) { return l.first < y; });
+        for (; level != by_height.end() && level->first < high; ++level)
+            xs[level->second].push_back(a.x + (b.x - a.x) * ((level->first - a.y) / (b.y - a.y)));
+    }
+    for (std::size_t i = 0; i < levels.size(); ++i) addChordMiddles(xs[i], levels[i], middles);
+}
+
+/// Edges by the bands of height that they pass, to look at the near ones first.
+class Bands {
+  public:
+    explicit Bands(const std::vector<Segment2>& edges) {
+        double climbed = 0;
+        for (const auto& [a, b] : edges) {
+            box_.add(a);
+            climbed += std::abs(b.y - a.y);
+        }
+        // So many that, on average, an edge lies in three at most.
+        const auto most = static_cast<double>(edges.size());
+        const double count = std::min(std::sqrt(most), 2 * most * (box_.depth() / climbed));
+        if (count > 1 && count <= most) per_metre_ = std::floor(count) / box_.depth();
+        if (!std::isfinite(per_metre_)) per_metre_ = 0;
+        std::vector<std::size_t> next(bandOf(box_.high.y) + 2, 0);
+        const auto for_each_band = [&](const Segment2& e, const auto& visit) {
+            const std::size_t last = bandOf(std::max(e.a.y, e.b.y));
+            for (std::size_t i = bandOf(std::min(e.a.y, e.b.y)); i <= last; ++i) visit(i);
+        };
+        for (const Segment2& e : edges) for_each_band(e, [&](std::size_t i) { ++next[i + 1]; });
+        std::partial_sum(next.begin(), next.end(), next.begin());
+        first_ = next;
+        edges_.resize(first_.back());
+        for (const Segment2& e : edges)
+            for_each_band(e, [&](std::size_t i) { edges_[next[i]++] = e; });
+    }
+
+    /// Calls visit(edge) for all edges, band by band away from y, until reach() is less than the
+    /// distance of a band.
+    template <typename Visit, typename Reach>
+    void forEachNear(double y, Visit visit, Reach reach) const {
+        const auto count = static_cast<std::ptrdiff_t>(first_.size() - 1);
+        const auto middle = static_cast<std::ptrdiff_t>(bandOf(y));
+        for (std::ptrdiff_t away = 0; away < count; ++away) {
+            // One band less, so that rounding loses nothing.
+            if (static_cast<double>(away - 2) > reach() * per_metre_) return;
+            for (const std::ptrdiff_t i : {middle - away, middle + away}) {
+                if (i < 0 || i >= count) continue;
+                const auto band = static_cast<std::size_t>(i);
+                for (std::size_t k = first_[band]; k < first_[band + 1]; ++k)
+                    if (!visit(edges_[k])) return;
+                if (away == 0) break;
+            }
+        }
+    }
+
+  private:
+    [[nodiscard]] std::size_t bandOf(double y) const {
+        const double band = (y - box_.low.y) * per_metre_;
+        return band > 0 ? static_cast<std::size_t>(std::min(band, (box_.depth() * per_metre_))) : 0;
+    }
+
+    Box2 box_;
+    double per_metre_ = 0;
+    std::vector<std::size_t> first_;  // of each band's edges
+    std::vector<Segment2> edges_;
+};
+
+/// Keeps the candidate farthest from the boundary.
+class Best {
+  public:
+    explicit Best(const Region& region)
+        : region_(region), edges_(edgesOf(region, false)), bands_(edges_) {
+        for (const Segment2& e : edges_)
+            for (const double v : {e.a.x, e.a.y}) rounding_ = std::max(rounding_, std::abs(v));
+        rounding_ *= 1e-12;
+    }
+
+    /// Those with the longest chords first, so that few others need a look; of equals the first.
+    void offer(std::span<const Candidate> candidates) {
+        std::vector<std::size_t> order(candidates.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
+            const double room = roomOf(candidates[i]), other = roomOf(candidates[k]);
+            return room != other ? room > other : i < k;
+        });
+        for (const std::size_t i : order) {
+            // The ends of its chord are near enough to tell.
+            if (candidates[i].room < (1 - 1e-9) * clearance_ - rounding_) return;
+            offer(candidates[i].at, i);
+        }
+    }
+    void offer(Point2 p, std::size_t number) {
+        const double least = number < number_ ? std::nextafter(clearance_, -1) : clearance_;
+        const double distance = clearance(p, least);
+        if (distance <= least || region_.locate(p) != Side::Inside) return;
+        clearance_ = distance;
+        point_ = p;
+        number_ = number;
+    }
+    [[nodiscard]] std::size_t edges() const { return edges_.size(); }
+    [[nodiscard]] bool found() const { return clearance_ >= 0; }
+    [[nodiscard]] Point2 point() const { return point_; }
+
+  private:
+    static double roomOf(const Candidate& candidate) {
+        return std::isnan(candidate.room) ? std::numeric_limits<double>::infinity()
+                                          : candidate.room;
+    }
+    /// Distance from the nearest edge, or any smaller number once that is at most `least`.
+    [[nodiscard]] double clearance(Point2 p, double least) const {
+        double nearest = std::numeric_limits<double>::infinity(), reach = nearest;
+        const auto look = [&](const Segment2& e) {
+            const double dx = std::max(std::min(e.a.x, e.b.x) - p.x, p.x - std::max(e.a.x, e.b.x));
+            const double dy = std::max(std::min(e.a.y, e.b.y) - p.y, p.y - std::max(e.a.y, e.b.y));
+            if (dx > reach || dy > reach) return true;  // the box about it is too far
+            nearest = std::min(nearest, distance(p, e));
+            reach = (1 + 1e-9) * nearest + rounding_;
+            return nearest > least;
+        };
+        bands_.forEachNear(p.y, look, [&reach] { return reach; });
+        return nearest;
+    }
+
+    const Region& region_;
+    std::vector<Segment2> edges_;
+    Bands bands_;
+    double rounding_ = 0;  ///< no distance errs by as much
+    double clearance_ = -1;
+    Point2 point_;
+    std::size_t number_ = std::numeric_limits<std::size_t>::max();  ///< among those offered
+};
+
+/// Candidates on scanlines, from both directions.
+std::vector<Candidate> candidates(const Region& region, bool swapped, std::size_t most) {
+    constexpr std::size_t kAtOnce = 64;  // levels
+    const auto edges = edgesOf(region, swapped);
+    auto levels = levelsBetweenVertices(edges, most);
+    const auto even = evenLevels(edges);
+    levels.insert(levels.end(), even.begin(), even.end());
+    std::vector<Candidate> middles;
+    for (std::size_t i = 0; i < levels.size(); i += kAtOnce)
+        addChordMiddles(edges, std::span(levels).subspan(i, std::min(kAtOnce, levels.size() - i)),
+                        middles);
+    if (swapped)
+        for (Candidate& c : middles) std::swap(c.at.x, c.at.y);
+    return middles;
+}
+
+void scan(const Region& region, std::size_t most, Best& best) {
+    constexpr std::size_t kManyEdges = 10'000;
+    std::vector<Candidate> up, across;
+    const auto find_up = [&] { up = candidates(region, false, most); };
+    const auto find_across = [&] { across = candidates(region, true, most); };
+    if (best.edges() < kManyEdges) {
+        find_up();
+        find_across();
+    } else {
+        tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(find_up, find_across); });
+    }
+    up.insert(up.end(), across.begin(), across.end());
+    best.offer(up);
+}
+
+/// Middles of the triangles at the corners, and the doubles about them: where a region is so thin
+/// that no scanline's middle survives rounding.
+void tryCorners(const Region& region, Best& best) {
+    std::size_t number = 0;
+    const auto around = [&](const Polygon& curve) {
+        for (std::size_t i = 0; i < curve.size(); ++i) {
+            const Point2 a = curve[i], b = curve[(i + 1) % curve.size()];
+            const Point2 c = curve[(i + 2) % curve.size()];
+            const Point2 center{a.x / 3 + b.x / 3 + c.x / 3, a.y / 3 + b.y / 3 + c.y / 3};
+            constexpr double kFar = std::numeric_limits<double>::infinity();
+            for (const double x :
+                 {std::nextafter(center.x, -kFar), center.x, std::nextafter(center.x, kFar)}) {
+                for (const double y :
+                     {std::nextafter(center.y, -kFar), center.y, std::nextafter(center.y, kFar)})
+                    best.offer({x, y}, number++);
+            }
+        }
+    };
+    around(region.outline);
+    for (const Polygon& hole : region.holes) around(hole);
+}
+
+}  // namespace
+
+Point2 interiorPoint(const Region& region) {
+    Best best(region);
+    scan(region, kLevels, best);
+    if (!best.found()) scan(region, kManyLevels, best);
+    if (!best.found()) tryCorners(region, best);
+    if (!best.found())
+        throw std::invalid_argument(
+            "region without inside: too thin for a point between its edges");
+    return best.point();
+}
+
+}  // namespace ispace
