@@ -14,7 +14,6 @@
 #include "base/message.h"
 #include "env/body.h"
 #include "layout/robot.h"
-#include "record/at_once.h"
 #include "record/record.h"
 #include "record/text.h"
 #include "sensor/keys.h"
@@ -270,29 +269,16 @@ Scene makeScene(const Document& environment, const Document* layout,
                 const DeviceCatalogue& devices) {
     checkIds(environment.records);
     if (layout != nullptr) checkIds(layout->records);
-    const std::vector<Record>& given = environment.records;
-    // Without a change they are copied while the scene is made of the given ones.
-    const bool is_changed = layout != nullptr || std::any_of(given.begin(), given.end(), isMeta);
-    std::vector<Record> records;
-    if (layout != nullptr)
-        records = joinRecords(given, layout->records);
-    else if (is_changed)
-        records = given;
+    std::vector<Record> records =
+        layout == nullptr ? environment.records : joinRecords(environment.records, layout->records);
     std::erase_if(records, isMeta);
-    std::optional<Scene> scene;
-    const auto make = [&] {
-        scene = sceneOf(is_changed ? records : given, nullptr, devices, environment.derived);
-    };
-    const auto copy = [&] {
-        if (!is_changed) records = given;
-    };
-    doBoth(given.size() >= kManyRecords, make, copy);
-    scene->records = std::move(records);
+    Scene scene = sceneOf(records, nullptr, devices, environment.derived);
+    scene.records = std::move(records);
     const auto is_of_room = [](const Record& record) { return record.schema().isEnvironment(); };
     if (layout != nullptr &&
         std::any_of(layout->records.begin(), layout->records.end(), is_of_room))
-        scene->digest_of_other = environmentDigest(given);
-    return *std::move(scene);
+        scene.digest_of_other = environmentDigest(environment.records);
+    return scene;
 }
 
 Scene makeScene(std::vector<Record> records, const Scene& before, const DeviceCatalogue& devices) {

@@ -22,7 +22,7 @@ std::string knownWords(std::string_view word, const std::vector<std::string>& kn
     return all;
 }
 
-bool RecordCollector::begin(std::string_view keyword, Spot spot) {
+bool RecordCollector::begin(std::string_view keyword, Spot spot, std::size_t keys) {
     const Schema* const schema = schemas_->find(keyword);
     if (schema == nullptr) {
         finding(spot, [&] {
@@ -31,12 +31,12 @@ bool RecordCollector::begin(std::string_view keyword, Spot spot) {
         });
         return false;
     }
-    begin(*schema, spot);
+    begin(*schema, spot, keys);
     return true;
 }
 
-void RecordCollector::begin(const Schema& schema, Spot spot) {
-    current_.emplace(schema, file_.at(spot));
+void RecordCollector::begin(const Schema& schema, Spot spot, std::size_t keys) {
+    current_.emplace(schema, file_.at(spot), keys);
     seen_.assign(schema.keys.size(), Spot{});
 }
 

@@ -41,8 +41,9 @@ class RecordCollector {
     [[nodiscard]] const Schemas& schemas() const { return *schemas_; }
 
     /// Starts a record. False, and a finding, if the keyword is unknown.
-    bool begin(std::string_view keyword, Spot spot);
-    void begin(const Schema& schema, Spot spot);
+    /// \param keys how many it seems to give
+    bool begin(std::string_view keyword, Spot spot, std::size_t keys = 0);
+    void begin(const Schema& schema, Spot spot, std::size_t keys = 0);
     /// A key of the current record; null, and a finding, if it is unknown or doubled.
     const KeySpec* key(std::string_view name, Spot spot);
     /// True if the current record gives the key, even with its default or a bad value.

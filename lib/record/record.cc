@@ -7,7 +7,6 @@
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -50,14 +49,27 @@ Diagnostic Place::finding(std::string message) const {
     return diagnostic;
 }
 
-std::size_t Record::indexOf(std::string_view key) const {
+Record::Record(const Schema& schema, Place place, std::size_t keys)
+    : schema_(&schema), data_(std::make_shared<Data>()) {
+    data_->place = std::move(place);
+    data_->entries.reserve(std::min(keys, schema.keys.size()));
+}
+
+std::uint32_t Record::indexOf(std::string_view key) const {
     const KeySpec* const spec = schema_->find(key);
     if (spec == nullptr) throw std::logic_error(noKey(*schema_, key));
-    return static_cast<std::size_t>(spec - schema_->keys.data());
+    return static_cast<std::uint32_t>(spec - schema_->keys.data());
+}
+
+Record::Data& Record::own() {
+    // Giving up a second reference waits for what those who had one before have read.
+    const bool is_shared = std::shared_ptr(data_).use_count() > 2;
+    if (is_shared) data_ = std::make_shared<Data>(*data_);
+    return *data_;
 }
 
 const Record::Entry* Record::written(std::string_view key) const {
-    for (const Entry& entry : entries_)
+    for (const Entry& entry : data_->entries)
         if (schema_->keys[entry.key].name == key) return &entry;
     return nullptr;
 }
@@ -70,44 +82,51 @@ std::string Record::writtenId() const {
 bool Record::has(std::string_view key) const { return written(key) != nullptr; }
 
 void Record::set(std::string_view key, Value value, const Place& place) {
-    const std::size_t index = indexOf(key);
+    const std::uint32_t index = indexOf(key);
     const KeySpec& spec = schema_->keys[index];
     try {
         checkValue(spec, value);
     } catch (const FormatError& error) {
-        throw FormatError((place.file ? place : place_).finding(error.diagnostics()[0].message));
+        throw FormatError(
+            (place.file ? place : data_->place).finding(error.diagnostics()[0].message));
     }
-    Entry entry{index, {}, nullptr, std::move(value)};
-    const bool here = place_.file && place.file && *place.file == *place_.file &&
-                      place.included_from == place_.included_from;
-    if (here)
-        entry.spot = {place.line, place.column};
-    else if (place.file)
-        entry.elsewhere = std::make_shared<const Place>(place);
-    put(std::move(entry));
+    Entry entry{{}, index, std::move(value)};
+    const Place& own_place = data_->place;
+    const bool is_here = own_place.file && place.file && *place.file == *own_place.file &&
+                         place.included_from == own_place.included_from;
+    if (is_here) entry.spot = {place.line, place.column};
+    std::optional<Place> elsewhere;
+    if (place.file && !is_here) elsewhere = place;
+    // `place` may be one of this record's own and end here.
+    Data& data = own();
+    std::erase_if(data.elsewhere, [&](const auto& other) { return other.first == index; });
+    if (elsewhere) data.elsewhere.emplace_back(index, *std::move(elsewhere));
+    put(data, spec, std::move(entry));
 }
 
 void Record::setRead(const KeySpec& key, Value value, Spot spot) {
-    put({static_cast<std::size_t>(&key - schema_->keys.data()), spot, nullptr, std::move(value)});
+    const auto index = static_cast<std::uint32_t>(&key - schema_->keys.data());
+    put(*data_, key, {spot, index, std::move(value)});
 }
 
-void Record::put(Entry entry) {
-    const KeySpec& spec = schema_->keys[entry.key];
-    const auto at = std::find_if(entries_.begin(), entries_.end(),
+void Record::put(Data& data, const KeySpec& spec, Entry entry) {
+    std::vector<Entry>& entries = data.entries;
+    const auto at = std::find_if(entries.begin(), entries.end(),
                                  [&](const Entry& other) { return other.key >= entry.key; });
-    const bool replaces = at != entries_.end() && at->key == entry.key;
+    const bool replaces = at != entries.end() && at->key == entry.key;
     if (spec.default_value && *spec.default_value == entry.value) {
-        if (replaces) entries_.erase(at);
+        if (replaces) entries.erase(at);
     } else if (replaces) {
         *at = std::move(entry);
     } else {
-        entries_.insert(at, std::move(entry));
+        entries.insert(at, std::move(entry));
     }
 }
 
 void Record::erase(std::string_view key) {
-    const std::size_t index = indexOf(key);
-    std::erase_if(entries_, [&](const Entry& entry) { return entry.key == index; });
+    const std::uint32_t index = indexOf(key);
+    if (written(key) != nullptr)
+        std::erase_if(own().entries, [&](const Entry& entry) { return entry.key == index; });
 }
 
 const Value* Record::find(std::string_view key) const {
@@ -130,13 +149,16 @@ const std::string& Record::text(std::string_view key) const { return get<std::st
 const Tuple& Record::tuple(std::string_view key) const { return get<Tuple>(key); }
 const TupleList& Record::list(std::string_view key) const { return get<TupleList>(key); }
 
-Diagnostic Record::finding(std::string message) const { return place_.finding(std::move(message)); }
+Diagnostic Record::finding(std::string message) const {
+    return data_->place.finding(std::move(message));
+}
 
 Place Record::keyPlace(std::string_view key) const {
     const Entry* const entry = written(key);
-    if (entry == nullptr) return place_;
-    if (entry->elsewhere) return *entry->elsewhere;
-    return entry->spot.line == 0 ? place_ : place_.at(entry->spot);
+    if (entry == nullptr) return data_->place;
+    for (const auto& [other, place] : data_->elsewhere)
+        if (other == entry->key) return place;
+    return entry->spot.line == 0 ? data_->place : data_->place.at(entry->spot);
 }
 
 Diagnostic Record::finding(std::string_view key, std::string message) const {
@@ -144,8 +166,10 @@ Diagnostic Record::finding(std::string_view key, std::string message) const {
 }
 
 bool operator==(const Record& a, const Record& b) {
+    if (a.data_ == b.data_ && a.schema_ == b.schema_) return true;
+    const std::vector<Record::Entry>&x_entries = a.data_->entries, &y_entries = b.data_->entries;
     return a.keyword() == b.keyword() &&
-           std::equal(a.entries_.begin(), a.entries_.end(), b.entries_.begin(), b.entries_.end(),
+           std::equal(x_entries.begin(), x_entries.end(), y_entries.begin(), y_entries.end(),
                       [&](const Record::Entry& x, const Record::Entry& y) {
                           return a.schema_->keys[x.key].name == b.schema_->keys[y.key].name &&
                                  x.value == y.value;
@@ -168,41 +192,28 @@ Diagnostic doubledId(const Record& record, const Record& first) {
     return place.finding(std::move(message));
 }
 
-}  // namespace
+/// A record whose id an earlier one has, by their indices.
+struct Doubled {
+    std::size_t record, first;
+};
 
-WrittenIds::WrittenIds(std::span<const Record> records) : records_(records) {
-    entries_.reserve(records.size());
+/// All of these, in order. By a sorted list of hashes, much faster to build than a tree or table of
+/// strings. O(n log n)
+std::vector<Doubled> doubledIds(std::span<const Record> records) {
+    std::vector<std::pair<std::uint64_t, std::size_t>> ids;  // hash and record
+    ids.reserve(records.size());
     for (std::size_t i = 0; i < records.size(); ++i)
-        if (records[i].has("id")) entries_.push_back({hashOf(records[i].text("id")), i});
-    std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-        return std::tie(a.hash, a.record) < std::tie(b.hash, b.record);
-    });
-}
-
-std::string_view WrittenIds::id(const Entry& entry) const {
-    return records_[entry.record].text("id");
-}
-
-bool WrittenIds::contains(std::string_view id) const {
-    const std::uint64_t hash = hashOf(id);
-    const auto first = std::lower_bound(
-        entries_.begin(), entries_.end(), hash,
-        [](const Entry& entry, std::uint64_t wanted) { return entry.hash < wanted; });
-    return std::any_of(first,
-                       std::find_if(first, entries_.end(),
-                                    [hash](const Entry& entry) { return entry.hash != hash; }),
-                       [&](const Entry& entry) { return this->id(entry) == id; });
-}
-
-std::vector<WrittenIds::Doubled> WrittenIds::doubled() const {
+        if (records[i].has("id")) ids.emplace_back(hashOf(records[i].text("id")), i);
+    std::sort(ids.begin(), ids.end());
     std::vector<Doubled> doubled;
-    for (std::size_t begin = 0, end = 0; begin < entries_.size(); begin = end) {
-        while (end < entries_.size() && entries_[end].hash == entries_[begin].hash) ++end;
+    for (std::size_t begin = 0, end = 0; begin < ids.size(); begin = end) {
+        while (end < ids.size() && ids[end].first == ids[begin].first) ++end;
         if (end - begin < 2) continue;
         std::map<std::string_view, std::size_t> first;  // of equal hashes
         for (std::size_t i = begin; i < end; ++i) {
-            const auto [known, is_new] = first.try_emplace(id(entries_[i]), entries_[i].record);
-            if (!is_new) doubled.push_back({entries_[i].record, known->second});
+            const std::size_t record = ids[i].second;
+            const auto [known, is_new] = first.try_emplace(records[record].text("id"), record);
+            if (!is_new) doubled.push_back({record, known->second});
         }
     }
     std::sort(doubled.begin(), doubled.end(),
@@ -210,8 +221,10 @@ std::vector<WrittenIds::Doubled> WrittenIds::doubled() const {
     return doubled;
 }
 
+}  // namespace
+
 void findDoubledIds(std::span<const Record> records, Diagnostics& findings) {
-    for (const auto& [record, first] : WrittenIds(records).doubled())
+    for (const auto& [record, first] : doubledIds(records))
         findings.add(findings.full() ? Diagnostic{} : doubledId(records[record], records[first]));
 }
 

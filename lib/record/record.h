@@ -50,15 +50,16 @@ struct TriangleMesh {
     std::string digest;  ///< sha256 over both, see meshDigest
 };
 
-/// One line `keyword key=value …`: checked against its schema, values in file units.
+/// One line `keyword key=value …`: checked against its schema, values in file units. Copies share
+/// what they hold until one of them is changed; a record that was moved from is only assigned to.
 class Record {
   public:
-    explicit Record(const Schema& schema, Place place = {})
-        : schema_(&schema), place_(std::move(place)) {}
+    /// \param keys how many are to be written; only a guess
+    explicit Record(const Schema& schema, Place place = {}, std::size_t keys = 0);
 
     [[nodiscard]] const Schema& schema() const { return *schema_; }
     [[nodiscard]] const std::string& keyword() const { return schema_->keyword; }
-    [[nodiscard]] const Place& place() const { return place_; }
+    [[nodiscard]] const Place& place() const { return data_->place; }
 
     /// The id as written, or "" if it is left to be numbered (see assignIds).
     [[nodiscard]] std::string writtenId() const;
@@ -69,8 +70,8 @@ class Record {
     /// Sets or replaces a value. \pre the schema has the key and the value its type
     /// \throws FormatError with the value's place if the value is out of the key's bounds
     void set(std::string_view key, Value value, const Place& place = {});
-    /// The same for a checked value read from the record's own file.
-    /// \pre `key` is one of the schema's, the value passes checkValue
+    /// The same for a checked value read from the record's own file, while the record is made.
+    /// \pre `key` is one of the schema's, the value passes checkValue, nobody has copied the record
     void setRead(const KeySpec& key, Value value, Spot spot);
     void erase(std::string_view key);
 
@@ -86,7 +87,7 @@ class Record {
     /// Calls visit(const KeySpec&, const Value&) for each written value, in the schema's order.
     template <typename Visit>
     void forEachWritten(Visit visit) const {
-        for (const Entry& entry : entries_) visit(schema_->keys[entry.key], entry.value);
+        for (const Entry& entry : data_->entries) visit(schema_->keys[entry.key], entry.value);
     }
 
     /// Where the key's value was read, or else the record.
@@ -97,38 +98,43 @@ class Record {
 
     /// Says where the record's file was included.
     void setIncludedFrom(std::shared_ptr<const Place> place) {
-        place_.included_from = std::move(place);
+        own().place.included_from = std::move(place);
     }
 
     /// True if a repetition or a part made it; false if it is written.
-    [[nodiscard]] bool isMade() const { return made_; }
-    void setMade() { made_ = true; }
+    [[nodiscard]] bool isMade() const { return data_->made; }
+    void setMade() { own().made = true; }
 
     /// The content of the file that the record names; null until it is loaded.
-    [[nodiscard]] const std::shared_ptr<const TriangleMesh>& mesh() const { return mesh_; }
-    void setMesh(std::shared_ptr<const TriangleMesh> mesh) { mesh_ = std::move(mesh); }
+    [[nodiscard]] const std::shared_ptr<const TriangleMesh>& mesh() const { return data_->mesh; }
+    void setMesh(std::shared_ptr<const TriangleMesh> mesh) { own().mesh = std::move(mesh); }
 
     /// Same keyword and same written values; places do not matter.
     friend bool operator==(const Record& a, const Record& b);
 
   private:
     struct Entry {
-        std::size_t key;                         // index in the schema
-        Spot spot;                               // in the record's file; none: that of the record
-        std::shared_ptr<const Place> elsewhere;  // the place, if it is in another file
+        Spot spot;          // in the record's file; none: that of the record
+        std::uint32_t key;  // index in the schema
         Value value;
     };
-    [[nodiscard]] std::size_t indexOf(std::string_view key) const;
-    void put(Entry entry);
+    struct Data {
+        Place place;
+        std::vector<Entry> entries;  // in the order of the schema's keys
+        std::vector<std::pair<std::uint32_t, Place>> elsewhere;  // of values of other files, by key
+        std::shared_ptr<const TriangleMesh> mesh;
+        bool made = false;
+    };
+    /// What is to be changed: shared with no other record from here on.
+    [[nodiscard]] Data& own();
+    static void put(Data& data, const KeySpec& spec, Entry entry);
+    [[nodiscard]] std::uint32_t indexOf(std::string_view key) const;
     [[nodiscard]] const Entry* written(std::string_view key) const;
     template <typename T>
     [[nodiscard]] const T& get(std::string_view key) const;
 
     const Schema* schema_;
-    Place place_;
-    std::vector<Entry> entries_;  // in the order of the schema's keys
-    std::shared_ptr<const TriangleMesh> mesh_;
-    bool made_ = false;
+    std::shared_ptr<Data> data_;
 };
 
 /// What a text holds, told by its content.
@@ -153,32 +159,6 @@ struct Document {
 /// Ids of all records, in order: the written one, else keyword and number. Numbers count from 1
 /// within each keyword in file order and skip ids that are written anywhere in the list.
 std::vector<std::string> assignIds(const std::vector<Record>& records);
-
-/// An index of the written ids of records. A sorted list of hashes, much faster to build than a
-/// tree or table of strings.
-class WrittenIds {
-  public:
-    /// \pre the records outlive it unchanged. O(n log n)
-    explicit WrittenIds(std::span<const Record> records);
-    /// True if a record has this id. O(log n)
-    [[nodiscard]] bool contains(std::string_view id) const;
-    /// A record whose id an earlier one has, by their indices.
-    struct Doubled {
-        std::size_t record, first;
-    };
-    /// All of these, in order.
-    [[nodiscard]] std::vector<Doubled> doubled() const;
-
-  private:
-    struct Entry {
-        std::uint64_t hash;
-        std::size_t record;
-    };
-    [[nodiscard]] std::string_view id(const Entry& entry) const;
-
-    std::span<const Record> records_;
-    std::vector<Entry> entries_;  // sorted by hash, then by record
-};
 
 /// Adds a finding for each record whose written id an earlier one has.
 void findDoubledIds(std::span<const Record> records, Diagnostics& findings);

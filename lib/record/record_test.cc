@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
 
 #include "record/test_schemas.h"
 #include "record/text.h"
@@ -102,6 +106,69 @@ TEST(Record, FindingsHaveThePlaceOfTheValue) {
     EXPECT_EQ(desk.finding("at", "x").text(), "a.env:2:11: error: x");
     EXPECT_EQ(desk.finding("height", "x").text(), "a.env:2:3: error: x");
     EXPECT_EQ(make("desk").finding("at", "x").text(), "error: x");
+}
+
+TEST(Record, CopiesShareUntilOneIsChanged) {
+    const Record desk = make("desk", "a");
+    Record set = desk, erased = desk, made = desk, included = desk, with_mesh = desk;
+    EXPECT_EQ(&set.text("id"), &desk.text("id"));
+    set.set("heading", 30.0);
+    erased.erase("id");
+    made.setMade();
+    included.setIncludedFrom(std::make_shared<const Place>());
+    with_mesh.setMesh(std::make_shared<const TriangleMesh>());
+    EXPECT_EQ(formatRecord(desk), "desk id=a");
+    EXPECT_FALSE(desk.isMade());
+    EXPECT_EQ(desk.place().included_from, nullptr);
+    EXPECT_EQ(desk.mesh(), nullptr);
+    EXPECT_EQ(formatRecord(set), "desk id=a heading=30");
+    EXPECT_EQ(formatRecord(erased), "desk");
+    EXPECT_TRUE(made.isMade());
+    EXPECT_NE(included.place().included_from, nullptr);
+    EXPECT_NE(with_mesh.mesh(), nullptr);
+    EXPECT_NE(&made.text("id"), &desk.text("id"));
+}
+
+TEST(Record, AssignedAfterItWasMovedFrom) {
+    Record desk = make("desk", "a");
+    const Record moved = std::move(desk);
+    desk = moved;
+    desk.set("id", "b");
+    EXPECT_EQ(formatRecord(moved), "desk id=a");
+    EXPECT_EQ(formatRecord(desk), "desk id=b");
+}
+
+TEST(Record, ValuesKeepThePlacesOfOtherFiles) {
+    const Place own{std::make_shared<const std::string>("a.env"), 3, 1};
+    const Place other{std::make_shared<const std::string>("b.3dm"), 7, 2};
+    Record desk(*testSchemas().find("desk"), own);
+    desk.set("at", Tuple{1, 2}, other);
+    desk.set("heading", 30.0, own.at({3, 9}));
+    EXPECT_EQ(desk.finding("at", "x").text(), "b.3dm:7:2: error: x");
+    EXPECT_EQ(desk.finding("heading", "x").text(), "a.env:3:9: error: x");
+    Record copy = desk;
+    // The place is of what this call lets go.
+    copy.set("at", Tuple{3, 4}, copy.place());
+    desk = copy;
+    EXPECT_EQ(desk.finding("at", "x").text(), "a.env:3:1: error: x");
+    desk.set("at", Tuple{5, 6}, other);
+    desk.set("at", Tuple{5, 6});
+    EXPECT_EQ(desk.finding("at", "x").text(), "a.env:3:1: error: x") << "no place of its own";
+    EXPECT_EQ(copy.tuple("at"), (Tuple{3, 4}));
+}
+
+TEST(Record, CopiesAreChangedInThreadsOfTheirOwn) {
+    for (int round = 0; round < 200; ++round) {
+        Record desk = make("desk", "a");
+        std::thread other([copy = desk]() mutable {
+            const std::string id = copy.text("id");
+            copy.set("id", id + "b");
+            EXPECT_EQ(copy.text("id"), "ab");
+        });
+        desk.set("id", "c");
+        EXPECT_EQ(desk.text("id"), "c");
+        other.join();
+    }
 }
 
 TEST(AssignIds, NumbersEachKeywordInFileOrder) {

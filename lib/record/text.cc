@@ -235,7 +235,8 @@ void readLine(std::string_view line, int number, RecordCollector& collector) {
         });
         return;
     }
-    if (!collector.begin(keyword->text, spot)) return;
+    const auto keys = static_cast<std::size_t>(std::count(line.begin(), line.end(), '='));
+    if (!collector.begin(keyword->text, spot, keys)) return;
     while (lexer.more()) {
         try {
             const Field field = lexer.field();
