@@ -169,17 +169,26 @@ Polygon ellipse(Point2 center, double length, double width, Angle heading) {
     return inscribedIn(Ellipse(center, length, width, heading));
 }
 
-Polygon rectangle(Point2 center, double length, double width, Angle heading) {
-    const Pose2 world_from_body{center, heading};
-    const double x = length / 2, y = width / 2;
-    return {world_from_body * Point2{-x, -y}, world_from_body * Point2{x, -y},
-            world_from_body * Point2{x, y}, world_from_body * Point2{-x, y}};
+namespace {
+
+/// The rectangle between two corners given in a frame, `low` left-below of `high`.
+Polygon boxIn(const Pose2& world_from_frame, Point2 low, Point2 high) {
+    // What the frame makes of each corner, with one sine for all.
+    const auto [c, s] = cosSin(world_from_frame.heading);
+    const auto at = [&, c = c, s = s](double x, double y) {
+        return world_from_frame.position + Vec2{c * x - s * y, s * x + c * y};
+    };
+    return {at(low.x, low.y), at(high.x, low.y), at(high.x, high.y), at(low.x, high.y)};
 }
 
-Polygon Standing::box(Point2 low, Point2 high) const {
-    return {world_from_body * low, world_from_body * Point2{high.x, low.y}, world_from_body * high,
-            world_from_body * Point2{low.x, high.y}};
+}  // namespace
+
+Polygon rectangle(Point2 center, double length, double width, Angle heading) {
+    const double x = length / 2, y = width / 2;
+    return boxIn({center, heading}, {-x, -y}, {x, y});
 }
+
+Polygon Standing::box(Point2 low, Point2 high) const { return boxIn(world_from_body, low, high); }
 
 Polygon Standing::rectangle() const {
     return ispace::rectangle(world_from_body.position, length, width, world_from_body.heading);

@@ -2,9 +2,14 @@
 #include "geom/curve.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
+#include <vector>
+
+#include "base/lazy.h"
 
 namespace ispace {
 
@@ -166,17 +171,37 @@ double cornerRadius(int count) {
     return std::sqrt(step / std::sin(step));
 }
 
-/// \param radius of the corners in the frame in which the ellipse is the unit disc
-Point2 cornerOf(const Ellipse& ellipse, double radius, int i, int count) {
-    return ellipse.center +
-           ellipse.fromUnit(radius * unitVector(Angle::degrees(360.0 * i / count)));
+std::vector<Vec2> directionsOf(int count) {
+    std::vector<Vec2> directions;
+    directions.reserve(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i)
+        directions.push_back(unitVector(Angle::degrees(360.0 * i / count)));
+    return directions;
 }
 
+/// Calls visit(direction) for that of each corner of a regular polygon. Those of few corners, as
+/// furniture has, are found once. \pre count is a multiple of 4
+template <typename Visit>
+void forEachDirection(int count, Visit visit) {
+    constexpr std::size_t kMaxQuarter = 64;
+    static const std::array<Lazy<std::vector<Vec2>>, kMaxQuarter> known;
+    const auto find = [count] { return directionsOf(count); };
+    const auto quarter = static_cast<std::size_t>(count / 4);
+    if (quarter < kMaxQuarter) {
+        for (const Vec2 direction : known[quarter].get(find)) visit(direction);
+    } else {
+        for (const Vec2 direction : find()) visit(direction);
+    }
+}
+
+/// \param radius of the corners in the frame in which the ellipse is the unit disc
 Polygon cornersOf(const Ellipse& ellipse, double radius) {
     const int count = cornerCount(ellipse);
     Polygon polygon;
     polygon.reserve(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i) polygon.push_back(cornerOf(ellipse, radius, i, count));
+    forEachDirection(count, [&](Vec2 direction) {
+        polygon.push_back(ellipse.center + ellipse.fromUnit(radius * direction));
+    });
     return polygon;
 }
 
