@@ -25,9 +25,17 @@ Body bodyBesideWalls(const Record& record) {
     return body;
 }
 
+template <typename T>
+void append(std::vector<T>& items, std::vector<T>&& more) {
+    if (items.empty())
+        items = std::move(more);
+    else
+        std::move(more.begin(), more.end(), std::back_inserter(items));
+}
+
 void addBody(Body& body, Body&& more) {
-    std::move(more.sheets.begin(), more.sheets.end(), std::back_inserter(body.sheets));
-    std::move(more.prisms.begin(), more.prisms.end(), std::back_inserter(body.prisms));
+    append(body.sheets, std::move(more.sheets));
+    append(body.prisms, std::move(more.prisms));
 }
 
 /// The `inside` records.
@@ -120,11 +128,13 @@ class Builder {
             cut_.parts = wallParts(plan_.walls, welded);
     }
 
-    [[nodiscard]] std::vector<Body> wallBodies() const {
-        return ispace::wallBodies(cut_.parts, plan_.walls.size() + openings_.size());
+    /// What of walls is no opening, and what fills openings. Their parts are let go.
+    [[nodiscard]] std::vector<Body> takeWallBodies() {
+        const std::vector<WallPart> parts = std::move(cut_.parts);
+        return ispace::wallBodies(parts, plan_.walls.size() + openings_.size());
     }
 
-    /// \param bodies those of wallBodies(). \pre all else has its shape
+    /// \param bodies those of takeWallBodies(). \pre all else has its shape
     void addWalls(std::vector<Body> bodies) {
         const std::size_t walls = plan_.walls.size();
         for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -281,7 +291,7 @@ void buildInOrder(std::span<const Record> records, std::span<const std::string> 
                   Builder& builder) {
     builder.takeRecords(records, ids, true);
     builder.cutWalls(false);
-    builder.addWalls(builder.wallBodies());
+    builder.addWalls(builder.takeWallBodies());
     builder.enclose();
 }
 
@@ -292,7 +302,7 @@ void buildAtOnce(std::span<const Record> records, std::span<const std::string> i
     builder.takeRecords(records, ids, false);
     std::vector<Body> walls;
     const auto enclose = [&] { builder.enclose(); };
-    const auto give_walls = [&] { walls = builder.wallBodies(); };
+    const auto give_walls = [&] { walls = builder.takeWallBodies(); };
     doBoth(
         true,
         [&] {

@@ -10,16 +10,28 @@
 
 namespace ispace {
 
-std::vector<Segment2> Slice::lines() const {
+namespace {
+
+/// All lines that for_each(visit) calls visit with, counted first: they are most of what a large
+/// slice takes.
+template <typename ForEach>
+std::vector<Segment2> gathered(ForEach for_each) {
+    std::size_t count = 0;
+    for_each([&count](const Segment2& /*line*/) { ++count; });
     std::vector<Segment2> lines;
-    forEachLine([&lines](const Segment2& line) { lines.push_back(line); });
+    lines.reserve(count);
+    for_each([&lines](const Segment2& line) { lines.push_back(line); });
     return lines;
 }
 
+}  // namespace
+
+std::vector<Segment2> Slice::lines() const {
+    return gathered([this](auto visit) { forEachLine(visit); });
+}
+
 std::vector<Segment2> Slice::straightLines() const {
-    std::vector<Segment2> lines;
-    forEachStraightLine([&lines](const Segment2& line) { lines.push_back(line); });
-    return lines;
+    return gathered([this](auto visit) { forEachStraightLine(visit); });
 }
 
 std::vector<Ellipse> Slice::curves() const {

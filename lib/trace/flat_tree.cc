@@ -119,8 +119,10 @@ bool isPoint(const Segment2& line) { return line.a == line.b; }
 
 void addLines(std::span<const Segment2> lines, const BoxOrder& order, FlatTree& tree) {
     // Of each child that is a node the shape has a 0.
-    const auto inner = std::count(order.shape.begin(), order.shape.end(), std::uint8_t{0});
-    tree.leaves.reserve(order.shape.size() - 1 - 2 * static_cast<std::size_t>(inner));
+    const auto inner = static_cast<std::size_t>(
+        std::count(order.shape.begin(), order.shape.end(), std::uint8_t{0}));
+    tree.nodes.reserve(inner + 1);
+    tree.leaves.reserve(order.shape.size() - 1 - 2 * inner);
     Builder(order, tree).build([&](std::span<const std::uint32_t> items) {
         tree.leaves.push_back(leafOf(items, lines));
         return std::pair{~static_cast<std::int32_t>(tree.leaves.size() - 1),

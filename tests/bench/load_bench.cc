@@ -3,12 +3,14 @@
 // avoid, a plain read of the file and Embree's build of the same triangles, and beside the records
 // as text.
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <string>
@@ -68,6 +70,23 @@ Compiled compile(const std::string& name, const std::string& folder, const Docum
     std::exit(1);
 }
 
+/// A line of what the kernel says about this process, in MB; 0 if it does not.
+double statusOf(const std::string& name) {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with(name + ':')) return std::stod(line.substr(name.size() + 1)) / 1024;
+    return 0;
+}
+
+/// How much more memory the process takes while this runs, at most, than before.
+double megabytesOf(const std::function<void()>& run) {
+    malloc_trim(0);
+    std::ofstream("/proc/self/clear_refs") << '5';  // the peak counts from here on
+    const double before = statusOf("VmRSS");
+    run();
+    return statusOf("VmHWM") - before;
+}
+
 double secondsOf(const std::function<void()>& run) {
     const auto start = std::chrono::steady_clock::now();
     run();
@@ -77,6 +96,7 @@ double secondsOf(const std::function<void()>& run) {
 /// Both in turn, so that whatever else the machine does meets both; the ratio is that of the
 /// quickest of each.
 void loadBeside(benchmark::State& state, const Compiled& compiled, bool level) {
+    state.counters["MB"] = megabytesOf([&] { load(compiled.file, level); });
     const Scene scene = makeScene(reading(compiled.file), nullptr, DeviceCatalogue());
     const bench::RawTriangles triangles =
         level ? bench::RawTriangles(scene.environment.slice(kScanHeight))
