@@ -236,14 +236,17 @@ class Tree {
             std::vector<BranchResult> results(batch.size());
             const std::uint64_t cut = this->cut();
             tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
-                results[i] = branch(problem_, batch[i], areas_, cut, progress);
+                results[i] = branch(problem_, batch[i], areas_, cut, trust_, progress);
                 batch[i] = BranchNode();
             });
             if (share_.ledger != nullptr && progress.stopped()) {
                 open_.putBack(std::move(before));
                 continue;
             }
-            for (BranchResult& result : results) add(result);
+            for (BranchResult& result : results) {
+                trust_.learn(result);
+                add(result);
+            }
             progress.advance(static_cast<std::int64_t>(batch.size()));
             lowerBound();
             noteProgress(problem_, result_, progress);
@@ -266,7 +269,8 @@ class Tree {
 
     /// Tells searches apart of which a run has several.
     [[nodiscard]] std::uint64_t markOf(const Bound& bound) const {
-        std::uint64_t mark = mixedBits(fingerprintOf(problem_) ^ mixedBits(enough_));
+        constexpr std::uint64_t kForm = 2;  // of what is kept
+        std::uint64_t mark = mixedBits(fingerprintOf(problem_) ^ mixedBits(enough_) ^ kForm);
         for (const std::uint64_t number : {result_.best.value, result_.bound, bound.cut})
             mark = mixedBits(mark ^ number);
         for (const std::uint32_t multiplier : bound.multipliers)
@@ -279,6 +283,7 @@ class Tree {
         pack(to, result_);
         to.add(closed_);
         to.add(is_dealt_ ? 1 : 0);
+        to.add(trust_.most());
         pack(to, open_.byAge());
         share_.ledger->keep(name_, to.bytes());
     }
@@ -291,6 +296,7 @@ class Tree {
         result_.is_complete = true;
         closed_ = from.number();
         is_dealt_ = from.number() != 0;
+        trust_ = OverlapTrust(from.number());
         for (BranchNode& node : unpackNodes(from, problem_)) open_.add(std::move(node));
         return true;
     }
@@ -325,6 +331,7 @@ class Tree {
     Areas areas_;               // about the sensors of the best that was known before; empty: none
     OpenNodes open_;
     const SearchShare& share_;
+    OverlapTrust trust_;
     bool is_dealt_ = false;
     std::string name_;        // of the tree in the ledger
     std::uint64_t mark_ = 0;  // of the search that it is of

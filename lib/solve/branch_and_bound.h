@@ -68,7 +68,8 @@ std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const 
 /// within `gap`, its value reaches `enough`, or progress says stop. Each node has its own
 /// Lagrangian bound, warm-started from its parent's multipliers, and rules out more candidates.
 /// Best first, or depth first while open nodes take more than `max_bytes`. If `known` has six
-/// sensors or more, nodes first branch on how many stand in the area about each of these.
+/// sensors or more, nodes first branch on how many stand in the area about each of these; once that
+/// is one in each, what sensors both see lowers the bound (see NodeOverlaps).
 /// Deterministic unless stopped.
 ///
 /// If a budget can be split in more ways than CountChoice lists (20'000) there is no tree: `known`

@@ -3,7 +3,9 @@
 // bounds.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -56,7 +58,7 @@ struct BranchGroup {
 /// A subproblem: fixed choices, and at most `count` candidates from each group.
 struct BranchNode {
     std::shared_ptr<const ReducedProblem> problem;
-    /// Good ones for the parent, to begin with.
+    /// To begin with: good ones for the parent, or for the node itself.
     std::shared_ptr<const std::vector<std::uint32_t>> multipliers;
     std::vector<Choice> fixed;    ///< of the original problem
     std::vector<Choice> pending;  ///< of them, those not yet settled in `problem`, as named there
@@ -70,13 +72,37 @@ struct BranchResult {
     std::vector<Choice> found;         ///< a feasible solution above the cut, else empty
     /// Upper bound, fine and at most the cut, of solutions that are neither in a child nor `found`.
     std::uint64_t closed = 0;
+    /// How far above the cut the node was when its bound by overlaps was tried; 0: it was not.
+    std::uint64_t overlaps_tried = 0;
+};
+
+/// Where in a tree bounds by overlaps are worth their time: as far above the cut as those that were
+/// tried have closed their nodes.
+class OverlapTrust {
+  public:
+    explicit OverlapTrust(std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / 2)
+        : most_(most) {}
+
+    [[nodiscard]] std::uint64_t most() const { return most_; }
+    /// What came of a node; the order matters.
+    void learn(const BranchResult& result) {
+        if (result.overlaps_tried == 0) return;
+        if (!result.children.empty())
+            most_ = std::min(most_, result.overlaps_tried / 20 * 17);
+        else if (most_ < result.overlaps_tried / 2 * 3)
+            most_ += most_ / 12;
+    }
+
+  private:
+    std::uint64_t most_;
 };
 
 /// Processes a node: bounds it, fixes variables, and splits the rest. Only solutions better than
 /// `cut` (fine) matter. Deterministic, unless progress says stop: then the node is its only child.
 /// \param areas of the problem's candidates; empty: none
+/// \param trust in a bound by what the sensors of the node both see
 BranchResult branch(const Problem& problem, const BranchNode& node, const Areas& areas,
-                    std::uint64_t cut, const Progress& progress);
+                    std::uint64_t cut, const OverlapTrust& trust, const Progress& progress);
 
 /// A node split into children.
 struct SplitNode {
@@ -141,6 +167,9 @@ class NodeRelaxation {
     /// Candidates that are in every solution better than `cut`, as named in the reduced problem;
     /// their groups have one to choose less.
     std::vector<Choice> takeForced(std::uint64_t cut);
+    /// Drops all but these of each group, ascending; what is dropped is in no solution above
+    /// `closed`.
+    void keepOnly(const std::vector<std::vector<std::uint32_t>>& lists, std::uint64_t closed);
     /// Upper bound of the solutions that the two have excluded, at most their cut.
     [[nodiscard]] std::uint64_t ruledOut() const { return ruled_out_; }
 

@@ -119,7 +119,12 @@ std::vector<BranchNode> withAndWithout(const BranchNode& node) {
 }
 
 /// An upper bound of a node by a few trials.
-std::uint64_t soonBoundOf(const BranchNode& node, std::uint64_t cut, const Progress& progress) {
+struct SoonBound {
+    std::uint64_t value = 0;
+    std::vector<std::uint32_t> multipliers;  ///< the best of the trials; empty if there was none
+};
+
+SoonBound soonBoundOf(const BranchNode& node, std::uint64_t cut, const Progress& progress) {
     NodeRelaxation relaxed(node);
     MultiplierSearch search(relaxed.problem().weights, relaxed.start(node),
                             static_cast<double>(cut), kWarmPace);
@@ -129,7 +134,7 @@ std::uint64_t soonBoundOf(const BranchNode& node, std::uint64_t cut, const Progr
         bound = std::min(bound, now);
         search.report(static_cast<double>(now), relaxed.cover());
     }
-    return bound;
+    return {bound, search.best()};
 }
 
 /// What the tree below a child is guessed to be, in parts of the one that it would be if the bound
@@ -155,7 +160,7 @@ class SplitComparison {
     [[nodiscard]] double sizeBy(const Split& split, double least) const {
         double size = 0;
         for (const BranchNode& child : childrenOf(core_, coreOf(split))) {
-            const std::uint64_t bound = soonBoundOf(child, cut_, progress_);
+            const std::uint64_t bound = soonBoundOf(child, cut_, progress_).value;
             if (bound > cut_) size += sizeOfTree(bound, core_.bound, cut_);
             if (size >= least) break;
         }
@@ -221,11 +226,16 @@ SplitNode splitNode(const BranchNode& node, NodeRelaxation& relaxed,
     }
     SplitNode all;
     for (BranchNode& child : childrenOf(node, *best)) {
-        child.bound = soonBoundOf(child, cut, progress);
-        if (child.bound > cut)
-            all.children.push_back(std::move(child));
-        else
+        SoonBound soon = soonBoundOf(child, cut, progress);
+        child.bound = soon.value;
+        if (child.bound <= cut) {
             all.closed = std::max(all.closed, child.bound);
+            continue;
+        }
+        if (!soon.multipliers.empty())
+            child.multipliers =
+                std::make_shared<const std::vector<std::uint32_t>>(std::move(soon.multipliers));
+        all.children.push_back(std::move(child));
     }
     return all;
 }
