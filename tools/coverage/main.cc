@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/left_to_exit.h"
 #include "base/program.h"
 #include "base/run_files.h"
 #include "cli/operands.h"
@@ -32,15 +33,6 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const Scene
     mustReadStdinOnce(streams);
     const std::string bytes = options.trace == "-" ? readStdin() : readAll(options.trace);
     return readTrace(bytes, displayName(options.trace)).poses;
-}
-
-/// Left to the end of the process: to take what is known of a large room apart takes long.
-/// (`used`: a compiler may leave out a pointer that nobody reads, and then it is a leak.)
-template <typename T>
-const T& kept(T value) {
-    [[gnu::used]] static const T* pointer = nullptr;
-    pointer = new T(std::move(value));
-    return *pointer;
 }
 
 /// A record knows its scene.
@@ -81,7 +73,7 @@ void coverage(CoverageToolOptions options) {
     if (options.format != nullptr && options.format->beside_suffix != nullptr)
         claimOutput(withSuffix(options.common.output, options.format->beside_suffix),
                     "the picture of the map");
-    const SceneInput& input = kept(readInput(options));
+    const SceneInput& input = leftToExit(readInput(options));
     warn(options.common, "coverage", input.environment.warnings);
     std::vector<std::string> files = filesOf(input);
     std::optional<OtherLayout> other;
@@ -99,7 +91,8 @@ void coverage(CoverageToolOptions options) {
     for (const Requirement& requirement : options.requirements)
         mustHaveZone(requirement, input.scene.environment);
     warn(options.common, "coverage", doubtsOf(input.scene));
-    const Measured& measured = kept(measure(options, input.scene, other ? &other->scene : nullptr));
+    const Measured& measured =
+        leftToExit(measure(options, input.scene, other ? &other->scene : nullptr));
     const CoverageReport& report = measured.coverage.report;
     if (const std::string text = largeCellsText(options.measure, report.grid);
         !text.empty() && !options.common.quiet)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/left_to_exit.h"
 #include "base/number.h"
 #include "base/program.h"
 #include "base/run_files.h"
@@ -62,18 +63,15 @@ void check(const Document& document, const DeviceCatalogue& devices) {
     findings.throwIfAny();
 }
 
-/// What is compiled. It is left to the end of the process: to take a large room apart takes long.
-/// (`used`: a compiler may leave out a pointer that nobody reads, and then the room is a leak.)
+/// What is compiled.
 struct Room {
     Document document;
     Scene scene;
 };
 
-const Room& makeRoom(Document document, const DeviceCatalogue& devices) {
-    [[gnu::used]] static const Room* room = nullptr;
+Room makeRoom(Document document, const DeviceCatalogue& devices) {
     Scene scene = makeScene(document, nullptr, devices);
-    room = new Room{std::move(document), std::move(scene)};
-    return *room;
+    return {std::move(document), std::move(scene)};
 }
 
 void compile(const EnvcOptions& options, Document document) {
@@ -88,7 +86,7 @@ void compile(const EnvcOptions& options, Document document) {
         talk(options.common, "envc", "nothing found");
         return;
     }
-    const auto& [compiled, scene] = makeRoom(std::move(document), devices);
+    const auto& [compiled, scene] = leftToExit(makeRoom(std::move(document), devices));
     const std::string& output = options.common.output;
     if (options.info) {
         const EnvironmentInfo info = describe(scene.environment, scene.records, scene.digest());

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <utility>
+
+namespace ispace {
+
+/// Moves a value to where it stays until the process ends and is never taken apart, which for all
+/// that is known of a large room takes long. For main functions: each type is held once.
+/// (`used`: a compiler may leave out a pointer that nobody reads, and then it is a leak.)
+template <typename T>
+const T& leftToExit(T value) {
+    [[gnu::used]] static const T* pointer = nullptr;
+    pointer = new T(std::move(value));
+    return *pointer;
+}
+
+}  // namespace ispace
