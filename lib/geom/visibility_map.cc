@@ -182,8 +182,7 @@ ISPACE_SIMD_CLONES [[gnu::flatten]] void queryBounded(const Query& query) {
 }  // namespace
 
 struct VisibilityMap::Data {
-    Data(SightMesh mesh_, RoundBodies rounds_)
-        : mesh(std::move(mesh_)), rounds(std::move(rounds_)) {}
+    Data(SightMesh lines, RoundBodies bodies) : mesh(std::move(lines)), rounds(std::move(bodies)) {}
     SightMesh mesh;
     RoundBodies rounds;
 
