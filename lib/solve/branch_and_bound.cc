@@ -269,7 +269,7 @@ class Tree {
 
     /// Tells searches apart of which a run has several.
     [[nodiscard]] std::uint64_t markOf(const Bound& bound) const {
-        constexpr std::uint64_t kForm = 2;  // of what is kept
+        constexpr std::uint64_t kForm = 2;  // version of what keep() writes
         std::uint64_t mark = mixedBits(fingerprintOf(problem_) ^ mixedBits(enough_) ^ kForm);
         for (const std::uint64_t number : {result_.best.value, result_.bound, bound.cut})
             mark = mixedBits(mark ^ number);

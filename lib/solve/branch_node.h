@@ -58,7 +58,7 @@ struct BranchGroup {
 /// A subproblem: fixed choices, and at most `count` candidates from each group.
 struct BranchNode {
     std::shared_ptr<const ReducedProblem> problem;
-    /// To begin with: good ones for the parent, or for the node itself.
+    /// To start from: good ones for the parent, or for the node itself.
     std::shared_ptr<const std::vector<std::uint32_t>> multipliers;
     std::vector<Choice> fixed;    ///< of the original problem
     std::vector<Choice> pending;  ///< of them, those not yet settled in `problem`, as named there
@@ -76,8 +76,8 @@ struct BranchResult {
     std::uint64_t overlaps_tried = 0;
 };
 
-/// Where in a tree bounds by overlaps are worth their time: as far above the cut as those that were
-/// tried have closed their nodes.
+/// How far above the cut a node's bound may be for one by overlaps to be worth its time: as far as
+/// those tried so far have closed their nodes.
 class OverlapTrust {
   public:
     explicit OverlapTrust(std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / 2)

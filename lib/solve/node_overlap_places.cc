@@ -26,6 +26,18 @@ void NodeOverlaps::addWorthiest(const std::vector<std::uint32_t>& multipliers) {
     }
 }
 
+/// All that were working may be ruled out before others are.
+void NodeOverlaps::keepOneWorking(Group& group) {
+    std::vector<Place>& places = group.places;
+    const auto is_working = [](const Place& place) { return place.is_working; };
+    if (places.empty() || std::any_of(places.begin(), places.end(), is_working)) return;
+    Place& worthiest =
+        *std::max_element(places.begin(), places.end(),
+                          [](const Place& a, const Place& b) { return a.worth < b.worth; });
+    worthiest.is_working = true;
+    findView(group, worthiest);
+}
+
 void NodeOverlaps::weigh(const std::vector<std::uint32_t>& multipliers) {
     const WeightSums sums(multipliers);
     std::vector<std::uint32_t> worths;
@@ -54,7 +66,7 @@ void NodeOverlaps::addGroup(const OpenGroup& group, const std::vector<float>& fr
     }
 }
 
-/// Most places are told by their worth alone and never need their view.
+/// Made when it is first needed: most places are ruled out by their worth alone.
 void NodeOverlaps::findView(Group& group, Place& place) {
     if (place.has_view) return;
     Runs runs;

@@ -28,8 +28,7 @@ NodeOverlaps::NodeOverlaps(const NodeRelaxation& relaxed,
     : problem_(relaxed.problem()), scratch_(problem_.cells()), cover_(problem_.cells()) {
     for (std::size_t g = 0; g < relaxed.groups().size(); ++g) {
         addGroup(relaxed.groups()[g], relaxed.frequencies()[g]);
-        for (std::size_t n = 0; n < relaxed.groups()[g].count; ++n)
-            variables_.emplace_back().group = g;
+        variables_.emplace_back().group = g;
     }
     addWorthiest(multipliers);
     for (Group& group : groups_)
@@ -136,7 +135,7 @@ void NodeOverlaps::Ranking::assign(const Group& group, const std::vector<std::in
     for (std::uint32_t i = 0; i < parts.size(); ++i) chances.push_back({parts[i].best, i});
 }
 
-/// To whom sees at least this.
+/// Chances above the floor, of a sensor beside one that sees at least this.
 auto NodeOverlaps::chancesOf(const Group& group, const Ranking& ranking, const MaskedSums& seen,
                              std::int64_t floor) -> std::vector<Chance> {
     std::vector<Chance> chances;
@@ -345,7 +344,6 @@ void NodeOverlaps::ruleOut(std::uint64_t cut, const std::vector<std::uint32_t>& 
             own.most = own.values;
         else
             spread(own, multipliers, true, wanted);
-        // Which of a group's sensors is which does not matter: any of them rules out.
         bool is_any = false;
         for (std::size_t p = 0; p < own.most.size(); ++p) {
             const std::uint64_t most = free_ + static_cast<std::uint64_t>(own.most[p]);
@@ -367,6 +365,7 @@ void NodeOverlaps::ruleOut(std::uint64_t cut, const std::vector<std::uint32_t>& 
             ++kept;
         }
         places.resize(kept);
+        keepOneWorking(groups_[g]);
     }
 }
 

@@ -95,7 +95,7 @@ class NodeOverlaps {
         std::int64_t worth = 0;
         bool is_working = false, has_view = false;
     };
-    /// Places of a group that see much the same: most are told from a best one together.
+    /// Places of a group that see much the same: most bundles are passed over as a whole.
     struct Bundle {
         Runs common;                ///< what all of them see
         std::uint64_t founder = 0;  ///< weight of what the first of them sees
@@ -138,7 +138,7 @@ class NodeOverlaps {
         std::uint32_t best = 0;
         /// The highest value of the places that are not ranked.
         std::int64_t spare = kNoFloor;
-        /// What values up to this are does not matter: they may be any upper bound.
+        /// Values up to this need not be exact: any upper bound will do.
         std::int64_t floor = kNoFloor;
     };
 
@@ -147,6 +147,7 @@ class NodeOverlaps {
     }
     void addGroup(const OpenGroup& group, const std::vector<float>& frequencies);
     void findView(Group& group, Place& place);
+    void keepOneWorking(Group& group);
     void weigh(const std::vector<std::uint32_t>& multipliers);
     std::vector<std::uint32_t> findHopeless(Variable& variable,
                                             const std::vector<std::uint32_t>& list);
