@@ -5,9 +5,10 @@
 
 namespace ispace {
 
-/// Moves a value to where it stays until the process ends and is never taken apart, which for all
-/// that is known of a large room takes long. For main functions: each type is held once.
-/// (`used`: a compiler may leave out a pointer that nobody reads, and then it is a leak.)
+/// Moves a value to where it stays until the process ends and is never destroyed: to free all that
+/// is known of a large room takes long. For main functions, once for each type: a second value
+/// would be a leak. (`used`: a compiler may leave out a pointer that nobody reads, and then the
+/// first is one, too.)
 template <typename T>
 const T& leftToExit(T value) {
     [[gnu::used]] static const T* pointer = nullptr;

@@ -311,7 +311,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
                 coverage.target = makeTarget(environment, options.cells, options.height);
                 report.free_area = totalArea(level->freeFloor());
                 if (options.exact) floor = floorCurvesOf(environment, level->freeFloor());
-                static_cast<void>(scene.digest());  // is kept
+                static_cast<void>(scene.digest());  // made here, beside the views, and kept
             });
     coverage.sets = setsOf(coverage.sensors, grid);
 

@@ -67,8 +67,8 @@ inline int surelyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
     };
     const double all = a_lift.high * most(bx, by, cx, cy) + b_lift.high * most(cx, cy, ax, ay) +
                        c_lift.high * most(ax, ay, bx, by);
-    // Some 20 roundings, each of 2^-102 of what they are of; errors of products too small for
-    // doubles are far below 2^-1000, that of the sum of lows far above.
+    // Some 20 roundings, each off by 2^-102 of its operands at most. What products lose that are
+    // too small for doubles is far less: `all` is above kLeast.
     constexpr double kError = 0x1p-92, kLeast = 0x1p-600, kMost = 0x1p1000;
     if (!(all > kLeast && all < kMost)) return 0;
     const double error = kError * all;

@@ -20,7 +20,8 @@ struct Part {
     bool is_whole = false;  ///< there is no other part
 };
 
-/// Called for several parts at once; what it returns is then called in their order by one thread.
+/// Called for several parts at once; what it returns, which is not empty, is called in their order,
+/// one at a time, by any of the threads.
 using PartVisitor = std::function<std::function<void()>(Part)>;
 
 /// What snapRounded() makes of all edges together, and labelsOf() that, part by part: the same
