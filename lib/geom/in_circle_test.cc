@@ -24,6 +24,21 @@ TEST(InCircle, CornersOfUprightRectanglesAreNotTold) {
     EXPECT_EQ(surelyInCircle({0.1, 0.2}, {7.3, 0.2}, {7.3, 5.9}, {0.1, 5.9}), 0);
 }
 
+/// On the circle exactly, with numbers of which products do not fit into pairs of doubles.
+TEST(InCircle, CornersOfTurnedRectanglesAreNotTold) {
+    std::mt19937_64 random(8);
+    const auto whole = [&random](unsigned bits) {
+        return static_cast<double>(random() >> (64 - bits));
+    };
+    for (int i = 0; i < 10'000; ++i) {
+        const double x = whole(40), y = whole(40), share = whole(11) + 1;
+        const Vec2 along{x, y}, across{-share * y, share * x};
+        const Point2 a{whole(20), -whole(20)};
+        ASSERT_EQ(surelyInCircle(a, a + along, a + along + across, a + across), 0) << i;
+        ASSERT_EQ(exactly(a, a + along, a + along + across, a + across), 0) << i;
+    }
+}
+
 TEST(InCircle, ToldApartByOneUnitInTheLastPlace) {
     const double high = std::nextafter(3.0, 4), low = std::nextafter(3.0, 2);
     EXPECT_EQ(surelyInCircle({0, 0}, {4, 0}, {4, 3}, {0, high}), -1);
