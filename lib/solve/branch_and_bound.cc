@@ -127,9 +127,6 @@ namespace {
 // Nodes at once, whatever the number of threads, so that the tree does not depend on it.
 constexpr std::size_t kBatch = 8;
 
-// With fewer sensors splits that look at what they do to the bound need fewer nodes.
-constexpr std::size_t kLeastAreas = 6;
-
 /// The highest bound that is within `gap` of a value.
 std::uint64_t goodBound(std::uint64_t value, double gap) {
     if (!(gap > 0)) return value;

@@ -64,6 +64,10 @@ class OpenNodes {
 std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const Bound& bound,
                                                   std::uint64_t value);
 
+/// A tree branches on areas from so many sensors on: with fewer, splits that look at what they do
+/// to the bound need fewer nodes.
+constexpr std::size_t kLeastAreas = 6;
+
 /// Branch and bound over the surviving candidates: improves `known` until its value and bound are
 /// within `gap`, its value reaches `enough`, or progress says stop. Each node has its own
 /// Lagrangian bound, warm-started from its parent's multipliers, and rules out more candidates.

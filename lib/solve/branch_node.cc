@@ -124,8 +124,9 @@ BranchNode cutDown(const BranchNode& node, const NodeRelaxation& relaxed,
         kept[group.kind].insert(kept[group.kind].end(), group.list.begin(), group.list.end());
         left += group.list.size();
     }
-    // Where little has gone the problem stays as it is: memory is for what differs.
-    const bool is_same = left * 5 > node.problem->candidates() * 4;
+    // Cutting down costs as much as dozens of bounds, and what differs takes memory: much has to
+    // go.
+    const bool is_same = left * 5 > node.problem->candidates() * 3;
     if (is_same) {
         now.problem = node.problem;
         now.pending = node.pending;

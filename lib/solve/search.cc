@@ -24,6 +24,9 @@ constexpr double kWideGap = 0.005;
 constexpr std::size_t kFewSensors = 12;
 /// Before the bound that knows overlaps, which gains from a better solution, too.
 constexpr KickOptions kFewKicks = {.rounds = 1};
+/// Before a tree that branches on areas about the best solution; it pays where that will be large.
+constexpr KickOptions kTreeKicks = {.patience = 2};
+constexpr double kTreeGap = 0.01;
 constexpr int kOverlapRounds = 60;
 constexpr double kOverlapStall = 0.04;
 
@@ -167,8 +170,10 @@ class Search {
         result_.bound = std::min(result_.bound, bound.value);
         noteProgress(problem_, result_, progress_);
         if (options_.optimizer != Optimizer::Exact) return;
-        kick(kFewKicks);
-        if (result_.best.chosen.size() > kFewSensors) {
+        const std::size_t sensors = result_.best.chosen.size();
+        const bool has_areas = sensors >= kLeastAreas && sensors <= kFewSensors;
+        kick(has_areas && isWiderThan(kTreeGap) ? kTreeKicks : kFewKicks);
+        if (sensors > kFewSensors) {
             boundByOverlaps(bound);
             kick(KickOptions());
         }
@@ -177,11 +182,12 @@ class Search {
                                      std::numeric_limits<std::uint64_t>::max(), options_.max_bytes,
                                      share_);
     }
-    /// More than a tree closes in a while.
-    [[nodiscard]] bool isWide() const {
+    [[nodiscard]] bool isWiderThan(double gap) const {
         const auto open = static_cast<double>(result_.bound - result_.best.value);
-        return open > std::max(options_.gap, kWideGap) * static_cast<double>(result_.bound);
+        return open > std::max(options_.gap, gap) * static_cast<double>(result_.bound);
     }
+    /// More than a tree closes in a while.
+    [[nodiscard]] bool isWide() const { return isWiderThan(kWideGap); }
     /// Where a wide gap is left the best solution may be what lacks.
     void kick(KickOptions options) {
         if (!isWide() || progress_.stopped()) return;

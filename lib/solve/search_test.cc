@@ -108,6 +108,45 @@ TEST(Search, HasABoundBeforeTheSwaps) {
     EXPECT_LT(result.bound, result.best.value * 12 / 10);
 }
 
+/// How many rounds of kicks there were before the tree, where search ends.
+class KickRounds final : public Progress {
+  public:
+    void begin(std::string_view phase, std::int64_t /*total*/) override {
+        phase_ = phase;
+        if (phase == "bounding") rounds = 0;
+    }
+    void advance(std::int64_t /*count*/) override {
+        if (phase_ == "improving") ++rounds;
+    }
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return phase_ == "proving"; }
+
+    int rounds = 0;
+
+  private:
+    std::string phase_;
+};
+
+TEST(Search, KicksLongerBeforeALargeTree) {
+    RandomProblemOptions options;
+    options.columns = 50;
+    options.rows = 50;
+    options.sites = 40;
+    options.max_range = 18;
+    const auto rounds = [&options](double gap) {
+        KickRounds progress;
+        const RandomProblem random = randomProblem(0, options);
+        search(random.problem, {.optimizer = Optimizer::Exact, .gap = gap}, progress);
+        return progress.rounds;
+    };
+    options.most = 8;
+    EXPECT_GE(rounds(0), 2);
+    EXPECT_EQ(rounds(0.1), 0);
+    // A tree that does not branch on areas.
+    options.most = 4;
+    EXPECT_LE(rounds(0), 1);
+}
+
 TEST(Search, IsTheSameForAnyNumberOfThreads) {
     RandomProblemOptions options;
     options.columns = 24;

@@ -118,7 +118,8 @@ std::vector<BranchNode> withAndWithout(const BranchNode& node) {
     return {std::move(with), std::move(without)};
 }
 
-/// An upper bound of a node by a few trials.
+/// An upper bound of a node by a few trials, which weigh all candidates only if the working ones
+/// promise a lower one.
 struct SoonBound {
     std::uint64_t value = 0;
     std::vector<std::uint32_t> multipliers;  ///< the best of the trials; empty if there was none
@@ -130,8 +131,12 @@ SoonBound soonBoundOf(const BranchNode& node, std::uint64_t cut, const Progress&
                             static_cast<double>(cut), kWarmPace);
     std::uint64_t bound = node.bound;
     for (int trial = 0; trial < kTrials && bound > cut && !progress.stopped(); ++trial) {
-        const std::uint64_t now = relaxed.evaluate(search.trial());
-        bound = std::min(bound, now);
+        std::uint64_t now = trial > 0 ? relaxed.evaluateWorking(search.trial()) : 0;
+        if (static_cast<double>(now) < search.bound()) {
+            now = relaxed.evaluate(search.trial());
+            bound = std::min(bound, now);
+            relaxed.widen();
+        }
         search.report(static_cast<double>(now), relaxed.cover());
     }
     return {bound, search.best()};
