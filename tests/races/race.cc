@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // race KIND: a data race on purpose, which ThreadSanitizer must report; `none` has none. It shows
-// that what is built with it and runs without a report was watched: our threads, tasks within TBB,
-// lib/sim.
+// that what is built with it and runs without a report was watched: our threads, tasks and
+// pipelines within TBB, lib/sim.
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
+#include <stdexcept>
 #include <string_view>
 #include <thread>
 #include <vector>
 
 #include "net/test_world.h"
+#include "record/at_once.h"
 
 namespace {
 
@@ -53,6 +56,12 @@ void raceOfTasks() {
     tbb::parallel_for(0, 2, [&](int) { countTogether(meeting); });
 }
 
+void raceOfPipelines() {
+    Meeting meeting;
+    ispace::makeInOrder(
+        2, [&](std::size_t) { countTogether(meeting); }, [](std::size_t) {});
+}
+
 /// The world is moved by one thread and looked at by another one.
 template <typename Look>
 void raceOfWorld(Look look) {
@@ -82,6 +91,41 @@ bool orderedTasks() {
     return good;
 }
 
+/// What stages of a pipeline have from before it and from each other, and what is had from it.
+bool orderedPipelines() {
+    constexpr std::size_t kRounds = 100, kBlocks = 100;
+    bool good = true;
+    for (std::size_t round = 0; round < kRounds; ++round) {
+        std::array<std::vector<std::size_t>, ispace::kBlocksAtOnce> slots;
+        std::vector<std::size_t> taken;
+        ispace::makeInOrder(
+            kBlocks,
+            [&](std::size_t block) { slots[block % slots.size()].assign(10, round + block); },
+            [&](std::size_t block) { taken.push_back(slots[block % slots.size()].back()); });
+        for (std::size_t block = 0; block < kBlocks; ++block) good &= taken[block] == round + block;
+    }
+    return good;
+}
+
+/// What stops a pipeline in one of its stages is behind all others.
+bool stoppedPipelines() {
+    int stopped = 0;
+    for (int round = 0; round < 50; ++round) {
+        std::size_t taken = 0;
+        try {
+            ispace::makeInOrder(
+                100,
+                [](std::size_t block) {
+                    if (block == 30) throw std::runtime_error("stop");
+                },
+                [&taken](std::size_t) { ++taken; });
+        } catch (const std::runtime_error&) {
+            if (taken <= 30) ++stopped;
+        }
+    }
+    return stopped == 50;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -92,6 +136,8 @@ int main(int argc, char** argv) {
         raceOfThreads();
     } else if (kind == "tasks") {
         raceOfTasks();
+    } else if (kind == "pipelines") {
+        raceOfPipelines();
     } else if (kind == "robots") {
         raceOfWorld([](const ispace::World& world) { (void)world.status(0); });
     } else if (kind == "scans") {
@@ -99,9 +145,9 @@ int main(int argc, char** argv) {
             if (world.reading(0).scan().ranges[1] < 0) std::abort();
         });
     } else if (kind == "none") {
-        return orderedTasks() ? 0 : 1;
+        return orderedTasks() && orderedPipelines() && stoppedPipelines() ? 0 : 1;
     } else {
-        std::cerr << "race: threads, tasks, robots, scans or none\n";
+        std::cerr << "race: threads, tasks, pipelines, robots, scans or none\n";
         return 2;
     }
     return 0;

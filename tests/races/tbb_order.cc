@@ -6,25 +6,17 @@
 // join of a loop can: it counts in TBB's headers.) Here the library's entry points are wrapped:
 // they take part in the order of events exactly as far as the scheduler does, so that tasks are not
 // ordered among each other, and a race between them is found. Loops and task groups are known here,
-// pipelines and arenas' queues are not: what uses them would seem to race.
-#include <dlfcn.h>
+// pipelines in tbb_pipelines.cc, arenas' queues are not: what uses them would seem to race.
 #include <oneapi/tbb/detail/_task.h>
 #include <sanitizer/tsan_interface.h>
 
-#include <cstdlib>
 #include <new>
+
+#include "tbb_original.h"
 
 namespace tbb::detail {
 
 namespace {
-
-/// The same function of the library.
-template <typename Function>
-Function* original(const char* symbol) {
-    void* const found = ::dlsym(RTLD_NEXT, symbol);
-    if (found == nullptr) std::abort();  // another TBB: its names are to be put here
-    return reinterpret_cast<Function*>(found);
-}
 
 /// Stands for a task on its way to the thread that runs it.
 class Envelope final : public d1::task {
