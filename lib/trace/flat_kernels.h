@@ -171,7 +171,7 @@ inline bool continuesTouched(const FlatTree& tree, const FlatTree::Leaf& leaf, i
                 continue;
             }
             const FlatTree::Leaf& near = tree.leaf(node.child[k]);
-            for (int j = 0; j < near.count; ++j)
+            for (int j = 0, end = near.count(); j < end; ++j)
                 if (areParallel(leaf, i, near, j) && touches(near, j, ox, oy, ray_epsilon))
                     return true;
         }

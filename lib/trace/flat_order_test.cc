@@ -25,8 +25,8 @@ bool areSame(const FlatTree& a, const FlatTree& b) {
                std::equal(m.child, m.child + m.count, n.child);
     };
     const auto same_leaf = [](const FlatTree::Leaf& m, const FlatTree::Leaf& n) {
-        return m.count == n.count && std::equal(m.ax, m.ax + m.count, n.ax) &&
-               std::equal(m.by, m.by + m.count, n.by);
+        return m.count() == n.count() && std::equal(m.ax, m.ax + m.count(), n.ax) &&
+               std::equal(m.by, m.by + m.count(), n.by);
     };
     return std::equal(a.nodes.begin(), a.nodes.end(), b.nodes.begin(), b.nodes.end(), same_node) &&
            std::equal(a.leaves.begin(), a.leaves.end(), b.leaves.begin(), b.leaves.end(),
@@ -61,6 +61,21 @@ TEST(FlatOrder, IsLeftAloneWhereLinesArePoints) {
     const BoxOrder order = orderOf(lines);
     lines[7] = {lines[7].a, lines[7].a};  // as lines moved far away may become
     EXPECT_TRUE(areSame(FlatTree(lines), FlatTree(lines, {}, &order)));
+}
+
+TEST(FlatOrder, LinesTooShortForALengthCountAsPoints) {
+    // The square of 1e-170 is 0. Leaves tell by lengths how many lines they have.
+    Lines lines = {
+        {{0, 0}, {1e-170, 0}}, {{0, 1}, {2, 1}}, {{3, 0}, {3, 1e-170}}, {{0, 2}, {2, 2}}};
+    const FlatTree tree(lines);
+    ASSERT_EQ(tree.leaves.size(), 1U);
+    EXPECT_EQ(tree.leaves.front().count(), 2);
+    EXPECT_EQ(FlatTree(Lines{lines[0], lines[2]}).leaves.size(), 0U);
+    for (std::size_t count = 1; count <= 8; ++count) {
+        const FlatTree few(Lines(count, lines[1]));
+        ASSERT_EQ(few.leaves.size(), 1U);
+        EXPECT_EQ(few.leaves.front().count(), static_cast<int>(count));
+    }
 }
 
 }  // namespace

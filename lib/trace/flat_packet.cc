@@ -201,7 +201,7 @@ bool Walk<kCosines>::mayTouch() {
                 continue;
             }
             const FlatTree::Leaf& leaf = tree_.leaf(node.child[k]);
-            for (int j = 0; j < leaf.count; ++j)
+            for (int j = 0, end = leaf.count(); j < end; ++j)
                 if (is_near(leaf.ax[j], leaf.bx[j], std::min(leaf.ay[j], leaf.by[j]),
                             std::max(leaf.ay[j], leaf.by[j])))
                     touching_ = Contact::Some;
@@ -294,7 +294,7 @@ void Walk<kCosines>::meetLeaf(const FlatTree::Leaf& leaf) {
         const double rounding = 1e-12 * (width * std::fabs(ey) + height * std::fabs(ex));
         clear[i] = std::fabs(px * ey - py * ex) - reach - rounding - ray_epsilon * leaf.length[i];
     }
-    for (int i = 0; i < leaf.count; ++i) {
+    for (int i = 0, end = leaf.count(); i < end; ++i) {
         if (far[i] < 0 || !mayBeNearer(far[i], least_)) continue;
         if (clear[i] > 0 || !mayTouch())
             draw<false>(leaf, i);

@@ -204,7 +204,7 @@ ISPACE_INLINE void drawLeaf(const FlatTree& tree, const FlatView& view, const Fl
         lines.most[i] = static_cast<float>(lines.nearest[i]) * kRounding;
     }
     spans.set(frame, corners);
-    for (int i = 0; i < leaf.count; ++i) {
+    for (int i = 0, end = leaf.count(); i < end; ++i) {
         const bool plain = spans.first[i] <= spans.last[i];
         const bool other = spans.other_first[i] <= spans.other_last[i];
         if (!plain && !other) continue;

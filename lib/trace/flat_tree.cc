@@ -70,9 +70,16 @@ class Builder {
     std::size_t place_ = 0, item_ = 0;
 };
 
+double squareOf(const Segment2& line) {
+    const Vec2 along = line.b - line.a;
+    return dot(along, along);
+}
+
+/// The shortest lines count as points, too.
+bool isPoint(const Segment2& line) { return squareOf(line) == 0; }
+
 FlatTree::Leaf leafOf(std::span<const std::uint32_t> items, std::span<const Segment2> lines) {
     FlatTree::Leaf made{};
-    made.count = static_cast<std::int32_t>(items.size());
     for (std::size_t i = 0; i < kWidth; ++i) {
         const bool is_used = i < items.size();
         const Segment2& given = lines[items[is_used ? i : 0]];
@@ -83,8 +90,7 @@ FlatTree::Leaf leafOf(std::span<const std::uint32_t> items, std::span<const Segm
         made.bx[i] = b.x;
         made.by[i] = b.y;
         // Not std::hypot, whose last bit is nobody's promise.
-        const Vec2 along = b - line.a;
-        made.length[i] = std::sqrt(dot(along, along));
+        made.length[i] = std::sqrt(squareOf({line.a, b}));
     }
     return made;
 }
@@ -114,8 +120,6 @@ FlatTree::Round unitMapOf(const Ellipse& round) {
     return {round.center.x,        round.center.y,        c / round.half_length,
             s / round.half_length, -s / round.half_width, c / round.half_width};
 }
-
-bool isPoint(const Segment2& line) { return line.a == line.b; }
 
 void addLines(std::span<const Segment2> lines, const BoxOrder& order, FlatTree& tree) {
     // Of each child that is a node the shape has a 0.

@@ -28,11 +28,17 @@ struct FlatTree {
         std::int32_t child[kWidth];
         std::int32_t count;
     };
-    /// Lines beyond `count` have no length. a lies before b by lexLess, so that a line and its
-    /// reverse are computed with alike.
+    /// Up to kWidth lines; what lies behind them has no length. a lies before b by lexLess, so that
+    /// a line and its reverse are computed with alike.
     struct alignas(64) Leaf {
         double ax[kWidth], ay[kWidth], bx[kWidth], by[kWidth], length[kWidth];
-        std::int32_t count;
+
+        /// Of the lines.
+        [[nodiscard]] int count() const {
+            int lines = 0;
+            for (const double one : length) lines += one > 0 ? 1 : 0;
+            return lines;
+        }
     };
 
     /// The map of a round body's plane that makes it the unit disc: from (x - cx, y - cy).

@@ -67,7 +67,7 @@ ISPACE_INLINE void meetLeaf(const FlatTree& tree, const FlatView& view, const Fl
                             mayBeNearer(near, hit.inverse_range);
         meets[i] = is_met ? 1.0 : 0.0;
     }
-    for (int i = 0; i < leaf.count; ++i) {
+    for (int i = 0, end = leaf.count(); i < end; ++i) {
         if (meets[i] == 0) continue;
         const FlatLine line = lineFrom(leaf, i, view.x, view.y);
         const double inverse_range = inverseRangeAlong(line, ray.x, ray.y);

@@ -52,7 +52,7 @@ FanPrototype::FanPrototype(std::span<const Segment2> lines) {
     }
     for (const FlatTree::Leaf& leaf : tree.leaves) {
         Leaf& made = leaves_.emplace_back();
-        made.count = leaf.count;
+        made.count = leaf.count();
         for (std::size_t i = 0; i < kWidth; ++i) {
             made.ax[i] = static_cast<float>(leaf.ax[i]);
             made.ay[i] = static_cast<float>(leaf.ay[i]);
