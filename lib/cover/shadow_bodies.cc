@@ -132,7 +132,7 @@ void addPlate(const Plate& plate, std::vector<ShadowBody>& bodies) {
 void addPrism(const Prism& prism, std::vector<ShadowBody>& bodies) {
     if (isConvex(prism.footprint)) {
         addAll({{prism}, {}, {}, {}}, ShadowBody::Kind::Convex, bodies);
-        bodies.back().curve = prism.curve;
+        if (prism.curve) bodies.back().curve = *prism.curve;
         return;
     }
     forEachEdge(prism.footprint, [&](const Segment2& side) {

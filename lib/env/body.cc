@@ -162,7 +162,7 @@ Polygon zoneOutline(const Record& record) {
 }
 
 Prism roundPrism(const Ellipse& curve, double bottom, double top, Material material) {
-    return {inscribedIn(curve), bottom, top, material, curve};
+    return {inscribedIn(curve), bottom, top, material, std::make_shared<const Ellipse>(curve)};
 }
 
 Polygon ellipse(Point2 center, double length, double width, Angle heading) {

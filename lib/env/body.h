@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,8 +18,8 @@ struct Prism {
     Polygon footprint;
     double bottom = 0, top = 0;
     Material material = Material::Wood;
-    /// Of a round prism: what the footprint is inscribed in.
-    std::optional<Ellipse> curve = {};
+    /// Of a round prism: what the footprint is inscribed in; null: it is not round. Few are.
+    std::shared_ptr<const Ellipse> curve = {};
 };
 
 /// An upright prism on an ellipse.

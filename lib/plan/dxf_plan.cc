@@ -35,7 +35,7 @@ const Ellipse* circleOf(const Body& body, const Region& footprint) {
         if (prism.curve && prism.curve->half_length == prism.curve->half_width &&
             footprint.holes.empty() &&
             std::abs(signedArea(prism.footprint) - footprint.area()) <= 1e-9 * footprint.area())
-            return &*prism.curve;
+            return prism.curve.get();
     return nullptr;
 }
 

@@ -26,7 +26,7 @@ Point3 middleOf(const Box2& plan) {
 Point3 relative(Point3 p, Point3 middle) { return {p.x - middle.x, p.y - middle.y, p.z}; }
 
 Body withoutRounds(Body body) {
-    std::erase_if(body.prisms, [](const Prism& prism) { return prism.curve.has_value(); });
+    std::erase_if(body.prisms, [](const Prism& prism) { return prism.curve != nullptr; });
     return body;
 }
 
