@@ -99,9 +99,20 @@ void Record::set(std::string_view key, Value value, const Place& place) {
     if (place.file && !is_here) elsewhere = place;
     // `place` may be one of this record's own and end here.
     Data& data = own();
-    std::erase_if(data.elsewhere, [&](const auto& other) { return other.first == index; });
-    if (elsewhere) data.elsewhere.emplace_back(index, *std::move(elsewhere));
+    if (data.rare || elsewhere) {
+        Rare rare = data.rare ? *data.rare : Rare();
+        std::erase_if(rare.elsewhere, [&](const auto& other) { return other.first == index; });
+        if (elsewhere) rare.elsewhere.emplace_back(index, *std::move(elsewhere));
+        data.rare = std::make_shared<const Rare>(std::move(rare));
+    }
     put(data, spec, std::move(entry));
+}
+
+void Record::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
+    Data& data = own();
+    Rare rare = data.rare ? *data.rare : Rare();
+    rare.mesh = std::move(mesh);
+    data.rare = std::make_shared<const Rare>(std::move(rare));
 }
 
 void Record::setRead(const KeySpec& key, Value value, Spot spot) {
@@ -156,8 +167,9 @@ Diagnostic Record::finding(std::string message) const {
 Place Record::keyPlace(std::string_view key) const {
     const Entry* const entry = written(key);
     if (entry == nullptr) return data_->place;
-    for (const auto& [other, place] : data_->elsewhere)
-        if (other == entry->key) return place;
+    if (data_->rare)
+        for (const auto& [other, place] : data_->rare->elsewhere)
+            if (other == entry->key) return place;
     return entry->spot.line == 0 ? data_->place : data_->place.at(entry->spot);
 }
 

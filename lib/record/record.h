@@ -106,8 +106,10 @@ class Record {
     void setMade() { own().made = true; }
 
     /// The content of the file that the record names; null until it is loaded.
-    [[nodiscard]] const std::shared_ptr<const TriangleMesh>& mesh() const { return data_->mesh; }
-    void setMesh(std::shared_ptr<const TriangleMesh> mesh) { own().mesh = std::move(mesh); }
+    [[nodiscard]] std::shared_ptr<const TriangleMesh> mesh() const {
+        return data_->rare ? data_->rare->mesh : nullptr;
+    }
+    void setMesh(std::shared_ptr<const TriangleMesh> mesh);
 
     /// Same keyword and same written values; places do not matter.
     friend bool operator==(const Record& a, const Record& b);
@@ -118,11 +120,15 @@ class Record {
         std::uint32_t key;  // index in the schema
         Value value;
     };
-    struct Data {
-        Place place;
-        std::vector<Entry> entries;  // in the order of the schema's keys
+    /// What few records have.
+    struct Rare {
         std::vector<std::pair<std::uint32_t, Place>> elsewhere;  // of values of other files, by key
         std::shared_ptr<const TriangleMesh> mesh;
+    };
+    struct Data {
+        Place place;
+        std::vector<Entry> entries;        // in the order of the schema's keys
+        std::shared_ptr<const Rare> rare;  // may be null
         bool made = false;
     };
     /// What is to be changed: shared with no other record from here on.

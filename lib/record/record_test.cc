@@ -157,6 +157,24 @@ TEST(Record, ValuesKeepThePlacesOfOtherFiles) {
     EXPECT_EQ(copy.tuple("at"), (Tuple{3, 4}));
 }
 
+TEST(Record, AMeshAndPlacesInOtherFilesAreKeptTogether) {
+    const Place other{std::make_shared<const std::string>("b.3dm"), 7, 2};
+    const auto mesh = std::make_shared<const TriangleMesh>();
+    Record desk(*testSchemas().find("desk"), {std::make_shared<const std::string>("a.env"), 3, 1});
+    desk.set("at", Tuple{1, 2}, other);
+    desk.setMesh(mesh);
+    desk.set("heading", 30.0, other);
+    Record copy = desk;
+    copy.setMesh(nullptr);
+    copy.set("heading", 40.0);
+    EXPECT_EQ(desk.mesh(), mesh);
+    EXPECT_EQ(desk.finding("at", "x").text(), "b.3dm:7:2: error: x");
+    EXPECT_EQ(desk.finding("heading", "x").text(), "b.3dm:7:2: error: x");
+    EXPECT_EQ(copy.mesh(), nullptr);
+    EXPECT_EQ(copy.finding("at", "x").text(), "b.3dm:7:2: error: x");
+    EXPECT_EQ(copy.finding("heading", "x").text(), "a.env:3:1: error: x");
+}
+
 TEST(Record, CopiesAreChangedInThreadsOfTheirOwn) {
     for (int round = 0; round < 200; ++round) {
         Record desk = make("desk", "a");
