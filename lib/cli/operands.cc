@@ -67,6 +67,7 @@ class OperandReader {
             checkDigest(*layout_, environment_->records, environment_operand_);
         const Document* const layout = layout_ ? &*layout_ : nullptr;
         Scene scene = makeScene(*environment_, layout, devicesFor({&*environment_, layout}));
+        std::string().swap(environment_->derived);  // its memory, too
         return {std::move(scene),           std::move(*environment_),
                 std::move(layout_),         std::move(environment_operand_),
                 std::move(layout_operand_), std::move(named_)};
@@ -188,7 +189,8 @@ OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
     if (!any_environment) checkDigest(layout, input.environment.records, input.environment_operand);
     std::vector<std::string> files = {operand};
     files.insert(files.end(), layout.sources.begin(), layout.sources.end());
-    return {makeScene(input.environment, &layout, devicesFor({&input.environment, &layout})),
+    return {makeScene(input.environment, &layout, devicesFor({&input.environment, &layout}),
+                      &input.scene),
             std::move(files)};
 }
 

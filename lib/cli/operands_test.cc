@@ -67,6 +67,22 @@ TEST_F(Operands, ASensorOnARobotIsPlaced) {
     EXPECT_EQ(input.scene.robots.size(), 1U);
 }
 
+TEST_F(Operands, AnotherLayoutSharesTheRoom) {
+    writeLayout("layout.txt", "");
+    writeLayout("other.txt", "laser id=l2 at=3,3,0.2\n");
+    const SceneInput input = readScene({{"room.env", "layout.txt"}});
+    const OtherLayout other = readOtherLayout(input, "other.txt", false);
+    EXPECT_EQ(&other.scene.environment.elements(), &input.scene.environment.elements());
+    EXPECT_EQ(other.scene.sensors.size(), 2U);
+    EXPECT_EQ(input.scene.sensors.size(), 1U);
+    // One that changes the room has one of its own.
+    writeLayout("changed.txt", "cube at=2,2 size=0.5,0.5\n");
+    const OtherLayout changed = readOtherLayout(input, "changed.txt", false);
+    EXPECT_EQ(changed.scene.environment.elements().size(),
+              input.scene.environment.elements().size() + 1);
+    EXPECT_EQ(changed.scene.digest(), input.scene.digest());
+}
+
 TEST_F(Operands, TheLayoutNamesItsEnvironmentRelativeToItself) {
     writeLayout("sub/layout.3dm", "environment file=../room.env\n");
     const SceneInput input = readScene({{"sub/layout.3dm"}});

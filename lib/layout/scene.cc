@@ -265,14 +265,14 @@ std::vector<Record> joinRecords(const std::vector<Record>& environment,
     return joined;
 }
 
-Scene makeScene(const Document& environment, const Document* layout,
-                const DeviceCatalogue& devices) {
+Scene makeScene(const Document& environment, const Document* layout, const DeviceCatalogue& devices,
+                const Scene* before) {
     checkIds(environment.records);
     if (layout != nullptr) checkIds(layout->records);
     std::vector<Record> records =
         layout == nullptr ? environment.records : joinRecords(environment.records, layout->records);
     std::erase_if(records, isMeta);
-    Scene scene = sceneOf(records, nullptr, devices, environment.derived);
+    Scene scene = sceneOf(records, before, devices, environment.derived);
     scene.records = std::move(records);
     const auto is_of_room = [](const Record& record) { return record.schema().isEnvironment(); };
     if (layout != nullptr &&

@@ -68,10 +68,11 @@ std::vector<Sensor> sensorsOf(const Scene& scene) {
 std::vector<Record> joinRecords(const std::vector<Record>& environment,
                                 const std::vector<Record>& layout);
 
+/// \param before another scene, whose room is shared if none of its records differ; may be null
 /// \throws FormatError as Environment does, for unknown models, and for sensors on what carries
 ///         none
-Scene makeScene(const Document& environment, const Document* layout,
-                const DeviceCatalogue& devices);
+Scene makeScene(const Document& environment, const Document* layout, const DeviceCatalogue& devices,
+                const Scene* before = nullptr);
 
 /// The scene of changed records. The room of `before` is shared if none of its records differ; the
 /// digest stays. \throws FormatError as above

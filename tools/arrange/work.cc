@@ -62,7 +62,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
         if (!input.layout) throw UsageError("--fixed is about the sensors of a LAYOUT: give one");
         input.layout = withoutPlaces(*input.layout, options.fixed);
         input.scene = makeScene(input.environment, &*input.layout,
-                                devicesFor({&input.environment, &*input.layout}));
+                                devicesFor({&input.environment, &*input.layout}), &input.scene);
     }
     const bool open = options.how.target || options.how.budget;
     work.groups = groupsToPlace(input.scene, added, devices, open);
