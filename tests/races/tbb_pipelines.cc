@@ -47,6 +47,7 @@ class Stage final : public d1::base_filter {
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
     ~Stage() override {
+        __tsan_acquire(&events_->end);
         real_->~base_filter();
         r1::deallocate_memory(real_);
     }
@@ -72,7 +73,10 @@ class Stage final : public d1::base_filter {
         return next;
     }
 
+    /// Of what is left behind when something was thrown; by any thread.
     void finalize(void* item) override {
+        const EndOfStage end{events_};
+        __tsan_acquire(&events_->begin);
         real_->finalize(contentOf(item));
         delete static_cast<Item*>(item);
     }
