@@ -69,17 +69,7 @@ void NodeOverlaps::addGroup(const OpenGroup& group, const std::vector<float>& fr
 /// Made when it is first needed: most places are ruled out by their worth alone.
 void NodeOverlaps::findView(Group& group, Place& place) {
     if (place.has_view) return;
-    Runs runs;
-    problem_.kinds[group.kind].candidates->forEachRun(
-        place.candidate, [&runs](const CellRun& run) { runs.push_back(run); });
-    std::sort(runs.begin(), runs.end(),
-              [](const CellRun& a, const CellRun& b) { return a.first < b.first; });
-    for (const CellRun& run : runs) {
-        if (!place.runs.empty() && place.runs.back().end == run.first)
-            place.runs.back().end = run.end;
-        else
-            place.runs.push_back(run);
-    }
+    place.runs = runsOf(*problem_.kinds[group.kind].candidates, place.candidate);
     place.has_view = true;
     addToBundle(group, place, scratch_, problem_.weights);
 }
@@ -111,18 +101,7 @@ void NodeOverlaps::addToBundle(Group& group, Place& place, MaskedSums& sums,
         bundles.push_back({place.runs, weight, weight});
         return;
     }
-    Runs both;
-    const Runs &view = place.runs, &common = bundles[best].common;
-    for (std::size_t a = 0, b = 0; a < view.size() && b < common.size();) {
-        const CellRun run{std::max(view[a].first, common[b].first),
-                          std::min(view[a].end, common[b].end)};
-        if (run.first < run.end) both.push_back(run);
-        if (view[a].end < common[b].end)
-            ++a;
-        else
-            ++b;
-    }
-    bundles[best].common = std::move(both);
+    bundles[best].common = commonOf(place.runs, bundles[best].common);
     bundles[best].weight = static_cast<std::uint64_t>(most);
 }
 

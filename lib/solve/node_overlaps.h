@@ -10,6 +10,7 @@
 #include "base/cell_set.h"
 #include "base/progress.h"
 #include "solve/branch_node.h"
+#include "solve/seen_runs.h"
 
 namespace ispace {
 
@@ -58,46 +59,16 @@ class NodeOverlaps {
 
   private:
     static constexpr std::int64_t kNoFloor = std::numeric_limits<std::int64_t>::min() / 4;
-    using Runs = std::vector<CellRun>;
-
-    /// Weights of what one candidate sees, summed up.
-    class MaskedSums {
-      public:
-        explicit MaskedSums(std::size_t cells) : sums_(cells + 1) {}
-        void assign(const Runs& runs, const std::uint32_t* weights) {
-            std::uint32_t sum = 0;
-            std::size_t cell = 0;
-            const auto at = [this](std::size_t i) {
-                return sums_.begin() + static_cast<std::ptrdiff_t>(i);
-            };
-            for (const CellRun& run : runs) {
-                std::fill(at(cell), at(run.first), sum);
-                for (cell = run.first; cell < run.end; ++cell) {
-                    sums_[cell] = sum;
-                    sum += weights[cell];
-                }
-            }
-            std::fill(at(cell), sums_.end(), sum);
-        }
-        [[nodiscard]] std::int64_t of(const Runs& runs) const {
-            std::uint32_t sum = 0;
-            for (const CellRun& run : runs) sum += sums_[run.end] - sums_[run.first];
-            return sum;
-        }
-
-      private:
-        std::vector<std::uint32_t> sums_;  // [i]: of all before cell i
-    };
 
     struct Place {
         std::uint32_t candidate = 0, bundle = 0;
-        Runs runs;  ///< ascending
+        SeenRuns runs;  ///< ascending
         std::int64_t worth = 0;
         bool is_working = false, has_view = false;
     };
     /// Places of a group that see much the same: most bundles are passed over as a whole.
     struct Bundle {
-        Runs common;                ///< what all of them see
+        SeenRuns common;            ///< what all of them see
         std::uint64_t founder = 0;  ///< weight of what the first of them sees
         std::uint64_t weight = 0;   ///< of what is common
         std::vector<std::uint32_t> places = {};

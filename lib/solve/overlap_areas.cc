@@ -84,27 +84,17 @@ void OverlapRelaxation::join(std::uint32_t least) {
     }
 }
 
-auto OverlapRelaxation::viewOf(std::uint32_t candidate) -> const Runs& {
+auto OverlapRelaxation::viewOf(std::uint32_t candidate) -> const SeenRuns& {
     if (view_of_[candidate] != kNone) return views_[view_of_[candidate]];
-    Runs runs, joined;
-    set_.forEachRun(candidate, [&runs](const CellRun& run) { runs.push_back(run); });
-    std::sort(runs.begin(), runs.end(),
-              [](const CellRun& a, const CellRun& b) { return a.first < b.first; });
-    for (const CellRun& run : runs) {
-        if (!joined.empty() && joined.back().end == run.first)
-            joined.back().end = run.end;
-        else
-            joined.push_back(run);
-    }
     view_of_[candidate] = static_cast<std::uint32_t>(views_.size());
-    views_.push_back(joined);
+    views_.push_back(runsOf(set_, candidate));
     addToBundle(candidate);
     return views_.back();
 }
 
 void OverlapRelaxation::addToBundle(std::uint32_t candidate) {
     constexpr double kLike = 0.8, kLeast = 0.7;
-    const Runs& view = views_.back();
+    const SeenRuns& view = views_.back();
     seen_.assign(view, cells_.weights.data());
     const auto own = static_cast<double>(seen_.of(view));
     std::vector<Bundle>& bundles = areas_[area_of_[candidate]].bundles;
@@ -123,18 +113,7 @@ void OverlapRelaxation::addToBundle(std::uint32_t candidate) {
         bundles.push_back({view, static_cast<std::uint64_t>(own), {}, 0});
         return;
     }
-    Runs both;
-    const Runs& common = bundles[best].common;
-    for (std::size_t a = 0, b = 0; a < view.size() && b < common.size();) {
-        const CellRun run{std::max(view[a].first, common[b].first),
-                          std::min(view[a].end, common[b].end)};
-        if (run.first < run.end) both.push_back(run);
-        if (view[a].end < common[b].end)
-            ++a;
-        else
-            ++b;
-    }
-    bundles[best].common = std::move(both);
+    bundles[best].common = commonOf(view, bundles[best].common);
 }
 
 void OverlapRelaxation::widen() {

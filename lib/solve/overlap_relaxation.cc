@@ -213,7 +213,7 @@ void OverlapRelaxation::setCover() {
     std::fill(cover_.begin(), cover_.end(), 0.0F);
     std::size_t chosen = 0;
     std::vector<char> is_seen;
-    const auto add = [&](const Runs& runs, float part, bool is_new) {
+    const auto add = [&](const SeenRuns& runs, float part, bool is_new) {
         for (const CellRun& run : runs)
             for (std::uint32_t i = run.first; i < run.end; ++i)
                 if (!is_new || is_seen[i] == 0) cover_[i] += part;
@@ -221,7 +221,7 @@ void OverlapRelaxation::setCover() {
     for (const Area& area : areas_) {
         if (area.best == kNone) continue;
         const Place& place = area.places[area.best];
-        const Runs& own = seenFrom(place);
+        const SeenRuns& own = seenFrom(place);
         is_seen.assign(cover_.size(), 0);
         for (const CellRun& run : own)
             std::fill(is_seen.begin() + run.first, is_seen.begin() + run.end, 1);

@@ -13,6 +13,7 @@
 #include "solve/lagrange.h"
 #include "solve/problem.h"
 #include "solve/relaxation.h"
+#include "solve/seen_runs.h"
 
 namespace ispace {
 
@@ -44,36 +45,6 @@ class OverlapRelaxation {
     /// The multiplier of the number of sensors moves in steps of so many units: it acts on whole
     /// views, the others on a cell each.
     static constexpr std::uint32_t kNumberUnit = 10;
-    using Runs = std::vector<CellRun>;
-
-    /// Weights of what one candidate sees, summed up.
-    class MaskedSums {
-      public:
-        explicit MaskedSums(std::size_t cells) : sums_(cells + 1) {}
-        void assign(const Runs& runs, const std::uint32_t* weights) {
-            std::uint32_t sum = 0;
-            std::size_t cell = 0;
-            const auto at = [this](std::size_t i) {
-                return sums_.begin() + static_cast<std::ptrdiff_t>(i);
-            };
-            for (const CellRun& run : runs) {
-                std::fill(at(cell), at(run.first), sum);
-                for (cell = run.first; cell < run.end; ++cell) {
-                    sums_[cell] = sum;
-                    sum += weights[cell];
-                }
-            }
-            std::fill(at(cell), sums_.end(), sum);
-        }
-        [[nodiscard]] std::int64_t of(const Runs& runs) const {
-            std::uint32_t sum = 0;
-            for (const CellRun& run : runs) sum += sums_[run.end] - sums_[run.first];
-            return sum;
-        }
-
-      private:
-        std::vector<std::uint32_t> sums_;  // [i]: of all before cell i
-    };
 
     /// A candidate that is worth more than the multiplier of the number of sensors.
     struct Place {
@@ -88,7 +59,7 @@ class OverlapRelaxation {
 
     /// Places that see much the same, so that most are told from a best one together.
     struct Bundle {
-        Runs common;                       ///< what all of them see
+        SeenRuns common;                   ///< what all of them see
         std::uint64_t founder = 0;         ///< weight of what the first of them sees
         std::vector<std::uint32_t> ranks;  ///< of the places that are in it now, the best first
         std::int64_t best = 0;
@@ -116,7 +87,7 @@ class OverlapRelaxation {
     };
 
     void join(std::uint32_t least);
-    const Runs& viewOf(std::uint32_t candidate);
+    const SeenRuns& viewOf(std::uint32_t candidate);
     void addToBundle(std::uint32_t candidate);
     void findPlaces(const std::vector<std::uint32_t>& multipliers, bool is_all);
     void findCrowd(Area& area, const std::vector<std::uint32_t>& multipliers) const;
@@ -129,7 +100,7 @@ class OverlapRelaxation {
     void sortBundles(Area& area, Value value) const;
     void choose();
     void setCover();
-    [[nodiscard]] const Runs& seenFrom(const Place& place) const {
+    [[nodiscard]] const SeenRuns& seenFrom(const Place& place) const {
         return views_[view_of_[place.candidate]];
     }
 
@@ -137,7 +108,7 @@ class OverlapRelaxation {
     const CandidateSet& set_;
     std::size_t sensors_;
     std::vector<std::uint32_t> view_of_;  // by candidate
-    std::vector<Runs> views_;
+    std::vector<SeenRuns> views_;
     std::vector<std::uint32_t> bundle_of_;  // by view
     MaskedSums seen_;                       // scratch
     std::vector<std::uint32_t> weights_;    // of candidates
