@@ -33,14 +33,6 @@ void addNose(Mesh& mesh, double from, double to, double half_width, double low, 
         mesh.triangles.push_back({first + i, first + j, first + k});
 }
 
-/// Turns upright prisms into triangles of one mesh.
-Mesh uprights(Material material, std::vector<Polygon> footprints, double bottom, double top) {
-    Body body;
-    for (Polygon& footprint : footprints)
-        body.prisms.push_back({std::move(footprint), bottom, top, material});
-    return std::move(meshesOf(body, Surfaces::Drawn).front());
-}
-
 using Meshes = std::vector<Mesh>;
 
 Meshes matBody(const Scene& scene, const Placed& placed) {
@@ -92,48 +84,6 @@ constexpr double kBodyWidth = 0.2, kBodyDepth = 0.12;
 constexpr double kArm = 0.05, kWrist = 0.45, kFingers = 0.39;
 constexpr double kLeg = 0.035, kLegPlace = 0.055;  // radius, and distance from the middle
 
-std::vector<Polygon> legs(double height) {
-    const double diameter = 2 * kLeg * height;
-    return {ellipse({0, -kLegPlace * height}, diameter, diameter, {}),
-            ellipse({0, kLegPlace * height}, diameter, diameter, {})};
-}
-
-/// How far ahead a swinging limb gets per metre below its joint.
-double slopeOf(Angle swing) { return std::tan(swing.radians()); }
-
-/// Swings the vertices from `first` on about a joint at height `joint`: those on the left forward,
-/// those on the right back.
-void shear(Mesh& mesh, std::size_t first, double joint, double slope) {
-    if (slope == 0) return;
-    for (std::size_t i = first; i < mesh.vertices.size(); ++i) {
-        Point3& p = mesh.vertices[i];
-        p.x += (p.y > 0 ? slope : -slope) * (joint - p.z);
-    }
-}
-
-/// A limb that hangs from its top, in pieces if it swings.
-void addLimb(std::vector<Upright>& parts, const Upright& limb, double slope) {
-    constexpr int kPieces = 4;
-    if (slope == 0) return parts.push_back(limb);
-    const auto add = [&](double low, double high) {
-        Upright piece = limb;
-        piece.bottom = low;
-        piece.top = high;
-        piece.center.x += slope * (limb.top - (low + high) / 2);
-        parts.push_back(piece);
-    };
-    double low = limb.bottom;
-    int left = kPieces;
-    if (low == 0 && 2 * kScanHeight < limb.top) {
-        add(0, 2 * kScanHeight);
-        low = 2 * kScanHeight;
-        --left;
-    }
-    const double each = (limb.top - low) / left;
-    for (int i = 0; i < left; ++i)
-        add(low + i * each, i + 1 == left ? limb.top : low + (i + 1) * each);
-}
-
 }  // namespace
 
 std::vector<Mesh> bodyOf(const Scene& scene, const Placed& placed) {
@@ -157,63 +107,74 @@ Mesh robotMesh(const RobotModel& model) {
     const double length = is_box ? model.length : 2 * model.radius;
     const double width = is_box ? model.width : 2 * model.radius;
     const Point2 middle{model.center, 0};
-    Mesh mesh = uprights(
-        Material::Robot,
-        {is_box ? rectangle(middle, length, width, {}) : ellipse(middle, length, width, {})}, 0,
-        model.height);
+    Body body;
+    body.prisms.push_back(
+        {is_box ? rectangle(middle, length, width, {}) : ellipse(middle, length, width, {}), 0,
+         model.height, Material::Robot});
+    Mesh mesh = std::move(meshesOf(body, Surfaces::Drawn).front());
     // It begins within the body, round or not, and stands out by as much.
     const double nose = std::min(length, width) / 8, front = model.center + length / 2;
     addNose(mesh, front - nose, front + nose, nose, 0.5 * model.height, 0.75 * model.height);
     return mesh;
 }
 
-std::vector<Mesh> humanBodyOf(double height, Angle swing) {
-    const double h = height, slope = slopeOf(swing);
-    Mesh skin = meshOf(Material::Skin), cloth = uprights(Material::Cloth, legs(h), 0, kHip * h);
-    shear(cloth, 0, kHip * h, slope);
-    addBall(skin, {0, 0, (1 - kHead) * h}, kHead * h);
-    addBox(cloth, {-kBodyDepth / 2 * h, -kBodyWidth / 2 * h, kHip * h},
-           {kBodyDepth / 2 * h, kBodyWidth / 2 * h, kShoulder * h});
+std::vector<BodyPart> humanParts(double height, Angle swing) {
+    const double h = height, slope = std::tan(swing.radians());
+    std::vector<BodyPart> parts;
+    parts.reserve(8);
     for (const double side : {-1.0, 1.0}) {
-        const double near = side * kBodyWidth / 2 * h, far = side * (kBodyWidth / 2 + kArm) * h;
-        const auto add = [&](Mesh& mesh, double low, double high) {
-            const std::size_t first = mesh.vertices.size();
-            addBox(mesh, {-kArm / 2 * h, std::min(near, far), low * h},
-                   {kArm / 2 * h, std::max(near, far), high * h});
-            shear(mesh, first, kShoulder * h, -slope);
+        // `ahead`: metres per metre below the joint.
+        const auto add = [&](double place, double radius, double low, double high, double joint,
+                             double ahead, Material material) {
+            parts.push_back({.center = {ahead * (joint - (low + high) / 2) * h, side * place * h},
+                             .radius = radius * h,
+                             .bottom = low * h,
+                             .top = high * h,
+                             .lean = -ahead,
+                             .material = material});
         };
-        add(cloth, kWrist, kShoulder);
-        add(skin, kFingers, kWrist);
+        constexpr double kBeside = (kBodyWidth + kArm) / 2;
+        add(kLegPlace, kLeg, 0, kHip, kHip, side * slope, Material::Cloth);
+        add(kBeside, kArm / 2, kWrist, kShoulder, kShoulder, -side * slope, Material::Cloth);
+        add(kBeside, kArm / 2, kFingers, kWrist, kShoulder, -side * slope, Material::Skin);
     }
-    return {std::move(skin), std::move(cloth)};
+    parts.push_back({.half_length = kBodyDepth / 2 * h,
+                     .half_width = kBodyWidth / 2 * h,
+                     .bottom = kHip * h,
+                     .top = kShoulder * h});
+    parts.push_back({.radius = kHead * h,
+                     .bottom = kShoulder * h,
+                     .top = h,
+                     .is_ball = true,
+                     .material = Material::Skin});
+    return parts;
+}
+
+std::vector<Mesh> humanBodyOf(double height) {
+    Body body;
+    std::vector<BodyPart> balls;
+    for (const BodyPart& part : humanParts(height)) {
+        if (part.is_ball) {
+            balls.push_back(part);
+            continue;
+        }
+        const double round = 2 * part.radius;
+        body.prisms.push_back(
+            {round > 0 ? ellipse(part.center, round, round, {})
+                       : rectangle(part.center, 2 * part.half_length, 2 * part.half_width, {}),
+             part.bottom, part.top, part.material});
+    }
+    std::vector<Mesh> meshes = meshesOf(body, Surfaces::Drawn);
+    for (Mesh& mesh : meshes)
+        for (const BodyPart& ball : balls)
+            if (ball.material == mesh.material)
+                addBall(mesh, {ball.center.x, ball.center.y, (ball.bottom + ball.top) / 2},
+                        ball.radius);
+    return meshes;
 }
 
 double strideOf(double height) {
     return 4 * kHip * height * std::tan(Angle::degrees(kMaxSwingDegrees).radians());
-}
-
-std::vector<Upright> humanUprights(double height, Angle swing) {
-    const double h = height, slope = slopeOf(swing);
-    std::vector<Upright> parts;
-    parts.reserve(16);
-    for (const double side : {-1.0, 1.0}) {
-        addLimb(parts, {{0, side * kLegPlace * h}, 0, 0, kLeg * h, 0, kHip * h}, side * slope);
-        addLimb(parts,
-                {{0, side * (kBodyWidth + kArm) / 2 * h},
-                 kArm / 2 * h,
-                 kArm / 2 * h,
-                 0,
-                 kFingers * h,
-                 kShoulder * h},
-                -side * slope);
-    }
-    parts.push_back({{}, kBodyDepth / 2 * h, kBodyWidth / 2 * h, 0, kHip * h, kShoulder * h});
-    parts.push_back({{0, 0}, 0, 0, kHead * h, kShoulder * h, h});
-    return parts;
-}
-
-std::vector<Polygon> legCircles(double height) {
-    return kScanHeight <= kHip * height ? legs(height) : std::vector<Polygon>();
 }
 
 double humanRadius(double height) { return (kBodyWidth / 2 + kArm) * height; }

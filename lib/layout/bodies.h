@@ -27,33 +27,38 @@ std::optional<Mesh> viewOf(const Scene& scene, const Placed& placed);
 /// see, with a nose.
 Mesh robotMesh(const RobotModel& model);
 
-/// A person as in the thesis (fig. 5.10): a ball for the head, boxes for body and arms, legs as
-/// upright cylinders, so that a level laser at kScanHeight meets two circles. Facing +x, standing
-/// on the floor at the origin; proportions do not change with `height`.
+/// A closed solid on the floor: an upright box, a ball, or a cylinder with level ends.
+///
+/// A cylinder stands upright or slanted: every level cut is a disc of the same radius, and its
+/// centre moves ahead by `lean` metres per metre of height. Across its axis a slanted one is
+/// elliptic.
+struct BodyPart {
+    Point2 center = {};                      ///< of the level cut at mid-height
+    double half_length = 0, half_width = 0;  ///< of a box, along x and y
+    double radius = 0;                       ///< of a cylinder or ball; 0: a box
+    double bottom = 0, top = 0;              ///< heights
+    double lean = 0;                         ///< of a cylinder, along x
+    bool is_ball = false;
+    Material material = Material::Cloth;
+};
+
+/// A person as in the thesis (fig. 5.10), facing +x, standing on the floor at the origin: a ball
+/// for the head, a box for the trunk, cylinders for legs, sleeves and hands. Proportions do not
+/// change with `height`. All sensors meet exactly these solids.
 ///
 /// Walking, the left leg is ahead of the hip by the angle `swing` and the right one behind it; arms
-/// swing the other way. Limbs are sheared, not turned: a level cut keeps its shape and the feet
-/// stay on the floor.
-std::vector<Mesh> humanBodyOf(double height, Angle swing = {});
+/// swing the other way. Limbs are slanted, not turned: level cuts stay discs, and the feet stay on
+/// the floor.
+std::vector<BodyPart> humanParts(double height, Angle swing = {});
+
+/// humanParts() of a standing person as triangles, for models: vertices of round parts lie on
+/// their surfaces.
+std::vector<Mesh> humanBodyOf(double height);
 
 /// How far limbs swing at most (thesis 5.3.1), and how long a stride, two steps, is with that: the
 /// feet stay where they are put down.
 constexpr double kMaxSwingDegrees = 15;
 double strideOf(double height);
-
-/// An upright box or cylinder, as part of something that stands on the floor.
-struct Upright {
-    Point2 center;
-    double half_length = 0, half_width = 0;  ///< of a box, along x and y
-    double radius = 0;                       ///< of a cylinder; 0: a box
-    double bottom = 0, top = 0;
-};
-/// humanBodyOf() as rays see it: its boxes and cylinders, the head as a cylinder around it. Limbs
-/// that swing are piles of a few pieces, the lowest of a leg with its middle at kScanHeight.
-std::vector<Upright> humanUprights(double height, Angle swing = {});
-
-/// What a level laser at kScanHeight meets of a person of that height, in the person's frame.
-std::vector<Polygon> legCircles(double height);
 
 /// Radius of the circle about a person of that height that no thing may reach into.
 double humanRadius(double height);

@@ -141,57 +141,39 @@ TEST(BodyOf, HumanIsAsHighAsWritten) {
 }
 
 TEST(BodyOf, LegsAreTwoCirclesAtScanningHeight) {
-    const auto circles = legCircles(1.7);
-    ASSERT_EQ(circles.size(), 2U);
-    // Right and left, apart from each other, inside the person's circle.
-    EXPECT_LT(bounds(circles[0]).high.y, 0);
-    EXPECT_GT(bounds(circles[1]).low.y, 0);
-    for (const Polygon& circle : circles) {
-        EXPECT_NEAR(signedArea(circle), std::numbers::pi * 0.0595 * 0.0595, 2e-5);
-        for (const Point2 p : circle) EXPECT_LT(distance(p, {}), humanRadius(1.7));
-    }
-    // The body has them there, too.
     Body body;
     body.meshes = humanBodyOf(1.7);
     Slice slice;
     cutMeshes(body, kScanHeight, slice);
     ASSERT_EQ(slice.solids.size(), 2U);
     EXPECT_TRUE(slice.sheets.empty());
+    // Right and left, apart from each other.
+    EXPECT_LT(bounds(slice.solids[0]).high.y * bounds(slice.solids[1]).high.y, 0);
     for (const Polygon& solid : slice.solids)
-        EXPECT_NEAR(signedArea(solid), signedArea(circles[0]), 1e-9);
-    EXPECT_TRUE(legCircles(0.2).empty()) << "a doll's legs end below";
+        EXPECT_NEAR(signedArea(solid), std::numbers::pi * 0.0595 * 0.0595, 2e-5);
 }
 
-TEST(BodyOf, LimbsSwingAboutTheirJointsAndFeetStayOnTheFloor) {
-    const Angle swing = Angle::degrees(15);
-    const double ahead = std::tan(swing.radians());
-    for (const Mesh& mesh : humanBodyOf(1.7, swing)) expectSolid(mesh, "human");
-    const Box3 box = boundsOf(humanBodyOf(1.7, swing));
-    EXPECT_EQ(box.low.z, 0);
-    EXPECT_NEAR(box.high.z, 1.7, 1e-12);
-    EXPECT_NEAR(box.high.x, 0.48 * 1.7 * ahead + 0.035 * 1.7, 1e-3);
-    // A level cut keeps the circles, moved: the left one ahead.
-    Body body;
-    body.meshes = humanBodyOf(1.7, swing);
-    Slice slice;
-    cutMeshes(body, kScanHeight, slice);
-    ASSERT_EQ(slice.solids.size(), 2U);
-    for (const Polygon& solid : slice.solids) {
-        const Box2 leg = bounds(solid);
-        const double side = leg.low.y > 0 ? 1 : -1;
-        EXPECT_NEAR((leg.low.x + leg.high.x) / 2, side * (0.48 * 1.7 - kScanHeight) * ahead, 1e-9);
-        EXPECT_NEAR(signedArea(solid), signedArea(legCircles(1.7)[0]), 1e-9);
+TEST(HumanParts, LimbsSwingAboutTheirJointsAndFeetStayOnTheFloor) {
+    const double ahead = std::tan(Angle::degrees(15).radians());
+    const std::vector<BodyPart> still = humanParts(1.7);
+    const std::vector<BodyPart> parts = humanParts(1.7, Angle::degrees(15));
+    ASSERT_EQ(parts.size(), still.size());
+    int slanted = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const BodyPart& part = parts[i];
+        EXPECT_EQ(part.bottom, still[i].bottom);
+        EXPECT_EQ(part.top, still[i].top);
+        EXPECT_EQ(part.center.y, still[i].center.y);
+        if (part.lean == 0) continue;
+        ++slanted;
+        const bool is_leg = part.bottom == 0;
+        EXPECT_NEAR(part.lean, (part.center.y > 0) == is_leg ? -ahead : ahead, 1e-12);
+        // Sleeve and hand are one straight arm that hangs from the shoulder.
+        const double joint = (is_leg ? 0.48 : 0.87) * 1.7;
+        const double up = joint - (part.bottom + part.top) / 2;
+        EXPECT_NEAR(part.center.x + part.lean * up, 0, 1e-12);
     }
-    // What rays see is there, too: the cylinder at scanning height is the same circle.
-    int legs = 0;
-    for (const Upright& part : humanUprights(1.7, swing)) {
-        if (part.radius == 0 || part.bottom > kScanHeight || part.top < kScanHeight) continue;
-        ++legs;
-        const double side = part.center.y > 0 ? 1 : -1;
-        EXPECT_NEAR(part.center.x, side * (0.48 * 1.7 - kScanHeight) * ahead, 1e-9);
-    }
-    EXPECT_EQ(legs, 2);
-    EXPECT_EQ(humanUprights(1.7).size(), 6U) << "who stands is as simple as can be";
+    EXPECT_EQ(slanted, 6);
 }
 
 TEST(BodyOf, NothingForWhatHasNone) {

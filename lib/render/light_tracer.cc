@@ -21,6 +21,9 @@ constexpr Rgb kGlass{0.80F, 0.88F, 0.88F};
 /// The point of a net (Sobol) that a pixel of a tile takes: neighbours take points far apart.
 constexpr std::array<std::uint8_t, kLanes> kOrder{0, 8,  2, 10, 12, 4, 14, 6,
                                                   3, 11, 1, 9,  15, 7, 13, 5};
+/// Light meets all people.
+const std::vector<bool> kNotHidden;
+
 using Directions4 = std::array<unsigned, 4>;
 constexpr std::array<Directions4, 3> kNet{{{8, 4, 2, 1}, {8, 12, 10, 15}, {8, 12, 6, 9}}};
 
@@ -176,12 +179,14 @@ void LightTracer::towardsSun(const LitPlaces& places, std::span<const float> dra
 
 void LightTracer::addDirect(LitPlaces& places) {
     const std::size_t width = scene_.still->packet_width;
-    EmbreeQuery query;
+    BodyQuery query(kNotHidden);
     query.makeIncoherent();
     RTCRay16 through = shadows_;  // before it is spent
     traceShadows(query, scene_.still->solid->scene(), width, valid_.data(), shadows_);
     if (!scene_.bodies.empty())
         traceShadows(query, scene_.bodies.scene(), width, valid_.data(), shadows_);
+    if (!scene_.people.empty())
+        traceShadows(query, scene_.people.scene(), width, valid_.data(), shadows_);
     const bool has_glass = !scene_.still->glass->empty();
     if (has_glass) traceShadows(query, scene_.still->glass->scene(), width, valid_.data(), through);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -211,12 +216,14 @@ void LightTracer::addBounced(LitPlaces& places, std::span<const float> draws, in
         ray.tfar[lane] = places.is_wanted[lane] ? 1e30F : -1.0F;
         hits_.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    EmbreeQuery query;
+    BodyQuery query(kNotHidden);
     query.makeIncoherent();
     const std::size_t width = scene_.still->packet_width;
     tracePacket(query, scene_.still->solid->scene(), width, valid_.data(), hits_);
     if (!scene_.bodies.empty())
         tracePacket(query, scene_.bodies.scene(), width, valid_.data(), hits_);
+    if (!scene_.people.empty())
+        tracePacket(query, scene_.people.scene(), width, valid_.data(), hits_);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         if (!places.is_wanted[lane]) continue;
         const Rgb more = bounced(lane);

@@ -90,7 +90,7 @@ class RenderScene {
     explicit RenderScene(const Scene& scene, const RenderSceneOptions& options = {});
 
     /// The same environment with what is placed at other poses, one for each of Scene::placed, in
-    /// the world. `swings` of the people's limbs, in their order, if they walk: see humanBodyOf().
+    /// the world. `swings` of the people's limbs, in their order, if they walk: see humanParts().
     /// Takes far less time than a new scene.
     [[nodiscard]] RenderScene at(std::span<const Pose3> poses,
                                  std::span<const Angle> swings = {}) const;

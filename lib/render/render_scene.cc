@@ -256,16 +256,18 @@ class StillBuilder {
 
     [[nodiscard]] bool isShown(const Placed& placed) const {
         const std::string& keyword = scene_.records[placed.record].keyword();
-        return options_.devices || keyword == "robot" || keyword == "human";
+        return options_.devices || keyword == "robot";
     }
 
     void addFigures() {
         for (const Placed& placed : scene_.placed) {
             StillSurfaces::Figure figure;
             figure.finish.label = static_cast<std::uint32_t>(placed.record + 1);
-            if (isShown(placed)) figure.body = bodyOf(scene_, placed);
             const Record& record = scene_.records[placed.record];
-            if (record.keyword() == "human") figure.person_height = record.number("height");
+            if (record.keyword() == "human")
+                figure.person_height = record.number("height");
+            else if (isShown(placed))
+                figure.body = bodyOf(scene_, placed);
             const auto& views = options_.views;
             if (std::find(views.begin(), views.end(), placed.record) != views.end())
                 figure.view = viewOf(scene_, placed);
@@ -293,18 +295,32 @@ Mesh placedAt(const Mesh& mesh, const Pose3& pose) {
     return out;
 }
 
-FinishedSoup bodiesAt(const StillSurfaces& still, std::span<const Pose3> poses,
-                      std::span<const Angle> swings) {
+FinishedSoup bodiesAt(const StillSurfaces& still, std::span<const Pose3> poses) {
     FinishedSoup soup;
-    std::size_t person = 0;
     for (std::size_t i = 0; i < still.figures.size(); ++i) {
         const auto& [body, view, finish, paint, person_height] = still.figures[i];
-        const Angle swing = person_height && !swings.empty() ? swings[person++] : Angle();
-        for (const Mesh& mesh : swing == Angle() ? body : humanBodyOf(*person_height, swing))
+        for (const Mesh& mesh : body)
             soup.add(placedAt(mesh, poses[i]),
                      {finish.label, paint.value_or(paintOf(mesh.material))}, still.shift);
     }
     return soup;
+}
+
+FinishedBodies peopleAt(const StillSurfaces& still, std::span<const Pose3> poses,
+                        std::span<const Angle> swings) {
+    FinishedBodies people;
+    std::size_t person = 0;
+    for (std::size_t i = 0; i < still.figures.size(); ++i) {
+        const auto& [body, view, finish, paint, height] = still.figures[i];
+        if (!height) continue;
+        const Pose2 pose{(poses[i].position + still.shift).onFloor(), poses[i].heading};
+        const Angle swing = swings.empty() ? Angle() : swings[person++];
+        for (const BodyPart& part : humanParts(*height, swing)) {
+            people.bodies.emplace_back(movingBody(part, pose, cosSin(pose.heading), finish.label));
+            people.finishes.push_back({finish.label, paint.value_or(paintOf(part.material))});
+        }
+    }
+    return people;
 }
 
 FinishedSoup viewsAt(const StillSurfaces& still, std::span<const Pose3> poses) {
@@ -332,7 +348,8 @@ std::optional<std::uint32_t> Covering::paintAt(Point2 place) const {
 RenderScene::Data::Data(std::shared_ptr<const StillSurfaces> surfaces, std::span<const Pose3> poses,
                         std::span<const Angle> swings)
     : still(std::move(surfaces)),
-      bodies(still->device.get(), bodiesAt(*still, poses, swings), unsigned(SurfaceKind::Body)),
+      bodies(still->device.get(), bodiesAt(*still, poses), unsigned(SurfaceKind::Body)),
+      people(still->device.get(), peopleAt(*still, poses, swings), unsigned(SurfaceKind::Person)),
       views(still->device.get(), viewsAt(*still, poses), unsigned(SurfaceKind::View)) {}
 
 Finish RenderScene::Data::finishAt(const Finish& finish, Point3 place) const {

@@ -43,7 +43,7 @@ struct StillSurfaces {
         std::optional<Mesh> view;
         Finish finish;
         std::optional<std::uint32_t> paint;  ///< of the body, if it is not that of its materials
-        std::optional<double> person_height = {};  ///< of a person's, whose limbs swing
+        std::optional<double> person_height = {};  ///< of a person, who is humanParts()
     };
 
     EmbreeDevice device;
@@ -63,11 +63,11 @@ struct StillSurfaces {
 };
 
 /// Geometry ids of hits.
-enum class SurfaceKind : unsigned { Solid, Body, Glass, Paint, View };
+enum class SurfaceKind : unsigned { Solid, Body, Person, Glass, Paint, View };
 
 struct RenderScene::Data {
     std::shared_ptr<const StillSurfaces> still;
-    SurfaceSet bodies, views;
+    SurfaceSet bodies, people, views;
 
     Data(std::shared_ptr<const StillSurfaces> surfaces, std::span<const Pose3> poses,
          std::span<const Angle> swings = {});
@@ -79,6 +79,8 @@ struct RenderScene::Data {
                 return *still->solid;
             case SurfaceKind::Body:
                 return bodies;
+            case SurfaceKind::Person:
+                return people;
             case SurfaceKind::Glass:
                 return *still->glass;
             case SurfaceKind::Paint:

@@ -44,8 +44,13 @@ SurfacePoint Shading::ground(const SightTile& tile, std::size_t lane) const {
 }
 
 Vec3 Shading::normalAt(const SightTile& tile, std::size_t lane, Point3 place) const {
-    const TriangleSet& set = scene_.set(tile.kind[lane]).triangles();
     const std::uint32_t triangle = tile.triangle[lane];
+    const auto seen = [&](Vec3 normal) {
+        return dot(normal, tile.direction(lane)) > 0 ? -1 * normal : normal;
+    };
+    if (tile.kind[lane] == SurfaceKind::Person)
+        return seen(scene_.people.body(triangle).body.normalAt(place));
+    const TriangleSet& set = scene_.set(tile.kind[lane]).triangles();
     Vec3 normal = set.planes()[triangle].normal;
     if (const RoundBody* round = set.roundOf(triangle)) {
         constexpr double kAtEnd = 1e-6;
@@ -53,7 +58,7 @@ Vec3 Shading::normalAt(const SightTile& tile, std::size_t lane, Point3 place) co
         const Vec2 side = round->curve.normalAt(place.onFloor());
         normal = is_end ? Vec3{0, 0, 1} : 1 / length(side) * Vec3{side.x, side.y, 0};
     }
-    return dot(normal, tile.direction(lane)) > 0 ? -1 * normal : normal;
+    return seen(normal);
 }
 
 SurfacePoint Shading::surface(const SightTile& tile, std::size_t lane) const {
@@ -66,7 +71,8 @@ SurfacePoint Shading::met(const SightTile& tile, std::size_t lane) const {
     point.place = tile.place(lane);
     const Finish finish = scene_.finishAt(set.finish(tile.triangle[lane]), point.place);
     point.normal = normalAt(tile, lane, point.place);
-    if (set.triangles().isRound(tile.triangle[lane])) point.lift = 3e-4;
+    const bool is_person = tile.kind[lane] == SurfaceKind::Person;
+    if (!is_person && set.triangles().isRound(tile.triangle[lane])) point.lift = 3e-4;
     const Paint& look = scene_.still->paints[finish.paint];
     point.color = look.color;
     if (finish.face != Finish::kNoFace)

@@ -49,7 +49,11 @@ void SightTile::set(std::size_t lane, const SightLine& line, Vec3 shift) {
 
 SightTracer::SightTracer(const RenderScene::Data& scene, const std::vector<bool>& hidden,
                          double min_depth)
-    : scene_(scene), hidden_(hidden), width_(scene.still->packet_width) {
+    : scene_(scene),
+      hidden_(hidden),
+      width_(scene.still->packet_width),
+      people_(hidden),
+      min_depth_(min_depth) {
     valid_.fill(-1);
     far_.fill(static_cast<float>(kFarthest));
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -128,9 +132,12 @@ void SightTracer::trace(SightTile& tile) {
     if (!scene_.bodies.empty()) {
         PassingHidden passing(scene_.bodies, hidden_);
         tracePacket(passing, scene_.bodies.scene(), width_, valid_.data(), hits_);
-        for (const unsigned geometry : hits_.hit.geomID)
-            is_careful |= geometry == static_cast<unsigned>(SurfaceKind::Body);
     }
+    if (!scene_.people.empty())
+        tracePacket(people_, scene_.people.scene(), width_, valid_.data(), hits_);
+    for (const unsigned geometry : hits_.hit.geomID)
+        is_careful |= geometry == static_cast<unsigned>(SurfaceKind::Body) ||
+                      geometry == static_cast<unsigned>(SurfaceKind::Person);
     readHits(hits_, tile);
     std::uint32_t care = ~0U >> (32 - kLanes);
     if (!is_careful) {
@@ -147,9 +154,14 @@ void SightTracer::trace(SightTile& tile) {
 
 double SightTracer::resolve(const SightTile& tile, std::size_t lane) const {
     if (hits_.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return kInfinity;
-    const TriangleSet& set = scene_.set(tile.kind[lane]).triangles();
     const std::uint32_t triangle = tile.triangle[lane];
     const double found = static_cast<double>(hits_.ray.tfar[lane]);
+    if (tile.kind[lane] == SurfaceKind::Person) {
+        const BodyMeeting met =
+            scene_.people.body(triangle).meet(tile.origin(lane), tile.direction(lane), min_depth_);
+        return met.multiple < kInfinity ? met.multiple : found;
+    }
+    const TriangleSet& set = scene_.set(tile.kind[lane]).triangles();
     if (set.isRound(triangle)) {
         const RayHit hit =
             set.meet(triangle, {tile.origin(lane), tile.direction(lane), kFarthest}, 0);

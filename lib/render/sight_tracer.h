@@ -62,6 +62,8 @@ class SightTracer {
     const std::vector<bool>& hidden_;
     std::size_t width_;
     EmbreeQuery query_;
+    BodyQuery people_;
+    double min_depth_;
     alignas(64) RTCRayHit16 hits_{};
     alignas(64) std::array<int, kLanes> valid_{};
     alignas(64) std::array<float, kLanes> far_{};

@@ -5,6 +5,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "trace/embree_query.h"
 
@@ -33,13 +34,22 @@ void FinishedSoup::add(const Mesh& mesh, Finish finish, Vec3 shift) {
 SurfaceSet::SurfaceSet(RTCDeviceTy* device, const FinishedSoup& soup, unsigned geometry_id)
     : triangles_(soup.triangles) {
     finishes_.reserve(triangles_.size());
-    labels_.reserve(triangles_.size());
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    for (std::size_t i = 0; i < triangles_.size(); ++i)
         finishes_.push_back(soup.finishes[triangles_.source(i)]);
-        labels_.push_back(
-            static_cast<std::uint16_t>(std::min(finishes_.back().label, std::uint32_t{65535})));
-    }
+    addLabels();
     scene_ = buildTriangles(device, triangles_, geometry_id, [device] { throwIfFailed(device); });
+}
+
+SurfaceSet::SurfaceSet(RTCDeviceTy* device, FinishedBodies bodies, unsigned geometry_id)
+    : triangles_({}), bodies_(std::move(bodies.bodies)), finishes_(std::move(bodies.finishes)) {
+    addLabels();
+    scene_ = buildBodies(device, bodies_, geometry_id, [device] { throwIfFailed(device); });
+}
+
+void SurfaceSet::addLabels() {
+    labels_.reserve(finishes_.size());
+    for (const Finish& finish : finishes_)
+        labels_.push_back(static_cast<std::uint16_t>(std::min(finish.label, std::uint32_t{65535})));
 }
 
 }  // namespace ispace

@@ -41,6 +41,14 @@ std::string degrees(Angle angle);
 /// return, or a depth that does not fit 16 bits.
 std::string depthPng(int columns, int rows, const std::vector<float>& depths, double per_metre);
 
+/// How a lens bends, in the words of ROS' camera_info: `plumb_bob` (k1 k2 p1 p2 k3), `equidistant`
+/// (k1 k2 k3 k4), or OpenCV's `omnidir` (four zeros, with Camera::mirror as xi).
+struct LensModel {
+    std::string_view name;
+    std::span<const double> coefficients;  ///< of the camera
+};
+LensModel lensModelOf(const Camera& camera);
+
 /// ROS camera_info as YAML, which applyCalibration() reads: size, matrices and distortion. Pixel
 /// centres are whole numbers, so cx of a ranger is (columns - 1) / 2. A mirror has OpenCV's model
 /// `omnidir` with `xi`. \pre a ranger is a pinhole

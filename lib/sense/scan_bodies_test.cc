@@ -104,7 +104,7 @@ TEST(ScanOfPeople, LegsTrunkAndHeadAreMet) {
     EXPECT_NEAR(*std::min_element(scans[0].ranges.begin(), scans[0].ranges.end()),
                 std::hypot(2, 0.0935) - 0.0595, 2e-3);
     EXPECT_NEAR(scans[1].ranges[90], 2 - 0.102, 1e-6);
-    EXPECT_NEAR(scans[2].ranges[90], 2 - 0.1105, 1e-6);
+    EXPECT_NEAR(scans[2].ranges[90], 2 - std::sqrt(0.1105 * 0.1105 - 0.0605 * 0.0605), 1e-6);
     EXPECT_EQ(scans[3].ranges[90], 6);
     EXPECT_NEAR(scans[4].ranges[90], 0.7, 1e-6) << "onto the head";
 }

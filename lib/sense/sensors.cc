@@ -95,17 +95,9 @@ bool isAtSome(const MovingBody& body, std::span<const double> heights) {
 
 void addHumanBodies(double height, const Pose2& pose, std::uint32_t owner, Angle swing,
                     std::span<const double> heights, std::vector<MovingBody>& bodies) {
-    const auto [c, s] = cosSin(pose.heading);
-    for (const Upright& part : humanUprights(height, swing)) {
-        const Vec2 way{c * part.center.x - s * part.center.y,
-                       s * part.center.x + c * part.center.y};
-        const MovingBody body{.pose = {pose.position + way, pose.heading},
-                              .half_length = part.half_length,
-                              .half_width = part.half_width,
-                              .radius = part.radius,
-                              .bottom = part.bottom,
-                              .top = part.top,
-                              .owner = owner};
+    const CosSin axes = cosSin(pose.heading);
+    for (const BodyPart& part : humanParts(height, swing)) {
+        const MovingBody body = movingBody(part, pose, axes, owner);
         if (isAtSome(body, heights)) bodies.push_back(body);
     }
 }

@@ -44,7 +44,7 @@ constexpr std::uint32_t kFirstPerson = 1U << 31U;
 std::uint32_t carrierOf(const Sensor& sensor);
 
 MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner);
-/// A person's legs, trunk, arms and head; `swing` as of humanBodyOf.
+/// A person's limbs, trunk and head: humanParts() where she stands.
 std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner,
                                     Angle swing = {});
 /// True if one of these heights passes the body; also if there are none.

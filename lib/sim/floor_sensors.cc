@@ -41,6 +41,7 @@ bool isApart(const Area& area, const Area& other) {
     return std::fabs(middle.x) > area.half_length + x || std::fabs(middle.y) > area.half_width + y;
 }
 
+/// \pre the body is upright
 bool touches(const Area& area, const MovingBody& body) {
     if (body.radius > 0) return touchesDisc(area, body.pose.position, body.radius);
     const Area other{body.pose, body.half_length, body.half_width};
@@ -59,7 +60,7 @@ bool standsIn(const MovingBody& body, const Gate& gate) {
     const Vec2 way = beam.b - beam.a;
     // A sheet between the posts, which a box or a disc may touch.
     const Area sheet{{gate.pose.position, gate.pose.heading}, 0, length(way) / 2};
-    return touches(sheet, body);
+    return touches(sheet, body.cutAt(gate.height));
 }
 
 }  // namespace
@@ -132,7 +133,7 @@ void FloorSensors::look(std::size_t mover, const Pose2& pose, Angle swing) {
     for (std::size_t k = 0; k < mats_.size(); ++k) {
         const Area area{mats_[k].pose, mats_[k].half_length, mats_[k].half_width};
         const auto presses = [&](const MovingBody& body) {
-            return body.bottom <= 0 && touches(area, body);
+            return body.bottom <= 0 && touches(area, body.cutAt(0));
         };
         if (any(area, presses)) mat_states_[k].on.push_back(shape.id);
     }

@@ -19,7 +19,7 @@ namespace ispace {
 /// Robots and people as they are after a step, in the order of the scene.
 struct Movers {
     std::span<const Motion> robots, people;
-    std::span<const Angle> swings;  ///< of the people's limbs, see humanBodyOf
+    std::span<const Angle> swings;  ///< of the people's limbs, see humanParts
 };
 
 /// A pressure mat on the floor.

@@ -37,7 +37,7 @@ class Gait {
     /// Share of the stride in [0, 1); the left leg is ahead in its first half.
     double phase = 0;
 
-    /// Angle of the left leg ahead of the vertical at a speed, as humanBodyOf takes it.
+    /// Angle of the left leg ahead of the vertical at a speed, as humanParts takes it.
     [[nodiscard]] Angle swing(double speed) const;
     /// Goes on by a way in metres, forward or back, at this speed.
     void walk(double height, double way, double speed);

@@ -44,7 +44,7 @@ TEST(WorldEditor, Adds) {
     EXPECT_EQ(it.world.robots()[2].id, "robot1");
     EXPECT_EQ(it.world.scene().ids.back(), "h");
     EXPECT_EQ(findings([&] { it.edit(Edit::Kind::Add, "robot id=h at=3,0"); }),
-              "error: --add robot id=h at=3,0: the id `h` is taken\n");
+              "error: --add robot id=h at=3,0: the id `h` is taken by the human added before\n");
     EXPECT_EQ(findings([&] { it.edit(Edit::Kind::Add, "cube at=0,0 size=1"); }),
               "room.3dm:2:1: error: robot r1 stands in cube1 (its radius is 0.25 m)\n");
     EXPECT_EQ(it.world.changes(), 2);

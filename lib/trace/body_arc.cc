@@ -45,9 +45,12 @@ void see(const BodyTable& table, std::size_t begin, const ArcView& view, Seen& s
     const double* const reach = table.reach.data() + begin;
     const double* const bottom = table.bottom.data() + begin;
     const double* const top = table.top.data() + begin;
+    const double* const lean_x = table.lean_x.data() + begin;
+    const double* const lean_y = table.lean_y.data() + begin;
     double low[kLanes], high[kLanes], other_low[kLanes], other_high[kLanes];
     ISPACE_LANES for (int i = 0; i < kLanes; ++i) {
-        const double wx = x[i] - view.x, wy = y[i] - view.y;
+        const double up = view.z - 0.5 * (bottom[i] + top[i]);
+        const double wx = x[i] + lean_x[i] * up - view.x, wy = y[i] + lean_y[i] * up - view.y;
         const double square = wx * wx + wy * wy;
         const double distance = std::sqrt(square);
         seen.nearest[i] = distance - reach[i];
@@ -310,13 +313,15 @@ void BodyArc::meetBeams(const BodyFrom& body, std::int32_t first, std::int32_t l
     const auto begin = static_cast<std::size_t>(first), end = static_cast<std::size_t>(last) + 1;
     constexpr std::size_t kBlocks = 8;
     double multiples[kBlocks * kBlock], slopes[kBlocks * kBlock];
-    const OutlineFrom outline{body.axes().cos,   body.axes().sin,         body.offset().x,
-                              body.offset().y,   body.body().half_length, body.body().half_width,
-                              body.body().radius};
-    const auto shorten = [&](std::size_t k, const BodyMeeting& met) {
-        if (static_cast<double>(ranges_[k]) > nearest) ranges_.shorten(k, met, 1);
+    const auto shorten = [&](std::size_t k, const BodyMeeting& meeting) {
+        if (static_cast<double>(ranges_[k]) > nearest) ranges_.shorten(k, meeting, 1);
     };
-    const std::size_t whole = directions_.size() / kBlock;
+    // Blocks take balls for cylinders, and normals to be level.
+    const MovingBody& met = body.body();
+    const bool is_single = met.is_ball || (met.lean != 0 && ranges_.hasCosines());
+    const std::size_t whole = is_single ? 0 : directions_.size() / kBlock;
+    const OutlineFrom outline{body.axes().cos, body.axes().sin, body.offset().x, body.offset().y,
+                              met.half_length, met.half_width,  met.radius};
     std::size_t block = begin / kBlock;
     for (; block < whole && block * kBlock < end; block += kBlocks) {
         const std::size_t at = block * kBlock;
@@ -335,9 +340,9 @@ void BodyArc::meetBeams(const BodyFrom& body, std::int32_t first, std::int32_t l
         for (std::size_t k = 0; k < blocks; ++k) findFarthest(block + k);
     }
     if (end <= whole * kBlock) return;
-    for (std::size_t k = std::max(begin, whole * kBlock); k < end; ++k)
-        shorten(k, body.meet(directions_[k]));
-    findFarthest(whole);
+    const std::size_t rest = std::max(begin, whole * kBlock);
+    for (std::size_t k = rest; k < end; ++k) shorten(k, body.meet(directions_[k]));
+    for (block = rest / kBlock; block * kBlock < end; ++block) findFarthest(block);
 }
 
 }  // namespace ispace

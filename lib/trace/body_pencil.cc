@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/simd.h"
+#include "trace/flat_kernels.h"
 
 namespace ispace {
 
@@ -16,8 +17,10 @@ constexpr int kLanes = static_cast<int>(BodyTable::kLanes);
 /// Not of extreme numbers.
 double lengthOf(Vec2 v) { return std::sqrt(dot(v, v)); }
 
-/// Bodies one after the other: how near each is at least, below 0 if no ray meets it.
+/// Bodies one after the other: the circle about their level cuts at the rays' heights, how near
+/// that is to the rays at least, and whether a ray may meet it.
 struct alignas(64) Met {
+    double x[BodyTable::kLanes], y[BodyTable::kLanes], radius[BodyTable::kLanes];
     double nearest[BodyTable::kLanes], may_meet[BodyTable::kLanes];
 };
 
@@ -28,11 +31,19 @@ void look(const BodyTable& table, std::size_t begin, const BodyPencil::Hull& hul
     const double* const reach = table.reach.data() + begin;
     const double* const bottom = table.bottom.data() + begin;
     const double* const top = table.top.data() + begin;
+    const double* const lean_x = table.lean_x.data() + begin;
+    const double* const lean_y = table.lean_y.data() + begin;
     const double no_sides = hull.is_cone ? 0.0 : std::numeric_limits<double>::infinity();
     for (int i = 0; i < kLanes; ++i) {
-        const double wx = x[i] - hull.x, wy = y[i] - hull.y;
+        const double low = flatMax(bottom[i], hull.low), high = flatMin(top[i], hull.high);
+        const double up = 0.5 * (low + high) - 0.5 * (bottom[i] + top[i]);
+        met.x[i] = x[i] + lean_x[i] * up;
+        met.y[i] = y[i] + lean_y[i] * up;
+        const double lean = std::fabs(lean_x[i]) + std::fabs(lean_y[i]);
+        met.radius[i] = reach[i] + 0.5 * lean * flatMax(high - low, 0.0);
+        const double wx = met.x[i] - hull.x, wy = met.y[i] - hull.y;
         const double distance = std::sqrt(wx * wx + wy * wy);
-        const double around = reach[i] + hull.spread;
+        const double around = met.radius[i] + hull.spread;
         const double slack = around + kFarSlack * (around + distance) + no_sides;
         met.nearest[i] = distance - around;
         const bool meets = (hull.right_x * wy - hull.right_y * wx >= -slack) &
@@ -104,20 +115,24 @@ void BodyPencil::meet(const BodyTable& table, std::size_t begin, std::size_t end
         for (std::size_t k = 0; k < std::min(BodyTable::kLanes, end - i); ++k) {
             if (met.may_meet[k] == 0) continue;
             const std::uint32_t body = table.index[i + k];
-            if (bodies[body].owner != own) meetBody(bodies[body], extents[body], met.nearest[k]);
+            if (bodies[body].owner != own)
+                meetBody({bodies[body],
+                          extents[body].axes,
+                          {met.x[k], met.y[k]},
+                          met.radius[k],
+                          met.nearest[k]});
         }
     }
 }
 
-void BodyPencil::meetBody(const MovingBody& body, const BodyExtent& extent, double nearest) {
-    const Point2 place = body.pose.position;
-    const double near = extent.reach + kFarSlack * (extent.reach + hull_.far);
+void BodyPencil::meetBody(const Ahead& ahead) {
+    const double near = ahead.radius + kFarSlack * (ahead.radius + hull_.far);
     for (std::size_t k = begin_; k < end_; ++k) {
-        if (static_cast<double>(ranges_[k]) <= nearest) continue;
+        if (static_cast<double>(ranges_[k]) <= ahead.nearest) continue;
         // Most rays pass by the circle about it: flat directions are at most 1 long.
         const Vec2 flat{directions_.x[k], directions_.y[k]};
-        if (std::fabs(cross(place - origins_[k].onFloor(), flat)) > near) continue;
-        const BodyFrom from(body, extent.axes, origins_[k]);
+        if (std::fabs(cross(ahead.center - origins_[k].onFloor(), flat)) > near) continue;
+        const BodyFrom from(ahead.body, ahead.axes, origins_[k]);
         ranges_.shorten(k, from.meet(directions_[k]), 1);
     }
 }

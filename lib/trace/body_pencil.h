@@ -38,7 +38,14 @@ class BodyPencil {
 
   private:
     void setSides();
-    void meetBody(const MovingBody& body, const BodyExtent& extent, double nearest);
+    /// A body in the way: the circle about it at the heights of the rays, and how near it is.
+    struct Ahead {
+        const MovingBody& body;
+        CosSin axes;
+        Point2 center;
+        double radius, nearest;
+    };
+    void meetBody(const Ahead& ahead);
 
     std::span<const Point3> origins_;
     const Directions& directions_;

@@ -28,7 +28,8 @@ struct PixelRange {
     }
 };
 
-/// The corners of an upright box about the body; corners i and i + 4 stand over each other.
+/// The corners of a box about the body, which leans as it does; corners i and i + 4 stand over each
+/// other.
 std::array<Vec3, 8> cornersOf(const MovingBody& body, const BodyExtent& extent, Point3 origin) {
     const bool is_round = body.radius > 0;
     const double half_length = is_round ? body.radius : body.half_length;
@@ -38,10 +39,13 @@ std::array<Vec3, 8> cornersOf(const MovingBody& body, const BodyExtent& extent, 
     const Vec2 middle = body.pose.position - origin.onFloor();
     const Vec2 floor[] = {middle + along + across, middle - along + across, middle - along - across,
                           middle + along - across};
+    const Vec2 ahead =
+        body.lean * (body.top - body.middle()) * Vec2{extent.axes.cos, extent.axes.sin};
     std::array<Vec3, 8> corners;
     for (std::size_t i = 0; i < 4; ++i) {
-        corners[i] = {floor[i].x, floor[i].y, body.bottom - origin.z};
-        corners[i + 4] = {floor[i].x, floor[i].y, body.top - origin.z};
+        const Vec2 low = floor[i] - ahead, high = floor[i] + ahead;
+        corners[i] = {low.x, low.y, body.bottom - origin.z};
+        corners[i + 4] = {high.x, high.y, body.top - origin.z};
     }
     return corners;
 }
@@ -57,10 +61,10 @@ Box2 BodyScan::box() const {
 /// Those rays that pass its middle on the floor near enough.
 void BodyScan::meet(const MovingBody& body, const BodyExtent& extent) {
     const Vec2 way = body.pose.position - origin_.onFloor();
-    const double nearest = std::sqrt(dot(way, way)) - extent.reach;
+    const double nearest = std::sqrt(dot(way, way)) - extent.whole;
     if (!(nearest <= far_ * (1 + kFarSlack))) return;
     const BodyFrom from(body, extent.axes, origin_);
-    const double wide = extent.reach * (1 + kFarSlack) * extent.reach * (1 + kFarSlack);
+    const double wide = extent.whole * (1 + kFarSlack) * extent.whole * (1 + kFarSlack);
     for (std::size_t k = 0; k < directions_.size(); ++k) {
         const double x = directions_.x[k], y = directions_.y[k];
         const double aside = way.x * y - way.y * x;
@@ -101,8 +105,8 @@ PixelBox BodyPicture::pixelsOf(const MovingBody& body, const BodyExtent& extent)
     const PixelBox all{0, 0, grid_.columns, grid_.rows};
     if (!is_plane_) return all;
     const Vec2 way = origin_.onFloor() - body.pose.position;
-    const double near = 1e-6 + kFarSlack * extent.reach;
-    if (length(way) <= extent.reach + near && origin_.z >= body.bottom - near &&
+    const double near = 1e-6 + kFarSlack * extent.whole;
+    if (length(way) <= extent.whole + near && origin_.z >= body.bottom - near &&
         origin_.z <= body.top + near)
         return all;
 

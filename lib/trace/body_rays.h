@@ -17,14 +17,14 @@ struct Stretch {
     double to = std::numeric_limits<double>::infinity();
     double slope_from = 0, slope_to = 0;
 
-    void cut(double near, double far, double slope) {
+    void cut(double near, double far, double slope_near, double slope_far) {
         if (near > from) {
             from = near;
-            slope_from = slope;
+            slope_from = slope_near;
         }
         if (far < to) {
             to = far;
-            slope_to = slope;
+            slope_to = slope_far;
         }
     }
     void clear() {
@@ -35,21 +35,35 @@ struct Stretch {
     void cutSlab(double origin, double direction, double low, double high) {
         if (direction != 0) {
             const double a = (low - origin) / direction, b = (high - origin) / direction;
-            cut(std::min(a, b), std::max(a, b), std::fabs(direction));
+            cut(std::min(a, b), std::max(a, b), std::fabs(direction), std::fabs(direction));
         } else if (origin < low || origin > high) {
             clear();
         }
     }
-    void cutDisc(Vec2 origin, Vec2 direction, double radius) {
+    /// Of a cylinder whose level cuts move along x by `lean` per metre: the ray as seen from them.
+    void cutDisc(Vec2 origin, Vec2 direction, double radius, double lean) {
         const double a = dot(direction, direction), b = dot(origin, direction);
         const double side = cross(origin, direction);
         const double root = a * radius * radius - side * side;
         if (a == 0 ? dot(origin, origin) > radius * radius : root < 0) {
             clear();
         } else if (a != 0) {
-            const double half = std::sqrt(root);
-            cut((-b - half) / a, (-b + half) / a, half / radius);
+            const double half = std::sqrt(root), near = (-b - half) / a, far = (-b + half) / a;
+            const auto slope = [&](double multiple) {
+                // The normal of a slanted side is not level.
+                const double rise = lean * (origin.x + multiple * direction.x) / radius;
+                return lean == 0 ? half / radius : half / radius / std::sqrt(1 + rise * rise);
+            };
+            cut(near, far, slope(near), slope(far));
         }
+    }
+    void cutBall(Vec3 origin, Vec3 direction, double radius) {
+        const double a = dot(direction, direction), b = dot(origin, direction);
+        const Vec3 side = cross(origin, direction);
+        const double root = a * radius * radius - dot(side, side);
+        if (root < 0) return clear();
+        const double half = std::sqrt(root);
+        cut((-b - half) / a, (-b + half) / a, half / radius, half / radius);
     }
 };
 
@@ -65,31 +79,38 @@ class BodyFrom {
     BodyFrom(const MovingBody& body, CosSin axes, Point3 origin)
         : body_(body), axes_(axes), height_(origin.z) {
         offset_ = turned(origin.onFloor() - body.pose.position);
+        offset_.x -= body.lean * (height_ - body.middle());
     }
 
     [[nodiscard]] Stretch within(Vec3 direction) const {
         const Vec2 flat = turned({direction.x, direction.y});
         Stretch stretch;
+        if (body_.is_ball) {
+            stretch.cutBall({offset_.x, offset_.y, height_ - body_.middle()},
+                            {flat.x, flat.y, direction.z}, body_.radius);
+            return stretch;
+        }
         stretch.cutSlab(height_, direction.z, body_.bottom, body_.top);
         if (body_.radius > 0) {
-            stretch.cutDisc(offset_, flat, body_.radius);
+            stretch.cutDisc(offset_, {flat.x - body_.lean * direction.z, flat.y}, body_.radius,
+                            body_.lean);
         } else {
             stretch.cutSlab(offset_.x, flat.x, -body_.half_length, body_.half_length);
             stretch.cutSlab(offset_.y, flat.y, -body_.half_width, body_.half_width);
         }
         return stretch;
     }
-    /// The first place on its surface: from inside where the ray leaves.
-    [[nodiscard]] BodyMeeting meet(Vec3 direction) const {
+    /// The first place on its surface, at no less than `least`: from inside where the ray leaves.
+    [[nodiscard]] BodyMeeting meet(Vec3 direction, double least = 0) const {
         const Stretch stretch = within(direction);
-        if (stretch.from > stretch.to || stretch.to < 0) return {};
-        if (stretch.from >= 0) return {stretch.from, stretch.slope_from};
+        if (stretch.from > stretch.to || stretch.to < least) return {};
+        if (stretch.from >= least) return {stretch.from, stretch.slope_from};
         return {stretch.to, stretch.slope_to};
     }
 
     [[nodiscard]] const MovingBody& body() const { return body_; }
     [[nodiscard]] CosSin axes() const { return axes_; }
-    /// Where the rays leave, in its frame.
+    /// Where the rays leave, in its frame, from the middle of the level cut there.
     [[nodiscard]] Vec2 offset() const { return offset_; }
 
   private:

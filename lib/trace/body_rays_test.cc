@@ -86,6 +86,9 @@ TEST(BodyPicture, AgreesWithEveryBodyAndPixel) {
                                  0.1 + 2 * unit(random), 0.1 + unit(random), bottom, top)
                            : cylinder({place(random), place(random)}, unit(random), bottom, top));
             made.back().owner = i / 2;
+            if (i % 4 == 3) made.back().lean = unit(random) - 0.5;
+            made.back().is_ball = i % 8 == 5;
+            if (i % 8 == 5) made.back().top = bottom + 2 * made.back().radius;
         }
         const MovingBodies bodies(made);
         Pose3 pose{{place(random), place(random), 2 * unit(random)},
@@ -169,8 +172,13 @@ TEST(MovingBodies, OriginsOfEachRay) {
     std::mt19937_64 random(42);
     std::uniform_real_distribution<double> place(-3, 3), any(-1, 1);
     for (int round = 0; round < 50; ++round) {
+        MovingBody slanted = cylinder({place(random), place(random)}, 0.2, 0.1, 2);
+        slanted.lean = any(random);
+        MovingBody ball = cylinder({place(random), place(random)}, 0.4, 0.2, 1);
+        ball.is_ball = true;
         const MovingBodies bodies({box({place(random), place(random)}, 20, 1, 2, 0, 1),
-                                   cylinder({place(random), place(random)}, 0.5, 0.2, 1.5)});
+                                   cylinder({place(random), place(random)}, 0.5, 0.2, 1.5), slanted,
+                                   ball});
         Directions directions;
         directions.resize(100);
         std::vector<Point3> origins;

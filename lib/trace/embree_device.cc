@@ -20,32 +20,24 @@ std::size_t nativeWidthOf(RTCDeviceTy* device) {
     return has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8 : 4;
 }
 
-EmbreeTriangles buildTriangles(RTCDeviceTy* device, const TriangleSet& triangles,
-                               unsigned geometry_id, const std::function<void()>& throw_if_failed) {
-    EmbreeTriangles scene(rtcNewScene(device));
-    throw_if_failed();
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | kFilterFlag);
-    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
-    if (const std::size_t count = triangles.size(); count > 0) {
-        using Corners = TriangleSet::FloatTriangle;
-        const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        throw_if_failed();
-        rtcAttachGeometryByID(scene.get(), geometry, geometry_id);
-        rtcReleaseGeometry(geometry);  // the scene holds it
-        auto* const corners = static_cast<Corners*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                    sizeof(Corners) / 3, 3 * count));
-        auto* const indices = static_cast<std::uint32_t*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(std::uint32_t), count));
-        throw_if_failed();
-        triangles.enlarge({corners, count});
-        for (std::size_t i = 0; i < 3 * count; ++i) indices[i] = static_cast<std::uint32_t>(i);
-        rtcCommitGeometry(geometry);
-    }
-    rtcCommitScene(scene.get());
-    throw_if_failed();
-    return scene;
+EmbreeSceneHandle buildTriangles(RTCDeviceTy* device, const TriangleSet& triangles,
+                                 unsigned geometry_id,
+                                 const std::function<void()>& throw_if_failed) {
+    const std::size_t count = triangles.size();
+    return buildScene(device, RTC_GEOMETRY_TYPE_TRIANGLE, count, geometry_id, throw_if_failed,
+                      [&](RTCGeometry geometry) {
+                          using Corners = TriangleSet::FloatTriangle;
+                          auto* const corners = static_cast<Corners*>(rtcSetNewGeometryBuffer(
+                              geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                              sizeof(Corners) / 3, 3 * count));
+                          auto* const indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+                              geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(std::uint32_t), count));
+                          throw_if_failed();
+                          triangles.enlarge({corners, count});
+                          for (std::size_t i = 0; i < 3 * count; ++i)
+                              indices[i] = static_cast<std::uint32_t>(i);
+                      });
 }
 
 }  // namespace ispace

@@ -18,7 +18,7 @@ struct EmbreeRelease {
     void operator()(RTCSceneTy* scene) const;
 };
 using EmbreeDevice = std::unique_ptr<RTCDeviceTy, EmbreeRelease>;
-using EmbreeTriangles = std::unique_ptr<RTCSceneTy, EmbreeRelease>;
+using EmbreeSceneHandle = std::unique_ptr<RTCSceneTy, EmbreeRelease>;
 
 /// Nothing but the program decides how Embree works: no file in the user's home does. Null if it
 /// fails.
@@ -29,7 +29,8 @@ std::size_t nativeWidthOf(RTCDeviceTy* device);
 
 /// A scene of the enlarged triangles, ROBUST and of high quality, hits of which have this geometry
 /// id. `throw_if_failed` is asked after each step that may fail. O(n log n)
-EmbreeTriangles buildTriangles(RTCDeviceTy* device, const TriangleSet& triangles,
-                               unsigned geometry_id, const std::function<void()>& throw_if_failed);
+EmbreeSceneHandle buildTriangles(RTCDeviceTy* device, const TriangleSet& triangles,
+                                 unsigned geometry_id,
+                                 const std::function<void()>& throw_if_failed);
 
 }  // namespace ispace

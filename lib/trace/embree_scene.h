@@ -56,7 +56,7 @@ class EmbreeScene {
     TriangleSet set_;
     double ray_epsilon_;
     EmbreeDevice device_;
-    EmbreeTriangles scene_;
+    EmbreeSceneHandle scene_;
     std::size_t width_ = 4;
 };
 

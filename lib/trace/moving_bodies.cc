@@ -17,6 +17,60 @@ double MovingBody::reach() const {
     return radius > 0 ? radius : std::sqrt(half_length * half_length + half_width * half_width);
 }
 
+double MovingBody::sway() const { return std::fabs(lean) * (top - bottom) / 2; }
+
+MovingBody MovingBody::cutAt(double z) const {
+    MovingBody cut = *this;
+    const double up = z - middle();
+    cut.pose.position = pose.position + lean * up * unitVector(pose.heading);
+    if (is_ball) cut.radius = std::sqrt(std::max(0.0, radius * radius - up * up));
+    cut.lean = 0;
+    cut.is_ball = false;
+    return cut;
+}
+
+Vec3 MovingBody::normalAt(Point3 place) const {
+    const BodyFrom from(*this, cosSin(pose.heading), place);
+    const Vec2 at = from.offset();
+    const Vec2 along = unitVector(pose.heading), across = perpendicular(along);
+    const auto in_world = [&](Vec3 n) {
+        const Vec2 flat = n.x * along + n.y * across;
+        return 1 / length(n) * Vec3{flat.x, flat.y, n.z};
+    };
+    if (is_ball) return in_world({at.x, at.y, place.z - middle()});
+    // Of the face that lies farthest out.
+    struct Face {
+        double height;
+        Vec3 normal;
+    };
+    const double x = std::copysign(1.0, at.x), y = std::copysign(1.0, at.y);
+    const bool is_round = radius > 0;
+    const Face faces[] = {
+        {place.z - top, {0, 0, 1}},
+        {bottom - place.z, {0, 0, -1}},
+        is_round ? Face{length(at) - radius, {at.x, at.y, -lean * at.x}}
+                 : Face{std::fabs(at.x) - half_length, {x, 0, 0}},
+        is_round ? Face{-radius, {}} : Face{std::fabs(at.y) - half_width, {0, y, 0}}};
+    return in_world(
+        std::max_element(std::begin(faces), std::end(faces), [](const Face& a, const Face& b) {
+            return a.height < b.height;
+        })->normal);
+}
+
+MovingBody movingBody(const BodyPart& part, const Pose2& pose, CosSin axes, std::uint32_t owner) {
+    const auto& [x, y] = part.center;
+    const Vec2 way{axes.cos * x - axes.sin * y, axes.sin * x + axes.cos * y};
+    return {.pose = {pose.position + way, pose.heading},
+            .half_length = part.half_length,
+            .half_width = part.half_width,
+            .radius = part.radius,
+            .bottom = part.bottom,
+            .top = part.top,
+            .owner = owner,
+            .lean = part.lean,
+            .is_ball = part.is_ball};
+}
+
 double MovingBody::meet(Point3 origin, Vec3 direction) const {
     return BodyFrom(*this, cosSin(pose.heading), origin).meet(direction).multiple;
 }
@@ -68,16 +122,19 @@ std::size_t FloorGrid::cellOf(double offset, std::size_t count) const {
 
 void BodyTable::fill(std::span<const std::uint32_t> order, std::span<const MovingBody> bodies,
                      std::span<const BodyExtent> extents) {
-    for (auto* const figures : {&x, &y, &reach, &bottom, &top})
+    for (auto* const figures : {&x, &y, &reach, &bottom, &top, &lean_x, &lean_y})
         figures->resize(order.size() + kLanes);
     index.assign(order.begin(), order.end());
     for (std::size_t i = 0; i < order.size(); ++i) {
         const MovingBody& body = bodies[order[i]];
         x[i] = body.pose.position.x;
         y[i] = body.pose.position.y;
-        reach[i] = extents[order[i]].reach;
+        const BodyExtent& extent = extents[order[i]];
+        reach[i] = extent.reach;
         bottom[i] = body.bottom;
         top[i] = body.top;
+        lean_x[i] = body.lean * extent.axes.cos;
+        lean_y[i] = body.lean * extent.axes.sin;
     }
 }
 
@@ -99,9 +156,10 @@ void MovingBodies::index() {
         // The parts of a person face the same way.
         const bool is_alike =
             !extents_.empty() && body.pose.heading == bodies_[extents_.size() - 1].pose.heading;
+        const double own = body.reach();
         extents_.push_back(
-            {is_alike ? extents_.back().axes : cosSin(body.pose.heading), body.reach()});
-        reach = std::max(reach, extents_.back().reach);
+            {is_alike ? extents_.back().axes : cosSin(body.pose.heading), own, own + body.sway()});
+        reach = std::max(reach, extents_.back().whole);
     }
     grid_.rebuild(places_, reach);
     table_.fill(grid_.order(), bodies_, extents_);

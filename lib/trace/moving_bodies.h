@@ -10,29 +10,44 @@
 
 #include "geom/point.h"
 #include "geom/pose.h"
+#include "layout/bodies.h"
 #include "trace/rays.h"
 
 namespace ispace {
 
-/// An upright box or cylinder that moves on the floor: what rays see of robots and people.
+/// A box, ball or cylinder, upright or slanted, that moves on the floor: what rays see of robots
+/// and people.
 struct MovingBody {
-    Pose2 pose;                              ///< of its middle
+    Pose2 pose;                              ///< of its level cut at middle()
     double half_length = 0, half_width = 0;  ///< of a box, along and across the heading
-    double radius = 0;                       ///< of a cylinder; 0: a box
+    double radius = 0;                       ///< of a cylinder or ball; 0: a box
     double bottom = 0, top = 0;              ///< heights, both included
     std::uint32_t owner = 0;                 ///< whose sensors do not see it
+    double lean = 0;       ///< of a slanted cylinder, along the heading, see BodyPart
+    bool is_ball = false;  ///< of `radius`
 
-    /// Radius of the smallest circle about its middle that encloses it.
+    [[nodiscard]] double middle() const { return 0.5 * (bottom + top); }
+    /// Radius of the smallest circle that encloses each of its level cuts, about the cut's middle.
     [[nodiscard]] double reach() const;
+    /// How far its level cuts move on either side of its middle.
+    [[nodiscard]] double sway() const;
+    /// An upright body of the same level cut at a height. \pre bottom <= z <= top
+    [[nodiscard]] MovingBody cutAt(double z) const;
+    /// The outward unit normal at a place on its surface.
+    [[nodiscard]] Vec3 normalAt(Point3 place) const;
     /// Distance along the ray to the surface, +infinity if it misses; from inside, to where it
     /// leaves. \pre direction is a unit vector
     [[nodiscard]] double meet(Point3 origin, Vec3 direction) const;
 };
 
+/// A part of a body whose frame stands at this pose. `axes`: of the pose's heading.
+MovingBody movingBody(const BodyPart& part, const Pose2& pose, CosSin axes, std::uint32_t owner);
+
 /// What all rays need to know of a body, computed once.
 struct BodyExtent {
     CosSin axes;       ///< of its heading
     double reach = 0;  ///< MovingBody::reach()
+    double whole = 0;  ///< radius of a circle about its middle that encloses all level cuts
 };
 
 /// Finds what is near on the floor: a uniform grid over the places of moving things, rebuilt by
@@ -73,7 +88,8 @@ class FloorGrid {
 struct BodyTable {
     static constexpr std::size_t kLanes = 8;
     std::vector<double> x, y, reach, bottom, top;
-    std::vector<std::uint32_t> index;  ///< of MovingBodies::bodies()
+    std::vector<double> lean_x, lean_y;  ///< how level cuts move, per metre of height
+    std::vector<std::uint32_t> index;    ///< of MovingBodies::bodies()
 
     void fill(std::span<const std::uint32_t> order, std::span<const MovingBody> bodies,
               std::span<const BodyExtent> extents);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "trace/body_rays.h"
+
 namespace ispace {
 namespace {
 
@@ -36,10 +38,19 @@ MovingBody cylinder(double x, double y, double radius, double bottom = 0, double
     return body;
 }
 
+MovingBody ball(double x, double y, double radius, double height) {
+    MovingBody body = cylinder(x, y, radius, height - radius, height + radius);
+    body.is_ball = true;
+    return body;
+}
+
 /// Signed: how far outside of the body a point is along the axis where it is furthest out.
 double outside(const MovingBody& body, Point3 p) {
     const double vertical = std::max(p.z - body.top, body.bottom - p.z);
-    const Vec2 offset = p.onFloor() - body.pose.position;
+    const Vec2 way = p.onFloor() - body.pose.position;
+    const double up = p.z - (body.bottom + body.top) / 2;
+    if (body.is_ball) return length(Vec3{way.x, way.y, up}) - body.radius;
+    const Vec2 offset = way - body.lean * up * unitVector(body.pose.heading);
     if (body.radius > 0) return std::max(vertical, length(offset) - body.radius);
     const Vec2 ahead = unitVector(body.pose.heading);
     return std::max({vertical, std::abs(dot(offset, ahead)) - body.half_length,
@@ -102,11 +113,15 @@ TEST(MovingBody, IsMetWhereItsSurfaceIs) {
     int met = 0;
     for (int i = 0; i < 20000; ++i) {
         const double bottom = part(random) - 0.5;
-        const MovingBody body = i % 2 == 0
-                                    ? box(place(random), place(random), turn(random), part(random),
-                                          part(random), bottom, bottom + part(random))
-                                    : cylinder(place(random), place(random), part(random), bottom,
-                                               bottom + part(random));
+        MovingBody body = i % 2 == 0 ? box(place(random), place(random), turn(random), part(random),
+                                           part(random), bottom, bottom + part(random))
+                                     : cylinder(place(random), place(random), part(random), bottom,
+                                                bottom + part(random));
+        if (i % 8 == 1) body = ball(place(random), place(random), part(random), bottom);
+        if (i % 8 == 3) {
+            body.lean = 2 * part(random) - 1;
+            body.pose.heading = degrees(turn(random));
+        }
         const Point3 origin{place(random), place(random), place(random)};
         // Half of them towards the body, and of all a third level.
         Vec3 direction{any(random), any(random), any(random)};
@@ -123,7 +138,13 @@ TEST(MovingBody, IsMetWhereItsSurfaceIs) {
         const bool inside = outside(body, origin) < 0;
         if (meeting < kInfinity) {
             ++met;
-            EXPECT_NEAR(outside(body, origin + meeting * direction), 0, 1e-9);
+            const Point3 place = origin + meeting * direction;
+            EXPECT_NEAR(outside(body, place), 0, 1e-9);
+            // The normal points out, and the slope is how the ray meets it.
+            const Vec3 normal = body.normalAt(place);
+            EXPECT_GT(outside(body, place + 1e-6 * normal), 0.5e-6);
+            const BodyFrom from(body, cosSin(body.pose.heading), origin);
+            EXPECT_NEAR(from.meet(direction).slope, std::abs(dot(normal, direction)), 1e-6);
         }
         const double end = std::min(meeting, 8.0);
         for (int k = 1; k < 50; ++k) {
@@ -309,6 +330,8 @@ TEST(MovingBodies, AgreeWithEveryBodyAndBeam) {
                                       : box(place(random), place(random), turn(random),
                                             unit(random), unit(random), bottom, bottom + 0.3));
             made.back().owner = i / 2;
+            if (i % 6 == 3) made.back().lean = unit(random) - 0.5;
+            if (i % 24 == 9) made.back() = ball(place(random), place(random), 0.3, 0.2);
         }
         const MovingBodies bodies(made);
         Sensor sensor;
@@ -336,6 +359,24 @@ TEST(MovingBodies, AgreeWithEveryBodyAndBeam) {
             if (ranges[k] != before[k]) ++shortened;
     }
     EXPECT_GT(shortened, 1000U);
+}
+
+TEST(MovingBody, CutsOfSlantedCylindersAndBallsAreDiscs) {
+    MovingBody leg = cylinder(1, 2, 0.1, 0, 0.8);
+    leg.pose.heading = degrees(90);
+    leg.lean = 0.25;
+    for (const double z : {0.0, 0.15, 0.4, 0.8}) {
+        const MovingBody cut = leg.cutAt(z);
+        EXPECT_EQ(cut.lean, 0);
+        EXPECT_EQ(cut.radius, 0.1);
+        EXPECT_NEAR(cut.pose.position.x, 1, 1e-12);
+        EXPECT_NEAR(cut.pose.position.y, 2 + 0.25 * (z - 0.4), 1e-12);
+        EXPECT_NEAR(leg.meet({1, 0, z}, {0, 1, 0}), cut.pose.position.y - 0.1, 1e-12);
+    }
+    EXPECT_NEAR(leg.sway(), 0.1, 1e-12);
+    const MovingBody cut = ball(0, 0, 0.5, 1).cutAt(1.3);
+    EXPECT_NEAR(cut.radius, 0.4, 1e-12);
+    EXPECT_NEAR(ball(0, 0, 0.5, 1).meet({-2, 0, 1.3}, {1, 0, 0}), 1.6, 1e-12);
 }
 
 TEST(MovingBodies, NewPlacesAreTaken) {

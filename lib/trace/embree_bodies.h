@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/trace and lib/render: moving bodies in Embree.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "trace/body_rays.h"
+#include "trace/embree_device.h"
+#include "trace/embree_query.h"
+
+namespace ispace {
+
+/// A body with the axes of its heading, as Embree's rays meet it.
+struct TracedBody {
+    MovingBody body;
+    CosSin axes;
+
+    explicit TracedBody(const MovingBody& moving)
+        : body(moving), axes(cosSin(moving.pose.heading)) {}
+    /// See BodyFrom::meet(): the same numbers as all other sensors get.
+    [[nodiscard]] BodyMeeting meet(Point3 origin, Vec3 direction, double least) const {
+        return BodyFrom(body, axes, origin).meet(direction, least);
+    }
+};
+
+/// A query of bodies that passes those whose owner is `hidden`. \pre `owners` outlives it
+struct BodyQuery : EmbreeQuery {
+    const std::vector<bool>& hidden;  ///< by owner; may be shorter
+
+    explicit BodyQuery(const std::vector<bool>& owners) : hidden(owners) {}
+};
+
+/// A scene of bodies, hits of which have this geometry id and the body's index. Embree has their
+/// boxes; rays are met in doubles. Queries must be a BodyQuery. `throw_if_failed` is asked after
+/// each step that may fail. \pre the bodies stay where they are as long as the scene lives
+EmbreeSceneHandle buildBodies(RTCDeviceTy* device, std::span<const TracedBody> bodies,
+                              unsigned geometry_id, const std::function<void()>& throw_if_failed);
+
+}  // namespace ispace
