@@ -18,6 +18,17 @@ constexpr std::uint32_t kRemission = 200;
 constexpr std::uint32_t kMost = 0xFFFF;  // of a distance
 /// Codes of sFA.
 constexpr std::uint32_t kUnknownMethod = 2, kUnknownVariable = 3, kInvalid = 5;
+/// Events of evaluation fields, outputs and inputs. They can be switched on and never happen.
+constexpr std::array<std::string_view, 3> kSilentEvents{"LFErec", "LIDoutputstate",
+                                                        "LIDinputstate"};
+
+/// "field000" is the first evaluation field.
+bool isField(std::string_view name) {
+    constexpr std::string_view kPrefix = "field";
+    constexpr std::size_t kDigits = 3;
+    return name.size() == kPrefix.size() + kDigits && name.starts_with(kPrefix) &&
+           name.find_first_not_of("0123456789", kPrefix.size()) == std::string_view::npos;
+}
 
 std::int32_t angleNumber(Angle angle) {
     return static_cast<std::int32_t>(std::lround(angle.degrees() * kAngleUnits));
@@ -185,10 +196,26 @@ void ColaSession::read(std::string_view name, std::string_view echo, bool is_bin
         out.u8(1).u8(0).u8(content_.remission ? 1 : 0).u8(content_.wide_remission ? 1 : 0);
         out.u8(0).u8(0).u8(0).u8(0).u8(0).u8(0).u8(content_.time ? 1 : 0);
         out.u16(static_cast<std::uint32_t>(content_.every));
+    } else if (name == "LIDinputstate") {
+        // Version, time, four inputs that are off, no date.
+        out.u16(0).u32(microseconds(host_->clock())).u8(0).u8(0).u8(0).u8(0).u16(0);
+    } else if (isField(name)) {
+        appendField(out);
     } else {
         return refuse(kUnknownVariable, is_binary);
     }
     send(out.frame());
+}
+
+/// An evaluation field without an outline: scale and offset of distances and of angles; its type
+/// and number; no points, rectangle, radial or dynamic shape; an empty name, no comment. Drivers
+/// read as far as the shapes, beyond the end of the one byte that SICK's lasers send for a field
+/// that was never defined.
+void ColaSession::appendField(ColaWriter& out) const {
+    constexpr std::uint32_t kSegmented = 2;
+    out.f32(figures_.scale).f32(0).u32(static_cast<std::uint32_t>(figures_.step));
+    out.i32(figures_.start).u8(kSegmented).u8(0);
+    out.u16(0).u16(0).u16(0).u16(0).u16(1).u16(0).u16(0);
 }
 
 void ColaSession::set(std::string_view name, std::string_view arguments, bool is_binary) {
@@ -250,12 +277,18 @@ std::uint32_t ColaSession::scanSettings(std::string_view arguments, bool is_bina
 
 void ColaSession::listenTo(std::string_view name, std::string_view arguments, bool is_binary) {
     const auto on = ColaReader(arguments, is_binary).u8();
-    if (name != "LMDscandata") return refuse(kUnknownVariable, is_binary);
+    const bool is_scan = name == "LMDscandata";
+    if (!is_scan &&
+        std::find(kSilentEvents.begin(), kSilentEvents.end(), name) == kSilentEvents.end())
+        return refuse(kUnknownVariable, is_binary);
     if (!on || *on > 1) return refuse(kInvalid, is_binary);
-    streams_ = *on == 1;
-    binary_stream_ = is_binary;
-    next_ = host_->world().period(sensor_) + 1;
-    send(ColaWriter("sEA LMDscandata", is_binary).u8(streams_ ? 1 : 0).frame());
+    if (is_scan) {
+        streams_ = *on == 1;
+        binary_stream_ = is_binary;
+        next_ = host_->world().period(sensor_) + 1;
+    }
+    const std::string begin = "sEA " + std::string(name);
+    send(ColaWriter(begin, is_binary).u8(static_cast<std::uint32_t>(*on)).frame());
 }
 
 /// 7 is ready, 3 idle; temperature in range; time and date with their lengths; three lamps.

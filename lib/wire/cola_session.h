@@ -62,6 +62,7 @@ class ColaSession : public WireSession {
     [[nodiscard]] std::uint32_t scanSettings(std::string_view arguments, bool is_binary) const;
     void state(bool is_binary);
     [[nodiscard]] std::string scan(std::string_view kind, bool is_binary);
+    void appendField(ColaWriter& out) const;
     void appendChannel(ColaWriter& out, std::string_view name, bool wide) const;
     void appendDate(ColaWriter& out) const;
 

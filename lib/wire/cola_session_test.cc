@@ -72,6 +72,14 @@ TEST(ColaSession, AnswersInText) {
         {"sRN SerialNumber", "sRA SerialNumber 2 l1"},
         {"sRN FirmwareVersion", "sRA FirmwareVersion 5 V1.00"},
         {"sRN SCdevicestate", "sRA SCdevicestate 1"},
+        {"sRN LIDinputstate", "sRA LIDinputstate 0 0 0 0 0 0 0"},
+        {"sRN field000", "sRA field000 3F800000 00000000 1388 FFF92230 2 0 0 0 0 0 1 0 0"},
+        {"sEN LFErec 1", "sEA LFErec 1"},
+        {"sEN LIDoutputstate 1", "sEA LIDoutputstate 1"},
+        {"sEN LIDinputstate 0", "sEA LIDinputstate 0"},
+        {"sEN LIDinputstate", "sFA 5"},
+        {"sRN field", "sFA 3"},
+        {"sRN field00x", "sFA 3"},
         {"sRN nothing", "sFA 3"},
         {"sWN nothing 1", "sFA 3"},
         {"sMN nothing", "sFA 2"},
@@ -236,6 +244,61 @@ TEST(ColaSession, EndsWithItsLaser) {
     room.world().change(testing::scene("ispace size=8,6\n", "laser id=l1 at=0,0\n"));
     session.stepped(0);
     EXPECT_TRUE(session.closing());
+}
+
+/// What sick_scan_xd sends an LMS1xx by its sick_lms_1xx.launch, and how each answer begins. It
+/// waits until the answer that it expects has come, and takes sFA for another one.
+std::vector<std::pair<std::string, std::string>> startOfSickScan() {
+    using namespace std::string_literals;
+    const std::string range = "\0\1\0\0\x13\x88\xFF\xF9\x22\x30\0\x22\x55\x10"s;
+    const std::string config = "\0\0\x13\x88"s + range;
+    std::vector<std::pair<std::string, std::string>> out{
+        {"sRN SCdevicestate", "sRA SCdevicestate \1"},
+        {"sMN SetAccessMode \3\xF4\x72\x47\x44", "sAN SetAccessMode \1"},
+        {"sWN EIHstCola \1", "sWA EIHstCola "},
+        {"sRN FirmwareVersion", "sRA FirmwareVersion \0\5V1.00"s},
+        {"sRN SCdevicestate", "sRA SCdevicestate \1"},
+        {"sRN ODoprh", "sRA ODoprh \0\0\0\0"s},
+        {"sRN ODpwrc", "sRA ODpwrc \0\0\0\1"s},
+        {"sRN LocationName", "sRA LocationName \0\2l1"s},
+        {"sRN LMPoutputRange", "sRA LMPoutputRange " + range},
+        {"sWN LMPoutputRange " + range, "sWA LMPoutputRange "},
+        {"sRN LMPoutputRange", "sRA LMPoutputRange " + range}};
+    // As the device has it whose telegrams are in its test/emulator, but for scale and angles.
+    const std::string field =
+        "\x3F\x80\0\0\0\0\0\0\0\0\x13\x88\xFF\xF9\x22\x30\2\0"s + "\0\0\0\0\0\0\0\0\0\1\0\0\0\0"s;
+    for (int i = 0; i < 30; ++i) {
+        const std::string name = (i < 10 ? "field00" : "field0") + std::to_string(i);
+        out.emplace_back("sRN " + name, "sRA " + name + " " + field);
+    }
+    const std::string inputs = "\0\0\0\0\0\0\0\0\0\0\0\0"s;
+    const std::vector<std::pair<std::string, std::string>> rest{
+        {"sRN LIDinputstate", "sRA LIDinputstate " + inputs},
+        {"sWN LMDscandatacfg \1\0\0\0\0\0\0\0\0\0\1\0\1"s, "sWA LMDscandatacfg "},
+        {"sRN LMDscandatacfg", "sRA LMDscandatacfg \1\0\0\0\0\0\0\0\0\0\1\0\1"s},
+        {"sMN mLMPsetscancfg " + config, "sAN mLMPsetscancfg \0"s + config},
+        {"sRN LMPscancfg", "sRA LMPscancfg " + config},
+        {"sEN LFErec \1", "sEA LFErec \1"},
+        {"sEN LIDoutputstate \1", "sEA LIDoutputstate \1"},
+        {"sEN LIDinputstate \1", "sEA LIDinputstate \1"},
+        {"sMN LMCstartmeas", "sAN LMCstartmeas \0"s},
+        {"sMN Run", "sAN Run \1"},
+        {"sRN SCdevicestate", "sRA SCdevicestate \1"},
+        {"sEN LMDscandata \1", "sEA LMDscandata \1"}};
+    out.insert(out.end(), rest.begin(), rest.end());
+    return out;
+}
+
+TEST(ColaSession, StartsAsSickScanDoes) {
+    Room room;
+    ColaSession session(room, "l1");
+    for (const auto& [request, wanted] : startOfSickScan())
+        EXPECT_EQ(answered(session, colaFrame(request, true)), colaFrame(wanted, true)) << request;
+    // Scans come, and only those.
+    const std::string scans = stepped(room, session, 10);
+    EXPECT_EQ(scans.find("sSN LMDscandata "), 8U);
+    for (const char* event : {"sSN LFErec", "sSN LID"})
+        EXPECT_EQ(scans.find(event), std::string::npos);
 }
 
 /// What drivers send to begin with.

@@ -18,19 +18,22 @@ struct Row {
     std::string_view model;  // of share/devices
     std::string_view name, product;
     int min_mm, max_mm, front, none, near, unused;
-    bool has_intensity;
+    bool has_intensity, has_echoes;
 };
 
 constexpr std::array kRows{
     Row{"urg-04lx", "URG-04LX(Hokuyo Automatic Co.,Ltd.)", "SOKUIKI Sensor URG-04LX", 20, 5600, 384,
-        0, 19, 19, false},
+        0, 19, 19, false, false},
     Row{"urg-04lx-ug01", "URG-04LX-UG01(Simple-URG)", "SOKUIKI Sensor URG-04LX-UG01(Simple-URG)",
-        20, 5600, 384, 0, 19, 19, false},
+        20, 5600, 384, 0, 19, 19, false, false},
     Row{"utm-30lx", "UTM-30LX(Hokuyo Automatic Co.,Ltd.)", "SOKUIKI Sensor TOP-URG UTM-30LX", 23,
-        60000, 540, 1, 2, 0, true},
-    Row{"utm-30lx-ew", "UTM-30LX-EW", "SOKUIKI Sensor UTM-30LX-EW", 23, 60000, 540, 1, 2, 0, true},
-    Row{"ust-10lx", "UST-10LX", "SOKUIKI Sensor UST-10LX", 20, 30000, 540, 65533, 2, 0, true},
-    Row{"ust-20lx", "UST-20LX", "SOKUIKI Sensor UST-20LX", 20, 60000, 540, 65533, 2, 0, true},
+        60000, 540, 1, 2, 0, true, false},
+    Row{"utm-30lx-ew", "UTM-30LX-EW", "SOKUIKI Sensor UTM-30LX-EW", 23, 60000, 540, 1, 2, 0, true,
+        true},
+    Row{"ust-10lx", "UST-10LX", "SOKUIKI Sensor UST-10LX", 20, 30000, 540, 65533, 2, 0, true,
+        false},
+    Row{"ust-20lx", "UST-20LX", "SOKUIKI Sensor UST-20LX", 20, 60000, 540, 65533, 2, 0, true,
+        false},
 };
 
 const Row* rowOf(const Laser& laser) {
@@ -88,6 +91,7 @@ ScipModel ScipModel::of(const Laser& laser) {
         out.near = row->near;
         out.unused = row->unused;
         out.has_intensity = row->has_intensity;
+        out.has_echoes = row->has_echoes;
         return out;
     }
     out.name = laser.model.empty() ? "ispace laser" : "ispace " + laser.model;

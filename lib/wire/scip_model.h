@@ -24,6 +24,7 @@ struct ScipModel {
     /// Numbers in place of a distance: nothing in range; nearer than min_mm; steps without beam.
     int none = 0, near = 0, unused = 0;
     bool has_intensity = false;
+    bool has_echoes = false;  ///< knows HD, HE, ND and NE
 
     /// What keeps a laser from being one of these ("360 degrees are no whole number of steps"), or
     /// "".

@@ -30,6 +30,12 @@ std::string serialOf(std::string_view id) {
     return "H" + std::string(7 - digits.size(), '0') + digits;
 }
 
+std::string lineOf(std::string_view content) {
+    std::string out;
+    appendScipLine(out, content);
+    return out;
+}
+
 std::string refusalOfScip(const World& world, std::string_view id) {
     std::string refusal = refusalOfSensor(world, "laser", id);
     if (!refusal.empty()) return refusal;
@@ -91,10 +97,11 @@ void ScipSession::reply(std::string_view line, std::string_view status, std::str
     send(out.append(data).append("\n"));
 }
 
-/// Laser off, no stream.
+/// Laser off, no stream, awake.
 void ScipSession::rest() {
     stream_.on = false;
     laser_on_ = false;
+    asleep_ = false;
 }
 
 void ScipSession::answer(const std::string& line) {
@@ -110,6 +117,7 @@ void ScipSession::answer(const std::string& line) {
     if (is_bare && request.command == "VV") return tell(product());
     if (is_bare && request.command == "PP") return tell(parameters());
     if (is_bare && request.command == "II") return tell(state());
+    if (is_bare && request.command == "%ST") return tell(lineOf(stateCode()));
     const std::string_view status = statusOf(request);
     if (status != kUnknown) setUnderstood();
     const bool tells_time = request.command == "TM" && request.parameters == "1" && status == "00";
@@ -136,7 +144,15 @@ std::string_view ScipSession::statusOf(const ScipRequest& request) {
         rest();
         return "00";
     }
-    if (command == "BM" && !time_mode_) return std::exchange(laser_on_, true) ? "02" : "00";
+    if (command == "%SL" && !time_mode_) {
+        rest();
+        asleep_ = true;
+        return "00";
+    }
+    if (command == "BM" && !time_mode_) {
+        asleep_ = false;
+        return std::exchange(laser_on_, true) ? "02" : "00";
+    }
     return kUnknown;
 }
 
@@ -191,13 +207,15 @@ std::string_view ScipSession::sensitivity(std::string_view parameters) {
 bool ScipSession::isSweep(const ScipRequest& request) const {
     const std::string_view command = request.command;
     if (time_mode_ || command.size() != 2) return false;
+    if (command[0] == 'H' || command[0] == 'N')
+        return model_.has_echoes && (command[1] == 'D' || command[1] == 'E');
     const bool known = command[0] == 'M' || command[0] == 'G';
     return known &&
            (command[1] == 'D' || command[1] == 'S' || (command[1] == 'E' && model_.has_intensity));
 }
 
 void ScipSession::takeSweep(const ScipRequest& request, std::string_view line) {
-    const bool streams = request.command[0] == 'M';
+    const bool streams = request.command[0] == 'M' || request.command[0] == 'N';
     std::string status;
     const ScipSweep sweep = parseScipSweep(request.parameters, streams, model_.last, status);
     if (status != "00") return reply(line, status);
@@ -207,6 +225,7 @@ void ScipSession::takeSweep(const ScipRequest& request, std::string_view line) {
         return reply(line, status, scan(request.command, sweep));
     }
     laser_on_ = true;
+    asleep_ = false;
     stream_ = {.command = std::string(request.command),
                .parameters = std::string(request.parameters),
                .text = std::string(request.text),
@@ -237,10 +256,17 @@ void ScipSession::stepped(std::size_t unsent) {
 }
 
 std::string ScipSession::timeLine(std::chrono::nanoseconds time) const {
-    std::string digits, out;
+    std::string digits;
     appendScipNumber(digits, milliseconds(time), 4);
-    appendScipLine(out, digits);
-    return out;
+    return lineOf(digits);
+}
+
+/// Of the UST and the UTM-30LX-EW, as %ST answers it.
+std::string_view ScipSession::stateCode() const {
+    if (time_mode_) return "002";
+    if (asleep_) return "005";
+    if (stream_.on) return "004";
+    return laser_on_ ? "003" : "000";
 }
 
 /// Time stamp and data of the newest scan.

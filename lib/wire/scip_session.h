@@ -13,10 +13,11 @@ namespace ispace {
 /// A laser that speaks SCIP 2.0 as Hokuyo's do over Ethernet, for programs that use urg_library,
 /// MRPT's CHokuyoURG, ROS' urg_node or ARIA's urg2.0.
 ///
-/// It knows BM, QT, RS, RT, RB, TM, CR, HS, SS, VV, PP, II, MD, MS, ME, GD, GS, GE and SCIP2.0;
-/// anything else is answered 0E. Intensities are 1000 for a return and 0 without one, as the world
-/// knows none. What lies nearer than the laser's least range is told as no return. Each connection
-/// has a laser of its own that is off at first.
+/// It knows BM, QT, RS, RT, RB, TM, CR, HS, SS, VV, PP, II, %ST, %SL, MD, MS, ME, GD, GS, GE and
+/// SCIP2.0, and models with multi-echo HD, HE, ND and NE; anything else is answered 0E. Beams have
+/// one echo, whose intensity is 1000, or 0 without a return, as the world knows no others. What
+/// lies nearer than the laser's least range is told as no return. Each connection has a laser of
+/// its own that is off at first.
 class ScipSession : public WireSession {
   public:
     /// \pre refusalOfScip() is ""
@@ -50,6 +51,7 @@ class ScipSession : public WireSession {
     [[nodiscard]] std::string product() const;
     [[nodiscard]] std::string parameters() const;
     [[nodiscard]] std::string state() const;
+    [[nodiscard]] std::string_view stateCode() const;
     [[nodiscard]] std::string timeLine(std::chrono::nanoseconds time) const;
     [[nodiscard]] std::string scan(std::string_view command, const ScipSweep& sweep) const;
 
@@ -60,7 +62,8 @@ class ScipSession : public WireSession {
     std::size_t sensor_ = 0;     // index in the world, as of:
     std::int64_t changes_ = -1;  // of the world
     Stream stream_;
-    bool laser_on_ = false, time_mode_ = false, sensitive_ = false, rebooting_ = false;
+    bool laser_on_ = false, asleep_ = false, time_mode_ = false;
+    bool sensitive_ = false, rebooting_ = false;
     std::string bit_rate_ = "115200";
 };
 

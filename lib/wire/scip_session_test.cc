@@ -18,13 +18,14 @@ using testing::stepped;
 
 constexpr auto kStep = std::chrono::milliseconds(25);
 
-/// A URG-04LX at the middle of a room of 8 m by 6 m, a UTM-30LX, and a bare laser.
+/// A URG-04LX at the middle of a room of 8 m by 6 m, a UTM-30LX, a bare laser, a UTM-30LX-EW.
 struct Room : testing::LaserHost {
     Room()
         : LaserHost("ispace size=8,6\n",
                     "laser id=l1 model=urg-04lx at=0,0\n"
                     "laser id=l2 model=utm-30lx at=1,0 heading=90\n"
-                    "laser id=l3 at=3,0 fov=4 step=2 range=0.5,2\n",
+                    "laser id=l3 at=3,0 fov=4 step=2 range=0.5,2\n"
+                    "laser id=l4 model=utm-30lx-ew at=1,0 heading=90\n",
                     kStep) {}
 };
 
@@ -126,6 +127,8 @@ TEST(ScipSession, Statuses) {
         {"RT", "00P"},
         {"QT;a text", "00P"},
         {"QT;a-text", "0Hh"},
+        {"%SL1", "0Ee"},
+        {"%XX", "0Ee"},
         {"QT;01234567890123456", "0Gg"}};
     for (const auto& [request, status] : conversation)
         EXPECT_EQ(answered(session, request + "\n"), reply(request, status));
@@ -195,6 +198,59 @@ TEST(ScipSession, TwoCharactersEndAt4095) {
     EXPECT_NE(answered(session, "GS0900090001\n").find("\noo"), std::string::npos);
     EXPECT_EQ(valuesOf(answered(session, "GD0900090001\n")), std::vector<int>{5000});
     EXPECT_EQ(valuesOf(answered(session, "GE0540054001\n")), (std::vector<int>{3000, 1000}));
+}
+
+TEST(ScipSession, TellsItsState) {
+    Room room;
+    ScipSession session(room, "l1");
+    const auto state = [&] { return answered(session, "%ST\n"); };
+    const auto coded = [](const std::string& code) {
+        return "%ST\n00P\n" + code + scipCheck(code) + "\n\n";
+    };
+    EXPECT_EQ(state(), coded("000"));
+    EXPECT_TRUE(session.understood());
+    const std::vector<std::pair<std::string, std::string>> conversation{
+        {"TM0", "002"}, {"TM2", "000"}, {"BM", "003"}, {"MD0044072501001", "004"},
+        {"QT", "000"},  {"%SL", "005"}, {"QT", "000"}, {"MD0044072501000", "004"},
+        {"%SL", "005"}, {"BM", "003"},  {"%SL", "005"}};
+    for (const auto& [request, code] : conversation) {
+        EXPECT_EQ(answered(session, request + "\n"), reply(request, "00P"));
+        EXPECT_EQ(state(), coded(code)) << request;
+    }
+    EXPECT_EQ(stepped(room, session, 40), "") << "it sleeps";
+    EXPECT_EQ(answered(session, "GD0044072501\n"), reply("GD0044072501", "10Q"));
+    answered(session, "MD0044072501001\n");
+    stepped(room, session, 40);
+    EXPECT_EQ(state(), coded("003")) << "all scans have been sent";
+    answered(session, "TM0\n");
+    EXPECT_EQ(answered(session, "%SL\n"), reply("%SL", "0Ee"));
+}
+
+TEST(ScipSession, OneEchoOfModelsWithSeveral) {
+    Room room;
+    ScipSession session(room, "l4");
+    answered(session, "BM\n");
+    EXPECT_EQ(valuesOf(answered(session, "HD0900090001\n")), std::vector<int>{5000});
+    EXPECT_EQ(valuesOf(answered(session, "HE0540054001\n")), (std::vector<int>{3000, 1000}));
+    // Packets are those of GD and MD but for their first letter.
+    std::string echoes = answered(session, "HD0000108001\n");
+    expectWhole(echoes);
+    echoes[0] = 'G';
+    EXPECT_EQ(echoes, answered(session, "GD0000108001\n"));
+    EXPECT_EQ(answered(session, "ND0540054101001\n"), reply("ND0540054101001", "00P"));
+    const std::string stream = stepped(room, session, 3);
+    EXPECT_TRUE(stream.starts_with("ND0540054101000\n99b\n")) << stream;
+    EXPECT_EQ(valuesOf(stream).size(), 2U);
+    EXPECT_EQ(answered(session, "NE0540054101000\n"), reply("NE0540054101000", "00P"));
+    EXPECT_EQ(valuesOf(stepped(room, session, 1)).size(), 4U);
+    for (const char* request : {"HS0540054001", "NS0540054101000"})
+        EXPECT_FALSE(answered(session, std::string(request) + "\n").find("\n00P\n") !=
+                     std::string::npos)
+            << request;
+    for (const char* model : {"l1", "l2", "l3"}) {
+        ScipSession other(room, model);
+        EXPECT_EQ(answered(other, "HD0001000201\n"), reply("HD0001000201", "0Ee")) << model;
+    }
 }
 
 TEST(ScipSession, NoReturn) {
@@ -307,7 +363,12 @@ const std::vector<std::string> kConversations{
     "RS\nSCIP2.0\nVV\nPP\nMD0044072503000\nRS\nSS000000\n",
     // ROS' urg_node
     "\r\nQT\r\nPP\r\nVV\r\nII\r\nME0044072501101\r\nND0044072501000\r\nTM0\r\nTM1\r\nTM2\r\n"
-    "RB\r\nRB\r\n"};
+    "RB\r\nRB\r\n",
+    // hokuyolx: synchronizes its clock, reads the parameters, takes scans
+    "%ST\nTM0\nTM1\nTM1\nTM1\nTM2\nPP\nBM\nGD0044072500\nGE0044072500\nMD0044072500002\nQT\n"
+    "%ST\n%SL\n",
+    // urg_library, get_multiecho and get_multiecho_intensity
+    "\nQT\nPP\nND0044072501010\nQT\nNE0044072501010\nBM\nHD0044072501\nQT\n"};
 
 TEST(ScipSession, PiecesDoNotMatter) {
     for (const std::string& conversation : kConversations) {
