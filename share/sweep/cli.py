@@ -21,12 +21,12 @@ ACTIONS = {
     "commands": ("a line of the shell for each job", {"only", "shard", "missing", "threads", "json"}),
     "names": ("the files that the jobs make", {"only", "shard", "missing", "suffix"}),
     "makefile": ("rules for GNU make", {"only", "threads"}),
-    "join": ("the results of all jobs as one table", {"only", "partial", "to"}),
+    "join": ("the results of all jobs as one table", {"only", "partial", "to", "raw"}),
     "plot": ("one picture of the results", {"only", "partial", "to", "x", "y", "by", "over"}),
 }
 DEFAULTS: dict[str, object] = {
     "only": [], "shard": None, "missing": False, "threads": None, "json": False, "suffix": None,
-    "partial": False, "to": None, "x": None, "y": None, "by": None, "over": None}
+    "partial": False, "raw": False, "to": None, "x": None, "y": None, "by": None, "over": None}
 
 
 def main(version: str, arguments: Sequence[str] | None = None) -> int:
@@ -94,6 +94,7 @@ def _parse(arguments: Sequence[str] | None, version: str) -> argparse.Namespace:
     add("-j", "--threads", metavar="N", help="give the tools this number of threads")
     add("--suffix", metavar="SUFFIX", help="only the files with this suffix")
     add("--partial", action="store_true", default=None, help="do without the jobs that are not done")
+    add("--raw", action="store_true", default=None, help="CSV: leave texts that look like formulas")
     add("--to", metavar="FORMAT", help="csv, jsonl or npz; svg, png or pdf (default: the suffix of FILE)")
     add("--x", metavar="AXIS", help="what lies along the picture")
     add("--y", metavar="COLUMN", help="what is drawn (default: the coverage)")
@@ -187,7 +188,10 @@ def _report(sweep: Sweep, jobs: list[Job], options: argparse.Namespace, version:
     if len(rows) < len(jobs) and not options.quiet:
         _say([f"warning: {len(jobs) - len(rows)} of {len(jobs)} jobs are not done"])
     if options.action == "join":
-        data = tables.WRITERS[form](sweep, rows, version)
+        if options.raw and form != "csv":
+            raise UsageError("--raw is for csv")
+        data = (tables.to_csv(sweep, rows, version, raw=True) if options.raw
+                else tables.WRITERS[form](sweep, rows, version))
     else:
         data = picture.draw(sweep, rows, tables.columns(sweep, rows), options.x, options.y, options.by,
                             options.over, form)

@@ -50,9 +50,7 @@ def _steps(sweep: Sweep, job: Job, missing: bool) -> Sequence[Step]:
 def makefile(sweep: Sweep, jobs: Iterable[Job], writer: CommandWriter) -> Iterator[str]:
     """Rules for GNU make: one for each step of each job, and a target and a variable with all files,
     called like the sweep's file."""
-    title = re.sub(r"[^A-Za-z0-9]+", "-", os.path.splitext(os.path.basename(sweep.file))[0]).strip("-") or "sweep"
-    if title == sweep.folder:
-        title += "-jobs"
+    title = _make_title(sweep)
     yield f"# Made by ispace-sweep from {_make_comment(sweep.file)}; needs GNU make 4.3."
     yield f".PHONY: {title}"
     yield f"{title}: # all jobs"
@@ -73,6 +71,19 @@ def makefile(sweep: Sweep, jobs: Iterable[Job], writer: CommandWriter) -> Iterat
     yield f"{title} :="
     yield from (f"{title} += {name}" for name in all_files)
     yield f"{title}: $({title})"
+
+
+# Words that begin a directive of make.
+MAKE_WORDS = frozenset(("define else endef endif export ifdef ifeq ifndef ifneq include load override private "
+                        "undefine unexport vpath").split())
+
+
+def _make_title(sweep: Sweep) -> str:
+    """The target and variable with all files. SHELL, PATH and the like belong to make and its environment."""
+    stem = os.path.splitext(os.path.basename(sweep.file))[0]
+    title = re.sub(r"[^A-Za-z0-9]+", "-", stem).strip("-") or "sweep"
+    reserved = title == sweep.folder or title in MAKE_WORDS or re.fullmatch("[A-Z][A-Z0-9]*", title)
+    return f"{title}-jobs" if reserved else title
 
 
 def _make_comment(text: str) -> str:

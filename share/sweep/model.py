@@ -165,7 +165,8 @@ class CommandWriter:
 
     def step(self, job: Job, step: Step) -> str:
         """One step for sh: what it prints goes nowhere or, by way of a name of its own, into its file."""
-        line = " ".join(map(shlex.quote, self.words(job, step)))
+        program, *arguments = self.words(job, step)
+        line = " ".join([_quote_program(program), *map(shlex.quote, arguments)])
         accepted = "".join(f" || [ $? -eq {status} ]" for status in self._sweep.accept)
         if step.redirect is None:
             return f"{line} >/dev/null{accepted}"
@@ -180,6 +181,17 @@ class CommandWriter:
         if self._sweep.folder != ".":
             commands.insert(0, f"mkdir -p {shlex.quote(self._sweep.folder)}")
         return " && ".join(commands) + " || exit"
+
+
+# Words that begin a compound command of sh.
+SHELL_WORDS = frozenset(("case do done elif else esac fi for function if in select then time until while").split())
+
+
+def _quote_program(word: str) -> str:
+    """The first word of a line. There sh knows assignments and its own words, make the prefixes @, - and +."""
+    if re.fullmatch(r"[A-Za-z0-9_./][A-Za-z0-9_./+-]*", word) and word not in SHELL_WORDS:
+        return word
+    return "'" + word.replace("'", "'\"'\"'") + "'"
 
 
 def _runs_tool(words: Sequence[str]) -> bool:

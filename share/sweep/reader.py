@@ -122,7 +122,9 @@ class _Reader:
                 elif any(ord(letter) < 32 for letter in path):
                     self.tree.find(item, f"the name of {path!r} holds a control character")
                 else:
-                    yield item, Choice(part_of(path, name), path, (path,))
+                    # No program may take the name of a file for an option.
+                    word = f"./{path}" if path.startswith("-") else path
+                    yield item, Choice(part_of(path, name), path, (word,))
 
     def _distinct(self, name: str, choices: list[tuple[Any, Choice]]) -> None:
         seen: dict[str, str] = {}

@@ -7,7 +7,7 @@ import csv
 import io
 import struct
 import zipfile
-from typing import Any, Sequence
+from typing import Any, Callable, Sequence
 
 from .listing import dump
 from .model import Sweep
@@ -54,13 +54,21 @@ def _in_order(rows: Sequence[Row]) -> list[str]:
     return keys
 
 
-def to_csv(sweep: Sweep, rows: Sequence[Row], _version: str) -> bytes:
+def to_csv(sweep: Sweep, rows: Sequence[Row], _version: str, raw: bool = False) -> bytes:
+    """Unless `raw`, a text that a spreadsheet would take for a formula begins with an apostrophe."""
     table = columns(sweep, rows)
+    cell = _cell if raw else _spreadsheet_cell
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(table)
-    writer.writerows([_cell(value) for value in line] for line in zip(*table.values()))
+    writer.writerow([cell(name) for name in table])
+    writer.writerows([cell(value) for value in line] for line in zip(*table.values()))
     return out.getvalue().encode()
+
+
+def _spreadsheet_cell(value: Value) -> str:
+    if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r")):
+        return "'" + value
+    return _cell(value)
 
 
 def _cell(value: Value) -> str:
@@ -110,4 +118,4 @@ def _npy(values: Sequence[Value]) -> bytes:
     return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode("latin-1") + data
 
 
-WRITERS = {"csv": to_csv, "jsonl": to_jsonl, "npz": to_npz}
+WRITERS: dict[str, Callable[[Sweep, Sequence[Row], str], bytes]] = {"csv": to_csv, "jsonl": to_jsonl, "npz": to_npz}

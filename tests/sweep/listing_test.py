@@ -96,6 +96,34 @@ def quoting(folder):
         check(len(shlex.split(line)) > 8, f"a line that is no command: {line}")
 
 
+def hostile_names(folder):
+    """Names of files, programs and sweeps that begin like an option, an assignment or a prefix of make."""
+    show = "#!/usr/bin/python3\nimport json, os, sys\njson.dump(sys.argv[1:-2], open(sys.argv[-1], 'w'))\n"
+    for name in ("@show", "-show", "+show", "A=show", "if", "show"):
+        folder.write(f"bin/{name}", show)
+        os.chmod(folder / f"bin/{name}", 0o755)
+    folder.write("-i.env", "x")
+    more = {"env": {**os.environ, "PATH": folder / "bin" + ":" + os.environ["PATH"]}}
+    runners = ("ispace-sweep commands {} | sh",
+               "ispace-sweep makefile {} -o sweep.mk && make -s -f sweep.mk >make.log 2>&1 && [ ! -s make.log ]")
+    for program in ("@show", "-show", "+show", "A=show", "if"):
+        text = f"run: '{program} {{room}} -o {{out}}.json'\naxes: {{room: {{files: ['-*.env']}}}}\n"
+        folder.sweep("commands", text=text)
+        for runner in runners:
+            folder.run("bash", "-euo", "pipefail", "-c", runner.format("sweep.yaml"), **more)
+            same(f"{program} by {runner}", ["./-i.env"], json.loads(folder.read("results/i.json")))
+            shutil.rmtree(folder / "results")
+    folder.write("--trace=victim.3dm", "x")
+    line = folder.sweep("commands", text="run: show {room} -o {out}.json\naxes: {room: {files: ['*.3dm']}}\n")
+    check("show ./--trace=victim.3dm -o" in line, line)
+    for name in ("SHELL", "PATH", "MAKEFLAGS", "include", "define"):
+        folder.write(f"{name}.yaml", "run: show {n} -o {out}.json\naxes: {n: 1}\n")
+        folder.run("bash", "-euo", "pipefail", "-c", runners[1].format(f"{name}.yaml") + f" && make -sf sweep.mk {name}-jobs",
+                   **more)
+        same(f"a sweep called {name}", ["1"], json.loads(folder.read("results/n1.json")))
+        shutil.rmtree(folder / "results")
+
+
 def steps(folder):
     text = """
 run:
@@ -251,7 +279,7 @@ def outputs(folder):
     same("nothing beside", [], left)
 
 
-for part in (order_and_names, shards, missing, quoting, steps, described, many, errors, outputs):
+for part in (order_and_names, shards, missing, quoting, hostile_names, steps, described, many, errors, outputs):
     with Folder() as scratch:
         scratch.write("b.env", "#env 1\n")
         scratch.write("a.env", "#env 1\n")

@@ -148,6 +148,20 @@ def gaps(folder):
     same("nothing", "ispace-sweep: error: no job is done yet\n", folder.talk)
 
 
+def formulas(folder):
+    """Texts that a spreadsheet would compute are quoted in CSV, numbers are not."""
+    folder.sweep("commands", text="run: cp {word} {out}.json\naxes: {word: ['=a', '@b', '-c', '+d', '-1e3']}\n")
+    for stem in ("a", "b", "c", "+d", "word-1e3"):
+        folder.write(f"results/{stem}.json", '{"=1+2": "@SUM(A1)", "low": -3}')
+    header, *rows = csv.reader(io.StringIO(folder.sweep("join")))
+    same("a column's name", "'=1+2", header[3])
+    same("choices", ["'=a", "'@b", "'-c", "'+d", "-1000.0"], [row[2] for row in rows])
+    same("results", {("'@SUM(A1)", "-3")}, {tuple(row[3:5]) for row in rows})
+    header, *rows = csv.reader(io.StringIO(folder.sweep("join", "--raw")))
+    same("raw", ("=1+2", "=a", "@SUM(A1)"), (header[3], rows[0][2], rows[0][3]))
+    folder.sweep("join", "--raw", "--to", "jsonl", status=2)
+
+
 with Folder() as scratch:
     run_jobs(scratch)
     joined = table(scratch)
@@ -155,3 +169,5 @@ with Folder() as scratch:
     arrays(scratch, joined)
     pictures(scratch)
     gaps(scratch)
+with Folder() as scratch:
+    formulas(scratch)
