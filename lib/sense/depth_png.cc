@@ -82,6 +82,12 @@ std::string yamlOf(const CameraInfo& info, std::string_view name) {
 
 }  // namespace
 
+LensModel lensModelOf(const Camera& camera) {
+    const std::span<const double> all(camera.distortion);
+    if (camera.lens == Lens::Pinhole) return {"plumb_bob", all};
+    return {camera.lens == Lens::Fisheye ? "equidistant" : "omnidir", all.first(4)};
+}
+
 std::string cameraInfoYaml(const Ranger& ranger, std::string_view name) {
     return yamlOf({.columns = ranger.columns,
                    .rows = ranger.rows,
@@ -99,13 +105,10 @@ std::string cameraInfoYaml(const Camera& camera, std::string_view name) {
                     .fy = camera.fy,
                     .cx = camera.cx,
                     .cy = camera.cy};
-    const std::size_t count = camera.lens == Lens::Pinhole ? 5 : 4;
-    info.coefficients.assign(camera.distortion.begin(), camera.distortion.begin() + count);
-    if (camera.lens == Lens::Fisheye) info.model = "equidistant";
-    if (camera.lens == Lens::Mirror) {
-        info.model = "omnidir";
-        info.xi = camera.mirror;
-    }
+    const auto [model, coefficients] = lensModelOf(camera);
+    info.model = model;
+    info.coefficients.assign(coefficients.begin(), coefficients.end());
+    info.xi = camera.mirror;
     return yamlOf(info, name);
 }
 

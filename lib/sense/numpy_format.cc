@@ -10,6 +10,7 @@
 #include "base/numpy_file.h"
 #include "base/spool.h"
 #include "sense/format_base.h"
+#include "sense/reading_picture.h"
 
 namespace ispace {
 
@@ -133,9 +134,17 @@ std::vector<FixedArray> fixedArraysOf(const Sensor& sensor, const Sensors& senso
     }
     if (sensor.is<Camera>()) {
         const Camera& camera = sensor.as<Camera>();
-        return {fixedArray(
-            "matrix", kDouble, {3, 3},
-            std::vector<double>{camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1})};
+        const auto [model, coefficients] = lensModelOf(camera);
+        std::vector<FixedArray> arrays{
+            fixedArray(
+                "matrix", kDouble, {3, 3},
+                std::vector<double>{camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1}),
+            fixedArray("coefficients", kDouble, {coefficients.size()},
+                       std::vector<double>(coefficients.begin(), coefficients.end())),
+            textArray("model", {std::string(model)})};
+        if (camera.lens == Lens::Mirror)
+            arrays.push_back(fixedArray("xi", kDouble, {1}, std::vector<double>{camera.mirror}));
+        return arrays;
     }
     std::vector<std::string> names;
     std::vector<double> places;

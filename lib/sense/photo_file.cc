@@ -130,8 +130,7 @@ void beginLine(JsonWriter& json, const Sensor& sensor, const Photo& photo) {
     if (camera.lens == Lens::Mirror) json.key("mirror").value(camera.mirror);
     if (camera.isDistorted()) {
         json.key("coefficients").beginArray();
-        const std::size_t count = camera.lens == Lens::Fisheye ? 4 : 5;
-        for (std::size_t i = 0; i < count; ++i) json.value(camera.distortion[i]);
+        for (const double value : lensModelOf(camera).coefficients) json.value(value);
         json.endArray();
     }
 }

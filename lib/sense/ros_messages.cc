@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "geom/rotation.h"
+#include "sense/reading_picture.h"
 
 namespace ispace {
 
@@ -184,10 +185,9 @@ std::string cameraInfoMessage(const RosHeader& header, const Camera& camera) {
                     .fy = camera.fy,
                     .cx = camera.cx,
                     .cy = camera.cy};
-    const bool is_fisheye = camera.lens == Lens::Fisheye;
-    if (is_fisheye) info.model = "equidistant";
-    const auto begin = camera.distortion.begin();
-    info.coefficients.assign(begin, begin + (is_fisheye ? 4 : 5));
+    const auto [model, coefficients] = lensModelOf(camera);
+    info.model = model;
+    info.coefficients.assign(coefficients.begin(), coefficients.end());
     return infoMessage(header, info);
 }
 

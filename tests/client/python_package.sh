@@ -37,8 +37,24 @@ DESTDIR=$scratch/usr cmake --install "$binary_dir" --prefix /usr >log
 [ -e usr/usr/lib/python3/dist-packages/ispace/__init__.py ] || fail "elsewhere: $(find usr -name __init__.py)"
 
 if command -v mypy >/dev/null; then
-    cp -r "$source_dir/lib/client/python" typed
-    (cd typed && mypy --no-incremental --cache-dir=/dev/null ispace) >types || fail "$(cat types)"
+    # Strict by any configuration, with numpy where it is installed; and so is a program that uses it.
+    mkdir typed
+    cp -r "$source_dir/lib/client/python/ispace" typed
+    cat >typed/program.py <<'END'
+from typing import Optional
+
+import ispace
+
+share: Optional[float] = ispace.coverage("room.env", "room.3dm").coverage.exact
+reveal_type(ispace.coverage("room.env").free_coverage.grid)
+wrong: str = ispace.coverage("room.env").indoor_area
+END
+    types_of() { (cd typed && mypy --strict --config-file= --no-incremental --cache-dir=/dev/null "$@"); }
+    types_of ispace >types || fail "$(cat types)"
+    if types_of program.py >types; then fail "self-test: an area is a text: $(cat types)"; fi
+    grep -q '^Found 1 error' types || fail "other errors: $(cat types)"
+    grep -q 'Revealed type is "Union\[builtins.float, None\]"' types || fail "no type: $(cat types)"
+    grep -q 'program.py:7: error: Incompatible types' types || fail "another error: $(cat types)"
 else
     echo "no mypy here: types are not checked"
 fi

@@ -2,6 +2,7 @@
 """The Python module against running servers and tools, which ctest puts into PATH."""
 
 import contextlib
+import json
 import math
 import os
 import subprocess
@@ -17,6 +18,7 @@ from ispace import _message, filters, readings
 SOURCE = Path(os.environ["ISPACE_SOURCE_DIR"])
 DATA = SOURCE / "tests" / "data"
 SCENES = SOURCE / "share" / "scenes"
+SCHEMAS = SOURCE / "share" / "schemas"
 
 
 class Lines(unittest.TestCase):
@@ -428,6 +430,9 @@ class Filters(unittest.TestCase):
         report = ispace.coverage(SCENES / "l-room.env", layout)
         share = float(layout.result["coverage"].rstrip("%")) / 100
         self.assertAlmostEqual(report.coverage.grid, share, delta=0.02)
+        self.assertIsInstance(report.coverage, ispace.Figure)
+        schema = json.loads((SCHEMAS / "coverage.json").read_text(encoding="utf-8"))
+        self.assertEqual(set(ispace.CoverageReport.__annotations__), set(schema["required"]))
         self.assertEqual([sensor.id for sensor in report.sensors], ["laser1", "laser2"])
         with self.assertRaises(AttributeError):
             report.nothing

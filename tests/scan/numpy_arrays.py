@@ -23,6 +23,9 @@ laser id=nods at=0,0,1 step=15 sweep=tilt sweep_span=60 sweep_step=30
 ranger id=pin at=-1,0,0.5 tilt=-20 pixels=40,30 range=1.8
 ranger id=a/b at=0,0,1 projection=spherical fov=360,60 pixels=16,6
 camera id=c1 at=0,1,1 heading=-90 pixels=32,24
+camera id=bent at=0,1,1 heading=-90 pixels=32,24 coefficients=-0.3,0.1,0.001,-0.002,0.05
+camera id=fish at=0,1,1 heading=-90 pixels=32,24 projection=fisheye coefficients=0.02,-0.01,0.003,0.001
+camera id=bowl at=0,0,2 tilt=-90 pixels=32,24 projection=omni mirror=0.9
 ultrasound id=u1 at=-1.5,-1.5,2.4 tilt=-90
 ultrasound id=u2 at=1.5,-1.5,2.4 tilt=-90
 ultrasound id=u3 at=1.5,1.5,2.4 tilt=-90
@@ -75,6 +78,13 @@ def compare(arrays, lines):
             picture = cv2.imdecode(np.frombuffer(base64.b64decode(line["png"]), np.uint8), cv2.IMREAD_COLOR)
             equal("rgb", row(f"{folder}/rgb", frame), picture[..., ::-1])
             assert np.allclose(arrays[f"{folder}/matrix"][0], [line["fx"], 0, line["cx"]])
+            model = {"pinhole": "plumb_bob", "fisheye": "equidistant", "omni": "omnidir"}[line["projection"]]
+            assert list(arrays[f"{folder}/model"]) == [model], arrays[f"{folder}/model"]
+            unbent = [0] * (5 if model == "plumb_bob" else 4)
+            equal("coefficients", arrays[f"{folder}/coefficients"], line.get("coefficients", unbent))
+            assert (f"{folder}/xi" in arrays.files) == ("mirror" in line)
+            if "mirror" in line:
+                equal("xi", arrays[f"{folder}/xi"], [line["mirror"]])
         if "heard" in line:
             names = list(arrays[f"{folder}/receivers"])
             ranges = np.full(len(names), np.nan)
@@ -95,6 +105,8 @@ def all_sensors():
                ("times", "poses", "ranges", "depths", "rgb", "positions")}
     assert seen == growing, seen ^ growing
     assert arrays["nods/ranges"].shape == (FRAMES, 3, 13), arrays["nods/ranges"].shape
+    equal("bent", arrays["bent/coefficients"], [-0.3, 0.1, 0.001, -0.002, 0.05])
+    equal("fish", arrays["fish/coefficients"], [0.02, -0.01, 0.003, 0.001])
     assert list(arrays["t1/receivers"]) == ["u1", "u2", "u3", "u4"]
     assert np.isnan(arrays["low/positions"]).all()
     equal("receiver", arrays["t1/receiver_positions"][0], [-1.5, -1.5, 2.4])

@@ -32,7 +32,7 @@ from .errors import (
     Timeout,
     ToolError,
 )
-from .filters import Layout, Object, Record, arrange, coverage, info, scan
+from .filters import CoverageReport, Figure, Layout, Object, Record, arrange, coverage, info, scan
 from .movers import Bumper, End, Limits, Motion, Odometry, Person, Robot, Sonar, Status
 from .readings import Burst, Cloud, Depths, Fix, Load, Passages, Picture, Reading, Scan
 from .sensors import (
@@ -58,11 +58,13 @@ __all__ = [
     "CloudSensor",
     "Connection",
     "ConnectionFailed",
+    "CoverageReport",
     "Depths",
     "End",
     "Error",
     "Event",
     "Fields",
+    "Figure",
     "Fix",
     "Gate",
     "LaserSensor",

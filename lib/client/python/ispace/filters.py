@@ -40,9 +40,45 @@ class Object(Dict[str, Any]):
             raise AttributeError(f"no `{key}` here, only {', '.join(self)}") from None
 
 
+class Figure(Object):
+    """A figure of a report, counted on cells and in closed form; None is unknown."""
+
+    grid: Optional[float]
+    exact: Optional[float]
+
+
+class CoverageReport(Object):
+    """The report of ``coverage --json``; share/schemas/coverage.json says what its keys mean.
+
+    Those that only some options or sensors bring are attributes, too, without a type.
+    """
+
+    schema: str
+    tool: str
+    version: str
+    digest: str
+    limits: List[float]
+    grid: List[int]
+    height: float
+    plane: float
+    indoor_area: float
+    free_area: float
+    sensors: List[Object]
+    total_effective_area: Figure
+    overlap_area: Figure
+    coverage: Figure
+    free_coverage: Figure
+    redundancy: List[float]
+    redundancy_exact: Optional[List[float]]
+    zones: List[Object]
+    pieces: Object
+    unseen: List[Object]
+    exact_missing: Optional[str]
+
+
 def parse(text: str) -> Any:
     """JSON, with Objects for its objects."""
-    return json.loads(text, object_hook=Object)
+    return json.loads(text, object_hook=_object)
 
 
 @dataclass(frozen=True)
@@ -81,13 +117,16 @@ Room = Union[str, os.PathLike[str]]
 Placed = Union[None, str, os.PathLike[str], Layout]
 
 
-def coverage(room: Room, layout: Placed = None, **options: Option) -> Object:
+def coverage(room: Room, layout: Placed = None, **options: Option) -> CoverageReport:
     """What the sensors of a layout cover: the report of ``coverage --json``.
 
     Raises RequirementMissed, with the report as ``product``, if ``require`` is not met.
     """
-    report: Object = parse(_run("coverage", room, layout, {"json": True, **options}, parse))
-    return report
+
+    def report(text: str) -> CoverageReport:
+        return CoverageReport(parse(text))
+
+    return report(_run("coverage", room, layout, {"json": True, **options}, report))
 
 
 def info(room: Room, **options: Option) -> Object:
@@ -163,6 +202,10 @@ def last_line(text: str) -> str:
     """What a tool says it died of."""
     lines = text.strip().splitlines()
     return lines[-1] if lines else "no message"
+
+
+def _object(keys: Dict[str, Any]) -> Object:
+    return Figure(keys) if keys.keys() == {"grid", "exact"} else Object(keys)
 
 
 def _word(value: Any) -> str:

@@ -7,6 +7,7 @@ Arrays are numpy's where numpy is installed, else of the standard library's ``ar
 from __future__ import annotations
 
 import array
+import importlib
 import math
 import os
 import sys
@@ -16,10 +17,16 @@ from typing import Any, Callable, Iterator, List, Protocol, Tuple, Type, TypeVar
 from ._message import Fields, Message, Pose3
 from .errors import ProtocolError
 
-try:
-    import numpy
-except ImportError:
-    numpy = None  # type: ignore[assignment]
+
+def _numpy() -> Any:
+    """The module, or None: untyped, so that types are the same with and without it."""
+    try:
+        return importlib.import_module("numpy")
+    except ImportError:
+        return None
+
+
+numpy = _numpy()
 
 R = TypeVar("R", bound="Reading")
 
@@ -53,7 +60,8 @@ def _millimetres(data: bytes) -> Floats:
         values = numpy.frombuffer(data, dtype="<u2")
         metres = values.astype(numpy.float32) / numpy.float32(1000)
         metres[values == 0] = numpy.inf
-        return metres  # type: ignore[no-any-return]
+        read: Floats = metres
+        return read
     pairs = (data[i] | data[i + 1] << 8 for i in range(0, len(data) - 1, 2))
     return array.array("f", [mm / 1000 if mm else math.inf for mm in pairs])
 
@@ -152,7 +160,7 @@ class Depths(Reading):
         #: m; infinity: no return. (height, width) with numpy, else one row after the other.
         self.depths: Any = values
         if numpy is not None:
-            self.depths = values.reshape(self.height, self.width)  # type: ignore[attr-defined]
+            self.depths = self.depths.reshape(self.height, self.width)
 
     def at(self, column: int, row: int) -> float:
         if numpy is not None:
@@ -167,9 +175,9 @@ class Cloud(Reading):
     def _check(self) -> None:
         values = _floats(self.data)
         #: An array (n, 3) with numpy, else a list of triples.
-        self.points: Any = None
+        self.points: Any = values
         if numpy is not None:
-            self.points = values.reshape(-1, 3)  # type: ignore[attr-defined]
+            self.points = self.points.reshape(-1, 3)
         else:
             self.points = [tuple(values[i : i + 3]) for i in range(0, len(values) - 2, 3)]
 
