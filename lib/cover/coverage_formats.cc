@@ -9,6 +9,7 @@
 #include "draw/feature_writer.h"
 #include "env/level.h"
 #include "geom/boolean.h"
+#include "geom/overlay_regions.h"
 #include "raster/contour.h"
 #include "sensor/camera.h"
 
@@ -87,9 +88,12 @@ namespace {
 /// Indoor floor that cameras see with the pixels of a class, by its index.
 std::vector<Region> withPixelsOf(const Coverage& coverage, std::size_t density_class) {
     const std::uint64_t wanted = kIndoorMark | classMark(density_class);
-    if (!coverage.density_overlays.empty())
-        return coverage.density_overlays.front().regions(
-            [wanted](const LayerLabel& label) { return (label.marks & wanted) == wanted; });
+    if (!coverage.density_overlays.empty()) {
+        const Overlay& overlay = coverage.density_overlays.front();
+        return withArcAreas(overlay, overlay.regions([wanted](const LayerLabel& label) {
+            return (label.marks & wanted) == wanted;
+        }));
+    }
     CellSet cells = cellsOfClass(coverage, density_class);
     cells &= coverage.target.indoor;
     return cellRegions(coverage.target.grid, cells);

@@ -23,14 +23,14 @@ std::string coverageCsv(const Coverage& coverage);
 /// `area`), that which cameras see with the pixels of each of pixelDensities() (`keyword`
 /// "density", with `pixels_per_metre` and `area`), each sensor as a Point with `heading` and what
 /// it sees as an area (`keyword` "view"), and the unseen pieces of the free floor as Points with
-/// `area`. Arcs are chords within kChordError; where regions are not known exactly, cells are
-/// outlined instead.
+/// `area`. Arcs are polygons of the same area, see withArcAreas(); where regions are not known
+/// exactly, cells are outlined instead.
 std::string coverageGeoJson(const Scene& scene, const Coverage& coverage);
 
 /// The plan as DXF in metres: walls, doors, windows and objects, sensors, what each sees ("views",
 /// closed polylines with true arcs), and as solid fillings the indoor floor seen by exactly 1, 2,
-/// ... ("seen-1", ...) and by none ("unseen"), each on a layer of its own. Fillings have chords
-/// within kChordError for arcs.
+/// ... ("seen-1", ...) and by none ("unseen"), each on a layer of its own. Fillings have
+/// polygons of the same area for arcs.
 std::string coverageDxf(const Scene& scene, const Coverage& coverage);
 
 /// The compiled room, see writeGlb(), whose floor has a picture of the cells on it: unseen floor,

@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "base/number.h"
 #include "cover/test_scenes.h"
+#include "env/walls.h"
 
 namespace ispace {
 namespace {
@@ -43,6 +47,52 @@ TEST(CoverageGeoJson, HasRegionsViewsAndSpots) {
           R"("id":"unseen-1","keyword":"unseen","type":"spot","area":7)"})
         EXPECT_EQ(count(json, part), 1U) << part << '\n' << json;
     EXPECT_EQ(count(json, "seen-2"), 0U);
+}
+
+/// Of a Polygon or MultiPolygon.
+double areaOf(const nlohmann::json& geometry) {
+    nlohmann::json pieces = geometry["coordinates"];
+    if (geometry["type"] == "Polygon") pieces = nlohmann::json::array({pieces});
+    double area = 0;
+    for (const auto& piece : pieces)
+        for (const auto& coordinates : piece) {
+            Polygon ring;
+            for (const auto& p : coordinates) ring.push_back({p[0], p[1]});
+            ring.pop_back();
+            EXPECT_FALSE(selfCrossing(ring));
+            area += signedArea(ring);
+        }
+    return area;
+}
+
+/// Areas of the regions of this keyword, by id.
+std::map<std::string, double> areasOf(const std::string& json, const std::string& keyword) {
+    std::map<std::string, double> areas;
+    const nlohmann::json root = nlohmann::json::parse(json);
+    for (const auto& feature : root["features"])
+        if (feature["properties"]["keyword"] == keyword)
+            areas[feature["properties"]["id"]] = areaOf(feature["geometry"]);
+    return areas;
+}
+
+TEST(CoverageGeoJson, ArcsKeepTheirAreas) {
+    const double r = 1.3, apart = 1.7;
+    const Scene scene = sceneOf(
+        "ispace size=8,6\nlaser id=a at=-0.85,0.3 range=1.3 fov=360 step=1\n"
+        "laser id=b at=0.85,0.3 range=1.3 fov=360 step=1\n"
+        "laser id=cut at=3.2,-2 heading=20 range=1.5 fov=110 step=0.5\n");
+    const Coverage coverage = coverageOf(scene);
+    const std::string json = coverageGeoJson(scene, coverage);
+    const double disc = std::numbers::pi * r * r;
+    const double lens =
+        2 * r * r * std::acos(apart / (2 * r)) - apart / 2 * std::sqrt(4 * r * r - apart * apart);
+    const double third = signedArea(*coverage.sensors[2].region);
+    auto views = areasOf(json, "view"), seen = areasOf(json, "seen");
+    EXPECT_NEAR(views["a"] / disc, 1, 1e-9);
+    EXPECT_NEAR(views["b"] / disc, 1, 1e-9);
+    EXPECT_NEAR(views["cut"] / third, 1, 1e-9);
+    EXPECT_NEAR(seen["seen-2"] / lens, 1, 1e-6);
+    EXPECT_NEAR(seen["seen-1"] / (2 * (disc - lens) + third), 1, 1e-6);
 }
 
 TEST(CoverageGeoJson, OutlinesCellsWhereRegionsAreNotKnown) {

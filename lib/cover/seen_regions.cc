@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geom/overlay_regions.h"
 #include "raster/contour.h"
 
 namespace ispace {
@@ -17,17 +18,19 @@ std::uint32_t mostSeen(const Coverage& coverage, const std::vector<std::uint32_t
 
 std::vector<Region> viewRegions(const SensorView& view, const Grid& grid) {
     if (!view.region) return cellRegions(grid, view.cells);
-    return Overlay(std::vector<Layer>{{.curves = *view.region}})
-        .regions([](const LayerLabel& label) { return label.count > 0; });
+    const Overlay overlay(std::vector<Layer>{{.curves = *view.region}});
+    return withArcAreas(overlay,
+                        overlay.regions([](const LayerLabel& label) { return label.count > 0; }));
 }
 
 std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
                            const std::vector<std::uint32_t>& cell_times) {
     if (coverage.overlay)
-        return coverage.overlay->regions([times](const LayerLabel& label) {
-            return label.count == static_cast<std::int32_t>(times) &&
-                   (label.marks & kIndoorMark) != 0;
-        });
+        return withArcAreas(*coverage.overlay,
+                            coverage.overlay->regions([times](const LayerLabel& label) {
+                                return label.count == static_cast<std::int32_t>(times) &&
+                                       (label.marks & kIndoorMark) != 0;
+                            }));
     const Target& target = coverage.target;
     CellSet cells(target.grid.size());
     target.indoor.forEach([&](std::size_t cell) {

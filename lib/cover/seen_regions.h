@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Covered floor as regions, for formats of areas: exact where that is known, else outlines of
-// cells.
+// Covered floor as regions, for formats of areas: exact where that is known (see withArcAreas()),
+// else outlines of cells.
 #pragma once
 
 #include <cstdint>

@@ -137,9 +137,11 @@ void DxfWriter::line(const std::string& layer, const Segment2& segment) {
 }
 
 void DxfWriter::path(const std::string& layer, const std::vector<Point2>& points, bool closed,
-                     double width) {
+                     double width, DxfExtrusion upright) {
     parts_->beginPolyline(layer, points.size(), closed);
     if (width > 0) parts_->out.dxfReal(43, width);
+    if (upright.bottom != 0) parts_->out.dxfReal(38, upright.bottom);
+    if (upright.height != 0) parts_->out.dxfReal(39, upright.height);
     for (const Point2 p : points) parts_->dxf.writeVertex(parts_->out, DL_VertexData(p.x, p.y));
     parts_->dxf.writePolylineEnd(parts_->out);
 }
@@ -152,8 +154,11 @@ void DxfWriter::curve(const std::string& layer, const Curve& curve) {
     parts_->dxf.writePolylineEnd(parts_->out);
 }
 
-void DxfWriter::circle(const std::string& layer, Point2 center, double radius) {
-    parts_->dxf.writeCircle(parts_->out, DL_CircleData(center.x, center.y, 0, radius), on(layer));
+void DxfWriter::circle(const std::string& layer, Point2 center, double radius,
+                       DxfExtrusion upright) {
+    parts_->dxf.writeCircle(parts_->out, DL_CircleData(center.x, center.y, upright.bottom, radius),
+                            on(layer));
+    if (upright.height != 0) parts_->out.dxfReal(39, upright.height);
 }
 
 void DxfWriter::area(const std::string& layer, const Region& region) {

@@ -17,6 +17,11 @@ struct DxfLayer {
     Color color;
 };
 
+/// What a flat thing is from the side, in metres: elevation and thickness, in the words of DXF.
+struct DxfExtrusion {
+    double bottom = 0, height = 0;
+};
+
 /// Writes a drawing in ASCII DXF (AutoCAD 2000) through dxflib: metres ($INSUNITS 6), coordinates
 /// in shortest form. Things lie on one of the layers, called by name. Equal calls give equal bytes.
 class DxfWriter {
@@ -29,10 +34,10 @@ class DxfWriter {
     void line(const std::string& layer, const Segment2& segment);
     /// A polyline, drawn `width` metres wide; a closed one does not repeat its first point.
     void path(const std::string& layer, const std::vector<Point2>& points, bool closed,
-              double width = 0);
+              double width = 0, DxfExtrusion upright = {});
     /// A closed polyline with true arcs.
     void curve(const std::string& layer, const Curve& curve);
-    void circle(const std::string& layer, Point2 center, double radius);
+    void circle(const std::string& layer, Point2 center, double radius, DxfExtrusion upright = {});
     /// A solid filling, holes left out.
     void area(const std::string& layer, const Region& region);
     /// One line of text, `height` metres high, beginning at a place. Control characters become

@@ -3,9 +3,19 @@
 
 namespace ispace {
 
+namespace {
+
+/// A frame that is nowhere on Earth, in the words that GDAL reads (WKT 1).
+constexpr std::string_view kRoomFrame =
+    R"(LOCAL_CS["room",UNIT["metre",1],AXIS["x",EAST],AXIS["y",NORTH]])";
+
+}  // namespace
+
 FeatureWriter::FeatureWriter() {
     json_.beginObject().key("type").value("FeatureCollection");
     json_.key("coordinate_system").value("local-metres");
+    json_.key("crs").beginObject().key("type").value("name").key("properties").beginObject();
+    json_.key("name").value(kRoomFrame).endObject().endObject();
 }
 
 JsonWriter& FeatureWriter::begin(std::string_view id, std::string_view keyword,

@@ -11,9 +11,9 @@
 namespace ispace {
 
 /// Writes a GeoJSON FeatureCollection (RFC 7946) in metres of the plan, as its foreign member
-/// `"coordinate_system": "local-metres"` says. Features come one behind another: begin, more
-/// properties through json(), a geometry, and the next. Outlines counter-clockwise, holes
-/// clockwise.
+/// `"coordinate_system": "local-metres"` says, and `crs` of GeoJSON 2008 to GDAL and QGIS. Features
+/// come one behind another: begin, more properties through json(), a geometry, and the next.
+/// Outlines counter-clockwise, holes clockwise.
 class FeatureWriter {
   public:
     FeatureWriter();

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is read off an overlay: regions, with chords or with arcs.
+#include "geom/overlay_regions.h"
+
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "geom/arrangement.h"
-#include "geom/overlay.h"
 #include "geom/overlay_lattice.h"
 #include "geom/predicates.h"
 
@@ -33,6 +36,21 @@ class ArcTable {
         curve.reserve(polygon.size());
         forEachEdge(polygon, [&](const Segment2& edge) { add(edgeFrom(edge.a, edge.b), curve); });
         return withEndsOnCircles(curve);
+    }
+
+    /// The vertex by way of which a chord encloses the area of its arc; nothing for straight edges,
+    /// and for arcs so short that it would be a spike.
+    [[nodiscard]] std::optional<Point2> apexOf(Segment2 chord) const {
+        if (lexLess(chord.b, chord.a)) std::swap(chord.a, chord.b);  // the same for both neighbours
+        const CurveEdge edge = edgeFrom(chord.a, chord.b);
+        if (!edge.isArc()) return std::nullopt;
+        Curve cap = withEndsOnCircles({edge});
+        cap.push_back({chord.b, chord.a});
+        constexpr double kSteepest = 0.25;
+        const Vec2 along = chord.b - chord.a;
+        const double height = -2 * signedArea(cap) / dot(along, along);  // in lengths of the chord
+        if (std::abs(height) > kSteepest) return std::nullopt;
+        return chord.a + 0.5 * along + height * perpendicular(along);
     }
 
   private:
@@ -113,6 +131,24 @@ std::vector<double> Overlay::areasOf(std::span<const Region> regions) const {
         areas.push_back(area);
     }
     return areas;
+}
+
+std::vector<Region> withArcAreas(const Overlay& overlay, std::vector<Region> regions) {
+    const ArcTable arcs(overlay.edges());
+    const auto refine = [&arcs](Polygon& polygon) {
+        Polygon refined;
+        refined.reserve(2 * polygon.size());
+        forEachEdge(polygon, [&](const Segment2& edge) {
+            refined.push_back(edge.a);
+            if (const auto apex = arcs.apexOf(edge)) refined.push_back(*apex);
+        });
+        polygon = std::move(refined);
+    };
+    for (Region& region : regions) {
+        refine(region.outline);
+        for (Polygon& hole : region.holes) refine(hole);
+    }
+    return regions;
 }
 
 std::vector<Region> Overlay::trace(const std::vector<Sides>& sides) const {

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "geom/boolean.h"
+#include "geom/overlay_regions.h"
 #include "geom/test_overlay.h"
 
 namespace ispace {
@@ -139,6 +140,29 @@ TEST(Overlay, lensOfTwoDiscs) {
         EXPECT_NEAR(overlay.area(atLeast(2)), lens, tolerance);
         EXPECT_NEAR(overlay.area(kAny), 2 * pi * r * r - lens, tolerance);
     }
+}
+
+TEST(Overlay, regionsWithTheAreasOfTheirArcs) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> place(0, 10), size(0.2, 4);
+    std::vector<Layer> layers{layerOf({test::box(1, 1, 9, 8)}, 1)};
+    for (int i = 2; i < 9; ++i)
+        layers.push_back(curveLayer(disc({place(random), place(random)}, size(random)), i));
+    const Overlay overlay(layers);
+    double sum = 0;
+    for (int count = 1; count < 9; ++count) {
+        const auto in = [count](const LayerLabel& label) { return label.count == count; };
+        const std::vector<Region> chords = overlay.regions(in);
+        const std::vector<Region> pieces = withArcAreas(overlay, chords);
+        ASSERT_EQ(pieces.size(), chords.size());
+        const std::vector<double> areas = overlay.areasOf(chords);
+        for (std::size_t i = 0; i < pieces.size(); ++i)
+            EXPECT_NEAR(pieces[i].area(), areas[i], 1e-7) << count;
+        sum += totalArea(pieces);
+    }
+    // Neighbours have the same vertices, so that no gap is between them.
+    EXPECT_NEAR(sum, totalArea(withArcAreas(overlay, overlay.regions(kAny))), 1e-12);
+    EXPECT_NEAR(sum, overlay.area(kAny), 1e-6);
 }
 
 TEST(Overlay, discAndHalfPlane) {

@@ -26,7 +26,8 @@ std::string recordsAs(Document&& document) {
 template <PictureFormat kFormat>
 ExportedFiles drawnAs(const Scene& scene, const Document& /*document*/,
                       const ExportOptions& options) {
-    return {drawPlan(scene, {kFormat, options.slice, options.width, options.title}), ""};
+    return {drawPlan(scene, {kFormat, options.slice, options.width, options.title, options.found}),
+            ""};
 }
 
 constexpr ExportFormat kFormats[] = {
@@ -57,8 +58,11 @@ constexpr ExportFormat kFormats[] = {
      .write_records = [](Document&& document) { return writeYaml(document); }},
     {.name = "obj",
      .suffix = "obj",
-     .help = "A mesh in metres, z up, with its materials in FILE.mtl beside it. Walls without "
-             "thickness, panes and floors are single surfaces, visible from both sides.",
+     .help =
+         "A mesh in metres, y up as Blender and most programs take OBJ (x, y, z of the file are "
+         "x, z, -y of the room; its first line says so), with its materials in FILE.mtl beside "
+         "it. Walls without thickness, panes and floors are single surfaces, visible from both "
+         "sides.",
      .write = [](const Scene& scene, const Document& /*document*/,
                  const ExportOptions& options) { return writeObj(scene, options.beside); },
      .beside_suffix = ".mtl",
@@ -66,7 +70,7 @@ constexpr ExportFormat kFormats[] = {
      .naming_hint = "FILE.mtl holds the materials of an OBJ: name the model FILE.obj"},
     {.name = "stl",
      .suffix = "stl",
-     .help = "The same mesh as one surface without names and materials, in binary STL.",
+     .help = "The same mesh, z up, as one surface without names and materials, in binary STL.",
      .binary = "an STL",
      .write = [](const Scene& scene, const Document& /*document*/,
                  const ExportOptions& /*options*/) -> ExportedFiles {
@@ -96,31 +100,51 @@ constexpr ExportFormat kFormats[] = {
              "ID_optical, with z forward, as ROS wants it.",
      .write = [](const Scene& scene, const Document& /*document*/,
                  const ExportOptions& options) -> ExportedFiles {
-         return {writeUrdf(scene, options.title), ""};
+         return {writeUrdf(scene, options.title), "",
+                 scene.sensors.empty() ? "the file has no sensors, as none is placed: give a "
+                                         "layout, too (envc room.env best.3dm -o FILE.urdf)"
+                                       : ""};
      }},
+    {.name = "ifc",
+     .suffix = "ifc",
+     .help = "A building of one storey in IFC4, in metres and degrees: walls with their openings, "
+             "doors "
+             "and windows, rooms and zones as spaces with areas, furniture, pillars and other "
+             "things, and the sensors (IfcSensor; cameras as IfcAudioVisualAppliance), whose "
+             "property set ispace_Sensor has Model, Height, Heading, Tilt, Roll, FieldOfView, "
+             "FieldOfViewVertical and Range. Rooms end at the faces of walls; walls without "
+             "thickness become 5 mm thick. Robots, people and what they carry are left out, and "
+             "a warning counts them. GUIDs depend on the records alone, and the file has no date.",
+     .write = [](const Scene& scene, const Document& /*document*/,
+                 const ExportOptions& options) { return writeIfc(scene, options.title); }},
     {.name = "svg",
      .suffix = "svg",
      .help =
          "A drawing to scale, on paper of A3 or less: print it at 100 % and measure. It has one "
          "layer per type, and its ids are those of the records.",
      .takes_slice = true,
+     .draws_rooms = true,
      .write = drawnAs<PictureFormat::Svg>},
     {.name = "png",
      .suffix = "png",
      .help = "The view from above with a grid of 1 m.",
      .binary = "a PNG",
      .takes_slice = true,
+     .draws_rooms = true,
      .write = drawnAs<PictureFormat::Png>},
     {.name = "pdf",
      .suffix = "pdf",
      .help = "The drawing of svg as PDF, to the same scale; the page is as large as the drawing.",
      .binary = "a PDF",
      .takes_slice = true,
+     .draws_rooms = true,
      .write = drawnAs<PictureFormat::Pdf>},
     {.name = "geojson",
      .suffix = "geojson",
-     .help = "The indoor region and the footprints in metres of the plan; programs that follow RFC "
-             "7946 strictly take them for degrees.",
+     .help =
+         "The indoor region and the footprints. Coordinates are metres in the frame of the room, "
+         "as the members coordinate_system (local-metres) and crs say, the latter to GDAL and "
+         "QGIS; programs that know neither take them for degrees.",
      .takes_slice = true,
      .write = [](const Scene& scene, const Document& /*document*/,
                  const ExportOptions& options) -> ExportedFiles {
@@ -130,8 +154,11 @@ constexpr ExportFormat kFormats[] = {
      .suffix = "dxf",
      .help = "The plan in metres as ASCII DXF (AutoCAD 2000), on the layers walls, doors, windows, "
              "objects, sensors, views, robots, zones, floors and names. Walls are the mid-lines "
-             "that enclose the room, drawn as wide as they are thick, so that envc reads the same "
-             "room back with --wall-layer walls --door-layer doors --window-layer windows.",
+             "that enclose the room, drawn as wide as they are thick, shut doors 4 cm wide, open "
+             "ones as lines; objects are the outlines of their solid parts, and elevation and "
+             "thickness say where each begins and how high it is. envc knows these layers and "
+             "reads the same room back: walls, openings, and the parts of objects as cubes and "
+             "cylinders.",
      .takes_slice = true,
      .write = [](const Scene& scene, const Document& /*document*/,
                  const ExportOptions& options) -> ExportedFiles {

@@ -12,6 +12,7 @@
 
 #include "layout/scene.h"
 #include "model/glb_write.h"
+#include "plan/found_rooms.h"
 #include "raster/grid.h"
 #include "record/record.h"
 
@@ -25,6 +26,7 @@ struct ExportOptions {
     std::string title;                 ///< of drawings; "" for none
     std::string beside;  ///< how the product names the file beside it; "": there is none
     std::vector<std::string> zones = {};  ///< to keep out of, as readZone() reads them
+    const FoundRooms* found = nullptr;    ///< rooms of the import, for drawings; may be null
 };
 
 /// A product, and the file that stands beside it; "" where none is needed.
@@ -43,6 +45,7 @@ struct ExportFormat {
     std::string_view binary = "";  ///< how messages call what no terminal shows; "" for text
     bool takes_slice = false;
     bool takes_zones = false;  ///< and needs them
+    bool draws_rooms = false;  ///< also those that an import did not keep
     /// Records are written as they are, without a scene: the other writer is null.
     std::string (*write_records)(Document&& document) = nullptr;
     ExportedFiles (*write)(const Scene&, const Document&, const ExportOptions&) = nullptr;
@@ -76,9 +79,11 @@ const ExportFormat& exportFormat(std::string_view name);
 /// Polygons, each with the `id` of its element.
 std::string writeGeoJson(const Scene& scene, std::optional<double> slice_height);
 
-/// The scene as Wavefront OBJ: metres, z up, one object `o` per element, placed sensor, robot and
-/// person, named by its id, and the floor; faces by material, with a normal each, counter-clockwise
-/// seen from outside. Coordinates are the shortest decimals that read back as the same doubles.
+/// The scene as Wavefront OBJ: metres, y up as most programs read it (x, z, -y of the room, as
+/// writeGlb() has it), which the first line says; one object `o` per element, placed sensor, robot
+/// and person, named by its id, and the floor; faces by material, with a normal each,
+/// counter-clockwise seen from outside. Coordinates are the shortest decimals that read back as the
+/// same doubles.
 ///
 /// Sheets (walls without thickness, panes, floors) are single surfaces: viewers that cull back
 /// faces show them from one side only. Faces without area are left out. Equal scenes give equal
@@ -87,7 +92,7 @@ std::string writeGeoJson(const Scene& scene, std::optional<double> slice_height)
 ExportedFiles writeObj(const Scene& scene, const std::string& mtl_name);
 
 struct ModelNode;
-/// Nodes as Wavefront OBJ without materials.
+/// Nodes as Wavefront OBJ without materials, z up as Gazebo reads it.
 std::string objOf(const std::vector<ModelNode>& nodes);
 
 /// The scene as binary STL: metres, z up, all elements, placed sensors, robots, people and the
@@ -108,6 +113,16 @@ std::string writeStl(const Scene& scene);
 /// scenes give equal bytes. \param title names the world, up to its first dot \param mesh_name the
 /// OBJ, as the world names it \throws UsageError if there are meshes and that is empty
 ExportedFiles writeSdf(const Scene& scene, const std::string& title, const std::string& mesh_name);
+
+/// The room as an IFC4 building of one storey: lines of walls as IfcWall with IfcOpeningElement and
+/// the IfcDoor or IfcWindow in it, rooms and zones as IfcSpace, furniture, pillars and other
+/// things, sensors as IfcSensor and IfcAudioVisualAppliance with the property set `ispace_Sensor`.
+///
+/// A room is the indoor region without the walls that have a thickness; walls without one become
+/// 5 mm thick. GUIDs are hashes of the scene's digest, the class and the id. What moves
+/// is left out: ExportedFiles::left_out counts it. Equal scenes and titles give equal bytes.
+/// O(n log n) for n walls and openings. \param title names the project
+ExportedFiles writeIfc(const Scene& scene, const std::string& title);
 
 /// The placed sensors as URDF: a link each, named by its id, with a fixed joint from `world` or
 /// from the link of the robot or person that carries it, whose own joint from `world` is floating.

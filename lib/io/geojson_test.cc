@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 
 #include "env/level.h"
@@ -111,7 +112,8 @@ TEST(GeoJson, ThingsAreWhatTheyCover) {
     EXPECT_EQ(desk["properties"]["top"], 0.7);
     EXPECT_EQ(desk["properties"]["heading"], 30.0);
     EXPECT_EQ(desk["properties"]["kind"], "legs");
-    EXPECT_NEAR(areaOf(featureOf(features, "t1")["geometry"]), 0.45 * 0.45 * 3.14159, 1e-3);
+    EXPECT_NEAR(areaOf(featureOf(features, "t1")["geometry"]), 0.45 * 0.45 * std::numbers::pi,
+                1e-9);
     EXPECT_NEAR(areaOf(featureOf(features, "z")["geometry"]), 1, 1e-12);
     EXPECT_NEAR(areaOf(featureOf(features, "carpet")["geometry"]), 2, 1e-12);
     EXPECT_EQ(featureOf(features, "carpet")["properties"]["friction"], 0.2);

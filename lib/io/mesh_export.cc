@@ -36,6 +36,9 @@ struct HashNormal {
     }
 };
 
+/// The axis of an OBJ that points up.
+enum class ObjUp { Y, Z };
+
 void appendCount(std::string& out, std::size_t number) {
     std::array<char, 24> digits;
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
@@ -45,9 +48,10 @@ void appendCount(std::string& out, std::size_t number) {
 /// Writes the nodes one behind another; OBJ counts vertices and normals over the whole file.
 class ObjWriter {
   public:
-    explicit ObjWriter(const std::string& mtl_name) : with_materials_(!mtl_name.empty()) {
-        out_ =
-            "# ispace: metres, z up, x-y is the floor\n"
+    ObjWriter(ObjUp up, const std::string& mtl_name) : up_(up), with_materials_(!mtl_name.empty()) {
+        out_ = up == ObjUp::Y ? "# ispace: metres, y up: x, y, z here are x, z, -y of the room\n"
+                              : "# ispace: metres, z up, x-y is the floor\n";
+        out_ +=
             "# faces counter-clockwise seen from outside; sheets once, to be seen from both "
             "sides\n";
         if (with_materials_) out_.append("mtllib ").append(mtl_name) += '\n';
@@ -67,7 +71,8 @@ class ObjWriter {
         std::vector<Point3> places;
         places.reserve(mesh.vertices.size());
         for (const Point3 vertex : mesh.vertices) {
-            places.push_back(inWorld(frame, vertex));
+            const Point3 p = inWorld(frame, vertex);
+            places.push_back(up_ == ObjUp::Y ? Point3{p.x, p.z, 0 - p.y} : p);
             addVertex(places.back());
         }
         if (with_materials_) {
@@ -121,6 +126,7 @@ class ObjWriter {
         out_ += '\n';
     }
 
+    ObjUp up_;
     bool with_materials_;
     std::string out_;
     std::size_t vertices_ = 0;
@@ -140,13 +146,13 @@ void addMaterial(std::string& out, Material material) {
 }  // namespace
 
 std::string objOf(const std::vector<ModelNode>& nodes) {
-    ObjWriter writer("");
+    ObjWriter writer(ObjUp::Z, "");
     for (const ModelNode& node : nodes) writer.add(node);
     return writer.take();
 }
 
 ExportedFiles writeObj(const Scene& scene, const std::string& mtl_name) {
-    ObjWriter writer(mtl_name);
+    ObjWriter writer(ObjUp::Y, mtl_name);
     for (const ModelNode& node : modelOf(scene)) writer.add(node);
     ExportedFiles files;
     files.product = writer.take();

@@ -76,7 +76,7 @@ struct Soup {
     std::vector<Vec3> normals;
 };
 
-/// As another program would read it: objects, materials, faces.
+/// As a program reads it that takes y as up: objects, materials, faces.
 struct ObjModel {
     std::vector<std::string> objects;
     std::map<std::string, Soup> by_object;
@@ -104,9 +104,9 @@ ObjModel parseObj(const std::string& text) {
         } else if (first == "usemtl") {
             model.materials.insert(a);
         } else if (first == "v") {
-            vertices.push_back({number(a), number(b), number(c)});
+            vertices.push_back({number(a), -number(c), number(b)});
         } else if (first == "vn") {
-            normals.push_back({number(a), number(b), number(c)});
+            normals.push_back({number(a), -number(c), number(b)});
         } else if (first == "f") {
             Triangle triangle;
             std::size_t normal = 0;
@@ -196,10 +196,10 @@ TEST(Obj, OneBoxToTheLetter) {
     ASSERT_NE(at, std::string::npos);
     const std::string box = files.product.substr(at, files.product.find("o floor\n") - at);
     EXPECT_EQ(box.substr(0, box.find("usemtl")),
-              "o box\nv 0.25 0 0\nv 0.75 0 0\nv 0.75 0.5 0\nv 0.25 0.5 0\nv 0.25 0 0.1\n"
-              "v 0.75 0 0.1\nv 0.75 0.5 0.1\nv 0.25 0.5 0.1\n");
+              "o box\nv 0.25 0 0\nv 0.75 0 0\nv 0.75 0 -0.5\nv 0.25 0 -0.5\nv 0.25 0.1 0\n"
+              "v 0.75 0.1 0\nv 0.75 0.1 -0.5\nv 0.25 0.1 -0.5\n");
     EXPECT_NE(box.find("usemtl box\n"), std::string::npos);
-    EXPECT_EQ(files.product.rfind("# ispace: metres, z up", 0), 0U);
+    EXPECT_EQ(files.product.rfind("# ispace: metres, y up", 0), 0U);
     EXPECT_NE(files.product.find("\nmtllib room.mtl\n"), std::string::npos);
     EXPECT_NE(files.beside.find("\nnewmtl box\nKd 0.7"), std::string::npos);
 }

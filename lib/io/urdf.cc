@@ -89,6 +89,10 @@ class UrdfWriter {
         cylinder.append_attribute("radius").set_value(lengthsText({radius}).c_str());
         cylinder.append_attribute("length").set_value(lengthsText({height}).c_str());
     }
+    static void setBall(pugi::xml_node geometry, double radius) {
+        geometry.append_child("sphere").append_attribute("radius").set_value(
+            lengthsText({radius}).c_str());
+    }
 
     /// A robot or a person: somebody else tells where it is once it moves.
     void addCarrier(const Placed& placed) {
@@ -104,11 +108,13 @@ class UrdfWriter {
             else
                 setCylinder(geometry, robot.radius, robot.height);
         } else {
-            for (const Upright& part : humanUprights(scene_.people[placed.index].height)) {
+            for (const BodyPart& part : humanParts(scene_.people[placed.index].height)) {
                 const pugi::xml_node geometry =
                     addVisual(link, {part.center.x, part.center.y, (part.bottom + part.top) / 2},
-                              Material::Cloth);
-                if (part.radius > 0)
+                              part.material);
+                if (part.is_ball)
+                    setBall(geometry, part.radius);
+                else if (part.radius > 0)
                     setCylinder(geometry, part.radius, part.top - part.bottom);
                 else
                     setBox(geometry, 2 * part.half_length, 2 * part.half_width,

@@ -340,6 +340,14 @@ Cell classify(int sample, int max_value, const OccupancyRule& rule) {
 
 namespace {
 
+/// The sample that map_server writes for unknown; nothing where it has no such meaning.
+std::optional<int> unknownSample(const GreyPicture& image, const OccupancyRule& rule) {
+    constexpr int kUnknown = 205;
+    if (image.max_value % 255 != 0 || rule.negate || rule.mode == OccupancyRule::Mode::Raw)
+        return std::nullopt;
+    return kUnknown * (image.max_value / 255);
+}
+
 MapCells cellsThatAre(Cell kind, const GreyPicture& image, const OccupancyRule& rule) {
     using Mode = OccupancyRule::Mode;
     const bool averaged = rule.mode == Mode::Trinary && !image.opacity.empty();
@@ -348,6 +356,9 @@ MapCells cellsThatAre(Cell kind, const GreyPicture& image, const OccupancyRule& 
     std::vector<std::uint8_t> is_meant(static_cast<std::size_t>(white) + 1);
     for (int sample = 0; sample <= white; ++sample)
         is_meant[static_cast<std::size_t>(sample)] = classify(sample, white, rule) == kind ? 1 : 0;
+    if (const auto unknown = unknownSample(image, rule))
+        is_meant[static_cast<std::size_t>(*unknown + (averaged ? 255 : 0))] =
+            (rule.unknown_is_free ? Cell::Free : Cell::Unknown) == kind ? 1 : 0;
     MapCells cells(image.width, image.height);
     std::size_t i = 0;
     for (int y = image.height - 1; y >= 0; --y)
@@ -370,12 +381,10 @@ MapCells occupiedCells(const GreyPicture& image, const OccupancyRule& rule) {
 }
 
 std::size_t unknownCountedFree(const GreyPicture& image, const OccupancyRule& rule) {
-    constexpr int kUnknown = 205;
-    const int grey = kUnknown * (image.max_value / 255);
-    if (image.max_value % 255 != 0 || rule.negate || rule.mode == OccupancyRule::Mode::Raw ||
-        classify(grey, image.max_value, rule) != Cell::Free)
-        return 0;
-    return static_cast<std::size_t>(std::count(image.samples.begin(), image.samples.end(), grey));
+    const auto unknown = unknownSample(image, rule);
+    if (!unknown || classify(*unknown, image.max_value, rule) != Cell::Free) return 0;
+    return static_cast<std::size_t>(
+        std::count(image.samples.begin(), image.samples.end(), *unknown));
 }
 
 }  // namespace ispace

@@ -90,6 +90,7 @@ struct OccupancyRule {
     bool negate = false;            ///< white is occupied
     double occupied_thresh = 0.65;  ///< occupied if the darkness is above
     double free_thresh = 0.196;     ///< free if the darkness is below
+    bool unknown_is_free = false;   ///< of the shade that map_server writes for unknown, 205 of 255
 };
 
 enum class Cell : std::uint8_t { Free, Occupied, Unknown };
@@ -99,12 +100,13 @@ Cell classify(int sample, int max_value, const OccupancyRule& rule);
 
 /// The free and the occupied cells of a map; the picture's top row becomes the highest row. Opacity
 /// is treated as map_server does: Trinary averages it with the colours; with Scale, pixels that
-/// are not opaque are unknown.
+/// are not opaque are unknown. Unlike there, opaque pixels of shade 205 are unknown whatever the
+/// thresholds are, or free with OccupancyRule::unknown_is_free; not so for Raw and `negate`.
 MapCells freeCells(const GreyPicture& image, const OccupancyRule& rule);
 MapCells occupiedCells(const GreyPicture& image, const OccupancyRule& rule);
 
-/// How many samples of the shade that map_server writes for unknown (205 of 255, a darkness of
-/// 0.196) count as free. Nav2 writes a free_thresh of 0.25.
+/// How many samples of that shade (a darkness of 0.196) the thresholds alone would make free: Nav2
+/// writes a free_thresh of 0.25.
 std::size_t unknownCountedFree(const GreyPicture& image, const OccupancyRule& rule);
 
 }  // namespace ispace

@@ -31,20 +31,40 @@ expect_same room.dxf stream.dxf "a stream differs"
 coverage room.env room.3dm -o map.dxf --json >report.json
 envc room.env --slice 0.3 -o slice.dxf
 
-# Our own reader: the same room. Layers are named, everything else would be walls, too.
-layers="--wall-layer walls --door-layer doors --window-layer windows"
-figure() { sed -n "s/.*\"$1\":\\([0-9.e-]*\\)[,}].*/\\1/p"; }
+# Our own reader knows the layers: the same room.
+# figure KEY FILE: a number of a report
+figure() { grep -o "\"$1\":[0-9.e-]*" "$2" | head -n 1 | cut -d: -f2; }
+# same KEY WANTED FOUND: the figure of two reports, to a millionth
+same() {
+    echo "$(figure "$1" "$2") $(figure "$1" "$3")" |
+        awk '{ d = $1 - $2; e = 1e-6 * $1; if (NF != 2 || d > e || d < -e) exit 1 }' ||
+        fail "$3: another $1: $(figure "$1" "$3"), not $(figure "$1" "$2")"
+}
 for drawing in room map; do
-    # shellcheck disable=SC2086
-    envc "$drawing.dxf" $layers --info --json >again.json
+    envc "$drawing.dxf" --info --json >again.json
     envc room.env --info --json >want.json
-    for key in indoor_area perimeter; do
-        echo "$(figure $key <want.json) $(figure $key <again.json)" |
-            awk '{ d = $1 - $2; if (NF != 2 || d > 1e-9 || d < -1e-9) exit 1 }' ||
-            fail "$drawing.dxf: another $key: $(figure $key <again.json), not $(figure $key <want.json)"
-    done
-    grep -q '"door":1,.*"window":1' again.json || fail "$drawing.dxf: no door or window: $(cat again.json)"
+    for key in indoor_area free_area perimeter door window; do same "$key" want.json again.json; done
+    grep -q '"cube":5,"cylinder":3' again.json || fail "$drawing.dxf: another desk or table: $(cat again.json)"
 done
+envc room.dxf --to env >again.env
+grep -q '^fence .*thickness=0.2' again.env || fail "no thick walls: $(cat again.env)"
+grep -q '^door .*open=yes' again.env || fail "no open door: $(cat again.env)"
+envc room.env --set in.open=no --to dxf | envc - --to env | grep '^door .*open=yes' && fail "a shut door opens"
+
+# All scenes that come with ispace; of the mesh in catalogue.env there is the box around it.
+for scene in "$scenes"/*.env "$scenes/office.yaml"; do
+    envc "$scene" --info --json >want.json 2>/dev/null
+    envc "$scene" -q -o scene.dxf
+    envc scene.dxf --info --json >again.json
+    same indoor_area want.json again.json
+    [ "$(basename "$scene")" = catalogue.env ] || same free_area want.json again.json
+    for key in door window zone floor; do
+        [ -z "$(figure "$key" want.json)" ] || same "$key" want.json again.json
+    done
+done
+# Layers can be told, as of any drawing.
+envc room.dxf --wall-layer walls --door-layer doors --window-layer windows --info --json >again.json
+! grep -q cube again.json || fail "layers are not those that are told: $(cat again.json)"
 
 if /usr/bin/python3 -c 'import ezdxf' 2>/dev/null; then
     facts() { /usr/bin/python3 "$source_dir/tests/pipelines/dxf_facts.py" "$1.dxf" >facts || fail "$1.dxf"; }
@@ -54,8 +74,10 @@ if /usr/bin/python3 -c 'import ezdxf' 2>/dev/null; then
     fact 'errors 0'
     fact 'wall True 0.200 6'
     fact 'wall False 0.000 2'
+    fact 'solid LWPOLYLINE 0.670 0.030'
+    fact 'solid CIRCLE 0.670 0.030'
     for line in 'doors LWPOLYLINE 1' 'windows LWPOLYLINE 1' 'zones LWPOLYLINE 1' 'floors LWPOLYLINE 1' \
-        'objects CIRCLE 1' 'objects LWPOLYLINE 1' 'views LWPOLYLINE 2' 'robots CIRCLE 1' \
+        'objects CIRCLE 3' 'objects LWPOLYLINE 5' 'views LWPOLYLINE 2' 'robots CIRCLE 1' \
         'text sensors l1' 'text names corner' 'text robots h1'; do
         fact "$line"
     done

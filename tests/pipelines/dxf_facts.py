@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Prints what ezdxf sees in a drawing, a line each: dxf_facts.py FILE.dxf
 
-`unit N`, `errors N` (of its audit), `LAYER TYPE COUNT`, and for fillings `area LAYER M2`. Fillings
-have straight edges; holes run clockwise.
+`unit N`, `errors N` (of its audit), `LAYER TYPE COUNT`, of objects `solid TYPE BOTTOM HEIGHT`, and for
+fillings `area LAYER M2`. Fillings have straight edges; holes run clockwise.
 """
 import sys
 from collections import Counter, defaultdict
@@ -33,6 +33,9 @@ def main():
         print("area", layer, f"{area:.6f}")
     for entity in doc.modelspace().query('LWPOLYLINE[layer=="walls"]'):
         print("wall", entity.closed, f"{entity.dxf.const_width:.3f}", len(entity))
+    for entity in doc.modelspace().query('*[layer=="objects"]'):
+        bottom = entity.dxf.elevation if entity.dxftype() == "LWPOLYLINE" else entity.dxf.center.z
+        print("solid", entity.dxftype(), f"{bottom:.3f} {entity.dxf.thickness:.3f}")
     for entity in doc.modelspace().query("TEXT"):
         print("text", entity.dxf.layer, entity.dxf.text)
 

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads a world through libsdformat and prints what it found, a line each, with all poses in the
-// world's frame: read_sdf FILE [FOLDER...]. Models that it includes are in the folders.
-// Exit status: 0 no errors, 1 errors, 2 usage.
+// Checks a world as `ign sdf -k` does, reads it through libsdformat and prints what it found, a
+// line each, with all poses in the world's frame: read_sdf FILE [FOLDER...]. Models that it
+// includes are in the folders. Exit status: 0 no errors, 1 errors, 2 usage.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <sdf/sdf.hh>
 #include <string>
+
+/// The command behind `ign sdf -k`, exported by libsdformat12 for Ruby: 0 and "Valid." on stdout,
+/// or errors on stderr.
+extern "C" int cmdCheck(const char* path);
 
 namespace {
 
@@ -123,6 +127,7 @@ int main(int argc, char** argv) {
         }
         return std::string();
     });
+    if (cmdCheck(argv[1]) != 0) return 1;
     sdf::Root root;
     const sdf::Errors errors = root.Load(argv[1]);
     for (const sdf::Error& error : errors) std::cerr << error.Message() << '\n';
