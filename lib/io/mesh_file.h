@@ -13,7 +13,7 @@ namespace ispace {
 
 /// How a mesh file is read.
 struct MeshOptions {
-    /// auto: rotated so that z points up, glTF and IFC from y, COLLADA from the axis it names;
+    /// auto: rotated so that z points up, glTF from y, COLLADA from the axis it names;
     /// other formats stay as they are. x, y or z: the upward axis, whatever the file says.
     std::string up = "auto";
     /// Files that it names may lie anywhere, not only in its folder and below.
@@ -32,9 +32,6 @@ struct MeshOptions {
 ///         where none may be; std::system_error if the file cannot be opened
 std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const MeshOptions& options,
                                              std::vector<std::string>* side_files = nullptr);
-
-/// The same node by node, for formats whose nodes say what they are.
-std::vector<MeshPart> loadMeshParts(const std::string& path, const MeshOptions& options);
 
 /// Loads the file of each `mesh` record that has no content yet, each file once, and adds its path
 /// and those of the files it names to Document::sources. Paths are relative to the operand's folder

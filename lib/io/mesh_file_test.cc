@@ -210,7 +210,8 @@ TEST_F(MeshFile, NamesWhatIsWrong) {
     EXPECT_NE(errorsOf([] { loadMesh("/dev/zero", {}); }).find("it is no regular file"),
               std::string::npos);
     EXPECT_EQ(errorOf("cut.stl", std::string(90, 'x')),
-              "cut.stl: error: bad mesh file: Failed to determine STL storage representation\n");
+              "cut.stl: error: bad mesh file: it cannot be read as stl (assimp says: Failed to "
+              "determine STL storage representation); is it damaged?\n");
     EXPECT_EQ(errorOf("a.obj", "nonsense").find("a.obj: error: bad mesh file: "), 0U);
     EXPECT_EQ(errorOf("a.obj", "").find("a.obj: error: bad mesh file: "), 0U);
     EXPECT_EQ(errorOf("a.xyz", "whatever").find("a.xyz: error: bad mesh file: "), 0U);

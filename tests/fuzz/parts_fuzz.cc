@@ -10,12 +10,11 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace ispace;
     return fuzz::guarded(data, size, [](std::string_view bytes) {
-        const std::vector<MeshPart> parts = unpackedParts(bytes, "mesh");
-        for (const MeshPart& part : parts)
-            for (const auto& triangle : part.mesh.triangles)
-                for (const std::uint32_t corner : triangle)
-                    fuzz::require(std::isfinite(part.mesh.vertices.at(corner)[0]),
-                                  "a vertex that is no place");
-        fuzz::require(packedParts(parts) == bytes, "other bytes after unpacking and packing");
+        const TriangleMesh mesh = unpackedMesh(bytes, "mesh");
+        for (const auto& triangle : mesh.triangles)
+            for (const std::uint32_t corner : triangle)
+                fuzz::require(std::isfinite(mesh.vertices.at(corner)[0]),
+                              "a vertex that is no place");
+        fuzz::require(packedMesh(mesh) == bytes, "other bytes after unpacking and packing");
     });
 }

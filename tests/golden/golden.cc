@@ -12,6 +12,7 @@
 //   --pictures A;B    PNGs among them that are compared with PREFIX.FILE by their pixels
 //   --abs X --rel Y   tolerance of numbers
 //   --exact yes       history is compared, too
+//   --needs FILE      skipped, with status 77, without this file in $ISPACE_TEST_DATA
 //
 // With UPDATE_GOLDEN=1 in the environment the expectations are written anew instead; one line of
 // standard error that begins with `TOOL: ` goes to the row of the case in TOOL/CMakeLists.txt.
@@ -46,6 +47,7 @@ struct Case {
     int status = 0;
     std::string error_line;
     std::set<std::string> creates, pictures;
+    std::string needs;
     ispace::Tolerance tolerance;
     bool exact = false;
 };
@@ -81,6 +83,8 @@ Case parseCase(const std::vector<std::string>& words) {
             test.tolerance.absolute = std::stod(value);
         } else if (name == "--rel") {
             test.tolerance.relative = std::stod(value);
+        } else if (name == "--needs") {
+            test.needs = value;
         } else if (name == "--exact") {
             test.exact = value == "yes";
         } else {
@@ -229,6 +233,11 @@ class Verdict {
     bool failed_ = false;
 };
 
+bool isMissing(const std::string& file) {
+    const char* const folder = std::getenv("ISPACE_TEST_DATA");
+    return !file.empty() && (folder == nullptr || !fs::exists(fs::path(folder) / file));
+}
+
 bool passes(const Case& test) {
     const fs::path room = test.scratch / "room";
     furnish(test, room);
@@ -250,7 +259,9 @@ bool passes(const Case& test) {
 
 int main(int argc, char** argv) {
     try {
-        return passes(parseCase({argv + 1, argv + argc})) ? 0 : 1;
+        const Case test = parseCase({argv + 1, argv + argc});
+        if (isMissing(test.needs)) return 77;
+        return passes(test) ? 0 : 1;
     } catch (const std::exception& error) {
         std::cout << "golden: " << error.what() << '\n';
         return 2;

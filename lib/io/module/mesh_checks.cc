@@ -333,7 +333,6 @@ class ColladaNodes {
 
 MeshFormat meshFormat(std::string_view bytes, const std::string& suffix) {
     if (bytes.starts_with("glTF")) return MeshFormat::Glb;
-    if (bytes.starts_with("ISO-10303-21")) return MeshFormat::Ifc;
     if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::Ply;
     const auto* const named =
         std::find_if(kMeshSuffixes.begin(), kMeshSuffixes.end(),
@@ -360,7 +359,6 @@ void checkMesh(MeshFormat format, std::string_view bytes) {
             break;
         case MeshFormat::Obj:
         case MeshFormat::Stl:
-        case MeshFormat::Ifc:
             break;
     }
 }

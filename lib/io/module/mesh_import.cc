@@ -64,8 +64,7 @@ bool comesWithYUp(const aiScene& scene) {
     if (scene.mMetaData == nullptr || !scene.mMetaData->Get(AI_METADATA_SOURCE_FORMAT, format))
         return false;
     const std::string_view name = format.C_Str();
-    return name.starts_with("glTF") || name.starts_with("Collada") ||
-           name.starts_with("Industry Foundation Classes");
+    return name.starts_with("glTF") || name.starts_with("Collada");
 }
 
 /// Puts the meshes of all nodes into one list of triangles.
@@ -80,19 +79,6 @@ class Gatherer {
         TriangleMesh mesh;
         forEachNode([&](const Place& place) { addTo(mesh, *place.node, place.world_from_node); });
         return mesh;
-    }
-
-    /// Each node's by itself.
-    std::vector<MeshPart> gatherParts() {
-        std::vector<MeshPart> parts;
-        forEachNode([&](const Place& place) {
-            if (place.node->mNumMeshes == 0) return;
-            MeshPart& part = parts.emplace_back();
-            for (const aiNode* node = place.node; node != nullptr; node = node->mParent)
-                part.nodes.push_back({node->mName.C_Str(), heights_.at(node)});
-            addTo(part.mesh, *place.node, place.world_from_node);
-        });
-        return parts;
     }
 
   private:
@@ -136,7 +122,6 @@ class Gatherer {
         while (!open.empty()) {
             const Place place = open.back();
             open.pop_back();
-            heights_[place.node] = placed({}, place.world_from_node)[2];
             visit(place);
             for (unsigned i = place.node->mNumChildren; i > 0; --i) {
                 const aiNode* const child = place.node->mChildren[i - 1];
@@ -187,7 +172,6 @@ class Gatherer {
 
     const aiScene& scene_;
     bool turn_y_up_;
-    std::map<const aiNode*, double> heights_;
 };
 
 /// Vertices come in the order of their first use by a triangle; those that none uses are dropped.
@@ -253,8 +237,7 @@ void leaveOnly(const std::string& suffix, Assimp::Importer& importer) {
 
 }  // namespace
 
-std::vector<MeshPart> importMesh(MeshFormat format, std::size_t size, const std::string& up,
-                                 bool whole) {
+TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up) {
     Assimp::Importer importer;
     const std::string suffix = suffixOf(format);
     leaveOnly(suffix, importer);
@@ -268,16 +251,12 @@ std::vector<MeshPart> importMesh(MeshFormat format, std::size_t size, const std:
     const aiScene* const scene =
         importer.ReadFile(name, aiProcess_Triangulate | aiProcess_ValidateDataStructure);
     if (scene == nullptr || scene->mRootNode == nullptr)
-        fail("bad mesh file: " + assimpsWords(importer.GetErrorString(), name));
+        fail("bad mesh file: it cannot be read as " + suffix + " (assimp says: " +
+             assimpsWords(importer.GetErrorString(), name) + "); is it damaged?");
     Gatherer gatherer(*scene, !as_is && comesWithYUp(*scene));
-    std::vector<MeshPart> parts;
-    if (whole)
-        parts.emplace_back().mesh = gatherer.gather();
-    else
-        parts = gatherer.gatherParts();
-    for (MeshPart& part : parts) clean(part.mesh);
-    std::erase_if(parts, [](const MeshPart& part) { return part.mesh.triangles.empty(); });
-    return parts;
+    TriangleMesh mesh = gatherer.gather();
+    clean(mesh);
+    return mesh;
 }
 
 }  // namespace ispace

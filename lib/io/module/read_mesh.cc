@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// read-mesh SUFFIX UP whole|parts PARENT SIZE MEMORY SECONDS: reads the mesh on standard input and
-// answers by the socket that is standard output, see mesh_parts.h. Started by mesh_reader.cc alone.
+// read-mesh SUFFIX UP mesh PARENT SIZE MEMORY SECONDS: reads the mesh on standard input and answers
+// by the socket that is standard output, see mesh_parts.h; read-mesh SUFFIX CUT building ... reads
+// an IFC building, cut at a height or, with "", above each floor. Started by mesh_reader.cc alone.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -10,6 +11,9 @@
 #include <string>
 #include <string_view>
 
+#include "base/number.h"
+#include "io/ifc/building.h"
+#include "io/ifc/ifc_mesh.h"
 #include "io/mesh_parts.h"
 #include "io/module/handed_files.h"
 #include "io/module/read_mesh.h"
@@ -55,9 +59,14 @@ MeshFormat checkedFormat(std::size_t size, const std::string& suffix) {
 
 std::size_t number(const char* text) { return std::strtoull(text, nullptr, 10); }
 
-std::string packedMesh(const std::string& suffix, const std::string& up, bool whole,
-                       std::size_t size) {
-    return packedParts(importMesh(checkedFormat(size, suffix), size, up, whole));
+bool isStep(std::size_t size) { return MappedInput(size).bytes().starts_with("ISO-10303-21"); }
+
+std::string answer(bool is_building, const std::string& suffix, const std::string& setting,
+                   std::size_t size) {
+    if (is_building)
+        return packedBuilding(readBuilding(MappedInput(size).bytes(), parseDouble(setting)));
+    if (isStep(size)) return packedMesh(ifcMesh(MappedInput(size).bytes()));
+    return packedMesh(importMesh(checkedFormat(size, suffix), size, setting));
 }
 
 }  // namespace
@@ -68,7 +77,7 @@ int main(int argc, char** argv) {
     confine({number(argv[6]), number(argv[7])}, std::atoi(argv[4]));
     try {
         tell(MeshAnswer::Parts,
-             packedMesh(argv[1], argv[2], std::string_view(argv[3]) == "whole", number(argv[5])));
+             answer(std::string_view(argv[3]) == "building", argv[1], argv[2], number(argv[5])));
     } catch (const std::bad_alloc&) {
         outOfMemory();
     } catch (const std::exception& error) {

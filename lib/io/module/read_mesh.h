@@ -26,9 +26,7 @@ MeshFormat meshFormat(std::string_view bytes, const std::string& suffix);
 void checkMesh(MeshFormat format, std::string_view bytes);
 
 /// Reads the mesh on standard input with assimp, as loadMesh says. \param size in bytes
-/// \param whole all in one part, else one for each node that has triangles
 /// \throws std::runtime_error with what is wrong with the file
-std::vector<MeshPart> importMesh(MeshFormat format, std::size_t size, const std::string& up,
-                                 bool whole);
+TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up);
 
 }  // namespace ispace

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geom/polygon.h"
+
+namespace ispace {
+
+/// The cut through one product, in metres. Each part is the area that `curves` bound (even-odd)
+/// without that of the `removed` ones; sheets are lines of surfaces without thickness.
+struct BuildingSection {
+    struct Part {
+        std::vector<Polygon> curves, removed;
+    };
+    std::vector<Part> parts;
+    std::vector<Polygon> sheets;
+
+    [[nodiscard]] bool empty() const { return parts.empty() && sheets.empty(); }
+};
+
+/// An upright box, or the cylinder in it.
+struct BuildingBox {
+    Point2 center;
+    Vec2 along{1, 0};              ///< unit, direction of the length
+    double length = 0, width = 0;  ///< metres
+    double bottom = 0, top = 0;    ///< heights in the building
+    bool is_round = false;
+};
+
+struct BuildingStorey {
+    std::string name;                                 ///< "" if it has none
+    std::string building;                             ///< name of the building it belongs to
+    double elevation = 0;                             ///< of its floor
+    double cut = 0;                                   ///< height of the sections of walls
+    std::uint64_t walls = 0, doors = 0, windows = 0;  ///< that the file says belong to it
+};
+
+/// An area that the file states for a space.
+struct StatedArea {
+    std::string name;  ///< as in the file: NetFloorArea
+    double area = 0;   ///< square metres
+};
+
+struct BuildingSpace {
+    std::string number, name;
+    std::uint64_t storey = 0;
+    BuildingSection outline;  ///< 1 m above its own floor
+    std::vector<StatedArea> areas;
+};
+
+/// A wall, or a part of one, where the plane of a storey cuts it.
+struct BuildingWall {
+    std::uint64_t storey = 0;  ///< see storeyOfSections()
+    bool is_column = false;
+    BuildingSection section;
+    BuildingBox box;
+};
+
+/// A hole in a wall, with or without a door or window, or one of these without a hole.
+struct BuildingOpening {
+    enum class Kind : std::uint8_t { Door, Window, Hole };
+    Kind kind = Kind::Door;
+    bool has_hole = false;  ///< false: the box is that of the door or window itself
+    BuildingBox box;        ///< the length lies along the wall where the file says so
+};
+
+/// Furniture, fixtures, stairs and the like.
+struct BuildingThing {
+    std::string type;  ///< IFCFURNISHINGELEMENT
+    std::string name;
+    std::vector<BuildingBox> boxes;
+};
+
+/// A building as far as plans of its storeys go: in metres, z up, as it stands in its own
+/// coordinates. Storeys rise, and so do their cuts.
+struct Building {
+    std::vector<BuildingStorey> storeys;
+    std::vector<BuildingSpace> spaces;
+    std::vector<BuildingWall> walls;  ///< one for each storey and product
+    std::vector<BuildingOpening> openings;
+    std::vector<BuildingThing> things;
+    std::map<std::string, std::uint64_t> unread;  ///< parts of geometry that are not read, by type
+};
+
+/// The first storey that is cut at the same height, which has the sections of walls for all of
+/// them: storeys of several buildings are often level. O(log storeys)
+std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey);
+
+/// Reads a building of IFC2x3, IFC4 or IFC4.3.
+/// \param slice a height at which the highest storey below is cut, instead of 1 m above its floor
+/// \throws std::runtime_error for a file without products, and what is too large
+Building readBuilding(std::string_view bytes, std::optional<double> slice);
+
+std::string packedBuilding(const Building& building);
+/// Trusts nothing: on return numbers are finite and indices valid. \throws std::runtime_error for
+/// other bytes than packedBuilding() writes
+Building unpackedBuilding(std::string_view bytes);
+
+}  // namespace ispace

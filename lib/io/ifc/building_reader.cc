@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+#include "io/ifc/building.h"
+#include "io/ifc/ifc_sections.h"
+#include "io/ifc/ifc_tree.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kAboveFloor = 1;      // metres, of sections: over most sills, under most lintels
+constexpr double kLowestSpace = 1.2;   // metres: lower ones are no rooms
+constexpr double kWidestColumn = 2.5;  // metres
+constexpr std::size_t kMaxBoxes = 40;  // of one thing
+constexpr double kLooseBox = 1.3;      // a thing's box takes so much more floor than its parts'
+
+constexpr std::array<std::string_view, 7> kWalls{
+    "IFCWALL",        "IFCWALLSTANDARDCASE",  "IFCWALLELEMENTEDCASE",  "IFCPLATE",
+    "IFCCURTAINWALL", "IFCPLATESTANDARDCASE", "IFCBUILDINGELEMENTPART"};
+constexpr std::array<std::string_view, 2> kMembers{"IFCMEMBER", "IFCMEMBERSTANDARDCASE"};
+constexpr std::array<std::string_view, 2> kColumns{"IFCCOLUMN", "IFCCOLUMNSTANDARDCASE"};
+constexpr std::array<std::string_view, 4> kDoors{"IFCDOOR", "IFCDOORSTANDARDCASE", "IFCWINDOW",
+                                                 "IFCWINDOWSTANDARDCASE"};
+constexpr std::array<std::string_view, 20> kThings{"IFCFURNISHINGELEMENT",
+                                                   "IFCFURNITURE",
+                                                   "IFCSYSTEMFURNITUREELEMENT",
+                                                   "IFCBUILDINGELEMENTPROXY",
+                                                   "IFCBUILTELEMENT",
+                                                   "IFCFLOWTERMINAL",
+                                                   "IFCSANITARYTERMINAL",
+                                                   "IFCELECTRICAPPLIANCE",
+                                                   "IFCMEDICALDEVICE",
+                                                   "IFCSPACEHEATER",
+                                                   "IFCTRANSPORTELEMENT",
+                                                   "IFCSTAIR",
+                                                   "IFCSTAIRFLIGHT",
+                                                   "IFCRAMP",
+                                                   "IFCRAMPFLIGHT",
+                                                   "IFCRAILING",
+                                                   "IFCCHIMNEY",
+                                                   "IFCENERGYCONVERSIONDEVICE",
+                                                   "IFCFLOWSTORAGEDEVICE",
+                                                   "IFCTANK"};
+
+/// Makes the plan of each storey.
+class BuildingReader {
+  public:
+    BuildingReader(const StepFile& file, std::optional<double> slice)
+        : file_(file), frames_(file), tree_(file), shapes_(frames_), slice_(slice) {}
+
+    Building read() {
+        makeStoreys();
+        forEach(kWalls, [this](StepId id) { addWall(id, false); });
+        forEach(kMembers, [this](StepId id) {
+            addWall(id, tree_.above(id, "IFCCURTAINWALL") == 0);  // a mullion, else a post or brace
+        });
+        forEach(kColumns, [this](StepId id) { addWall(id, true); });
+        for (const StepId id : file_.ofType("IFCSPACE")) addSpace(id);
+        for (const char* type : {"IFCOPENINGELEMENT", "IFCOPENINGSTANDARDCASE"})
+            for (const StepId id : file_.ofType(type)) addHole(id);
+        forEach(kDoors, [this](StepId id) { addFiller(id); });
+        forEach(kThings, [this](StepId id) { addThing(id); });
+        for (const auto& [type, count] : shapes_.unread()) out_.unread[type] += count;
+        return std::move(out_);
+    }
+
+  private:
+    struct Product {
+        StepInstance instance;
+        IfcFrame frame;
+        IfcShape shape;
+        [[nodiscard]] Vec2 axis() const { return {frame.x.x, frame.x.y}; }
+    };
+
+    template <typename Types, typename Visit>
+    void forEach(const Types& types, Visit visit) {
+        for (const std::string_view type : types)
+            for (const StepId id : file_.ofType(type)) visit(id);
+    }
+
+    /// With its shape where it stands; counted where its placement cannot be read.
+    Product productOf(StepId id) {
+        Product product{file_.read(id), {}, {}};
+        try {
+            product.frame = frames_.placement(product.instance[5].reference());
+            product.shape = shapes_.shapeOf(product.instance[6].reference());
+        } catch (const UnreadGeometry& part) {
+            ++out_.unread[part.what()];
+        }
+        for (IfcSolid& solid : product.shape) {
+            solid.body.move(product.frame);
+            for (IfcCut& cut : solid.cuts) {
+                if (cut.half_space)
+                    cut.half_space = {product.frame.at(cut.half_space->at),
+                                      product.frame.turned(cut.half_space->normal)};
+                if (cut.limit) cut.limit->move(product.frame);
+            }
+        }
+        return product;
+    }
+
+    void makeStoreys() {
+        std::vector<std::pair<BuildingStorey, StepId>> found;
+        for (const StepId id : file_.ofType("IFCBUILDINGSTOREY")) {
+            const StepInstance instance = file_.read(id);
+            BuildingStorey storey;
+            storey.name = instance[2].text();
+            storey.building = tree_.nameAbove(id, "IFCBUILDING");
+            storey.elevation = elevationOf(instance);
+            found.emplace_back(std::move(storey), id);
+        }
+        std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+            return a.first.elevation < b.first.elevation;
+        });
+        if (found.empty()) found.emplace_back(wholeBuilding(), 0);
+        for (auto& [storey, id] : found) {
+            storey_at_[id] = out_.storeys.size();
+            storey.cut = storey.elevation + kAboveFloor;
+            out_.storeys.push_back(std::move(storey));
+        }
+        countElements();
+        if (!slice_) return;
+        double below = out_.storeys.front().elevation;
+        for (const BuildingStorey& storey : out_.storeys)
+            if (storey.elevation <= *slice_) below = storey.elevation;
+        for (BuildingStorey& storey : out_.storeys)
+            if (storey.elevation <= below)
+                storey.cut = storey.elevation == below ? *slice_ : std::min(storey.cut, *slice_);
+    }
+
+    [[nodiscard]] double elevationOf(const StepInstance& storey) {
+        const double stated = storey[9].number().value_or(0) * frames_.units().length;
+        if (storey[5].isNull()) return stated;
+        try {
+            return frames_.placement(storey[5].reference()).origin.z;
+        } catch (const UnreadGeometry&) {
+            return stated;
+        }
+    }
+
+    /// Of a file without storeys: its floor is where most of its doors, else its walls, begin.
+    BuildingStorey wholeBuilding() {
+        std::vector<double> feet;
+        const auto add = [&](StepId id) {
+            const IfcHeights heights = heightsOf(productOf(id).shape);
+            if (!heights.empty()) feet.push_back(heights.low);
+        };
+        for (const char* type : {"IFCDOOR", "IFCDOORSTANDARDCASE"})
+            for (const StepId id : file_.ofType(type)) add(id);
+        if (feet.empty()) forEach(kWalls, add);
+        BuildingStorey storey;
+        if (feet.empty()) return storey;
+        std::nth_element(feet.begin(), feet.begin() + static_cast<std::ptrdiff_t>(feet.size() / 2),
+                         feet.end());
+        storey.elevation = feet[feet.size() / 2];
+        out_.unread.clear();  // they are read again
+        return storey;
+    }
+
+    void countElements() {
+        const auto count = [&](std::string_view type, std::uint64_t BuildingStorey::*number) {
+            for (const StepId id : file_.ofType(type))
+                if (const auto storey = storeyOf(id)) ++(out_.storeys[*storey].*number);
+        };
+        for (std::size_t i = 0; i < 3; ++i) count(kWalls[i], &BuildingStorey::walls);
+        for (std::size_t i = 0; i < 2; ++i) count(kDoors[i], &BuildingStorey::doors);
+        for (std::size_t i = 2; i < 4; ++i) count(kDoors[i], &BuildingStorey::windows);
+    }
+
+    [[nodiscard]] std::optional<std::uint64_t> storeyOf(StepId id) const {
+        const auto found = storey_at_.find(tree_.above(id, "IFCBUILDINGSTOREY"));
+        if (found == storey_at_.end()) return std::nullopt;
+        return found->second;
+    }
+
+    /// A section for each storey whose plane it meets, whichever it belongs to.
+    void addWall(StepId id, bool is_column) {
+        const Product product = productOf(id);
+        const IfcHeights heights = heightsOf(product.shape);
+        for (std::uint64_t i = 0; i < out_.storeys.size(); ++i) {
+            const double cut = out_.storeys[i].cut;
+            if (cut < heights.low || cut >= heights.high || storeyOfSections(out_, i) != i)
+                continue;
+            BuildingWall wall;
+            wall.storey = i;
+            wall.is_column = is_column;
+            wall.section = sectionOf(product.shape, cut);
+            const auto box = boxAround(product.shape, product.axis());
+            if (wall.section.empty() || !box) continue;
+            wall.box = *box;
+            // What leans, as rafters, is no column.
+            if (is_column && std::max(box->length, box->width) > kWidestColumn) continue;
+            out_.walls.push_back(std::move(wall));
+        }
+    }
+
+    void addSpace(StepId id) {
+        const Product product = productOf(id);
+        const IfcHeights heights = heightsOf(product.shape);
+        BuildingSpace space;
+        space.number = product.instance[2].text();
+        space.name = product.instance[7].text();
+        if (!heights.empty()) {
+            const double room = heights.high - heights.low;
+            space.outline = sectionOf(product.shape,
+                                      heights.low + (room > kAboveFloor ? kAboveFloor : room / 2));
+        }
+        if (const auto storey = storeyOf(id))
+            space.storey = *storey;
+        else if (!heights.empty())
+            space.storey = storeyAtHeight(heights.low);
+        space.areas = tree_.areasOf(id);
+        for (StatedArea& area : space.areas) area.area *= frames_.units().area;
+        if (heights.high - heights.low < kLowestSpace) return;
+        out_.spaces.push_back(std::move(space));
+    }
+
+    [[nodiscard]] std::uint64_t storeyAtHeight(double height) const {
+        constexpr double kBelow = 0.3;
+        std::uint64_t found = 0;
+        for (std::uint64_t i = 0; i < out_.storeys.size(); ++i)
+            if (out_.storeys[i].elevation <= height + kBelow) found = i;
+        return found;
+    }
+
+    void addOpening(StepId id, BuildingOpening::Kind kind, bool has_hole, Vec2 axis) {
+        const auto box = boxAround(productOf(id).shape, axis);
+        if (box) out_.openings.push_back({kind, has_hole, *box});
+    }
+
+    static BuildingOpening::Kind kindOf(std::string_view type) {
+        return type.starts_with("IFCDOOR") ? BuildingOpening::Kind::Door
+                                           : BuildingOpening::Kind::Window;
+    }
+
+    [[nodiscard]] Vec2 axisOf(StepId id) {
+        try {
+            const Vec3 x = frames_.placement(file_.read(id)[5].reference()).x;
+            return {x.x, x.y};
+        } catch (const UnreadGeometry&) {
+            return {};
+        }
+    }
+
+    void addHole(StepId id) {
+        const StepId host = tree_.hostOf(id);
+        if (!file_.typeOf(host).starts_with("IFCWALL") &&
+            !file_.typeOf(host).starts_with("IFCCURTAINWALL") && host != 0)
+            return;  // in slabs and roofs
+        const StepId filler = tree_.fillerOf(id);
+        addOpening(id, filler == 0 ? BuildingOpening::Kind::Hole : kindOf(file_.typeOf(filler)),
+                   true, axisOf(filler == 0 ? host : filler));
+    }
+
+    /// Of a door or window that fills no hole.
+    void addFiller(StepId id) {
+        if (!tree_.fillsHole(id)) addOpening(id, kindOf(file_.typeOf(id)), false, axisOf(id));
+    }
+
+    void addThing(StepId id) {
+        const Product product = productOf(id);
+        BuildingThing thing{std::string(product.instance.type), product.instance[2].text(), {}};
+        const auto whole = boxAround(product.shape, product.axis());
+        if (!whole) return;
+        double floor = 0;
+        for (const IfcSolid& solid : product.shape) {
+            if (product.shape.size() > kMaxBoxes) break;
+            const auto box = boxAround({solid}, product.axis());
+            if (!box) continue;
+            floor += box->length * box->width;
+            thing.boxes.push_back(*box);
+        }
+        if (thing.boxes.empty() || whole->length * whole->width < kLooseBox * floor)
+            thing.boxes = {*whole};
+        out_.things.push_back(std::move(thing));
+    }
+
+    const StepFile& file_;
+    IfcFrames frames_;
+    IfcTree tree_;
+    IfcShapes shapes_;
+    std::optional<double> slice_;
+    std::unordered_map<StepId, std::uint64_t> storey_at_;
+    Building out_;
+};
+
+}  // namespace
+
+Building readBuilding(std::string_view bytes, std::optional<double> slice) {
+    const StepFile file(bytes);
+    if (file.ofType("IFCPROJECT").empty() && file.ofType("IFCBUILDING").empty() &&
+        file.ofType("IFCBUILDINGSTOREY").empty())
+        throw std::runtime_error("an IFC file without a project, building or storey");
+    return BuildingReader(file, slice).read();
+}
+
+}  // namespace ispace

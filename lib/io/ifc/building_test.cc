@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/ifc/building.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+#include "base/test_damage.h"
+#include "geom/boolean.h"
+#include "io/ifc/ifc_mesh.h"
+#include "io/ifc/storey_choice.h"
+#include "io/ifc/storey_plan.h"
+#include "io/ifc/test_ifc.h"
+
+namespace ispace {
+namespace {
+
+Building cabin(const std::string& name) { return readBuilding(ifcBytes(name), std::nullopt); }
+
+class Cabins : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Schemas, Cabins,
+                         ::testing::Values("cabin-2x3-mm.ifc", "cabin-4-feet.ifc"));
+
+// The same house in IFC2x3 and millimetres, and in IFC4, feet, turned, on a hill, in no order.
+TEST_P(Cabins, AreReadByTheirMeaning) {
+    const Building building = cabin(GetParam());
+    ASSERT_EQ(building.storeys.size(), 3U);
+    const BuildingStorey& ground = building.storeys[1];
+    EXPECT_EQ(ground.name, "Ground floor");
+    EXPECT_EQ(ground.building, "House");
+    EXPECT_EQ(ground.walls, 5U);
+    EXPECT_EQ(ground.doors, 2U);
+    EXPECT_EQ(ground.windows, 1U);
+    EXPECT_NEAR(ground.elevation - building.storeys[0].elevation, 1, 1e-6);
+    ASSERT_EQ(building.spaces.size(), 2U);
+    EXPECT_EQ(building.spaces[0].number, "1");
+    EXPECT_EQ(building.spaces[0].name, "Küche");
+    EXPECT_EQ(building.spaces[0].storey, 1U);
+    EXPECT_NEAR(areaOfSection(building.spaces[0].outline), 14.8, 1e-5);
+    EXPECT_NEAR(areaOfSection(building.spaces[1].outline), 8.8, 1e-5);
+    ASSERT_EQ(building.spaces[1].areas.size(), 1U);
+    EXPECT_EQ(building.spaces[1].areas[0].name, "NetFloorArea");
+    EXPECT_NEAR(building.spaces[1].areas[0].area, 7, 1e-9);
+    EXPECT_TRUE(building.unread.empty());
+}
+
+TEST_P(Cabins, HaveRoomsBetweenTheirWalls) {
+    const Building building = cabin(GetParam());
+    const StoreyWalls walls = wallsOf(building, 1);
+    ASSERT_EQ(walls.solids.size(), 1U);
+    ASSERT_EQ(walls.solids[0].outline.size(), 4U);
+    ASSERT_EQ(walls.solids[0].holes.size(), 2U);
+    EXPECT_NEAR(-signedArea(walls.solids[0].holes[0]) - signedArea(walls.solids[0].holes[1]), 23.6,
+                1e-4);
+    EXPECT_NEAR(walls.top - building.storeys[1].elevation, 2.8, 1e-6);
+    ASSERT_EQ(walls.columns.size(), 1U);
+    EXPECT_TRUE(walls.columns[0].is_round);
+    const WallFaces faces(walls);
+    ASSERT_EQ(building.openings.size(), 4U);
+    for (const BuildingOpening& opening : building.openings) {
+        EXPECT_TRUE(opening.has_hole);
+        const auto found = faces.find(opening.box, true);
+        ASSERT_TRUE(found);
+        EXPECT_TRUE(found->curve);
+        // All are wider than their walls are thick; of the hatch the file does not say along which.
+        const auto [depth, width] = std::minmax({opening.box.length, opening.box.width});
+        EXPECT_NEAR(distance(found->line.a, found->line.b), width, 1e-5);
+        EXPECT_NEAR(found->depth, depth, 1e-5);
+        EXPECT_EQ(found->others.size(), 1U);
+        EXPECT_EQ(found->reveals().size(), 2U);
+    }
+}
+
+TEST(WallFaces, GapsAndWallsWithoutHoles) {
+    StoreyWalls walls;
+    walls.solids = {{{{0, 0}, {2, 0}, {2, 0.2}, {0, 0.2}}, {}},
+                    {{{3, 0}, {6, 0}, {6, 0.2}, {3, 0.2}}, {}}};
+    const WallFaces faces(walls);
+    const auto box = [](double x, double y, Vec2 along) {
+        BuildingBox box;
+        box.center = {x, y};
+        box.along = along;
+        box.length = 0.9;
+        box.width = 0.06;
+        box.top = 2;
+        return box;
+    };
+    // Across the gap, to the ends of the walls.
+    const auto gap = faces.find(box(2.5, 0.1, {1, 0}), false);
+    ASSERT_TRUE(gap);
+    EXPECT_FALSE(gap->curve);
+    EXPECT_NEAR(distance(gap->line.a, gap->line.b), 1, 1e-9);
+    // A door's body alone, in a wall; its axis may lie across, too.
+    for (const Vec2 along : {Vec2{1, 0}, Vec2{0, 1}}) {
+        BuildingBox leaf = box(4.5, 0.1, along);
+        if (along.y == 1) std::swap(leaf.length, leaf.width);
+        const auto in_wall = faces.find(leaf, false);
+        ASSERT_TRUE(in_wall);
+        EXPECT_TRUE(in_wall->curve);
+        EXPECT_NEAR(in_wall->depth, 0.2, 1e-9);
+    }
+    // Off all walls a pane is a wall itself, a hole is none.
+    const auto pane = faces.find(box(4.5, 3, {1, 0}), false);
+    ASSERT_TRUE(pane);
+    EXPECT_FALSE(pane->curve);
+    EXPECT_NEAR(distance(pane->line.a, pane->line.b), 0.9, 1e-9);
+    EXPECT_FALSE(faces.find(box(4.5, 3, {1, 0}), true));
+}
+
+TEST(Building, BrokenPartsAreCounted) {
+    const Building building = cabin("broken-4-m.ifc");
+    EXPECT_EQ(building.spaces.size(), 2U);
+    EXPECT_EQ(building.storeys[1].walls, 5U);
+    std::string unread;
+    for (const auto& [type, count] : building.unread)
+        unread += type + ' ' + std::to_string(count) + '\n';
+    EXPECT_EQ(unread,
+              "IFCSWEPTDISKSOLID 1\na missing instance 1\na number that is missing 1\n"
+              "curves in a loop 1\nplacements in a loop 1\nshapes in a loop 2\n");
+}
+
+TEST(Building, WithoutStoreysItsDoorsStandOnTheFloor) {
+    std::string bytes = ifcBytes("cabin-2x3-mm.ifc");
+    for (std::size_t at = 0; (at = bytes.find("IFCBUILDINGSTOREY", at)) != std::string::npos;)
+        bytes.replace(at, 17, "IFCZONEOFANYKINDX");
+    const Building building = readBuilding(bytes, std::nullopt);
+    ASSERT_EQ(building.storeys.size(), 1U);
+    EXPECT_NEAR(building.storeys[0].elevation, 0, 1e-9);
+    EXPECT_EQ(wallsOf(building, 0).solids.size(), 1U);
+    EXPECT_THROW(readBuilding("ISO-10303-21;", std::nullopt), std::runtime_error);
+}
+
+TEST(Building, SliceTakesTheStoreyBelow) {
+    const Building building = readBuilding(ifcBytes("cabin-2x3-mm.ifc"), 0.2);
+    EXPECT_EQ(building.storeys[1].cut, 0.2);
+    EXPECT_EQ(building.storeys[2].cut, 4);
+}
+
+TEST(Building, DamageIsSurvived) {
+    for (const char* name : {"cabin-2x3-mm.ifc", "cabin-4-feet.ifc", "broken-4-m.ifc"})
+        surviveDamage(
+            ifcBytes(name).substr(0, 4000),
+            [](const std::string& bytes) {
+                try {
+                    (void)unpackedBuilding(packedBuilding(readBuilding(bytes, std::nullopt)));
+                } catch (const std::runtime_error&) {
+                }
+            },
+            0);
+    std::mt19937_64 random(7);
+    const std::string good = ifcBytes("broken-4-m.ifc");
+    for (int round = 0; round < 300; ++round) {
+        std::string bytes = good;
+        for (int n = 0; n < 4; ++n) {
+            // References and numbers that mean something else, and signs.
+            const std::size_t at = bytes.find_first_of("#0123456789.(,", random() % bytes.size());
+            if (at == std::string::npos) continue;
+            bytes[at] = "#0123456789.()$,'E-"[random() % 19];
+        }
+        try {
+            const Building building = readBuilding(bytes, std::nullopt);
+            (void)unpackedBuilding(packedBuilding(building));
+            for (std::size_t i = 0; i < building.storeys.size(); ++i) (void)wallsOf(building, i);
+        } catch (const std::runtime_error&) {
+        }
+    }
+}
+
+TEST(IfcMesh, HasProductsWithoutSpacesAndHoles) {
+    const TriangleMesh mesh = ifcMesh(ifcBytes("cabin-2x3-mm.ifc"));
+    std::array<float, 3> low = mesh.vertices.at(0), high = low;
+    for (const auto& vertex : mesh.vertices)
+        for (std::size_t i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], vertex[i]);
+            high[i] = std::max(high[i], vertex[i]);
+        }
+    EXPECT_EQ(low, (std::array<float, 3>{0, 0, -1}));
+    EXPECT_EQ(high, (std::array<float, 3>{6.6F, 4.6F, 5.5F}));
+    // Of 12 triangles each 7 walls and a table, and a post.
+    EXPECT_GT(mesh.triangles.size(), 8U * 12);
+    EXPECT_LT(mesh.triangles.size(), 8U * 12 + 300);
+    EXPECT_TRUE(ifcMesh("ISO-10303-21;").triangles.empty());
+}
+
+TEST(Building, PackedIsNotTrusted) {
+    const std::string good = packedBuilding(cabin("cabin-2x3-mm.ifc"));
+    const Building again = unpackedBuilding(good);
+    EXPECT_EQ(packedBuilding(again), good);
+    for (std::size_t i = 0; i < good.size(); i += 7)
+        EXPECT_THROW(unpackedBuilding(good.substr(0, i)), std::runtime_error) << i;
+    EXPECT_THROW(unpackedBuilding(good + '\0'), std::runtime_error);
+    Building wrong = again;
+    wrong.walls[0].storey = 3;
+    EXPECT_THROW(unpackedBuilding(packedBuilding(wrong)), std::runtime_error);
+    wrong = again;
+    wrong.spaces[0].storey = 3;
+    EXPECT_THROW(unpackedBuilding(packedBuilding(wrong)), std::runtime_error);
+    wrong = again;
+    wrong.openings[0].box.width = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(unpackedBuilding(packedBuilding(wrong)), std::runtime_error);
+    wrong = again;
+    wrong.openings[0].kind = static_cast<BuildingOpening::Kind>(9);
+    EXPECT_THROW(unpackedBuilding(packedBuilding(wrong)), std::runtime_error);
+    // Counts that would take all memory.
+    for (std::size_t at = 0; at + 8 <= good.size(); at += 3) {
+        std::string bytes = good;
+        std::memset(&bytes[at], 0xff, 8);
+        try {
+            (void)unpackedBuilding(bytes);
+        } catch (const std::runtime_error&) {
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ispace

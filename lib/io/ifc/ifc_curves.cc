@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/ifc/ifc_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace ispace {
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+std::string nameOfMissing(std::string_view type) {
+    return type.empty() ? "a missing instance" : std::string(type);
+}
+
+/// Appends a piece of a curve, without repeating the point where it begins.
+void join(std::vector<Point3>& curve, const std::vector<Point3>& piece) {
+    for (const Point3& p : piece)
+        if (curve.empty() || curve.back() != p) curve.push_back(p);
+}
+
+/// A parameter of IfcTrimmedCurve: a number, else a point.
+struct Trim {
+    std::optional<double> parameter;
+    std::optional<Point3> point;
+};
+
+Trim trimOf(const IfcFrames& frames, const StepValue& list) {
+    Trim trim;
+    for (const StepValue& value : list.list()) {
+        if (const StepId id = value.reference(); id != 0)
+            trim.point = frames.point(id);
+        else
+            trim.parameter = value.number();
+    }
+    return trim;
+}
+
+/// The part of a circle or ellipse between two trims.
+std::vector<Point3> trimmedConic(const IfcFrames& frames, const StepInstance& conic,
+                                 const Trim& first, const Trim& second, bool forward) {
+    const IfcFrame frame = frames.axes(conic[0].reference());
+    const double half_x = frames.length(conic[1]);
+    const double half_y = conic.type == "IFCELLIPSE" ? frames.length(conic[2]) : half_x;
+    const auto angle_of = [&](const Trim& trim) {
+        if (trim.parameter) return *trim.parameter * frames.units().angle;
+        if (!trim.point) throw UnreadGeometry("IFCTRIMMEDCURVE");
+        const Vec3 v = *trim.point - frame.origin;
+        return std::atan2(dot(v, frame.y) / half_y, dot(v, frame.x) / half_x);
+    };
+    const double from = angle_of(first);
+    double to = angle_of(second);
+    if (!std::isfinite(from) || !std::isfinite(to)) throw UnreadGeometry("IFCTRIMMEDCURVE");
+    const double span = std::fmod(forward ? to - from : from - to, kTurn);
+    to = from + (forward ? 1 : -1) * (span <= 0 ? span + kTurn : span);
+    return ifcArc(frame, half_x, half_y, from, to);
+}
+
+std::vector<Point3> trimmedLine(const IfcFrames& frames, const StepInstance& line,
+                                const Trim& first, const Trim& second) {
+    const Point3 origin = frames.point(line[0].reference());
+    const StepInstance vector = frames.file().read(line[1].reference());
+    const Vec3 unit = unitOf(frames.direction(vector[0].reference(), {1, 0, 0}));
+    const double step = frames.length(vector[1]);
+    const auto place = [&](const Trim& trim) {
+        if (trim.point) return *trim.point;
+        if (!trim.parameter) throw UnreadGeometry("IFCTRIMMEDCURVE");
+        return origin + *trim.parameter * step * unit;
+    };
+    return {place(first), place(second)};
+}
+
+std::vector<Point3> trimmedCurve(const IfcFrames& frames, const StepInstance& curve) {
+    const StepInstance basis = frames.file().read(curve[0].reference());
+    const Trim first = trimOf(frames, curve[1]), second = trimOf(frames, curve[2]);
+    const bool forward = curve[3].word() != "F";
+    if (basis.type == "IFCLINE") return trimmedLine(frames, basis, first, second);
+    if (basis.type == "IFCCIRCLE" || basis.type == "IFCELLIPSE")
+        return trimmedConic(frames, basis, first, second, forward);
+    throw UnreadGeometry("IFCTRIMMEDCURVE of " + nameOfMissing(basis.type));
+}
+
+/// The arc from a to c through b, in the plane of all three.
+std::vector<Point3> arcThrough(Point3 a, Point3 b, Point3 c) {
+    const Vec3 u = b - a, v = c - a;
+    const Vec3 normal = cross(u, v);
+    const double squared = dot(normal, normal);
+    if (!(squared > 1e-24)) return {a, b, c};
+    const Vec3 to_center =
+        1 / (2 * squared) * (dot(u, u) * cross(v, normal) + dot(v, v) * cross(normal, u));
+    IfcFrame frame;
+    frame.origin = a + to_center;
+    frame.z = unitOf(normal);
+    frame.x = unitOf(a - frame.origin);
+    frame.y = cross(frame.z, frame.x);
+    const Vec3 last = c - frame.origin;
+    double to = std::atan2(dot(last, frame.y), dot(last, frame.x));
+    if (to <= 0) to += kTurn;
+    const double radius = length(to_center);
+    return ifcArc(frame, radius, radius, 0, to);
+}
+
+std::vector<Point3> indexedCurve(const IfcFrames& frames, const StepInstance& curve) {
+    std::vector<Point3> points;
+    for (const StepValue& value : frames.file().read(curve[0].reference())[0].list())
+        points.push_back(frames.coordinates(value));
+    const std::vector<StepValue> segments = curve[1].list();
+    if (segments.empty()) return points;
+    std::vector<Point3> joined;
+    for (const StepValue& segment : segments) {
+        std::vector<Point3> piece;
+        const std::vector<StepValue> inner = segment.list();
+        for (const StepValue& value : inner.empty() ? inner : inner.front().list()) {
+            const double index = value.number().value_or(0);
+            if (!(index >= 1 && index <= static_cast<double>(points.size())))
+                throw UnreadGeometry("an index out of its list");
+            piece.push_back(points[static_cast<std::size_t>(index) - 1]);
+        }
+        if (segment.type() == "IFCARCINDEX" && piece.size() == 3)
+            piece = arcThrough(piece[0], piece[1], piece[2]);
+        join(joined, piece);
+    }
+    return joined;
+}
+
+}  // namespace
+
+std::vector<Point3> ifcArc(const IfcFrame& frame, double half_x, double half_y, double from,
+                           double to) {
+    constexpr double kFewest = 24, kMost = 720;  // chords of a full turn
+    const double radius = std::max({half_x, half_y, kIfcChordError});
+    const double fine = std::numbers::pi / std::acos(1 - kIfcChordError / radius / 2);
+    const double a_turn = std::clamp(fine, kFewest, kMost);
+    // Of quarters, so that boxes around circles are as large as they are.
+    const double quarters = std::ceil(a_turn / 4);
+    const auto count = static_cast<int>(
+        std::ceil(std::min(std::abs(to - from), kTurn) / kTurn * 4 * quarters - 1e-9));
+    std::vector<Point3> points;
+    for (int i = 0; i <= count; ++i) {
+        const double angle = from + (to - from) * i / std::max(count, 1);
+        points.push_back(frame.at({half_x * std::cos(angle), half_y * std::sin(angle), 0}));
+    }
+    return points;
+}
+
+std::vector<Point3> ifcCurve(const IfcFrames& frames, StepId id, int depth) {
+    if (depth > kMaxIfcDepth) throw UnreadGeometry("curves in a loop");
+    const StepInstance curve = frames.file().read(id);
+    std::vector<Point3> points;
+    if (curve.type == "IFCPOLYLINE") {
+        for (const StepValue& value : curve[0].list())
+            points.push_back(frames.point(value.reference()));
+    } else if (curve.type == "IFCINDEXEDPOLYCURVE") {
+        points = indexedCurve(frames, curve);
+    } else if (curve.type == "IFCTRIMMEDCURVE") {
+        points = trimmedCurve(frames, curve);
+    } else if (curve.type == "IFCCIRCLE" || curve.type == "IFCELLIPSE") {
+        const double half_x = frames.length(curve[1]);
+        points = ifcArc(frames.axes(curve[0].reference()), half_x,
+                        curve.type == "IFCELLIPSE" ? frames.length(curve[2]) : half_x, 0, kTurn);
+    } else if (curve.type == "IFCCOMPOSITECURVE" || curve.type == "IFC2DCOMPOSITECURVE") {
+        for (const StepValue& value : curve[0].list()) {
+            const StepInstance segment = frames.file().read(value.reference());
+            std::vector<Point3> piece = ifcCurve(frames, segment[2].reference(), depth + 1);
+            if (segment[1].word() == "F") std::reverse(piece.begin(), piece.end());
+            join(points, piece);
+        }
+    } else {
+        throw UnreadGeometry(nameOfMissing(curve.type));
+    }
+    return points;
+}
+
+Polygon ifcPolygon(const std::vector<Point3>& points) {
+    constexpr double kSame = 1e-7;
+    Polygon polygon;
+    for (const Point3& p : points)
+        if (polygon.empty() || distance(polygon.back(), p.onFloor()) > kSame)
+            polygon.push_back(p.onFloor());
+    while (polygon.size() > 1 && distance(polygon.back(), polygon.front()) <= kSame)
+        polygon.pop_back();
+    return polygon.size() < 3 ? Polygon() : polygon;
+}
+
+}  // namespace ispace

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+
+#include "geom/point.h"
+#include "io/ifc/step_file.h"
+
+namespace ispace {
+
+/// Geometry that is not read, by the name of its type.
+class UnreadGeometry : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// References may be nested this deep; deeper ones, and loops, are UnreadGeometry.
+constexpr int kMaxIfcDepth = 300;
+
+inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec3 operator-(Vec3 v) { return {-v.x, -v.y, -v.z}; }
+/// Null for the null vector.
+Vec3 unitOf(Vec3 v);
+
+/// An affine map from local coordinates to those around them, in metres. Axes are unit vectors but
+/// for scaled and mirrored maps.
+struct IfcFrame {
+    Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+    Point3 origin;
+
+    [[nodiscard]] Vec3 turned(Vec3 v) const { return v.x * x + v.y * y + v.z * z; }
+    [[nodiscard]] Point3 at(Point3 p) const { return origin + turned({p.x, p.y, p.z}); }
+    /// Inner coordinates to those around this frame.
+    [[nodiscard]] IfcFrame operator*(const IfcFrame& inner) const {
+        return {turned(inner.x), turned(inner.y), turned(inner.z), at(inner.origin)};
+    }
+};
+
+/// Factors of the units that the project assigns: 1 where it assigns none.
+struct IfcUnits {
+    double length = 1;  ///< metres
+    double area = 1;    ///< square metres
+    double angle = 1;   ///< radians
+};
+
+/// Reads IfcUnitAssignment of the first project. Broken units count as 1.
+IfcUnits readIfcUnits(const StepFile& file);
+
+/// Points, directions, axes and placements of an IFC file, in metres and radians.
+///
+/// All throw UnreadGeometry for chains and loops deeper than kMaxIfcDepth and for numbers that are
+/// missing; placements that are missing are the identity.
+class IfcFrames {
+  public:
+    explicit IfcFrames(const StepFile& file) : file_(file), units_(readIfcUnits(file)) {}
+
+    [[nodiscard]] const StepFile& file() const { return file_; }
+    [[nodiscard]] const IfcUnits& units() const { return units_; }
+    /// A length of the file in metres. \throws UnreadGeometry if it is no finite number
+    [[nodiscard]] double length(const StepValue& value) const;
+    /// The same where a missing value means `standard`.
+    [[nodiscard]] double length(const StepValue& value, double standard) const;
+    /// IfcCartesianPoint of two or three coordinates.
+    [[nodiscard]] Point3 point(StepId id) const;
+    /// A list of two or three coordinates.
+    [[nodiscard]] Point3 coordinates(const StepValue& list) const;
+    /// IfcDirection, not normalised. \param standard where the id is 0
+    [[nodiscard]] Vec3 direction(StepId id, Vec3 standard) const;
+    /// IfcAxis2Placement2D or 3D; id 0: the identity.
+    [[nodiscard]] IfcFrame axes(StepId id) const;
+    /// IfcCartesianTransformationOperator2D or 3D, also non-uniform.
+    [[nodiscard]] IfcFrame transformation(StepId id) const;
+    /// IfcLocalPlacement and all it is relative to. O(1) on average, each is resolved once.
+    [[nodiscard]] IfcFrame placement(StepId id, int depth = 0);
+
+  private:
+    const StepFile& file_;
+    IfcUnits units_;
+    std::unordered_map<StepId, IfcFrame> placements_;
+};
+
+}  // namespace ispace

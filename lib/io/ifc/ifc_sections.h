@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "io/ifc/building.h"
+#include "io/ifc/ifc_shapes.h"
+
+namespace ispace {
+
+/// Lowest and highest corner of a shape, whatever is cut off it; low above high if it has none.
+struct IfcHeights {
+    double low = 0, high = -1;
+    [[nodiscard]] bool empty() const { return low > high; }
+};
+IfcHeights heightsOf(const IfcShape& shape);
+
+/// The cut through a shape at a height: curves that close within 2 cm are areas, others sheets.
+/// O(corners + k log k) for k edges that are cut.
+BuildingSection sectionOf(const IfcShape& shape, double height);
+
+/// The box around a shape, upright, turned as tightly as its plan allows, or along `preferred`
+/// where that takes no more than 2 % more floor. Nothing for a shape without extent.
+std::optional<BuildingBox> boxAround(const IfcShape& shape, Vec2 preferred);
+
+}  // namespace ispace

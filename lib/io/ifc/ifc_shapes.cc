@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/ifc/ifc_shapes.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace ispace {
+
+namespace {
+
+/// Corners of mapped shapes that are kept for the next use.
+constexpr std::size_t kMaxKept = 10'000'000;
+/// Beyond any building, in metres: how far limits of half-spaces are drawn out.
+constexpr double kFar = 10'000;
+
+/// How well a representation tells the body; 0: not at all.
+int rankOf(const StepInstance& representation) {
+    constexpr std::array<std::string_view, 9> kOthers{"Axis",      "Annotation", "Plan",
+                                                      "Profile",   "Reference",  "Lighting",
+                                                      "Clearance", "CoG",        "Surface"};
+    const std::string name = representation[1].text();
+    if (name == "Body") return 5;
+    if (name == "Facetation" || name == "Tessellation" || name == "Body-Fallback") return 4;
+    if (name == "FootPrint") return 2;
+    if (name == "Box") return 1;
+    return std::find(kOthers.begin(), kOthers.end(), name) == kOthers.end() ? 3 : 0;
+}
+
+std::size_t cornersOf(const IfcShape& shape) {
+    std::size_t corners = 0;
+    for (const IfcSolid& solid : shape) {
+        corners += solid.body.corners.size();
+        for (const IfcCut& cut : solid.cuts)
+            if (cut.limit) corners += cut.limit->corners.size();
+    }
+    return corners;
+}
+
+void append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame) {
+    if (cornersOf(part) + cornersOf(shape) > IfcShapes::kMaxCorners)
+        throw std::runtime_error("a shape of more than 20 million corners");
+    for (const IfcSolid& solid : part) {
+        IfcSolid& copy = shape.emplace_back(solid);
+        copy.body.move(frame);
+        for (IfcCut& cut : copy.cuts) {
+            if (cut.half_space)
+                cut.half_space = {frame.at(cut.half_space->at),
+                                  unitOf(frame.turned(cut.half_space->normal))};
+            if (cut.limit) cut.limit->move(frame);
+        }
+    }
+}
+
+/// The prism over a boundary in the plane of `position`, without ends.
+IfcFaces prismOver(const Polygon& boundary, const IfcFrame& position) {
+    IfcFaces faces;
+    const auto at = [&](Point2 p, double z) { return position.at({p.x, p.y, z}); };
+    for (const double z : {-kFar, kFar}) {
+        std::vector<Point3> cap;
+        for (const Point2 p : boundary) cap.push_back(at(p, z));
+        faces.addLoop(cap);
+        faces.endFace();
+    }
+    forEachEdge(boundary, [&](const Segment2& edge) {
+        faces.addLoop(
+            std::array{at(edge.a, -kFar), at(edge.b, -kFar), at(edge.b, kFar), at(edge.a, kFar)});
+        faces.endFace();
+    });
+    return faces;
+}
+
+}  // namespace
+
+IfcShape IfcShapes::shapeOf(StepId definition) {
+    std::vector<std::pair<int, StepInstance>> ranked;
+    for (const StepValue& value : frames_.file().read(definition)[2].list()) {
+        StepInstance representation = frames_.file().read(value.reference());
+        if (const int rank = rankOf(representation); rank > 0)
+            ranked.emplace_back(rank, std::move(representation));
+    }
+    IfcShape shape;
+    for (int rank = 5; rank > 0 && shape.empty(); --rank)
+        for (const auto& [own, representation] : ranked)
+            if (own == rank) addItems(representation, shape, 0);
+    return shape;
+}
+
+void IfcShapes::addItems(const StepInstance& representation, IfcShape& shape, int depth) {
+    for (const StepValue& item : representation[3].list()) {
+        try {
+            addItem(item.reference(), shape, depth);
+        } catch (const UnreadGeometry& part) {
+            ++unread_[part.what()];
+        }
+    }
+}
+
+void IfcShapes::addItem(StepId id, IfcShape& shape, int depth) {
+    if (depth > kMaxIfcDepth) throw UnreadGeometry("shapes in a loop");
+    const StepInstance item = frames_.file().read(id);
+    if (item.type == "IFCMAPPEDITEM") return addMapped(item, shape, depth);
+    if (item.type == "IFCBOOLEANRESULT" || item.type == "IFCBOOLEANCLIPPINGRESULT")
+        return addBoolean(item, shape, depth);
+    if (item.type == "IFCCSGSOLID") return addItem(item[0].reference(), shape, depth + 1);
+    shape.push_back({ifcFaces(frames_, item), {}});
+}
+
+void IfcShapes::addMapped(const StepInstance& item, IfcShape& shape, int depth) {
+    const StepId source = item[0].reference();
+    const StepInstance map = frames_.file().read(source);
+    const IfcFrame frame =
+        frames_.transformation(item[1].reference()) * frames_.axes(map[0].reference());
+    std::shared_ptr<const IfcShape> part;
+    if (const auto known = mapped_.find(source); known != mapped_.end()) {
+        part = known->second;
+    } else {
+        IfcShape read;
+        addItems(frames_.file().read(map[1].reference()), read, depth + 1);
+        const std::size_t corners = cornersOf(read);
+        part = std::make_shared<const IfcShape>(std::move(read));
+        if (kept_ + corners <= kMaxKept) {
+            kept_ += corners;
+            mapped_.emplace(source, part);
+        }
+    }
+    append(shape, *part, frame);
+}
+
+IfcCut IfcShapes::cutBy(StepId operand, bool keeps_inside, int depth) {
+    const StepInstance item = frames_.file().read(operand);
+    IfcCut cut;
+    if (item.type.find("HALFSPACE") == std::string_view::npos) {
+        IfcShape other;
+        addItem(operand, other, depth + 1);
+        if (keeps_inside || other.size() != 1 || !other.front().cuts.empty())
+            throw UnreadGeometry("IFCBOOLEANRESULT of two solids");
+        cut.limit = std::move(other.front().body);
+        return cut;
+    }
+    const StepInstance surface = frames_.file().read(item[0].reference());
+    if (surface.type != "IFCPLANE")
+        throw UnreadGeometry("a half-space of " + std::string(surface.type));
+    const IfcFrame plane = frames_.axes(surface[0].reference());
+    const bool is_below = item[1].word() != "F";
+    cut.half_space = {plane.origin, is_below == keeps_inside ? -plane.z : plane.z};
+    if (item.type == "IFCPOLYGONALBOUNDEDHALFSPACE") {
+        const Polygon boundary = ifcPolygon(ifcCurve(frames_, item[3].reference()));
+        if (boundary.empty() || keeps_inside) throw UnreadGeometry(std::string(item.type));
+        cut.limit = prismOver(boundary, frames_.axes(item[2].reference()));
+    }
+    return cut;
+}
+
+void IfcShapes::addBoolean(const StepInstance& result, IfcShape& shape, int depth) {
+    const std::string_view operation = result[0].word();
+    IfcShape first;
+    addItem(result[1].reference(), first, depth + 1);
+    if (operation == "UNION") {
+        append(shape, first, {});
+        return addItem(result[2].reference(), shape, depth + 1);
+    }
+    try {
+        const IfcCut cut = cutBy(result[2].reference(), operation == "INTERSECTION", depth);
+        for (IfcSolid& solid : first) solid.cuts.push_back(cut);
+    } catch (const UnreadGeometry& part) {
+        ++unread_[part.what()];  // the solid stays whole
+    }
+    append(shape, first, {});
+}
+
+}  // namespace ispace

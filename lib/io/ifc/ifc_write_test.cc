@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "io/exporters.h"
+#include "io/ifc/ifc_write_model.h"
+#include "layout/schemas.h"
+#include "record/text.h"
+
+namespace ispace {
+
+namespace {
+
+TEST(IfcWrite, TextIsAsciiWithTheEscapesOfPart21) {
+    EXPECT_EQ(stepText("a b"), "'a b'");
+    EXPECT_EQ(stepText("it's a\\b"), "'it''s a\\\\b'");
+    EXPECT_EQ(stepText("K\xC3\xBC\xE2\x82\xAC"), "'K\\X2\\00FC\\X0\\\\X2\\20AC\\X0\\'");
+    EXPECT_EQ(stepText("\xF0\x9F\x98\x80"), "'\\X4\\0001F600\\X0\\'");
+    EXPECT_EQ(stepText("\t"), "'\\X2\\0009\\X0\\'");
+}
+
+TEST(IfcWrite, RealsHaveAPoint) {
+    EXPECT_EQ(stepReal(6), "6.");
+    EXPECT_EQ(stepReal(-0.0), "0.");
+    EXPECT_EQ(stepReal(2.5), "2.5");
+    EXPECT_EQ(stepReal(0.1 + 0.2), "0.3");
+    EXPECT_EQ(stepReal(3e-6), "3.E-06");
+}
+
+TEST(IfcWrite, GuidsAreHashesInIfcsBase64) {
+    // Of e3b0c442 98fc1c14 9afbf4c8 996fb924, the first half of sha256("").
+    EXPECT_EQ(ifcGuid(""), "3ZiCH2cFmS59hxzCYPRxaa");
+    EXPECT_NE(ifcGuid("a"), ifcGuid("b"));
+}
+
+std::string written(const char* records) {
+    const Document document = readRecordText(records, "room", sceneSchemas());
+    return writeIfc(makeScene(document, nullptr, DeviceCatalogue()), "room").product;
+}
+
+std::size_t count(const std::string& text, std::string_view word) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+        ++found;
+    return found;
+}
+
+TEST(IfcWrite, AWallThatRoomsShareStandsOnceWithItsDoor) {
+    const std::string text = written(
+        "#env 1\nispace id=a size=4,3\nispace id=b at=4,0 size=4,3\ninside at=0,0\n"
+        "door id=d wall=b at=2,0 open=yes\n");
+    EXPECT_EQ(count(text, "=IFCWALL("), 7U);
+    EXPECT_EQ(count(text, "=IFCOPENINGELEMENT("), 1U);
+    EXPECT_EQ(count(text, "=IFCDOOR("), 1U);
+    EXPECT_EQ(count(text, "=IFCRELVOIDSELEMENT("), 1U);
+    EXPECT_EQ(count(text, "=IFCRELFILLSELEMENT("), 1U);
+}
+
+TEST(IfcWrite, AnOpeningThroughTwoWallsIsFilledOnce) {
+    const std::string text = written(
+        "#env 1\nispace size=6,4\nwall from=-1,-2 to=-1,2 thickness=0.2\n"
+        "wall from=-0.85,-2 to=-0.85,2 thickness=0.2\nwindow at=-1,0 size=1,0.6\n");
+    EXPECT_EQ(count(text, "=IFCOPENINGELEMENT("), 2U);
+    EXPECT_EQ(count(text, "=IFCRELVOIDSELEMENT("), 2U);
+    EXPECT_EQ(count(text, "=IFCRELFILLSELEMENT("), 1U);
+    EXPECT_EQ(count(text, "=IFCWINDOW("), 1U);
+}
+
+}  // namespace
+
+}  // namespace ispace

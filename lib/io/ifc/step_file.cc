@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/ifc/step_file.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace ispace {
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\n";
+
+bool isTypeCharacter(char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+/// Index behind the string or comment that begins at `at`, or `at` if neither does.
+std::size_t skipQuoted(std::string_view text, std::size_t at) {
+    if (text[at] == '\'') {
+        const std::size_t end = text.find('\'', at + 1);  // '' is two strings side by side
+        return end == std::string_view::npos ? text.size() : end + 1;
+    }
+    if (text[at] == '/' && at + 1 < text.size() && text[at + 1] == '*') {
+        const std::size_t end = text.find("*/", at + 2);
+        return end == std::string_view::npos ? text.size() : end + 2;
+    }
+    return at;
+}
+
+std::size_t skipBlanks(std::string_view text, std::size_t at) {
+    while (at < text.size()) {
+        const std::size_t next = text[at] == '/' ? skipQuoted(text, at) : at;
+        if (next == at && kBlanks.find(text[at]) == std::string_view::npos) break;
+        at = std::max(next, at + 1);
+    }
+    return at;
+}
+
+std::string_view trimmedValue(std::string_view text) {
+    text.remove_prefix(skipBlanks(text, 0));
+    return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
+/// The values between the parentheses that `text` begins with.
+std::vector<StepValue> valuesIn(std::string_view text) {
+    std::vector<StepValue> values;
+    std::size_t depth = 0, begin = 1;
+    const auto add = [&](std::size_t end) {
+        values.emplace_back(trimmedValue(text.substr(begin, end - begin)));
+        begin = end + 1;
+    };
+    for (std::size_t at = 0; at < text.size();) {
+        if (const std::size_t next = skipQuoted(text, at); next != at) {
+            at = next;
+            continue;
+        }
+        const char c = text[at];
+        if (c == ';') break;  // cut off
+        if (c == '(') ++depth;
+        if (c == ',' && depth == 1) add(at);
+        if (c == ')' && --depth == 0) {
+            if (!values.empty() || !trimmedValue(text.substr(begin, at - begin)).empty()) add(at);
+            break;
+        }
+        ++at;
+    }
+    return values;
+}
+
+}  // namespace
+
+std::vector<StepValue> StepValue::list() const {
+    if (type().empty()) return text_.starts_with('(') ? valuesIn(text_) : std::vector<StepValue>();
+    return valuesIn(text_.substr(text_.find('(')));
+}
+
+StepFile::StepFile(std::string_view bytes) : bytes_(bytes) {
+    for (std::size_t begin = 0; begin < bytes.size();) {
+        begin = skipBlanks(bytes, begin);
+        std::size_t end = begin;
+        while (end < bytes.size() && bytes[end] != ';') {
+            const std::size_t next = skipQuoted(bytes, end);
+            end = std::max(next, end + 1);
+        }
+        addStatement(bytes.substr(begin, end - begin), begin);
+        begin = end + 1;
+    }
+    const auto by_id = [](const Entry& a, const Entry& b) { return a.id < b.id; };
+    if (!std::is_sorted(entries_.begin(), entries_.end(), by_id))
+        std::stable_sort(entries_.begin(), entries_.end(), by_id);
+    for (const Entry& entry : entries_) by_type_[typeAt(entry.offset)].push_back(entry.id);
+}
+
+void StepFile::addStatement(std::string_view statement, std::size_t offset) {
+    if (!statement.starts_with('#')) return;
+    Entry entry{0, 0};
+    std::size_t at = 1;
+    for (; at < statement.size() && statement[at] >= '0' && statement[at] <= '9'; ++at) {
+        if (entry.id > UINT64_MAX / 10 - 1) return;
+        entry.id = entry.id * 10 + static_cast<StepId>(statement[at] - '0');
+    }
+    at = skipBlanks(statement, at);
+    if (entry.id == 0 || at == statement.size() || statement[at] != '=') return;
+    at = skipBlanks(statement, at + 1);
+    entry.offset = offset + at;
+    if (!typeAt(entry.offset).empty()) entries_.push_back(entry);
+}
+
+std::string_view StepFile::typeAt(std::size_t offset) const {
+    std::size_t end = offset;
+    while (end < bytes_.size() && isTypeCharacter(bytes_[end])) ++end;
+    return bytes_.substr(offset, end - offset);
+}
+
+const StepFile::Entry* StepFile::find(StepId id) const {
+    const auto found =
+        std::lower_bound(entries_.begin(), entries_.end(), id,
+                         [](const Entry& entry, StepId wanted) { return entry.id < wanted; });
+    return found == entries_.end() || found->id != id ? nullptr : &*found;
+}
+
+std::string_view StepFile::typeOf(StepId id) const {
+    const Entry* const entry = find(id);
+    return entry == nullptr ? std::string_view() : typeAt(entry->offset);
+}
+
+StepInstance StepFile::read(StepId id) const {
+    if (++reads_ > kMaxReads) throw std::runtime_error("the building takes too long to read");
+    const Entry* const entry = find(id);
+    if (entry == nullptr) return {};
+    StepInstance instance{typeAt(entry->offset), {}};
+    const std::size_t open = skipBlanks(bytes_, entry->offset + instance.type.size());
+    if (open < bytes_.size() && bytes_[open] == '(')
+        instance.arguments = valuesIn(bytes_.substr(open));
+    return instance;
+}
+
+std::span<const StepId> StepFile::ofType(std::string_view type) const {
+    const auto found = by_type_.find(type);
+    if (found == by_type_.end()) return {};
+    return found->second;
+}
+
+}  // namespace ispace

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+
+#include "io/ifc/building.h"
+#include "io/import_records.h"
+#include "io/input.h"
+
+namespace ispace {
+
+/// Writes the records of a storey: walls, doors, windows, zones, things and inside points. \throws
+/// FormatError (without a file) if it has neither walls nor spaces
+void writeStorey(const Building& building, std::size_t storey, const ImportOptions& options,
+                 ImportRecords& out);
+
+}  // namespace ispace

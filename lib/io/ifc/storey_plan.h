@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plan of one storey: walls as areas, and the openings in them.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geom/polygon.h"
+#include "io/ifc/building.h"
+#include "io/plan_lines.h"
+
+namespace ispace {
+
+/// The area of a section.
+std::vector<Region> areaOf(const BuildingSection& section);
+
+/// Walls of a storey, in the building's coordinates, on whole micrometres.
+struct StoreyWalls {
+    std::vector<Region> solids;  ///< walls that meet are one
+    std::vector<Segment2> sheets;
+    std::vector<BuildingBox> columns;  ///< that touch no wall
+    double top = 0;                    ///< of most of them, by length
+};
+
+/// Joins the walls of a storey: corners within 2 mm of another wall move onto it.
+StoreyWalls wallsOf(const Building& building, std::size_t storey);
+
+/// An opening where it lies in the walls.
+struct StoreyOpening {
+    std::size_t opening = 0;           ///< index in Building::openings
+    Segment2 line;                     ///< in a face of the wall, or across a gap in the walls
+    std::optional<std::size_t> curve;  ///< of which the face is a part, see WallFaces; none: a gap
+    double depth = 0;                  ///< from this face to the farthest it goes through, metres
+    std::vector<Segment2> others;      ///< the parts of these faces that it takes away
+    [[nodiscard]] std::vector<Segment2> reveals() const;
+};
+
+/// Takes holes out of the walls, whose faces are not straight there.
+void carve(StoreyWalls& walls, std::span<const BuildingBox> holes);
+
+/// Finds the faces of walls that openings go through.
+class WallFaces {
+  public:
+    /// Outlines and holes of the solids, in order, count as curves 0, 1, 2 ...
+    explicit WallFaces(const StoreyWalls& walls);
+
+    /// Where a box lies in the walls: through their faces along one of its sides, else across a
+    /// gap between ends of walls; a door or window that stands free is a wall itself. Nothing if
+    /// there is none of these, or less than 0.3 m of it.
+    /// \param is_hole the box is that of a hole, which goes through all faces in it; else that of a
+    /// door or window itself, around which the nearest faces within 0.5 m are taken
+    [[nodiscard]] std::optional<StoreyOpening> find(const BuildingBox& box, bool is_hole) const;
+
+  private:
+    struct Face {
+        Segment2 line;  ///< with the wall on its left
+        std::size_t curve;
+    };
+    /// A face beside a box, in the frame of the box.
+    struct Beside {
+        const Face* face;
+        double from, to, aside;
+        bool is_lower;  ///< the wall lies to the left of the box's length
+    };
+    [[nodiscard]] std::vector<Beside> facesBeside(const BuildingBox& box, double reach) const;
+    [[nodiscard]] std::optional<StoreyOpening> through(const BuildingBox& box, bool is_hole) const;
+    [[nodiscard]] std::optional<StoreyOpening> across(const BuildingBox& box) const;
+    [[nodiscard]] bool isInWall(Point2 p) const;
+
+    const StoreyWalls& walls_;
+    std::vector<Face> faces_;
+    NearSegments search_;
+};
+
+}  // namespace ispace

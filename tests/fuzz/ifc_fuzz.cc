@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Buildings, in this process: each is read and its storeys become records, or it is refused.
+#include "fuzz.h"
+
+#include "io/ifc/building.h"
+#include "io/ifc/storey_choice.h"
+#include "io/ifc/storey_import.h"
+#include "layout/schemas.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace ispace;
+    return fuzz::guarded(data, size, [](std::string_view bytes) {
+        Building building;
+        try {
+            building = unpackedBuilding(packedBuilding(readBuilding(bytes, std::nullopt)));
+        } catch (const std::runtime_error&) {
+            return;  // an answer of the reader's process
+        }
+        ImportRecords out(sceneSchemas(), "x.ifc", {});
+        writeStorey(building, chosenStorey(building, {}), {}, out);
+    });
+}
