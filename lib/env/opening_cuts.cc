@@ -337,6 +337,16 @@ class Cutter {
 
 }  // namespace
 
+std::vector<OpeningCut> openingCuts(const WallPlan& plan, std::span<const Opening> openings) {
+    std::vector<Cut> cuts;
+    CutFinder finder(plan);
+    for (std::size_t i = 0; i < openings.size(); ++i) finder.find(openings, i, cuts);
+    std::vector<OpeningCut> found;
+    found.reserve(cuts.size());
+    for (const Cut& cut : cuts) found.push_back({cut.opening, cut.line, {cut.a, cut.b}});
+    return found;
+}
+
 CutWalls cutOpenings(std::span<const Element> elements, const WallPlan& plan,
                      const WeldedLines& welded, std::span<const Opening> openings,
                      Diagnostics& findings) {

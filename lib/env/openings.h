@@ -43,6 +43,15 @@ struct Opening {
 std::vector<Opening> placeOpenings(std::span<const Element> elements, const WallPlan& plan,
                                    Diagnostics& findings);
 
+/// Where an opening goes through a wall line.
+struct OpeningCut {
+    std::size_t opening = 0, line = 0;
+    Segment2 jambs;  ///< on the line
+};
+
+/// All lines that openings go through, as cutOpenings() finds them: by opening, then by line.
+std::vector<OpeningCut> openingCuts(const WallPlan& plan, std::span<const Opening> openings);
+
 /// Wall lines with the openings cut out.
 struct CutWalls {
     std::vector<WallPart> parts;     ///< of the walls, then of what fills the openings; sources:

@@ -111,6 +111,10 @@ KeySpec flagKey(std::string name, std::string help) {
             .default_value = false};
 }
 
+KeySpec textKey(std::string name, std::string help) {
+    return {.name = std::move(name), .type = KeyType::Text, .help = std::move(help)};
+}
+
 KeySpec pathKey(std::string help) {
     KeySpec key = lengths("path", std::move(help), 2, 2);
     key.type = KeyType::TupleList;
@@ -145,7 +149,9 @@ void addSpaces(std::vector<Schema>& out) {
     out.push_back(schema("zone", RecordType::Space,
                          "a part of the floor, called by its id: a polygon or a rectangle",
                          {pathKey("corners of the polygon, three or more"), floorAtKey(),
-                          headingKey(), sizeKey("length,width of the rectangle", 2, 2)}));
+                          headingKey(), sizeKey("length,width of the rectangle", 2, 2),
+                          textKey("number", "number of the room, as on its door"),
+                          textKey("name", "name of the room")}));
 }
 
 void addFloors(std::vector<Schema>& out) {

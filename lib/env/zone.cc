@@ -102,7 +102,7 @@ UsageError unknownZone(std::string_view text, const Environment& environment) {
     for (const Element& element : environment.elements())
         if (element.record.keyword() == "zone") known.push_back(element.id);
     return UsageError("the room has no zone " + excerpt(text) + didYouMean(text, known) +
-                      "; write the id of a zone, rect:X,Y,X,Y or poly:X,Y;X,Y;X,Y");
+                      "; write the id of a zone, rect:X,Y,X,Y, poly:X,Y;X,Y;X,Y or door:GLOB,M");
 }
 
 }  // namespace

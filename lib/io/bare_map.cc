@@ -131,7 +131,9 @@ Document readBarePicture(std::string_view bytes, const std::string& name,
     const auto read_cells = [&]() -> CellMap {
         const GreyPicture image = onUnknown(parsePicture(bytes, name));
         checkCellMap(image.width, image.height, *options.resolution, name);
-        return {freeCells(image, {}), occupiedCells(image, {}), *options.resolution,
+        OccupancyRule rule;
+        rule.unknown_is_free = options.unknown == "free";
+        return {freeCells(image, rule), occupiedCells(image, rule), *options.resolution,
                 options.origin};
     };
     ImportRecords out(schemas, name, options);
@@ -153,8 +155,10 @@ Document readGridMap(std::string_view bytes, const std::string& name, const Impo
     GridCells cells = GridMapReader(bytes, name).read(out);
     const double resolution = options.resolution.value_or(1);
     checkCellMap(cells.free.width(), cells.free.height(), resolution, name);
+    ImportOptions exact = options;  // its cells are no measurement
+    exact.simplify = options.simplify.value_or(0);
     writeCellMap({std::move(cells.free), std::move(cells.occupied), resolution, options.origin},
-                 {name, "ground is . G or S"}, options, out);
+                 {name, "ground is . G or S"}, exact, out);
     return out.take();
 }
 

@@ -86,12 +86,22 @@ TEST(GridMap, Known) {
 }
 
 TEST(GridMap, TopRowIsFarthestUp) {
-    ImportOptions exact;
-    exact.simplify = 0;
-    EXPECT_EQ(gridText(gridMap("@@@@@\n@.GS@\n@.TT@\n@WWW@\n@@@@@\n", 5, 5), exact),
+    EXPECT_EQ(gridText(gridMap("@@@@@\n@.GS@\n@.TT@\n@WWW@\n@@@@@\n", 5, 5)),
               "#env 1\nfence path=2,2;2,3;4,3;4,4;1,4;1,2 closed=yes\ninside at=1.5,2.5\n");
     EXPECT_EQ(gridText("type octile\r\nheight 1\r\nwidth 2\r\nmap\r\n..\r\n", withResolution(0.5)),
-              "#env 1\nfence path=0,0;1,0;1,0.5;0,0.5 closed=yes\ninside at=0.25,0.25\n");
+              "#env 1\nfence path=1,0;1,0.5;0,0.5;0,0 closed=yes\ninside at=0.25,0.25\n");
+}
+
+TEST(GridMap, KeepsStairsAndSpecksUnlessSimplified) {
+    const std::string bytes = gridMap("....@\n...@@\n.@.@@\n....@\n.....\n", 5, 5);
+    const auto area_of = [&](const ImportOptions& options) {
+        const Document map = readGridMap(bytes, "arena.map", options, sceneSchemas());
+        return environmentOf(map).indoor().area();
+    };
+    EXPECT_DOUBLE_EQ(area_of({}), 18);
+    ImportOptions rough;
+    rough.simplify = 1;
+    EXPECT_NE(area_of(rough), 18);
 }
 
 TEST(GridMap, RefusesWithLine) {

@@ -59,6 +59,7 @@ class CellMapImport {
             fail("no free cell among " + std::to_string(floor_.width()) + " x " +
                  std::to_string(floor_.height()) + ": " + source_.hint_if_no_free);
         if (!options_.close_gaps || !keepClosedRooms()) keepRooms(pieces, choose(floor_, pieces));
+        if (out_.wantsRooms()) handOver(pieces);
     }
 
   private:
@@ -144,10 +145,14 @@ class CellMapImport {
     void keepRooms(const CellPieces& pieces, const std::vector<std::size_t>& rooms) {
         checkWork(pieces, rooms);
         Cleaning cleaning;
-        for (const std::size_t room : rooms) keepRoom(pieces, room, cleaning);
+        std::size_t cells = 0;
+        for (const std::size_t room : rooms) {
+            cells += pieces[room].cells;
+            keepRoom(pieces, room, cleaning);
+        }
         warnOfExtent();
         tellRest(map_, pieces, rooms, options_, out_);
-        tellCleaning(map_, cleaning, out_);
+        tellCleaning(map_, cleaning, cells, out_);
     }
 
     /// The cost of a room is its bounding box, and rooms may enclose each other.
@@ -165,14 +170,87 @@ class CellMapImport {
     }
 
     void keepRoom(const CellPieces& pieces, std::size_t piece, Cleaning& cleaning) {
-        MapRoom room = cutOut(pieces, piece);
         std::vector<Choice> choices;
-        std::vector<CellPlace> keep;
-        for (const Choice& choice : choices_) {
-            if (pieces.at(choice.place) != piece) continue;
-            choices.push_back(choice);
-            keep.push_back({choice.place.x - room.offset.x, choice.place.y - room.offset.y});
+        for (const Choice& choice : choices_)
+            if (pieces.at(choice.place) == piece) choices.push_back(choice);
+        const Outlined outlined = outlinedRoom(pieces, piece, choices, cleaning, true);
+        for (const Point2 corner : outlined.floor.outline) extent_.add(corner);
+        out_.outline(outlined.floor);
+        writeInside(outlined.floor, outlined.within, choices);
+        if (!out_.wantsRooms()) return;
+        const Point2 inside = choices.empty() ? outlined.within : choices.front().point;
+        kept_.push_back(map_.placeOf(outlined.within));
+        addFound(outlined, inside, pieces[piece].border > 0, true);
+    }
+
+    /// The floor of a room, and a point in its widest place.
+    struct Outlined {
+        Region floor;
+        Point2 within;
+    };
+
+    void addFound(const Outlined& room, Point2 inside, bool touches_border, bool is_kept) {
+        const Point2 point = room.floor.locate(inside) == Side::Inside ? inside : room.within;
+        out_.room({room.floor.area(),
+                   shortPointIn(room.floor, point),
+                   {},
+                   touches_border,
+                   is_kept,
+                   {room.floor}});
+    }
+
+    /// Hands over the other rooms, each as a point in it would choose it. With gaps closed these
+    /// are the rooms that then end before the border, and the others as they are without.
+    void handOver(const CellPieces& open) {
+        std::vector<std::pair<const CellPieces*, std::size_t>> rooms;
+        const std::optional<MapCells> closed =
+            options_.close_gaps
+                ? std::optional(
+                      difference(floor_, gapCells(floor_, *options_.close_gaps / map_.resolution)))
+                : std::nullopt;
+        const CellPieces parts(closed ? *closed : floor_, CellPieces::Joined::BySides);
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            if (map_.area(parts[i].cells) < kMinRoomArea) continue;
+            if (!closed || parts[i].border == 0) {
+                rooms.emplace_back(&parts, i);
+                continue;
+            }
+            const std::pair whole{&open, open.at(widestPlace(parts.cellsOf(i))).value()};
+            if (std::find(rooms.begin(), rooms.end(), whole) == rooms.end()) rooms.push_back(whole);
         }
+        std::erase_if(rooms, [this](const auto& room) {
+            return std::any_of(kept_.begin(), kept_.end(), [&room](CellPlace place) {
+                return room.first->at(place) == room.second;
+            });
+        });
+        std::stable_sort(rooms.begin(), rooms.end(), [](const auto& a, const auto& b) {
+            return (*a.first)[a.second].cells > (*b.first)[b.second].cells;
+        });
+        rooms.resize(std::min(rooms.size(), FoundRooms::kMost));
+        for (const auto& [pieces, piece] : rooms) handOver(*pieces, piece);
+    }
+
+    void handOver(const CellPieces& pieces, std::size_t piece) {
+        const CellPlace place = widestPlace(pieces.cellsOf(piece));
+        const Point2 point = map_.middleOf(place);
+        Cleaning not_told;
+        try {
+            addFound(outlinedRoom(pieces, piece, {{point, true, place}}, not_told, false), point,
+                     pieces[piece].border > 0, false);
+        } catch (const FormatError& /*too narrow for the disc*/) {
+            return;
+        }
+    }
+
+    /// \param talks whether messages tell of it
+    [[nodiscard]] Outlined outlinedRoom(const CellPieces& pieces, std::size_t piece,
+                                        const std::vector<Choice>& choices, Cleaning& cleaning,
+                                        bool talks) {
+        MapRoom room = cutOut(pieces, piece);
+        std::vector<CellPlace> keep;
+        keep.reserve(choices.size());
+        for (const Choice& choice : choices)
+            keep.push_back({choice.place.x - room.offset.x, choice.place.y - room.offset.y});
         std::optional<MapCells> raw;
         if (barrier_) raw = room.floor;
         double tolerance = options_.simplify.value_or(0) / map_.resolution;
@@ -182,6 +260,7 @@ class CellMapImport {
             cleaning += own;
             if (!options_.simplify) tolerance = own.isRagged() ? kRaggedSimplify : kDefaultSimplify;
         }
+        if (map_.wall_depth > 0) growIntoWalls(room);
         const std::optional<MapCells> rigid = besideBarriers(room);
         if (rigid)
             rigid->forEach([&](int x, int y) {
@@ -190,10 +269,17 @@ class CellMapImport {
                 else
                     room.floor.erase(x, y);
             });
-        if (options_.reachable) keepReachable(room, keep);
-        if (pieces[piece].border > 0) warnOfBorder(map_, room, pieces.borderShare(piece), out_);
+        if (options_.reachable) keepReachable(room, keep, talks);
+        if (talks && pieces[piece].border > 0)
+            warnOfBorder(map_, room, pieces.borderShare(piece), out_);
         if (barrier_) giveBack(room);
-        write(room, tolerance, rigid, choices);
+        return outlined(room, tolerance, rigid);
+    }
+
+    void growIntoWalls(MapRoom& room) const {
+        grown(room.floor, map_.wall_depth).forEach([&room](int x, int y) {
+            if (room.occupied.contains(x, y)) room.floor.insert(x, y);
+        });
     }
 
     /// The cells of the map within a room's grid.
@@ -233,7 +319,7 @@ class CellMapImport {
         return {std::move(floor), std::move(occupied), offset};
     }
 
-    void keepReachable(MapRoom& room, const std::vector<CellPlace>& from) {
+    void keepReachable(MapRoom& room, const std::vector<CellPlace>& from, bool talks) {
         const std::size_t before = room.floor.count();
         const std::string radius = formatDouble(*options_.reachable) + " m";
         room.floor = reachedByDisc(room.floor, *options_.reachable / map_.resolution, from);
@@ -242,6 +328,7 @@ class CellMapImport {
             fail("a disc with a radius of " + radius + " does not fit " +
                  (from.empty() ? "into the room" : "over the inside point") +
                  "; give --reachable a smaller one");
+        if (!talks) return;
         out_.note(areaText(map_.area(before - after)) + " of floor that no disc with a radius of " +
                   radius + " reaches dropped");
     }
@@ -267,8 +354,8 @@ class CellMapImport {
     }
 
     /// \param tolerance in cells
-    void write(const MapRoom& room, double tolerance, const std::optional<MapCells>& rigid,
-               const std::vector<Choice>& choices) {
+    [[nodiscard]] Outlined outlined(const MapRoom& room, double tolerance,
+                                    const std::optional<MapCells>& rigid) const {
         Region region = vectorised(room.floor, tolerance, rigid ? &*rigid : nullptr);
         const CellPlace widest = widestPlace(room.floor);
         const Point2 middle{widest.x + 0.5, widest.y + 0.5};
@@ -281,9 +368,7 @@ class CellMapImport {
         for (Point2& corner : region.outline) corner = moved(corner);
         for (Polygon& hole : region.holes)
             for (Point2& corner : hole) corner = moved(corner);
-        for (const Point2 corner : region.outline) extent_.add(corner);
-        out_.outline(region);
-        writeInside(region, moved(within), choices);
+        return {std::move(region), moved(within)};
     }
 
     void writeInside(const Region& region, Point2 within, const std::vector<Choice>& choices) {
@@ -318,7 +403,8 @@ class CellMapImport {
     MapCells floor_;                   ///< free cells without barriers
     std::optional<MapCells> barrier_;  ///< under walls that were added
     std::vector<Choice> choices_;
-    Box2 extent_;  ///< of the rooms written
+    Box2 extent_;                  ///< of the rooms written
+    std::vector<CellPlace> kept_;  ///< places in them, if all rooms are asked for
 };
 
 }  // namespace

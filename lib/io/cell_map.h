@@ -19,6 +19,7 @@ struct CellMap {
     MapCells free, occupied;
     double resolution = 0;  ///< metres a cell
     Pose2 map_from_grid;    ///< the lower left corner of the cells
+    int wall_depth = 0;     ///< cells by which the faces of walls lie within occupied ones
 
     /// Places in cells, cell (x, y) being the square from (x, y) to (x + 1, y + 1), in the map's
     /// metres, and back.
@@ -79,8 +80,10 @@ void tellRest(const CellMap& map, const CellPieces& pieces, const std::vector<st
 /// separate a room from it.
 void warnOfBorder(const CellMap& map, const MapRoom& room, double border_share, ImportRecords& out);
 
-/// Notes what cleaning removed from all rooms.
-void tellCleaning(const CellMap& map, const Cleaning& cleaning, ImportRecords& out);
+/// Notes what cleaning removed from all rooms, of so many cells before; warns where
+/// spikes were more than a hundredth of them.
+void tellCleaning(const CellMap& map, const Cleaning& cleaning, std::size_t cells,
+                  ImportRecords& out);
 
 /// Notes the gaps closed beside the rooms.
 void tellGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,

@@ -36,6 +36,48 @@ TEST(CellMap, FramesAndCellsGoBothWays) {
     EXPECT_EQ(map.placeOf({1e12, 0}).y, -1'000'000'000);
 }
 
+/// Checks that each room's point chooses it with its area. \return the rooms handed over
+FoundRooms checkedRooms(const CellMap& map, ImportOptions options = {}) {
+    FoundRooms found;
+    options.found = &found;
+    import(map, options);
+    options.found = nullptr;
+    for (const FoundRoom& room : found.rooms) {
+        options.inside = {room.inside};
+        EXPECT_NEAR(import(map, options).area(), room.area, 1e-6)
+            << room.inside.x << ',' << room.inside.y;
+    }
+    return found;
+}
+
+TEST(CellMap, AllRoomsAreHandedOver) {
+    const FoundRooms found = checkedRooms(threeRooms().map());
+    ASSERT_EQ(found.rooms.size(), 5U) << "three rooms, the yard and a duct of 2 m2";
+    EXPECT_NEAR(found.rooms[0].area, 20, 1e-6);
+    EXPECT_TRUE(found.rooms[0].is_kept);
+    EXPECT_FALSE(found.rooms[0].touches_border);
+    EXPECT_TRUE(found.rooms[1].touches_border) << "the yard, the largest of the others";
+    EXPECT_FALSE(found.rooms[1].is_kept);
+    EXPECT_EQ(found.rooms[1].floor.front().holes.size(), 4U);
+}
+
+TEST(CellMap, RoomsWithGapsClosedAreHandedOver) {
+    Drawing drawing(20, 10);
+    drawing.room(1, 1, 5, 4);
+    drawing.fill(4.9, 2, 5.2, 2.8, true);  // a door to the yard
+    drawing.room(10, 1, 15, 5);
+    EXPECT_EQ(checkedRooms(drawing.map()).rooms.size(), 2U);
+    ImportOptions options;
+    options.close_gaps = 1;
+    const FoundRooms closed = checkedRooms(drawing.map(), options);
+    EXPECT_EQ(closed.rooms.size(), 3U) << "both rooms, and the yard with the one it leads to";
+    options.inside = {{3, 2}};
+    const FoundRooms chosen = checkedRooms(drawing.map(), options);
+    ASSERT_EQ(chosen.closed_gaps.size(), 1U);
+    EXPECT_NEAR(distance(chosen.closed_gaps[0].a, chosen.closed_gaps[0].b), 0.8, 0.1);
+    EXPECT_NEAR(chosen.closed_gaps[0].a.x, 5.1, 0.15);
+}
+
 TEST(CellMap, YardIsNoRoom) {
     const Imported found = import(threeRooms().map());
     EXPECT_EQ(found.fences.size(), 1U);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kMinOpening = 0.5;       ///< metres of the picture's border
 constexpr double kWidestDoor = 1.2;       ///< metres
+constexpr double kGapOfPoints = 0.3;      ///< metres between points of a wall: not told one by one
 constexpr double kShareBehindDoor = 0.1;  ///< of the floor, for a warning
 
 /// Whether each piece is one of the rooms.
@@ -100,6 +101,14 @@ void warnOfOpenings(const CellMap& map, const MapRoom& room, ImportRecords& out)
         "; --fence closes it where it should end");
 }
 
+/// From corner to corner of the box around a gap's cells, the way they run.
+Segment2 acrossGap(const CellMap& map, const CellPieces& gaps, std::size_t gap) {
+    const CellPlace low = gaps[gap].lowest, high = gaps[gap].highest;
+    const bool rises = 2 * gaps[gap].first.x <= low.x + high.x;  // the lowest cell lies on the left
+    const double left = rises ? low.y : high.y + 1, right = rises ? high.y + 1 : low.y;
+    return {map.inMap({static_cast<double>(low.x), left}), map.inMap({high.x + 1.0, right})};
+}
+
 }  // namespace
 
 void tellRest(const CellMap& map, const CellPieces& pieces, const std::vector<std::size_t>& rooms,
@@ -144,12 +153,16 @@ void warnOfBorder(const CellMap& map, const MapRoom& room, double border_share,
              placeText(map.middleOf(inner.place)) + " from it");
 }
 
-void tellCleaning(const CellMap& map, const Cleaning& cleaning, ImportRecords& out) {
+void tellCleaning(const CellMap& map, const Cleaning& cleaning, std::size_t cells,
+                  ImportRecords& out) {
     const std::size_t filled = cleaning.speck_cells + cleaning.slit_cells;
     if (filled + cleaning.spike_cells == 0) return;
-    out.note("below the map's noise: " + countText(cleaning.specks, "speck") + " and slits of " +
-             areaText(map.area(filled)) + " became floor, " + countText(cleaning.spikes, "spike") +
-             " of " + areaText(map.area(cleaning.spike_cells)) + " went; --clean 0 keeps them");
+    std::string text = "below the map's noise: " + countText(cleaning.specks, "speck") +
+                       " and slits of " + areaText(map.area(filled)) + " became floor, " +
+                       countText(cleaning.spikes, "spike") + " of " +
+                       areaText(map.area(cleaning.spike_cells)) + " went; --clean 0 keeps them";
+    const bool is_much = cleaning.spike_cells > cells / 100;
+    is_much ? out.warn(std::move(text)) : out.note(std::move(text));
 }
 
 void tellGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
@@ -168,6 +181,8 @@ void tellGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
     for (std::size_t i = 0; i < gaps.size(); ++i) {
         if (!is_ours[i]) continue;
         ++count;
+        if (map.wall_depth > 0 && gaps[i].extent() * map.resolution <= kGapOfPoints) continue;
+        out.closedGap(acrossGap(map, gaps, i));
         const Point2 middle{(gaps[i].lowest.x + gaps[i].highest.x + 1) / 2.0,
                             (gaps[i].lowest.y + gaps[i].highest.y + 1) / 2.0};
         out.note("a gap of " + formatFixed(gaps[i].extent() * map.resolution, 2) +

@@ -131,6 +131,19 @@ TEST(CellReport, SpeckleOffTellsNothing) {
     EXPECT_TRUE(import(drawing.map(), exact).notes.empty());
 }
 
+TEST(CellReport, SpikesOfMoreThanAHundredthAreToldByDefault) {
+    const auto told_with = [](double width) {
+        Drawing drawing(12, 8);
+        drawing.unknown();
+        drawing.room(1, 1, 7, 6);
+        for (double y = 2; y < 6; y += 0.5) drawing.fill(7, y, 7 + width, y + 0.05, true);
+        return import(drawing.map());
+    };
+    EXPECT_TRUE(told_with(4).warns("8 spikes of"));
+    EXPECT_TRUE(told_with(0.2).warnings.empty());
+    EXPECT_EQ(told_with(0.2).notes.size(), 1U);
+}
+
 TEST(CellReport, AnyCellsAndOptionsGiveRoomsOrAnError) {
     std::mt19937_64 random(77);
     const auto chance = [&random](unsigned percent) { return random() % 100 < percent; };

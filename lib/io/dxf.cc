@@ -84,8 +84,26 @@ class Expander {
             if (const auto* insert = std::get_if<DxfInsert>(&entity.shape))
                 addInsert(entity, *insert, frame, own, depth);
             else
-                addShape(entity, frame, own, depth);
+                addShape(entity, frame, layerOf(own), depth);
         }
+    }
+
+    /// The layer of an entity, unless only a block around it has a name that an option gives.
+    [[nodiscard]] const std::string& layerOf(const std::string& layer) const {
+        if (blocks_.empty() || layers_.isHidden(layer) || layers_.isNamed(layer)) return layer;
+        const auto named =
+            std::find_if(blocks_.rbegin(), blocks_.rend(),
+                         [this](const std::string* block) { return layers_.isNamed(*block); });
+        return named == blocks_.rend() ? layer : **named;
+    }
+
+    /// The layer, or the innermost block around, that is called walls; "" if none is.
+    [[nodiscard]] std::string wallsAround(const std::string& layer) const {
+        if (isWallName(layer)) return layer;
+        const auto walls =
+            std::find_if(blocks_.rbegin(), blocks_.rend(),
+                         [](const std::string* block) { return isWallName(*block); });
+        return walls == blocks_.rend() ? "" : **walls;
     }
 
     void addInsert(const DxfEntity& entity, const DxfInsert& insert, const Affine& outer,
@@ -101,6 +119,7 @@ class Expander {
         const Vec2 along = unitVector(insert.turn), across = perpendicular(along);
         const Vec2 x = insert.scale_x * along, y = insert.scale_y * across;
         const Point2 base = block->second.base;
+        blocks_.push_back(&block->first);
         for (int row = 0; row < std::max(1, insert.rows); ++row)
             for (int column = 0; column < std::max(1, insert.columns); ++column) {
                 spend(entity, 1);
@@ -109,6 +128,7 @@ class Expander {
                 const Affine placed{x, y, at - (Point2() + base.x * x + base.y * y)};
                 add(block->second.entities, outer * placed, layer, depth + 1);
             }
+        blocks_.pop_back();
     }
 
     void addShape(const DxfEntity& entity, const Affine& frame, const std::string& layer,
@@ -116,6 +136,7 @@ class Expander {
         shape_ = {};
         shape_.layer = layer;
         shape_.path.line = entity.line;
+        shape_.walls_in = wallsAround(layer);
         if (!layers_.isUsed(layer)) {
             if (depth > 0) spend(entity, 1);
             shapes_.push_back(std::move(shape_));
@@ -218,15 +239,13 @@ class Expander {
     std::size_t most_, total_, budget_;
     LayerSorter& layers_;
     MissingBlocks& missing_;
+    std::vector<const std::string*> blocks_;  // around the entity, the outermost first
     std::vector<PlanShape> shapes_;
     PlanShape shape_;  // in the making
 };
 
-/// Metres that a plan is wide if its unit is right.
-constexpr double kLikelyPlan = 3, kUnlikelyPlan = 300;
-
 const LengthUnit& unitOf(const DxfDrawing& drawing, const std::string& name,
-                         const ImportOptions& options, ImportRecords& out) {
+                         const ImportOptions& options) {
     const bool asked = !options.units.empty();
     const auto unit =
         std::find_if(kLengthUnits.begin(), kLengthUnits.end(), [&](const LengthUnit& u) {
@@ -238,9 +257,7 @@ const LengthUnit& unitOf(const DxfDrawing& drawing, const std::string& name,
                             ? std::string("the drawing does not say its unit ($INSUNITS)")
                             : "$INSUNITS is " + std::to_string(drawing.units) +
                                   ", wanted 1 (inch), 2 (foot), 4 (mm), 5 (cm) or 6 (m)") +
-                           "; say it, for example with --units mm");
-    out.note(std::string("unit: ") + unit->name +
-             (asked ? ", as asked for" : ", as $INSUNITS of the drawing says"));
+                           ": " + kScaleHint);
     return *unit;
 }
 
@@ -255,43 +272,68 @@ class DxfImporter {
     DxfImporter(const DxfDrawing& drawing, const std::string& name, const Schemas& schemas)
         : drawing_(drawing), name_(name), schemas_(schemas) {}
 
-    /// \param hints whether the import may be tried in other units to tell what helps
+    /// \param hints whether the drawing may be read again to tell the effect of other options
     [[nodiscard]] DxfImport import(const ImportOptions& options, bool hints) const {
         ImportRecords out(schemas_, name_, options);
-        const LengthUnit& unit = unitOf(drawing_, name_, options, out);
+        DrawingSource source = scaleOf(options, out);
+        if (hints)
+            source.area = [this](const ImportOptions& other) { return import(other, false).area; };
         MissingBlocks missing;
-        LayerSorter sorter(drawing_.hidden_layers, options);
-        const LayerSorter::Sorted shapes = sorter.sort(
-            Expander(drawing_, name_, options.max_points, missing, sorter).expand(unit.metres));
+        const bool is_ours = options.wall_layers.empty() && options.door_layers.empty() &&
+                             options.window_layers.empty() && isDrawnRoom(drawing_);
+        const ImportOptions own = is_ours ? asDrawn(options) : options;
+        LayerSorter sorter(drawing_.hidden_layers, own);
+        LayerSorter::Sorted shapes =
+            sorter.sort(Expander(drawing_, name_, options.max_points, missing, sorter)
+                            .expand(source.metres_per_unit));
         sorter.note(out);
         if (!drawing_.left_out.empty())
             out.note("entities left out: " + listText(drawing_.left_out));
         if (!missing.empty())
             out.note("inserts of blocks that the file lacks: " + listText(missing));
-        const auto hint = [&](double extent) {
-            return hints ? unitHint(extent, unit, options) : std::string();
-        };
-        const double area = writeLinePlan(shapes, sorter, name_, options, hint, out);
+        if (is_ours) {
+            out.note("a room as envc draws it");
+            shapes.sizes.emplace();
+            for (const auto& [line, size] : drawing_.sizes)
+                (*shapes.sizes)[line] = {source.metres_per_unit * size.width,
+                                         source.metres_per_unit * size.bottom,
+                                         source.metres_per_unit * size.height};
+        }
+        const double area =
+            writeLinePlan(shapes, sorter, name_, own, is_ours ? nullptr : &source, out);
+        if (is_ours) addDrawnThings(drawing_, *shapes.sizes, source.metres_per_unit, out);
         return {out.take(), area};
     }
 
   private:
-    /// "; it says mm: with --units m it would be 7.855 m wide and 57.3 m2"
-    [[nodiscard]] std::string unitHint(double extent, const LengthUnit& unit,
-                                       const ImportOptions& options) const {
-        for (const char* name : {"m", "mm", "cm", "inch", "foot"}) {
-            const auto other =
-                std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
-                             [&](const LengthUnit& u) { return std::string_view(u.name) == name; });
-            const double metres = extent / unit.metres * other->metres;
-            if (metres < kLikelyPlan || metres > kUnlikelyPlan) continue;
-            ImportOptions as_other = options;
-            as_other.units = name;
-            return std::string(" It is read in ") + unit.name + "; with --units " + name +
-                   " it would be " + lengthText(metres) + " m wide and have " +
-                   areaText(import(as_other, false).area) + " of floor";
+    /// For a drawing of ours: its layers, and lines that meet already.
+    static ImportOptions asDrawn(ImportOptions options) {
+        options.wall_layers = {"walls"};
+        options.door_layers = {"doors"};
+        options.window_layers = {"windows"};
+        if (!options.snap) options.snap = 0;
+        return options;
+    }
+
+    [[nodiscard]] DrawingSource scaleOf(const ImportOptions& options, ImportRecords& out) const {
+        if (!options.width_is) {
+            const LengthUnit& unit = unitOf(drawing_, name_, options);
+            out.note(
+                std::string("unit: ") + unit.name +
+                (options.units.empty() ? ", as $INSUNITS of the drawing says" : ", as asked for"));
+            return {unit.name, unit.metres};
         }
-        return "";
+        const double metres = metresPerUnit(*options.width_is, name_, [&](double metres_per_unit) {
+            MissingBlocks missing;
+            LayerSorter sorter(drawing_.hidden_layers, options);
+            return sorter
+                .sort(Expander(drawing_, name_, options.max_points, missing, sorter)
+                          .expand(metres_per_unit))
+                .walls;
+        });
+        out.note(unitText(metres) + ", so that it is " + formatDouble(*options.width_is) +
+                 " m wide");
+        return {unitText(metres), metres};
     }
 
     const DxfDrawing& drawing_;

@@ -24,6 +24,7 @@ class Collector : public DL_CreationAdapter {
         if (key == "$INSUNITS") drawing_.units = value;
     }
     void addLayer(const DL_LayerData& layer) override {
+        drawing_.layers.insert(printable(layer.name));
         if (attributes.getColor() < 0 || (layer.flags & kFrozen) != 0)
             drawing_.hidden_layers.insert(printable(layer.name));
     }
@@ -125,6 +126,7 @@ DxfDrawing readDrawing(std::string_view bytes, const std::string& name) {
     DxfText checked = checkedDxf(bytes, name);
     DxfDrawing drawing;
     drawing.left_out = std::move(checked.left_out);
+    drawing.sizes = std::move(checked.sizes);
     std::istringstream stream(std::move(checked.text));
     Collector collector(drawing);
     DL_Dxf().in(stream, &collector);

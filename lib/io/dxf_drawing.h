@@ -12,6 +12,7 @@
 
 #include "geom/point.h"
 #include "io/curves.h"
+#include "io/line_plan.h"
 
 namespace ispace {
 
@@ -26,6 +27,7 @@ namespace ispace {
 struct DxfText {
     std::string text;
     std::map<std::string, std::size_t> left_out;  ///< entities not handed on, by type or reason
+    std::map<int, DrawnSize> sizes;  ///< of polylines and circles that have any, by their lines
 };
 
 /// \throws FormatError with its line: no group code, a number that is none, a missing coordinate,
@@ -84,14 +86,25 @@ struct DxfBlock {
 /// A DXF file, in its own units.
 struct DxfDrawing {
     int units = 0;                        ///< $INSUNITS; 0: none
+    std::set<std::string> layers;         ///< in its table
     std::set<std::string> hidden_layers;  ///< off or frozen
     std::map<std::string, DxfBlock> blocks;
     std::vector<DxfEntity> entities;
     std::map<std::string, std::size_t> left_out;  ///< see DxfText
+    std::map<int, DrawnSize> sizes;               ///< see DxfText
 
     /// Entities and vertices, those of blocks included.
     [[nodiscard]] std::size_t size() const;
 };
+
+/// True for a drawing with the layers on which writeDxf() draws a room, see dxfRoomLayers().
+bool isDrawnRoom(const DxfDrawing& drawing);
+
+/// Adds what is on other layers of such a drawing than those of walls and openings: of `objects`
+/// that have a height rectangles as cubes, circles and ellipses as cylinders, others as cubes
+/// around them, with a note; `zones`, and rectangles of `floors`. \param sizes in metres
+void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& sizes,
+                    double metres_per_unit, ImportRecords& out);
 
 /// Reads ASCII DXF through dxflib. Depends on the global C++ locale being the classic one, as it
 /// is unless a program changes it.

@@ -61,8 +61,8 @@ TEST(Dxf, Units) {
     options.units = "ell";
     EXPECT_NE(errorOf(drawing(room), options).find("unknown unit ell"), std::string::npos);
     EXPECT_EQ(errorOf(drawing(room, "", 0)),
-              "plan.dxf: error: the drawing does not say its unit ($INSUNITS); say it, for example "
-              "with --units mm\n");
+              "plan.dxf: error: the drawing does not say its unit ($INSUNITS): say its unit, for "
+              "example with --units cm, or how wide it is, with --width-is 8.3m\n");
     EXPECT_EQ(errorOf("0\nSECTION\n2\nENTITIES\n" + room + "0\nENDSEC\n0\nEOF\n"),
               errorOf(drawing(room, "", 0)));
     EXPECT_NE(errorOf(drawing(room, "", 12)).find("$INSUNITS is 12, wanted 1 (inch)"),
@@ -106,18 +106,21 @@ TEST(Dxf, BulgesAreArcs) {
     EXPECT_NEAR(areaOf(drawing(dent, "", 6)), 4 - std::numbers::pi / 2, 0.003);
     // A quarter circle: tan(90 / 4).
     const std::string quarter =
-        polyline("W", true, {{0, 0}, {1, 0, std::tan(std::numbers::pi / 8)}, {0, 1}});
-    EXPECT_NEAR(areaOf(drawing(quarter, "", 6)), std::numbers::pi / 4, 0.002);
+        polyline("W", true, {{0, 0}, {2, 0, std::tan(std::numbers::pi / 8)}, {0, 2}});
+    EXPECT_NEAR(areaOf(drawing(quarter, "", 6)), std::numbers::pi, 0.004);
     // As an old POLYLINE, with a point of the frame of a curve that does not count.
     EXPECT_NEAR(areaOf(drawing(oldPolyline("W", true, {{0, 0}, {2, 0, 1}, {2, 2}, {0, 2}}), "", 6)),
                 4 + std::numbers::pi / 2, 0.003);
 }
 
 TEST(Dxf, PointsOfArcsLieOnThem) {
+    ImportOptions options;
+    options.units = "m";
     for (const double radius : {0.01, 0.3, 2.0, 50.0, 3000.0}) {
-        const Document document = read(drawing(
-            group(0, "CIRCLE") + group(8, "W") + group(10, 0) + group(20, 0) + group(40, radius),
-            "", 6));
+        const Document document = read(drawing(group(0, "CIRCLE") + group(8, "W") + group(10, 0) +
+                                                   group(20, 0) + group(40, radius),
+                                               "", 6),
+                                       options);
         const TupleList& path = document.records.front().list("path");
         for (const Tuple& p : path) EXPECT_NEAR(std::hypot(p[0], p[1]), radius, 1e-6);
         const double sagitta =
@@ -328,8 +331,11 @@ TEST(Dxf, FlagsOutOfRange) {
 TEST(Dxf, LargeCirclesAreAMillimetreOff) {
     const double radius = 4000;
     const double area = std::numbers::pi * radius * radius;
+    ImportOptions options;
+    options.units = "m";
     EXPECT_NEAR(
-        areaOf(drawing(arc("W", 0, 0, radius, 0, 180) + arc("W", 0, 0, radius, 180, 360), "", 6)),
+        areaOf(drawing(arc("W", 0, 0, radius, 0, 180) + arc("W", 0, 0, radius, 180, 360), "", 6),
+               options),
         area, 2 * std::numbers::pi * radius * 0.001);
 }
 

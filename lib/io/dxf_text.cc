@@ -224,6 +224,7 @@ class DxfChecker {
         const bool has_vertices = kind.name == "LWPOLYLINE" || kind.name == "VERTEX";
         if (has_vertices && contains(kVertex, code)) return addVertexGroup(group);
         if (kind.name == "SPLINE" && (code == 10 || code == 20)) return addVertexGroup(group);
+        if (code == 30 || code == 38 || code == 39 || code == 43) return addSize(group);
         if (kind.name == "SPLINE" && (code == 40 || code == 41))
             return (code == 40 ? entity_.knots : entity_.weights).push_back(real(group));
         if (!contains(kind.required, code) && !contains(kind.optional, code) &&
@@ -238,6 +239,19 @@ class DxfChecker {
         } else {
             entity_.numbers[code] = isInteger(code) ? integer(group) : real(group);
         }
+    }
+
+    /// Numbers that only drawings of ours need: others may have anything there.
+    void addSize(const Group& group) {
+        const bool is_path = entity_.is("LWPOLYLINE"), is_circle = entity_.is("CIRCLE");
+        const auto value = parseDouble(group.value);
+        if (!value || *value == 0 || std::abs(*value) > kMaxNumber) return;
+        if ((is_path || is_circle) && group.code == 39)
+            out_.sizes[entity_.line].height = *value;
+        else if (is_path && group.code == 43)
+            out_.sizes[entity_.line].width = *value;
+        else if ((is_path && group.code == 38) || (is_circle && group.code == 30))
+            out_.sizes[entity_.line].bottom = *value;
     }
 
     void addVertexGroup(const Group& group) {

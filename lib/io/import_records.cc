@@ -2,6 +2,7 @@
 #include "io/import_records.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 
 #include "base/number.h"
@@ -18,6 +19,22 @@ bool isIdCharacter(char c) {
 
 char lowerCase(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
+/// Letters of Latin-1 with marks, U+00C0 to U+00FF in UTF-8, without them: "Küche" is "Kueche".
+std::string withPlainLetters(std::string_view text) {
+    constexpr std::array<const char*, 32> kPlain{
+        "a", "a", "a", "a", "ae", "a", "ae", "c", "e", "e", "e", "e", "i",  "i", "i",  "i",
+        "d", "n", "o", "o", "o",  "o", "oe", "x", "o", "u", "u", "u", "ue", "y", "th", "ss"};
+    std::string plain;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool is_marked = text[i] == '\xc3' && i + 1 < text.size();
+        if (is_marked)
+            plain += kPlain[static_cast<unsigned char>(text[++i]) % 32];
+        else
+            plain += text[i];
+    }
+    return plain;
+}
+
 }  // namespace
 
 ImportRecords::ImportRecords(const Schemas& schemas, const std::string& name,
@@ -25,7 +42,21 @@ ImportRecords::ImportRecords(const Schemas& schemas, const std::string& name,
     : schemas_(schemas),
       place_{std::make_shared<const std::string>(displayName(name)), 0, 0},
       wall_height_(options.wall_height),
-      wall_thickness_(options.wall_thickness) {}
+      wall_thickness_(options.wall_thickness),
+      found_(options.found),
+      report_(options.report) {
+    if (found_ != nullptr) found_->any_plan = true;
+}
+
+void ImportRecords::tell(std::string sentence) {
+    if (report_ == nullptr) return note(std::move(sentence));
+    report_->choices.push_back(*place_.file + ": note: " + sentence);
+}
+
+void ImportRecords::doubt(std::string sentence) {
+    if (report_ != nullptr)
+        report_->doubts.push_back({*place_.file, 0, 0, std::move(sentence), Severity::Warning});
+}
 
 Record& ImportRecords::add(const char* keyword, int line) {
     Place place = place_;
@@ -37,7 +68,8 @@ void ImportRecords::setPoint(Record& record, const char* key, Point2 point) {
     record.set(key, Tuple{wholeMicrometres(point.x), wholeMicrometres(point.y)});
 }
 
-void ImportRecords::fence(const PlanPath& path, const std::string& id) {
+void ImportRecords::fence(const PlanPath& path, const std::string& id,
+                          std::optional<double> height) {
     Record& record = add("fence", path.line);
     if (!id.empty()) record.set("id", id);
     Polygon corners = path.points;
@@ -49,16 +81,17 @@ void ImportRecords::fence(const PlanPath& path, const std::string& id) {
     for (const Point2 p : corners) points.push_back({p.x, p.y});
     record.set("path", std::move(points));
     record.set("closed", path.closed && !crossing);
-    record.set("height", wall_height_);
+    record.set("height", wholeMicrometres(height.value_or(wall_height_)));
     record.set("thickness", wall_thickness_);
 }
 
-void ImportRecords::wall(const Segment2& line, const std::string& id, int file_line) {
+void ImportRecords::wall(const Segment2& line, const std::string& id, int file_line,
+                         std::optional<double> height) {
     Record& record = add("wall", file_line);
     record.set("id", id);
     setPoint(record, "from", line.a);
     setPoint(record, "to", line.b);
-    record.set("height", wall_height_);
+    record.set("height", wholeMicrometres(height.value_or(wall_height_)));
     record.set("thickness", wall_thickness_);
 }
 
@@ -78,6 +111,31 @@ void ImportRecords::zone(const std::string& id, Point2 middle, Angle heading, do
     record.set("size", Tuple{wholeMicrometres(length), wholeMicrometres(width)});
 }
 
+Record& ImportRecords::zone(const std::string& id, const Region& area) {
+    Polygon path = area.outline;
+    for (const Polygon& hole : area.holes) {
+        // There and back between the two corners that are nearest to each other.
+        std::size_t at = 0, from = 0;
+        for (std::size_t i = 0; i < path.size(); ++i)
+            for (std::size_t k = 0; k < hole.size(); ++k)
+                if (distance(path[i], hole[k]) < distance(path[at], hole[from])) {
+                    at = i;
+                    from = k;
+                }
+        Polygon seam;
+        for (std::size_t k = 0; k <= hole.size(); ++k)
+            seam.push_back(hole[(from + k) % hole.size()]);
+        seam.push_back(path[at]);
+        path.insert(path.begin() + static_cast<std::ptrdiff_t>(at) + 1, seam.begin(), seam.end());
+    }
+    TupleList points;
+    for (const Point2 p : path) points.push_back({wholeMicrometres(p.x), wholeMicrometres(p.y)});
+    Record& record = add("zone", 0);
+    record.set("id", id);
+    record.set("path", std::move(points));
+    return record;
+}
+
 void ImportRecords::cube(Point2 middle, double length, double width) {
     Record& record = add("cube", 0);
     setPoint(record, "at", middle);
@@ -86,7 +144,7 @@ void ImportRecords::cube(Point2 middle, double length, double width) {
 
 std::string ImportRecords::freeId(std::string_view name, const std::string& fallback) {
     std::string word;
-    for (const char original : name) {
+    for (const char original : withPlainLetters(name)) {
         const char c = lowerCase(original);
         if (isIdCharacter(c))
             word += c;

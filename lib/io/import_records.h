@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "geom/polygon.h"
 #include "io/input.h"
 #include "io/plan_lines.h"
+#include "plan/found_rooms.h"
 #include "record/record.h"
 
 namespace ispace {
@@ -21,16 +23,21 @@ class ImportRecords {
     /// \param name the file as the user named it
     ImportRecords(const Schemas& schemas, const std::string& name, const ImportOptions& options);
 
-    /// A fence of the options' height and thickness; `id` may be "". A closed path that crosses
-    /// itself, which no closed fence may, becomes an open one that ends where it begins.
-    void fence(const PlanPath& path, const std::string& id = "");
+    /// A fence of the options' thickness and, without another `height`, height; `id` may be "". A
+    /// closed path that crosses itself, which no closed fence may, becomes an open one that ends
+    /// where it begins.
+    void fence(const PlanPath& path, const std::string& id = "",
+               std::optional<double> height = std::nullopt);
     /// The same as a `wall`.
-    void wall(const Segment2& line, const std::string& id, int file_line);
+    void wall(const Segment2& line, const std::string& id, int file_line,
+              std::optional<double> height = std::nullopt);
     /// Outline and holes as closed fences.
     void outline(const Region& region);
     void inside(Point2 point);
     /// A rectangle of the floor, by its middle.
     void zone(const std::string& id, Point2 middle, Angle heading, double length, double width);
+    /// A part of the floor by its outline, from which holes are reached by seams.
+    Record& zone(const std::string& id, const Region& area);
     /// A box as high as the walls.
     void cube(Point2 middle, double length, double width);
     /// Any other record; `line` is where it comes from.
@@ -40,8 +47,8 @@ class ImportRecords {
     /// Sets a key of x,y.
     static void setPoint(Record& record, const char* key, Point2 point);
 
-    /// A free id made from a name in a file: letters, digits and _ - . stay, others become -; then
-    /// "", "-2", "-3" … `fallback` if nothing readable is left.
+    /// A free id made from a name in a file: letters (without their marks), digits and _ - . stay,
+    /// others become -; then "", "-2", "-3" … `fallback` if nothing readable is left.
     std::string freeId(std::string_view name, const std::string& fallback);
 
     void note(std::string sentence) { document_.notes.push_back(std::move(sentence)); }
@@ -50,6 +57,18 @@ class ImportRecords {
         document_.warnings.push_back(
             {*place_.file, line, 0, std::move(sentence), Severity::Warning});
     }
+    /// True if all rooms of the plan are asked for.
+    [[nodiscard]] bool wantsRooms() const { return found_ != nullptr; }
+    /// \pre wantsRooms()
+    void room(FoundRoom room) { found_->rooms.push_back(std::move(room)); }
+    /// Kept for a drawing of the choice, if one is wanted.
+    void closedGap(const Segment2& gap) {
+        if (found_ != nullptr) found_->closed_gaps.push_back(gap);
+    }
+    /// A note that is shown without -v, see ImportReport.
+    void tell(std::string sentence);
+    /// A warning that only a check reports.
+    void doubt(std::string sentence);
     void source(std::string path) { document_.sources.push_back(std::move(path)); }
     [[nodiscard]] Document take() { return std::move(document_); }
 
@@ -58,6 +77,8 @@ class ImportRecords {
     Place place_;
     double wall_height_, wall_thickness_;
     std::set<std::string> ids_;
+    FoundRooms* found_;
+    ImportReport* report_;
     Document document_;
 };
 

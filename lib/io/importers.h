@@ -39,7 +39,8 @@ bool isGridMap(std::string_view bytes);
 
 /// Reads such a map (`type octile`): cells of `.` and `G` (ground) and `S` (swamp, which can be
 /// walked) are free; `@` and `O` (out of bounds), `T` (trees) and `W` (water, which cannot be
-/// entered from ground) are not. Cells are ImportOptions::resolution wide, by default 1 m.
+/// entered from ground) are not. Cells are ImportOptions::resolution wide, by default 1 m, and kept
+/// exactly unless ImportOptions::simplify or clean is given.
 /// \throws FormatError with the line
 Document readGridMap(std::string_view bytes, const std::string& name, const ImportOptions& options,
                      const Schemas& schemas);
@@ -78,6 +79,9 @@ bool isDxf(std::string_view bytes);
 /// closes it.
 /// - Only the largest enclosed region is kept, with rooms joined by doors: the lines that bound it
 /// or lie in it, and an `inside` point. If nothing is enclosed everything is kept.
+/// - A drawing with the layers of dxfRoomLayers(), if no layer is named, comes back as the room
+/// that writeDxf() drew: all walls with their thickness and height, openings with theirs, doors
+/// with a width shut, solids by addDrawnThings().
 ///
 /// What is left out is counted in Document::notes.
 /// \throws FormatError: damaged, no unit, no line on the layers, places beyond 900 km, more than
@@ -116,8 +120,9 @@ bool isSdf(std::string_view bytes);
 /// walls; their ends are moved onto the mid-lines of walls in whose thickness they end, and the
 /// room is chosen as in readDxf(). Other upright boxes become cubes, upright cylinders cylinders,
 /// polylines on the floor closed fences.
-/// - Meshes become `mesh` records if sdfPaths() leads to a file in the world's folder or below, and
-/// are else left out with a warning.
+/// - Meshes become `mesh` records if their files are there (see SdfFiles), and are else left out
+/// with a warning. Where boxes and polylines enclose no room, or with ImportOptions::slice_walls,
+/// those that bound one are cut into walls, see wallsAmong().
 /// - Planes and slabs of floor, what leans, and every other shape are left out, with a note.
 /// \throws FormatError as readSdfShapes(), and if there is nothing in it
 Document readSdf(std::string_view bytes, const std::string& name, const ImportOptions& options,
@@ -127,7 +132,8 @@ Document readSdf(std::string_view bytes, const std::string& name, const ImportOp
 bool isRosMap(std::string_view bytes);
 
 /// Reads a ROS map (map_server's map.yaml and its picture, see parsePicture); see writeCellMap()
-/// for the result. Warns if shades of unknown count as free. \param name the map.yaml; `image` is
+/// for the result. Shade 205 is unknown whatever `free_thresh` says, which is told where it
+/// matters, or free where ImportOptions::unknown says so. \param name the map.yaml; `image` is
 /// relative to its folder (for "-" to the current one) \throws FormatError with place in YAML or
 /// image, std::system_error for a missing image
 Document readRosMap(std::string_view yaml, const std::string& name, const ImportOptions& options,
@@ -141,15 +147,29 @@ Document readRosMap(std::string_view yaml, const std::string& name, const Import
 Document readMeshWalls(const std::string& operand, const ImportOptions& options,
                        const Schemas& schemas);
 
+/// Reads the plan in a point cloud (see CloudFile): cells of ImportOptions::resolution (default 5
+/// cm) with points between slice_walls and slice_top are walls, and the room is chosen among the
+/// others as in writeCellMap(). Gaps between points are closed as little as it takes to enclose a
+/// room, at most 1.2 m, unless `close_gaps` says otherwise. Islands that end below slice_top become
+/// cubes and cylinders, or noise. \throws FormatError: no heights, no points between them, no room
+Document readPointCloud(std::string_view bytes, const std::string& name,
+                        const ImportOptions& options, const Schemas& schemas);
+
 /// True for the text of a STEP file with a schema of IFC.
 bool isIfc(std::string_view bytes);
 
-/// Reads a storey of an IFC building, through assimp: walls, columns and the like are cut 1.2 m
-/// above the lowest storey that has walls, or at ImportOptions::slice_walls (the building's own
-/// height); the classes of IFC are layers. By default IfcWall, IfcCurtainWall, IfcColumn, IfcPlate,
-/// IfcMember, IfcBuildingElementProxy and their kinds are walls, IfcDoor and IfcWindow doors and
-/// windows, across the width they have in the cut. Openings of walls are cut out by assimp. \throws
-/// FormatError: cut off, nothing stands at this height, and as loadMesh
+/// Reads a storey of an IFC building (2x3, 4 or 4.3), see chosenStorey(), in a process of its own.
+///
+/// - Walls, curtain walls, plates and members are cut 1 m above the floor, or at
+/// ImportOptions::slice_walls (the building's own height). Their faces become closed fences, so
+/// that rooms are as wide as they are; holes in walls with their doors and windows become doors and
+/// windows through both faces.
+/// - Spaces become zones, and the rooms that hold them are kept; without any the room is chosen as
+/// in readDxf().
+/// - Columns become pillars, furniture, fixtures and stairs boxes and cylinders.
+///
+/// Geometry that cannot be read is told in a warning. \throws FormatError: cut off, no such storey,
+/// and as readBuilding()
 Document readIfc(std::string_view bytes, const std::string& operand, const ImportOptions& options,
                  const Schemas& schemas);
 

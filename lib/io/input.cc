@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "io/calibration.h"
+#include "io/cloud_file.h"
 #include "io/glb.h"
 #include "io/import_records.h"
 #include "io/importers.h"
@@ -24,7 +25,7 @@ namespace {
 
 constexpr const char* kWanted =
     "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, a picture, HouseExpo JSON, an ARIA or "
-    "MovingAI map, DXF, SVG, SDF, IFC or a mesh";
+    "MovingAI map, DXF, SVG, SDF, IFC, a mesh or a point cloud";
 constexpr std::string_view kBlanks = " \t\r\n";
 
 /// UTF-8 without control characters other than those of plain text.
@@ -86,6 +87,7 @@ constexpr std::pair<std::string_view, const char*> kForeign[] = {
      "an OLE file, as Revit (.rvt) and Visio (.vsd) write: export it as IFC, DXF or SVG"},
     {std::string_view("PK\3\4", 4),
      "a zip archive: unpack it; of a drawing of Visio or LibreOffice export SVG"},
+    {"ASTM-E57", "an E57 point cloud: convert it to PCD or PLY, for example with CloudCompare"},
     {"BLENDER", "a Blender scene: export it as glTF or COLLADA"},
     {"\x1f\x8b", "compressed with gzip: unpack it with `gunzip` (a .svgz becomes .svg)"},
 };
@@ -134,15 +136,28 @@ Document importPlan(const Source& source) {
     return kReader(source.bytes, source.operand, source.options, source.schemas);
 }
 
-Document readMesh(const Source& source) {
-    return meshDocument(source.operand, source.options, source.schemas);
+/// Reads a mesh, with the upward axis that OBJ leaves open.
+template <Document (*kReader)(const std::string&, const ImportOptions&, const Schemas&)>
+Document readUpright(const Source& source) {
+    ImportOptions options = source.options;
+    const bool is_open = options.up == "auto" && meshFormatOf(source.bytes) == MeshFormat::Obj;
+    if (is_open) {
+        const auto* const unit =
+            std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
+                         [&](const LengthUnit& known) { return known.name == options.units; });
+        options.up = objUpAxis(source.bytes, unit == kLengthUnits.end() ? 1 : unit->metres);
+    }
+    Document document = kReader(source.operand, options, source.schemas);
+    if (is_open)
+        document.notes.insert(document.notes.begin(),
+                              "OBJ taken with " + options.up + " upwards; --up says otherwise");
+    return document;
 }
-Document readWalls(const Source& source) {
-    return readMeshWalls(source.operand, source.options, source.schemas);
-}
+constexpr auto* readMesh = readUpright<meshDocument>;
+constexpr auto* readWalls = readUpright<readMeshWalls>;
 /// A mesh that is cut into walls is a plan; a model of ours stays what it is.
 bool isCutMesh(const Source& source) {
-    if (!source.options.slice_walls) return false;
+    if (!source.options.slice_walls || isPointCloud(source.bytes)) return false;
     const bool is_mesh = (isGlb(source.bytes) && !glbHasRecords(source.bytes)) ||
                          isMeshFile(source.bytes) || hasMeshSuffix(source.operand);
     return is_mesh && !isRecordText(source.bytes);
@@ -173,6 +188,7 @@ constexpr InputFormat kFormatsByMagic[] = {
     {true, holdsBytes<isSdf>, importPlan<readSdf>},
     {true, holdsBytes<isIfc>, importPlan<readIfc>},
     {true, holdsBytes<isPicture>, importPlan<readBarePicture>},
+    {true, holdsBytes<isPointCloud>, importPlan<readPointCloud>},
     {false, holdsBytes<isMeshFile>, readMesh},
 };
 

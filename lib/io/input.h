@@ -9,6 +9,7 @@
 
 #include "geom/polygon.h"
 #include "geom/pose.h"
+#include "plan/found_rooms.h"
 #include "record/record.h"
 
 namespace ispace {
@@ -20,6 +21,12 @@ constexpr double kFarthestPlan = 900'000;
 enum class RoomChoice {
     Largest,  ///< the largest that is no outside and no hollow of a wall
     All,      ///< every room that is closed in itself
+};
+
+/// What an import has to say besides its document.
+struct ImportReport {
+    std::vector<std::string> choices;  ///< "FILE: note: …", that people have to know of
+    std::vector<Diagnostic> doubts;    ///< warnings that only a check reports
 };
 
 /// How plans, maps and meshes that somebody else made become records.
@@ -36,19 +43,27 @@ struct ImportOptions {
     std::optional<double> resolution;   ///< metres per pixel of a picture without map.yaml
     Pose2 origin;                       ///< of the lower left corner of such a picture
     std::optional<double> slice_walls;  ///< height at which a mesh of a building is cut into walls
+    std::optional<double> slice_top;    ///< of points: those from slice_walls up to here are walls
     std::optional<double> snap;      ///< metres within which ends of lines are joined; default: the
                                      ///< importer's own
     std::optional<double> simplify;  ///< metres outlines may move; default: the importer's own
     std::optional<double> clean;     ///< metres: what is smaller on a map is noise; 0: nothing;
                                      ///< default: kNoiseWidth, or 0 where `simplify` is 0
-    std::string units;               ///< m, cm, mm, inch or foot; "": as the file says
-    std::string up = "auto";         ///< a mesh's upward axis: auto, x, y or z
+    std::string unknown = "unknown";  ///< or "free": shade 205 of a map, see OccupancyRule
+    std::string storey;               ///< of a building, by name or number; "": see readIfc
+    std::string units;                ///< m, cm, mm, inch or foot; "": as the file says
+    std::optional<double> width_is;   ///< metres from a drawing's leftmost to its rightmost wall;
+                                      ///< wins over what the file says
+    std::string up = "auto";          ///< a mesh's upward axis: auto, x, y or z
     std::vector<std::string> wall_layers;    ///< globs; empty: every layer not named otherwise
     std::vector<std::string> door_layers;    ///< globs; default none
     std::vector<std::string> window_layers;  ///< globs; default none
+    std::vector<std::string> model_folders;  ///< of SDF, see SdfFiles; relative to the current one
     bool points = false;                     ///< points of an ARIA map become obstacles
     std::size_t max_points = 2'000'000;      ///< drawings that come to more are refused
-    bool load_files = true;                  ///< false: records keep the files they name unread
+    FoundRooms* found = nullptr;     ///< takes the rooms of plans, kept or not; null: not asked for
+    ImportReport* report = nullptr;  ///< null: choices are notes, doubts are dropped
+    bool load_files = true;          ///< false: records keep the files they name unread
 };
 
 /// Reads any environment or layout, recognised by content: GLB, `#env`, `#3dm`,

@@ -28,19 +28,24 @@ constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
 class LinePlan {
   public:
     LinePlan(const LayerSorter::Sorted& shapes, const std::string& name,
-             const ImportOptions& options, std::function<std::string(double)> unit_hint,
-             ImportRecords& out)
-        : paths_(normalisedLines(shapes.walls, options.snap.value_or(kDefaultSnap))),
-          pieces_(pathPieces(paths_)) {
-        check(name);
-        PlanOpenings found = findOpenings(shapes.doors, shapes.windows, pieces_);
+             const ImportOptions& options, const DrawingSource* drawing, ImportRecords& out)
+        : sizes_(shapes.sizes) {
+        DrawnDoors drawn = drawing == nullptr ? DrawnDoors{} : takeDrawnDoors(shapes.walls);
+        drawn_doors_ = drawn.swings.size();
+        paths_ = normalisedLines(drawn_doors_ == 0 ? shapes.walls : drawn.walls,
+                                 options.snap.value_or(kDefaultSnap));
+        pieces_ = pathPieces(paths_);
+        check(name, options, drawing);
+        std::vector<PlanShape> doors = shapes.doors;
+        doors.insert(doors.end(), drawn.swings.begin(), drawn.swings.end());
+        PlanOpenings found = findOpenings(doors, shapes.windows, pieces_);
         if (options.simplify.value_or(0) > 0) {
             simplify(*options.simplify, found.openings);
-            found = findOpenings(shapes.doors, shapes.windows, pieces_);
+            found = findOpenings(doors, shapes.windows, pieces_);
         }
         openings_ = std::move(found.openings);
         unused_symbols_ = found.unused;
-        keepRooms(options, std::move(unit_hint), out);
+        keepRooms(options, drawing, out);
     }
 
     [[nodiscard]] double area() const { return rooms_.area(); }
@@ -51,13 +56,19 @@ class LinePlan {
             writeRooms(rooms_, options, out);
             return note(out);
         }
-        std::vector<PlanPath> fences = joinedAtEnds(paths_);
+        const std::vector<PlanPath> fences = sizes_ ? paths_ : joinedAtEnds(paths_);
         const std::vector<std::size_t> fence_of = fencesOfOpenings(fences);
         std::vector<std::string> ids(fences.size());
         for (const std::size_t fence : fence_of)
             if (fence < fences.size() && ids[fence].empty())
                 ids[fence] = out.freeId("f" + std::to_string(fence + 1), "f");
-        for (std::size_t i = 0; i < fences.size(); ++i) out.fence(fences[i], ids[i]);
+        for (std::size_t i = 0; i < fences.size(); ++i) {
+            out.fence(fences[i], ids[i]);
+            if (const DrawnSize* size = sizeOf(fences[i].line)) {
+                out.last().set("height", size->height);
+                out.last().set("thickness", size->width);
+            }
+        }
         for (std::size_t i = 0; i < openings_.size(); ++i) {
             const std::string wall =
                 openings_[i].wall ? ids[fence_of[i]] : out.freeId("gap", "gap");
@@ -69,8 +80,11 @@ class LinePlan {
     }
 
   private:
-    void check(const std::string& name) const {
+    void check(const std::string& name, const ImportOptions& options,
+               const DrawingSource* drawing) const {
         const Box2 box = boundsOf(pieces_);
+        if (!pieces_.empty() && drawing != nullptr)
+            checkScale(std::max(box.width(), box.depth()), *drawing, name, options);
         if (!pieces_.empty() && std::max(box.width(), box.depth()) > kMaxExtent)
             failFile(name,
                      "the plan is " + formatFixed(std::max(box.width(), box.depth()), 0) +
@@ -103,14 +117,18 @@ class LinePlan {
         return all;
     }
 
-    void keepRooms(const ImportOptions& options, std::function<std::string(double)> unit_hint,
-                   ImportRecords& out) {
+    void keepRooms(const ImportOptions& options, const DrawingSource* drawing, ImportRecords& out) {
         std::vector<Segment2> doorways;
         for (const PlanOpening& opening : openings_)
-            if (!opening.is_window) doorways.push_back(opening.line);
+            if (!opening.is_window && !isShut(opening)) doorways.push_back(opening.line);
         const std::vector<Segment2> all = allPieces();
-        rooms_ = chooseRooms({all, doorways, {}, {}, std::move(unit_hint)}, options, out);
-        if (rooms_.regions.empty()) return;
+        PlanWalls plan{all, doorways, {}, {}, {}};
+        if (drawing != nullptr)
+            plan.unit_hint = [&](double extent) {
+                return otherUnitHint(extent, *drawing, options);
+            };
+        rooms_ = chooseRooms(plan, options, out);
+        if (rooms_.regions.empty() || sizes_) return;
         const std::vector<bool> keep = belongsTo(rooms_.regions, all);
         std::size_t gap = pieces_.size();
         std::vector<PlanOpening> kept;
@@ -148,13 +166,31 @@ class LinePlan {
         return result;
     }
 
-    static void writeOpening(const PlanOpening& opening, const std::string& wall,
-                             ImportRecords& out, double wall_height) {
+    [[nodiscard]] const DrawnSize* sizeOf(int line) const {
+        if (!sizes_) return nullptr;
+        const auto found = sizes_->find(line);
+        return found == sizes_->end() || found->second.height <= 0 ? nullptr : &found->second;
+    }
+
+    [[nodiscard]] bool isShut(const PlanOpening& opening) const {
+        const DrawnSize* size = sizeOf(opening.drawn_on);
+        return size != nullptr && size->width > 0;
+    }
+
+    void writeOpening(const PlanOpening& opening, const std::string& wall, ImportRecords& out,
+                      double wall_height) const {
         Record& record = out.add(opening.is_window ? "window" : "door", opening.drawn_on);
         record.set("wall", wall);
         ImportRecords::setPoint(record, "from", opening.line.a);
         ImportRecords::setPoint(record, "to", opening.line.b);
-        if (opening.is_window) {
+        const DrawnSize* size = sizeOf(opening.drawn_on);
+        if (size != nullptr) {
+            record.set("height", size->height);
+            if (opening.is_window)
+                record.set("sill", size->bottom);
+            else
+                record.set("open", !isShut(opening));
+        } else if (opening.is_window) {
             const double sill = std::min(kSill, wall_height * kSill / kDoorHeight);
             record.set("height", std::min(kWindowHeight, wall_height - sill));
             record.set("sill", sill);
@@ -165,6 +201,9 @@ class LinePlan {
     }
 
     void note(ImportRecords& out) const {
+        if (drawn_doors_ > 0)
+            out.note("leaves and swings of " + countText(drawn_doors_, "door") +
+                     " among the walls close no room");
         const auto windows = static_cast<std::size_t>(
             std::count_if(openings_.begin(), openings_.end(),
                           [](const PlanOpening& opening) { return opening.is_window; }));
@@ -179,10 +218,12 @@ class LinePlan {
                      countText(dropped_openings_, "opening"));
     }
 
+    std::optional<std::map<int, DrawnSize>> sizes_;
     std::vector<PlanPath> paths_;
     std::vector<Segment2> pieces_;  // of all walls drawn
     std::vector<PlanOpening> openings_;
     std::size_t unused_symbols_ = 0, dropped_lines_ = 0, dropped_openings_ = 0;
+    std::size_t drawn_doors_ = 0;  // leaves
     PlanRooms rooms_;
 };
 
@@ -214,11 +255,17 @@ bool LayerSorter::isUsed(const std::string& layer) {
     return use == Walls || use == Doors || use == Windows;
 }
 
+bool LayerSorter::isNamed(const std::string& name) const {
+    return matches(options_.door_layers, name) || matches(options_.window_layers, name) ||
+           matches(options_.wall_layers, name);
+}
+
 LayerSorter::Sorted LayerSorter::sort(std::vector<PlanShape> shapes) {
     Sorted sorted;
     for (PlanShape& shape : shapes) {
         const Use use = useOf(shape.layer);
         ++counts_[use][shape.layer];
+        if (use == Walls) ++wall_names_[shape.walls_in];
         if (use == Walls)
             sorted.walls.push_back(std::move(shape.path));
         else if (use == Doors)
@@ -244,27 +291,35 @@ std::string LayerSorter::all() const {
     return all.empty() ? "none" : listText(all);
 }
 
+std::map<std::string, std::size_t> LayerSorter::unusedWallNames() const {
+    if (!options_.wall_layers.empty() || wall_names_.count("") == 0) return {};
+    std::map<std::string, std::size_t> names = wall_names_;
+    names.erase("");
+    return names;
+}
+
 double writeLinePlan(const LayerSorter::Sorted& shapes, const LayerSorter& sorter,
                      const std::string& name, const ImportOptions& options,
-                     std::function<std::string(double)> unit_hint, ImportRecords& out) {
+                     const DrawingSource* drawing, ImportRecords& out) {
     if (shapes.walls.empty())
         failFile(name, (options.wall_layers.empty() ? "no line to make a wall of"
                                                     : "no line on the layers of walls") +
                            std::string("; layers with lines: ") + sorter.all());
     return withFileName(name, [&] {
-        LinePlan plan(shapes, name, options, std::move(unit_hint), out);
+        LinePlan plan(shapes, name, options, drawing, out);
         plan.write(out, options);
+        if (drawing != nullptr)
+            warnOfWallNames(sorter.unusedWallNames(), plan.area(), *drawing, options, out);
         return plan.area();
     });
 }
 
-void writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,
-                   const ImportOptions& options, ImportRecords& out) {
-    const std::set<std::string> no_hidden;
-    LayerSorter sorter(no_hidden, options);
+double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,
+                     const ImportOptions& options, ImportRecords& out) {
+    LayerSorter sorter({}, options);
     const LayerSorter::Sorted sorted = sorter.sort(std::move(shapes));
     sorter.note(out);
-    writeLinePlan(sorted, sorter, name, options, {}, out);
+    return writeLinePlan(sorted, sorter, name, options, nullptr, out);
 }
 
 std::string listText(const std::map<std::string, std::size_t>& counts) {

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
 #include <type_traits>
 
 #include "base/error.h"
@@ -37,6 +39,37 @@ bool isObj(std::string_view bytes) {
     return false;
 }
 
+/// The axis that a comment names in one of the usual ways.
+std::optional<std::string> upAxisIn(std::string comment) {
+    for (char& c : comment) c = c == '-' || c == '_' ? ' ' : static_cast<char>(c | 0x20);
+    for (const char* const axis : {"y", "z"})
+        if (comment.find(axis + std::string(" up")) != std::string::npos ||
+            comment.find("up axis: " + std::string(axis)) != std::string::npos)
+            return axis;
+    return std::nullopt;
+}
+
+/// Lowest and highest number of a vertex along each axis.
+struct VertexExtent {
+    std::array<double, 3> low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    std::array<double, 3> high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+
+    void add(std::string_view line) {
+        const char* at = line.data() + 2;
+        const char* const end = line.data() + line.size();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            while (at != end && (*at == ' ' || *at == '\t')) ++at;
+            double value = 0;
+            const auto [rest, error] = std::from_chars(at, end, value);
+            if (error != std::errc() || !std::isfinite(value)) return;
+            low[axis] = std::min(low[axis], value);
+            high[axis] = std::max(high[axis], value);
+            at = rest;
+        }
+    }
+    [[nodiscard]] double along(std::size_t axis) const { return high[axis] - low[axis]; }
+};
+
 bool isBinaryStl(std::string_view bytes) {
     constexpr std::size_t kHeader = 84, kTriangle = 50;
     if (bytes.size() < kHeader + kTriangle) return false;
@@ -59,14 +92,30 @@ std::optional<MeshFormat> meshFormatOf(std::string_view bytes) {
     return std::nullopt;
 }
 
+std::string objUpAxis(std::string_view bytes, double metres) {
+    constexpr double kLower = 0.95, kLeastFloor = 4;
+    VertexExtent extent;
+    bool has_vertex = false;
+    while (!bytes.empty()) {
+        const std::string_view line = bytes.substr(0, bytes.find('\n'));
+        bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
+        if (!has_vertex && line.starts_with('#'))
+            if (auto axis = upAxisIn(std::string(line))) return *std::move(axis);
+        if (!line.starts_with("v ")) continue;
+        has_vertex = true;
+        extent.add(line);
+    }
+    const double floor = extent.along(0) * extent.along(1) * metres * metres;
+    return extent.along(2) < kLower * extent.along(1) && floor >= kLeastFloor ? "z" : "y";
+}
+
 bool isMeshFile(std::string_view bytes) { return meshFormatOf(bytes).has_value(); }
 
 bool hasMeshSuffix(const std::string& operand) {
-    // GLB and IFC are told by their first bytes.
+    // GLB is told by its first bytes.
     return std::any_of(kMeshSuffixes.begin(), kMeshSuffixes.end(),
                        [suffix = meshSuffix(operand)](const MeshSuffix& known) {
-                           return known.suffix == suffix && known.format != MeshFormat::Glb &&
-                                  known.format != MeshFormat::Ifc;
+                           return known.suffix == suffix && known.format != MeshFormat::Glb;
                        });
 }
 
@@ -152,22 +201,6 @@ bool isSound(const TriangleMesh& mesh) {
            });
 }
 
-MeshPart unpackedPart(Unpacker& in) {
-    MeshPart part;
-    const std::size_t nodes = in.count(sizeof(double) + sizeof(std::size_t));
-    if (nodes > kMaxMeshNodeDepth) in.fail();
-    part.nodes.resize(nodes);
-    for (MeshNode& node : part.nodes) {
-        node.height = in.value<double>();
-        node.name = in.take(in.count(1));
-        if (!std::isfinite(node.height)) in.fail();
-    }
-    part.mesh.vertices = in.list<std::array<float, 3>>();
-    part.mesh.triangles = in.list<std::array<std::uint32_t, 3>>();
-    if (!isSound(part.mesh)) in.fail();
-    return part;
-}
-
 }  // namespace
 
 MeshLimits meshLimits(std::size_t file_bytes, bool is_building) {
@@ -182,33 +215,21 @@ MeshLimits meshLimits(std::size_t file_bytes, bool is_building) {
     return limits;
 }
 
-std::string packedParts(const std::vector<MeshPart>& parts) {
+std::string packedMesh(const TriangleMesh& mesh) {
     std::string bytes;
-    append(bytes, parts.size());
-    for (const MeshPart& part : parts) {
-        append(bytes, part.nodes.size());
-        for (const MeshNode& node : part.nodes) {
-            append(bytes, node.height);
-            append(bytes, node.name.size());
-            bytes += node.name;
-        }
-        appendList(bytes, part.mesh.vertices);
-        appendList(bytes, part.mesh.triangles);
-    }
+    appendList(bytes, mesh.vertices);
+    appendList(bytes, mesh.triangles);
     return bytes;
 }
 
-std::vector<MeshPart> unpackedParts(std::string_view bytes, const std::string& path) {
+TriangleMesh unpackedMesh(std::string_view bytes, const std::string& path) {
     Unpacker in(bytes, path);
-    std::vector<MeshPart> parts;
-    std::size_t triangles = 0;
-    for (std::size_t left = in.count(3 * sizeof(std::size_t)); left > 0; --left) {
-        parts.push_back(unpackedPart(in));
-        triangles += parts.back().mesh.triangles.size();
-    }
+    TriangleMesh mesh;
+    mesh.vertices = in.list<std::array<float, 3>>();
+    mesh.triangles = in.list<std::array<std::uint32_t, 3>>();
     in.end();
-    if (parts.size() > kMaxMeshNodes || triangles > kMaxMeshTriangles) in.fail();
-    return parts;
+    if (mesh.triangles.size() > kMaxMeshTriangles || !isSound(mesh)) in.fail();
+    return mesh;
 }
 
 }  // namespace ispace

@@ -14,23 +14,28 @@
 namespace ispace {
 
 /// Formats of meshes that are read.
-enum class MeshFormat { Obj, Stl, Ply, Collada, Gltf, Glb, Ifc };
+enum class MeshFormat { Obj, Stl, Ply, Collada, Gltf, Glb };
 
 /// The suffix of each, in lower case.
 struct MeshSuffix {
     std::string_view suffix;
     MeshFormat format;
 };
-constexpr std::array<MeshSuffix, 7> kMeshSuffixes{{{".obj", MeshFormat::Obj},
+constexpr std::array<MeshSuffix, 6> kMeshSuffixes{{{".obj", MeshFormat::Obj},
                                                    {".stl", MeshFormat::Stl},
                                                    {".ply", MeshFormat::Ply},
                                                    {".dae", MeshFormat::Collada},
                                                    {".gltf", MeshFormat::Gltf},
-                                                   {".glb", MeshFormat::Glb},
-                                                   {".ifc", MeshFormat::Ifc}}};
+                                                   {".glb", MeshFormat::Glb}}};
 
 /// OBJ, STL, PLY or COLLADA by content; nothing for other bytes.
 std::optional<MeshFormat> meshFormatOf(std::string_view bytes);
+
+/// The axis of OBJ that points up, "y" or "z", which the format does not say: the one that a
+/// comment before the first vertex names ("z up"); else y, as most programs write it, unless the
+/// extent is that of a room or building with z upwards: less high than wide, over 4 m2 or more.
+/// \param metres of one of its numbers
+std::string objUpAxis(std::string_view bytes, double metres);
 
 /// True if the bytes are OBJ, STL, PLY or COLLADA.
 bool isMeshFile(std::string_view bytes);
@@ -50,18 +55,6 @@ constexpr std::size_t kMaxMeshTriangles = 50'000'000;
 constexpr std::size_t kMaxMeshNodes = 1'000'000;  ///< each instance counts
 constexpr std::size_t kMaxMeshNodeDepth = 1000;
 
-/// A node above a part.
-struct MeshNode {
-    std::string name;
-    double height = 0;  ///< of its origin, as the vertices
-};
-
-/// The triangles of one node.
-struct MeshPart {
-    std::vector<MeshNode> nodes;  ///< the part's own first, the root last
-    TriangleMesh mesh;            ///< in the world; without digest
-};
-
 /// What lib/ispace/read-mesh may use.
 struct MeshLimits {
     std::size_t memory = 0;   ///< bytes of address space
@@ -76,7 +69,7 @@ MeshLimits meshLimits(std::size_t file_bytes, bool is_building);
 /// eight native bytes, and the rest.
 enum class MeshAnswer : char {
     WantsFile = 'F',    ///< its name as the mesh gives it; the reply is a byte, see MeshReply
-    Parts = 'P',        ///< packedParts(); the last
+    Parts = 'P',        ///< packedMesh() or packedBuilding(); the last
     Error = 'E',        ///< what is wrong with the file; the last
     OutOfMemory = 'M',  ///< nothing follows; the last
 };
@@ -86,11 +79,11 @@ enum class MeshReply : char { Handed = 'Y', Missing = 'N' };
 
 constexpr std::size_t kMeshAnswerHead = 1 + sizeof(std::uint64_t);
 
-std::string packedParts(const std::vector<MeshPart>& parts);
+std::string packedMesh(const TriangleMesh& mesh);
 
-/// Reads packed parts and trusts nothing: on return indices are valid and vertices finite.
+/// Reads a packed mesh and trusts nothing: on return indices are valid and vertices finite.
 /// \param path the mesh, for messages
-/// \throws FormatError: the bytes are not what packedParts writes
-std::vector<MeshPart> unpackedParts(std::string_view bytes, const std::string& path);
+/// \throws FormatError: the bytes are not what packedMesh writes
+TriangleMesh unpackedMesh(std::string_view bytes, const std::string& path);
 
 }  // namespace ispace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/mesh_parts.h"
 
-#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -10,47 +9,37 @@
 namespace ispace {
 namespace {
 
-MeshPart wall() {
-    MeshPart part;
-    part.nodes = {{"IfcWall_a_1", 0.5}, {"", -3}};
-    part.mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    part.mesh.triangles = {{0, 1, 2}};
-    return part;
+TriangleMesh wall() {
+    TriangleMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    return mesh;
 }
 
 TEST(MeshParts, SurviveTheSocket) {
-    const std::string bytes = packedParts({wall(), MeshPart()});
-    const std::vector<MeshPart> parts = unpackedParts(bytes, "x.ifc");
-    ASSERT_EQ(parts.size(), 2U);
-    EXPECT_EQ(parts[0].nodes[0].name, "IfcWall_a_1");
-    EXPECT_EQ(parts[0].nodes[1].height, -3);
-    EXPECT_EQ(parts[0].mesh.vertices, wall().mesh.vertices);
-    EXPECT_EQ(parts[0].mesh.triangles, wall().mesh.triangles);
+    const std::string bytes = packedMesh(wall());
+    const TriangleMesh mesh = unpackedMesh(bytes, "x.obj");
+    EXPECT_EQ(mesh.vertices, wall().vertices);
+    EXPECT_EQ(mesh.triangles, wall().triangles);
     for (std::size_t i = 0; i < bytes.size(); ++i)
-        EXPECT_THROW(unpackedParts(bytes.substr(0, i), "x.ifc"), FormatError) << i;
-    EXPECT_THROW(unpackedParts(bytes + '\0', "x.ifc"), FormatError);
+        EXPECT_THROW(unpackedMesh(bytes.substr(0, i), "x.obj"), FormatError) << i;
+    EXPECT_THROW(unpackedMesh(bytes + '\0', "x.obj"), FormatError);
 }
 
 // Whoever makes assimp do what it wants says what it wants.
 TEST(MeshParts, AreNotTrusted) {
-    MeshPart part = wall();
-    part.mesh.triangles[0][1] = 3;
-    EXPECT_THROW(unpackedParts(packedParts({part}), "x.obj"), FormatError);
-    part = wall();
-    part.mesh.vertices[2][1] = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_THROW(unpackedParts(packedParts({part}), "x.obj"), FormatError);
-    part = wall();
-    part.nodes[0].height = HUGE_VAL;
-    EXPECT_THROW(unpackedParts(packedParts({part}), "x.obj"), FormatError);
-    part = wall();
-    part.nodes.resize(kMaxMeshNodeDepth + 1);
-    EXPECT_THROW(unpackedParts(packedParts({part}), "x.obj"), FormatError);
+    TriangleMesh mesh = wall();
+    mesh.triangles[0][1] = 3;
+    EXPECT_THROW(unpackedMesh(packedMesh(mesh), "x.obj"), FormatError);
+    mesh = wall();
+    mesh.vertices[2][1] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(unpackedMesh(packedMesh(mesh), "x.obj"), FormatError);
     // Counts that would take all memory.
-    const std::string good = packedParts({wall()});
+    const std::string good = packedMesh(wall());
     for (std::size_t at = 0; at + 8 <= good.size(); ++at) {
         std::string bytes = good;
         std::memset(&bytes[at], 0xff, 8);
-        const std::string errors = errorsOf([&] { unpackedParts(bytes, "x.obj"); });
+        const std::string errors = errorsOf([&] { unpackedMesh(bytes, "x.obj"); });
         EXPECT_NE(errors, "") << at;
     }
 }

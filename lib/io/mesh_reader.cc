@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -25,23 +26,13 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/program.h"
+#include "io/ifc/building_process.h"
 #include "io/mesh_file.h"
 #include "io/mesh_parts.h"
 #include "io/side_files.h"
 #include "record/text.h"
 
 namespace ispace {
-
-/// What read-mesh returns.
-enum class MeshShape {
-    Whole,  ///< one part with everything
-    Parts,  ///< one for each node that has triangles
-};
-
-/// Runs read-mesh on a file, hands it the files that the mesh names if they are allowed, and checks
-/// all of its answer. No process is left behind. \throws as loadMesh
-std::vector<MeshPart> readMeshInChild(const std::string& path, const MeshOptions& options,
-                                      MeshShape shape, std::vector<std::string>* side_files);
 
 namespace {
 
@@ -132,26 +123,34 @@ class Child {
     int error_ = 0;
 };
 
+/// What the child has to read.
+struct Task {
+    const std::string& path;
+    RegularFile main;
+    /// See read_mesh.cc: of meshes the upward axis, of buildings the height of the cut or "".
+    const std::string& setting;
+    bool is_building = false;
+    bool side_files_anywhere = false;
+    std::vector<std::string>* side_files = nullptr;
+};
+
 /// One file, one child.
 class Reading {
   public:
-    Reading(const std::string& path, const MeshOptions& options, MeshShape shape,
-            std::vector<std::string>* side_files)
-        : path_(path),
-          options_(options),
-          side_files_(side_files),
-          is_building_(shape == MeshShape::Parts || meshSuffix(path) == ".ifc"),
-          main_(openRegular(path)),
-          bytes_(main_.size),
-          limits_(meshLimits(bytes_, is_building_)),
-          child_(ownProgram(), arguments(shape), main_.file.fd()) {
+    explicit Reading(const Task& task)
+        : path_(task.path),
+          task_(task),
+          bytes_(task.main.size),
+          limits_(meshLimits(bytes_, task.is_building)),
+          child_(ownProgram(), arguments(), task.main.file.fd()) {
         if (child_.startError() != 0)
             failFile(path_, "meshes are read by " + printable(ownProgram()) +
                                 ", which cannot be started: " + ::strerror(child_.startError()));
         give_up_ = Clock::now() + std::chrono::seconds(kPatience * limits_.seconds);
     }
 
-    std::vector<MeshPart> read() {
+    /// The bytes of the answer.
+    std::string read() {
         for (;;) {
             std::array<char, kMeshAnswerHead> head{};
             receive(head.data(), head.size());
@@ -162,7 +161,7 @@ class Reading {
                     reply(text(size, kMaxName));
                     break;
                 case MeshAnswer::Parts:
-                    return parts(size);
+                    return text(size, limits_.memory);  // what it sends it had to hold
                 case MeshAnswer::Error:
                     failFile(path_, printable(text(size, kMaxMessage)));
                 case MeshAnswer::OutOfMemory:
@@ -174,23 +173,15 @@ class Reading {
     }
 
   private:
-    [[nodiscard]] std::vector<std::string> arguments(MeshShape shape) const {
+    [[nodiscard]] std::vector<std::string> arguments() const {
         return {ownProgram(),
                 meshSuffix(path_),
-                options_.up,
-                shape == MeshShape::Whole ? "whole" : "parts",
+                task_.setting,
+                task_.is_building ? "building" : "mesh",
                 std::to_string(::getpid()),
                 std::to_string(bytes_),
                 std::to_string(limits_.memory),
                 std::to_string(limits_.seconds)};
-    }
-
-    std::vector<MeshPart> parts(std::uint64_t size) {
-        // What it sends it had to hold.
-        std::vector<MeshPart> parts = unpackedParts(text(size, limits_.memory), path_);
-        if (parts.empty() || parts.front().mesh.triangles.empty())
-            failFile(path_, "a mesh file without triangles");
-        return parts;
     }
 
     std::string text(std::uint64_t size, std::size_t most) {
@@ -237,11 +228,11 @@ class Reading {
         if (++names_ > kMaxNames)
             failFile(path_, "it names more than " + std::to_string(kMaxNames) + " files");
         if (name.empty() || name.find('\0') != std::string::npos) return send(nullptr);
-        const auto file = openSideFile(path_, name, options_.side_files_anywhere);
+        const auto file = openSideFile(path_, name, task_.side_files_anywhere);
         if (!file) return send(nullptr);
         const std::string side = sideFilePath(path_, name);
         if (handed_.insert(side).second) {
-            if (side_files_ != nullptr) side_files_->push_back(side);
+            if (task_.side_files != nullptr) task_.side_files->push_back(side);
             allow(file->size);
         }
         send(&*file);
@@ -250,7 +241,7 @@ class Reading {
     /// Larger limits, for another file.
     void allow(std::size_t bytes) {
         bytes_ += bytes;
-        limits_ = meshLimits(bytes_, is_building_);
+        limits_ = meshLimits(bytes_, task_.is_building);
         const auto raise = [this](auto resource, std::size_t limit) {
             rlimit limits{};
             if (::prlimit(child_.process(), resource, nullptr, &limits) != 0) return;
@@ -295,6 +286,9 @@ class Reading {
         }
     }
 
+    [[nodiscard]] std::string bad() const {
+        return task_.is_building ? "bad IFC file: " : "bad mesh file: ";
+    }
     [[nodiscard]] std::string forThisSize() const {
         return ", the most for " + formatBytes(bytes_) + "; is the file damaged?";
     }
@@ -303,12 +297,12 @@ class Reading {
         rlimit own{};
         if (::getrlimit(RLIMIT_AS, &own) == 0 && own.rlim_cur < limits_.memory)
             throw std::bad_alloc();
-        failFile(path_, "bad mesh file: it takes more than " + formatBytes(limits_.memory) +
-                            " of memory" + forThisSize());
+        failFile(path_, bad() + "it takes more than " + formatBytes(limits_.memory) + " of memory" +
+                            forThisSize());
     }
     [[noreturn]] void tooMuchTime() {
-        failFile(path_, "bad mesh file: it takes more than " + std::to_string(limits_.seconds) +
-                            " s" + forThisSize());
+        failFile(path_, bad() + "it takes more than " + std::to_string(limits_.seconds) + " s" +
+                            forThisSize());
     }
     /// It died, or broke the protocol.
     [[noreturn]] void noAnswer() {
@@ -316,20 +310,17 @@ class Reading {
         const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
         if (signal == SIGXCPU) tooMuchTime();
         if (signal != 0 && signal != SIGKILL)
-            failFile(path_, std::string("bad mesh file: assimp crashes on it (") +
-                                ::strsignal(signal) +
+            failFile(path_, bad() + (task_.is_building ? "its reader" : "assimp") +
+                                " crashes on it (" + ::strsignal(signal) +
                                 "); is the file damaged, or nested too deep?");
         if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
             failFile(path_, "meshes are read by " + printable(ownProgram()) +
                                 ", which cannot be started; is assimp installed?");
-        failFile(path_, "bad mesh file: what reads it did not finish");
+        failFile(path_, bad() + "what reads it did not finish");
     }
 
     const std::string& path_;
-    const MeshOptions& options_;
-    std::vector<std::string>* side_files_;
-    bool is_building_;
-    RegularFile main_;
+    const Task& task_;
     std::size_t bytes_;  ///< of all files handed over
     MeshLimits limits_;
     Child child_;
@@ -340,22 +331,33 @@ class Reading {
 
 }  // namespace
 
-std::vector<MeshPart> readMeshInChild(const std::string& path, const MeshOptions& options,
-                                      MeshShape shape, std::vector<std::string>* side_files) {
-    if (const std::string what = foreignMesh(path); !what.empty()) failFile(path, "it is " + what);
-    return Reading(path, options, shape, side_files).read();
-}
-
 std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const MeshOptions& options,
                                              std::vector<std::string>* side_files) {
-    std::vector<MeshPart> parts = readMeshInChild(path, options, MeshShape::Whole, side_files);
-    auto mesh = std::make_shared<TriangleMesh>(std::move(parts.front().mesh));
+    if (const std::string what = foreignMesh(path); !what.empty()) failFile(path, "it is " + what);
+    const Task task{path,  openRegular(path),           options.up,
+                    false, options.side_files_anywhere, side_files};
+    auto mesh = std::make_shared<TriangleMesh>(unpackedMesh(Reading(task).read(), path));
+    if (mesh->triangles.empty()) failFile(path, "a mesh file without triangles");
     mesh->digest = meshDigest(*mesh);
     return mesh;
 }
 
-std::vector<MeshPart> loadMeshParts(const std::string& path, const MeshOptions& options) {
-    return readMeshInChild(path, options, MeshShape::Parts, nullptr);
+Building readBuildingInChild(std::string_view bytes, const std::string& name,
+                             std::optional<double> slice) {
+    RegularFile copy{OpenFile(::memfd_create("building", MFD_CLOEXEC)), bytes.size()};
+    for (std::string_view rest = bytes; !rest.empty();) {
+        const ssize_t written = ::write(copy.file.fd(), rest.data(), rest.size());
+        if (written < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
+        rest.remove_prefix(static_cast<std::size_t>(written));
+    }
+    const std::string setting = slice ? formatDouble(*slice) : "";
+    const Task task{name, std::move(copy), setting, true};
+    const std::string answer = Reading(task).read();
+    try {
+        return unpackedBuilding(answer);
+    } catch (const std::runtime_error& error) {
+        failFile(name, std::string("bad IFC file: ") + error.what());
+    }
 }
 
 }  // namespace ispace

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/test_paths.h"
 #include "io/importers.h"
 
 #include <utility>
 
 #include "base/file.h"
 #include "base/number.h"
+#include "io/mesh_parts.h"
 #include "io/test_import.h"
 
 namespace ispace {
 namespace {
-
-const std::string kFlat = testing::sourcePath("tests/data/meshes/flat.ifc");
 
 /// A file of boxes as OBJ.
 class Boxes {
@@ -92,67 +90,40 @@ TEST(MeshWalls, UnitsAndHeights) {
                   "--slice-walls, --units and --up right?\n");
 }
 
-Document readFlat(const ImportOptions& options = {}) {
-    return readIfc(readAll(kFlat), kFlat, options, sceneSchemas());
-}
-
-TEST(Ifc, Known) {
-    EXPECT_TRUE(isIfc(readAll(kFlat)));
-    EXPECT_FALSE(
-        isIfc("ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\n#1=IFCWALL();"));
-    EXPECT_FALSE(isIfc("FILE_SCHEMA(('IFC4'));"));
-    EXPECT_FALSE(isIfc(""));
-}
-
-TEST(Ifc, StoreyWithDoorsAndWindow) {
-    const Document flat = readFlat();
-    // Two rooms, and their share of what lies in the doors and the window of walls of 0.24 m.
-    EXPECT_NEAR(areaOf(flat), 3 * 4 + 2 * 4 + 0.8 * 0.24 + (0.9 + 1.2) * 0.12, 1e-4);
-    EXPECT_EQ(countOf(flat, "door"), 2U);
-    EXPECT_EQ(countOf(flat, "window"), 1U);
-    EXPECT_EQ(notesOf(flat),
-              "cut at a height of 1.70 m\n"
-              "layers of walls: IfcWallStandardCase (2)\n"
-              "layers of doors: IfcDoor (2)\n"
-              "layers of windows: IfcWindow (1)\n"
-              "layers left out: IfcFurnishingElement (1)\n"
-              "kept the largest region, 20.4 m2 in 2 rooms\n"
-              "2 doors, 1 window\n"
-              "left out outside of it: 6 lines and 0 openings\n");
-}
-
-TEST(Ifc, LayersAndHeight) {
-    ImportOptions options;
-    options.wall_layers = {"IfcWall*", "IfcFurnishing*"};
-    EXPECT_NEAR(areaOf(readFlat(options)), 20.444 - 0.36, 1e-4);
-    options.slice_walls = 3.7;  // the storey above has one wall
-    EXPECT_NEAR(areaOf(readFlat(options)), 5.72 * 0.24, 1e-4);
-    options.slice_walls = 30;
-    EXPECT_EQ(errorsOf([&] { readFlat(options); }),
-              kFlat +
-                  ": error: nothing stands at 30.00 m: the building reaches from "
-                  "0.50 m to 6.30 m; say another height with --slice-walls\n");
-}
-
-TEST(Ifc, RefusesWhatIsDamaged) {
-    const std::string whole = readAll(kFlat);
-    const std::string path = ::testing::TempDir() + std::to_string(::getpid()) + "damaged.ifc";
-    const auto error_of = [&](const std::string& bytes) {
-        writeAll(path, bytes);
-        return errorsOf([&] { readIfc(bytes, path, {}, sceneSchemas()); });
-    };
-    EXPECT_EQ(error_of(whole.substr(0, whole.size() / 2)),
-              path + ": error: truncated: the building ends without `END-ISO-10303-21;`\n");
-    // A reference to what is missing crashes assimp 5.2, which is not us.
-    std::string dangling = whole;
-    const std::size_t line = dangling.find("=IFCRECTANGLEPROFILEDEF");
-    dangling[line + 4] = 'X';
-    EXPECT_EQ(error_of(dangling).find(path + ": error: bad "), 0U) << error_of(dangling);
-    const std::string nothing =
-        whole.substr(0, whole.find("DATA;") + 6) + "ENDSEC;\nEND-ISO-10303-21;\n";
-    EXPECT_EQ(error_of(nothing).find(path + ": error: bad mesh file: "), 0U) << error_of(nothing);
-    EXPECT_NE(errorsOf([&] { readIfc(whole, "-", {}, sceneSchemas()); }).find("standard input"),
+TEST(MeshWalls, ACutThatEnclosesNoRoomWarns) {
+    // Three walls of 0.4 m and an open side, wider than a doorway: only the walls are hollow.
+    const std::string path = Boxes()
+                                 .add(0, 0, 0, 6, 0.4, 3)
+                                 .add(0, 0, 0, 0.4, 5, 3)
+                                 .add(5.6, 0, 0, 6, 5, 3)
+                                 .write("-open.obj");
+    EXPECT_NE(warningsOf(readMeshWalls(path, cutAt(1), sceneSchemas())).find("encloses no room"),
               std::string::npos);
+    const std::string shut = Boxes()
+                                 .add(0, 0, 0, 6, 0.4, 3)
+                                 .add(0, 0, 0, 0.4, 5, 3)
+                                 .add(5.6, 0, 0, 6, 5, 3)
+                                 .add(0, 4.6, 0, 6, 5, 3)
+                                 .write("-shut.obj");
+    EXPECT_EQ(warningsOf(readMeshWalls(shut, cutAt(1), sceneSchemas())), "");
+}
+
+TEST(ObjUpAxis, IsYUnlessACommentOrTheExtentSaysOtherwise) {
+    const auto axis_of = [](double x, double y, double z, const std::string& head = "") {
+        return objUpAxis(head + "v 0 0 0\nv " + formatDouble(x) + ' ' + formatDouble(y) + ' ' +
+                             formatDouble(z) + "\nf 1 2 1\n",
+                         1);
+    };
+    EXPECT_EQ(axis_of(4, 3, 4), "y");
+    EXPECT_EQ(axis_of(4, 3, 2.5), "z");    // a room
+    EXPECT_EQ(axis_of(2, 10, 2.5), "z");   // a corridor
+    EXPECT_EQ(axis_of(0.5, 1, 0.5), "y");  // a chair
+    EXPECT_EQ(axis_of(0.3, 4, 0.3), "y");  // a lamp post
+    EXPECT_EQ(axis_of(4, 3, 4, "# ispace: metres, z up, x-y is the floor\n"), "z");
+    EXPECT_EQ(axis_of(4, 3, 2.5, "# Y-up\n"), "y");
+    EXPECT_EQ(objUpAxis("v 0 0 0\nv 4000 3000 2500\n", 0.001), "z");
+    EXPECT_EQ(objUpAxis("v 0 0 0\nv 500 1000 500\n", 0.001), "y");
+    EXPECT_EQ(objUpAxis("", 1), "y");
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "base/error.h"
-#include "env/zone.h"
+#include "env/door_zones.h"
 #include "io/exporters.h"
 #include "raster/nav2_mask.h"
 
@@ -38,7 +38,8 @@ ExportedFiles writeKeepoutMask(const Scene& scene, const std::vector<std::string
                   resolution,
                   {}};
     mask.values.resize(mask.grid.size());
-    for (const std::string& zone : zones) keepOut(readZone(zone, scene.environment), mask);
+    for (const std::string& text : zones)
+        for (const NamedZone& zone : readZones(text, scene.environment)) keepOut(zone, mask);
     Nav2MaskFiles files = nav2MaskFiles(mask, image_name);
     return {std::move(files.map), std::move(files.picture)};
 }

@@ -2,11 +2,12 @@
 #include "io/plan_lines.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <numeric>
-#include <set>
+#include <unordered_map>
 #include <utility>
 
 #include "geom/planar_map.h"
@@ -47,40 +48,84 @@ namespace {
 /// Points are whole micrometres: a smaller reach finds nothing.
 constexpr double kMinSnap = 1e-6;
 
+struct PointHash {
+    std::size_t operator()(Point2 p) const { return mixed(std::hash<double>()(p.x), p.y); }
+    static std::size_t mixed(std::size_t seed, double value) {
+        constexpr std::size_t kOdd = 0x9E3779B97F4A7C15;  // spreads neighbours over all bits
+        return (seed * kOdd ^ std::hash<double>()(value)) * kOdd >> 7U;
+    }
+};
+template <typename T>
+using PointMap = std::unordered_map<Point2, T, PointHash>;
+
 /// Finds the representative of each point: the nearest earlier one within reach, else itself.
 class PointWelder {
   public:
-    explicit PointWelder(double reach) : reach_(reach) {}
+    PointWelder(double reach, std::size_t points) : reach_(reach) {
+        if (reach_ > 0) cells_.reserve(points);
+    }
 
     Point2 standing(Point2 p) {
         if (reach_ == 0) return p;
-        const Cell home = cellOf(p);
-        Point2 best = p;
-        double nearest = reach_;
-        bool found = false;
-        for (std::int64_t x = home.first - 1; x <= home.first + 1; ++x)
-            for (auto it = points_.lower_bound({x, home.second - 1});
-                 it != points_.end() && it->first <= Cell{x, home.second + 1}; ++it) {
-                const double apart = distance(p, it->second);
-                if (found ? apart >= nearest : apart > nearest) continue;
-                best = it->second;
-                nearest = apart;
-                found = true;
-            }
-        if (!found) points_.emplace(home, p);
-        return best;
+        best_ = kNone;
+        nearest_ = reach_;
+        const Cell low = cellOf({p.x - reach_, p.y - reach_}, kWide * reach_);
+        const Cell high = cellOf({p.x + reach_, p.y + reach_}, kWide * reach_);
+        for (std::int64_t x = low.first; x <= high.first; ++x)
+            for (std::int64_t y = low.second; y <= high.second; ++y) look({x, y}, p);
+        if (best_ != kNone) return standing_[best_].at;
+        std::uint32_t& first = cells_.try_emplace(cellOf(p, kWide * reach_), kNone).first->second;
+        standing_.push_back({p, first});
+        first = static_cast<std::uint32_t>(standing_.size() - 1);
+        return p;
     }
 
   private:
     using Cell = std::pair<std::int64_t, std::int64_t>;
+    struct CellHash {
+        std::size_t operator()(const Cell& cell) const {
+            return PointHash::mixed(static_cast<std::size_t>(cell.first),
+                                    static_cast<double>(cell.second));
+        }
+    };
+    /// Points that stand are apart: few are in a cell, which is so many reaches wide.
+    struct Standing {
+        Point2 at;
+        std::uint32_t next;  // in the same cell
+    };
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    static constexpr double kWide = 4;
+
     /// Plans end at 1000 km, and the reach is a micrometre or more: far within the integers.
-    [[nodiscard]] Cell cellOf(Point2 p) const {
-        return {static_cast<std::int64_t>(std::floor(p.x / reach_)),
-                static_cast<std::int64_t>(std::floor(p.y / reach_))};
+    [[nodiscard]] static Cell cellOf(Point2 p, double size) {
+        return {static_cast<std::int64_t>(std::floor(p.x / size)),
+                static_cast<std::int64_t>(std::floor(p.y / size))};
+    }
+
+    /// Of two that are equally near, the one farther left counts, then the lower, then the earlier
+    /// one, in steps of the reach.
+    [[nodiscard]] bool isBefore(std::uint32_t i, std::uint32_t k) const {
+        const Cell a = cellOf(standing_[i].at, reach_), b = cellOf(standing_[k].at, reach_);
+        return a == b ? i < k : a < b;
+    }
+
+    void look(const Cell& cell, Point2 p) {
+        const auto found = cells_.find(cell);
+        if (found == cells_.end()) return;
+        for (std::uint32_t i = found->second; i != kNone; i = standing_[i].next) {
+            const double apart = distance(p, standing_[i].at);
+            if (apart > nearest_ || (apart == nearest_ && best_ != kNone && !isBefore(i, best_)))
+                continue;
+            best_ = i;
+            nearest_ = apart;
+        }
     }
 
     double reach_;
-    std::multimap<Cell, Point2> points_;  // standing points are apart: few in a cell
+    std::unordered_map<Cell, std::uint32_t, CellHash> cells_;  // the latest of each
+    std::vector<Standing> standing_;
+    std::uint32_t best_ = kNone;
+    double nearest_ = 0;
 };
 
 /// Merges equal neighbours and drops paths without extent.
@@ -99,6 +144,7 @@ class EndMover {
   public:
     EndMover(const std::vector<PlanPath>& paths, double reach)
         : pieces_(pathPieces(paths)), search_(pieces_), reach_(reach) {
+        uses_.reserve(pieces_.size());
         for (const PlanPath& path : paths)
             for (const Point2 p : path.points) ++uses_[p];
     }
@@ -123,7 +169,7 @@ class EndMover {
     std::vector<Segment2> pieces_;
     NearSegments search_;
     double reach_;
-    std::map<Point2, int, LexLess> uses_;
+    PointMap<int> uses_;
 };
 
 void moveEnds(std::vector<PlanPath>& paths, double reach) {
@@ -152,8 +198,8 @@ class Joiner {
     explicit Joiner(const std::vector<PlanPath>& paths) : paths_(paths), used_(paths.size()) {
         for (std::size_t i = 0; i < paths.size(); ++i) {
             if (paths[i].closed) continue;
-            ends_[paths[i].points.front()].push_back(i);
-            ends_[paths[i].points.back()].push_back(i);
+            add(paths[i].points.front(), i);
+            add(paths[i].points.back(), i);
         }
     }
 
@@ -186,9 +232,9 @@ class Joiner {
 
     void extend(PlanPath& chain) {
         while (chain.points.front() != chain.points.back()) {
-            const auto& meeting = ends_.at(chain.points.back());
-            if (meeting.size() != 2) return;
-            const std::size_t next = used_[meeting[0]] ? meeting[1] : meeting[0];
+            const Ends& meeting = ends_.at(chain.points.back());
+            if (meeting.count != 2) return;
+            const std::size_t next = meeting.paths[used_[meeting.paths[0]] ? 1 : 0];
             if (used_[next]) return;
             used_[next] = true;
             append(chain, paths_[next]);
@@ -197,7 +243,18 @@ class Joiner {
 
     const std::vector<PlanPath>& paths_;
     std::vector<bool> used_;
-    std::map<Point2, std::vector<std::size_t>, LexLess> ends_;
+    /// The first two paths that end at a point, and the number of all.
+    struct Ends {
+        std::array<std::uint32_t, 2> paths{};
+        std::uint32_t count = 0;
+    };
+    void add(Point2 end, std::size_t path) {
+        Ends& ends = ends_[end];
+        if (ends.count < 2) ends.paths[ends.count] = static_cast<std::uint32_t>(path);
+        ++ends.count;
+    }
+
+    PointMap<Ends> ends_;
 };
 
 }  // namespace
@@ -219,7 +276,9 @@ Box2 boundsOf(std::span<const Segment2> lines) {
 std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap) {
     std::vector<PlanPath> result(paths);
     if (snap < kMinSnap) snap = 0;
-    PointWelder welder(snap);
+    std::size_t points = 0;
+    for (const PlanPath& path : result) points += path.points.size();
+    PointWelder welder(snap, points);
     for (PlanPath& path : result)
         for (Point2& p : path.points) p = welder.standing(wholeMicrometres(p));
     dropRepeatedPoints(result);
@@ -283,8 +342,8 @@ std::vector<PlanPath> withoutRepeats(const std::vector<PlanPath>& paths) {
 }
 
 std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach) {
-    std::map<Point2, int, LexLess> free;  // loose ends, with the line of the file
-    std::map<Point2, int, LexLess> uses;
+    PointMap<int> free;  // loose ends, with the line of the file
+    PointMap<int> uses;
     for (const PlanPath& path : paths)
         for (std::size_t i = 0; i < path.pieceCount(); ++i)
             for (const Point2 p : {path.piece(i).a, path.piece(i).b}) ++uses[p];

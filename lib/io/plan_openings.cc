@@ -18,7 +18,14 @@ namespace {
 
 constexpr double kReach = 0.1;      // frames keep leaves and hinges off the walls
 constexpr double kOnWall = 0.02;    // of lines drawn upon a wall
+constexpr double kNearWall = 0.06;  // of swings that end beside the closed door
 constexpr double kNarrowest = 0.4;  // metres; narrower ones are frames and jambs
+
+/// Short lines across a wall at the ends of an opening, where a drawing has them.
+constexpr double kShortestJamb = 0.03, kLongestJamb = 0.25;  // metres
+constexpr double kAcross = 0.2;                              // cosine of the angle to the wall
+constexpr double kWidestDoorway = 1.3;
+constexpr std::size_t kMinMarkedDoors = 3;
 
 /// Every pair is compared: more are not doors.
 constexpr std::size_t kMaxOpenSwings = 4000;
@@ -51,12 +58,16 @@ class Walls {
         return corner ? corner : foot;
     }
 
-    /// The wall piece on which both ends lie.
-    [[nodiscard]] std::optional<std::size_t> wallUnder(const Segment2& line) const {
-        for (const std::size_t i : search_.near(line.a, kOnWall))
-            if (distance(line.a, walls_[i]) <= kOnWall && distance(line.b, walls_[i]) <= kOnWall)
-                return i;
-        return std::nullopt;
+    /// The nearest wall piece on which both ends lie.
+    [[nodiscard]] std::optional<std::size_t> wallUnder(const Segment2& line, double reach) const {
+        std::optional<std::size_t> nearest;
+        for (const std::size_t i : search_.near(line.a, reach)) {
+            const double off = std::max(distance(line.a, walls_[i]), distance(line.b, walls_[i]));
+            if (nearest ? off >= reach : off > reach) continue;
+            nearest = i;
+            reach = off;
+        }
+        return nearest;
     }
 
     [[nodiscard]] bool isOnWall(Point2 p) const {
@@ -66,6 +77,22 @@ class Walls {
     }
 
     [[nodiscard]] const Segment2& operator[](std::size_t i) const { return walls_[i]; }
+    [[nodiscard]] std::size_t size() const { return walls_.size(); }
+
+    /// The wall piece that a jamb crosses in its middle; none if the piece is no jamb.
+    [[nodiscard]] std::optional<std::size_t> wallAcross(std::size_t jamb) const {
+        const auto [a, b] = walls_[jamb];
+        const double length_of_it = distance(a, b);
+        if (length_of_it < kShortestJamb || length_of_it > kLongestJamb) return std::nullopt;
+        const Point2 middle = a + 0.5 * (b - a);
+        for (const std::size_t i : search_.near(middle, kOnWall)) {
+            const Vec2 along = walls_[i].b - walls_[i].a;
+            if (length(along) > kLongestJamb && distance(middle, walls_[i]) <= kOnWall &&
+                std::abs(dot(along, b - a)) <= kAcross * length(along) * length_of_it)
+                return i;
+        }
+        return std::nullopt;
+    }
 
   private:
     std::span<const Segment2> walls_;
@@ -76,6 +103,7 @@ class Walls {
 struct Swing {
     PlanChord chord;
     int drawn_on = 0;
+    bool is_guess = false;
 };
 
 class Finder {
@@ -87,7 +115,7 @@ class Finder {
         open_swings_.clear();
         for (const PlanShape& shape : symbols)
             for (const PlanChord& chord : shape.chords)
-                if (chord.center) addSwing({chord, shape.path.line});
+                if (chord.center) addSwing({chord, shape.path.line, shape.is_guess});
         joinDoubleDoors();
         for (const PlanShape& shape : symbols)
             for (const PlanChord& chord : shape.chords)
@@ -96,6 +124,41 @@ class Finder {
     }
     PlanOpenings take() { return std::move(found_); }
 
+    /// Where jambs mark the ends of three swings or more, two others on one wall are a doorway.
+    void findJambs() {
+        std::map<std::size_t, std::vector<Point2>> free;  // by wall
+        for (std::size_t i = 0; i < walls_.size(); ++i)
+            if (const auto wall = walls_.wallAcross(i))
+                free[*wall].push_back(walls_[i].a + 0.5 * (walls_[i].b - walls_[i].a));
+        std::size_t marked = 0;
+        for (const PlanOpening& opening : found_.openings) {
+            const auto jambs = opening.wall ? free.find(*opening.wall) : free.end();
+            if (jambs == free.end()) continue;
+            const auto [a, b] = opening.line;
+            const std::size_t used = std::erase_if(jambs->second, [&, a = a, b = b](Point2 p) {
+                return isNear(p, a) || isNear(p, b);
+            });
+            marked += used >= 2 ? 1 : 0;
+        }
+        if (marked < kMinMarkedDoors) return;
+        for (auto& [wall, jambs] : free) {
+            const Segment2& line = walls_[wall];
+            std::sort(jambs.begin(), jambs.end(), [&](Point2 p, Point2 q) {
+                return dot(p - line.a, line.b - line.a) < dot(q - line.a, line.b - line.a);
+            });
+            for (std::size_t i = 0; i + 1 < jambs.size(); ++i) {
+                const double width = distance(jambs[i], jambs[i + 1]);
+                if (width < kNarrowest || width > kWidestDoorway) continue;
+                keep({{wholeMicrometres(nearestPoint(line, jambs[i])),
+                       wholeMicrometres(nearestPoint(line, jambs[i + 1]))},
+                      wall,
+                      false,
+                      0});
+                ++i;
+            }
+        }
+    }
+
   private:
     /// The opening that a line means, and how far its ends are off the walls.
     struct Candidate {
@@ -103,9 +166,10 @@ class Finder {
         double apart = 0;
     };
 
-    [[nodiscard]] std::optional<Candidate> candidate(const Segment2& line, int drawn_on) const {
+    [[nodiscard]] std::optional<Candidate> candidate(const Segment2& line, int drawn_on,
+                                                     double on_wall = kOnWall) const {
         if (distance(line.a, line.b) < kNarrowest) return std::nullopt;
-        if (const auto wall = walls_.wallUnder(line)) {
+        if (const auto wall = walls_.wallUnder(line, on_wall)) {
             const auto foot = [&](Point2 p) {
                 return wholeMicrometres(nearestPoint(walls_[*wall], p));
             };
@@ -151,8 +215,13 @@ class Finder {
     void addSwing(const Swing& swing) {
         const Point2 hinge = *swing.chord.center;
         const auto [a, b] = swing.chord.line;
-        const auto first = candidate({hinge, a}, swing.drawn_on);
-        const auto second = candidate({hinge, b}, swing.drawn_on);
+        const double on_wall = swing.is_guess ? kNearWall : kOnWall;
+        const auto first = candidate({hinge, a}, swing.drawn_on, on_wall);
+        auto second = candidate({hinge, b}, swing.drawn_on, on_wall);
+        if (swing.is_guess) {
+            if (first && second && first->opening.wall && second->opening.wall) return;
+            second.reset();
+        }
         if (!first && !second) {
             open_swings_.push_back(swing);
             return;
@@ -165,7 +234,7 @@ class Finder {
     /// Arcs that end off the walls: two that meet are a double door.
     void joinDoubleDoors() {
         if (open_swings_.size() > kMaxOpenSwings) {
-            found_.unused += open_swings_.size();
+            for (const Swing& swing : open_swings_) found_.unused += swing.is_guess ? 0 : 1;
             return;
         }
         std::vector<bool> used(open_swings_.size());
@@ -173,7 +242,7 @@ class Finder {
             for (std::size_t k = i + 1; k < open_swings_.size() && !used[i]; ++k)
                 if (!used[k] && joinLeaves(open_swings_[i], open_swings_[k]))
                     used[i] = used[k] = true;
-            if (!used[i]) ++found_.unused;
+            if (!used[i] && !open_swings_[i].is_guess) ++found_.unused;
         }
     }
 
@@ -233,6 +302,9 @@ PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const Plan
                           std::span<const Segment2> walls) {
     Finder finder(walls);
     finder.find(doors, false);
+    if (std::any_of(doors.begin(), doors.end(),
+                    [](const PlanShape& door) { return door.is_guess; }))
+        finder.findJambs();
     finder.find(windows, true);
     return finder.take();
 }

@@ -93,7 +93,24 @@ double distanceTo(std::span<const Segment2> lines, Point2 p) {
     return nearest;
 }
 
-/// A point of the face away from its edges and lines within it.
+/// The part of `line` that lies on `other`, if it is longer than a point.
+std::optional<Segment2> commonPart(const Segment2& line, const Segment2& other) {
+    const Vec2 along = line.b - line.a;
+    if (line.a == line.b) return std::nullopt;
+    const auto share = [&](Point2 p) {
+        return std::clamp(dot(p - line.a, along) / dot(along, along), 0.0, 1.0);
+    };
+    const auto [first, last] = std::minmax({share(other.a), share(other.b)});
+    const auto at = [&](double s) { return s == 1 ? line.b : line.a + s * along; };
+    const Segment2 part{at(first), at(last)};
+    if (distance(part.a, part.b) <= kOnLine || distance(part.a, other) > kOnLine ||
+        distance(part.b, other) > kOnLine)
+        return std::nullopt;
+    return part;
+}
+
+}  // namespace
+
 Point2 clearPoint(const Region& face, std::span<const Segment2> lines) {
     Point2 best = interiorPoint(face);
     double best_clear = distanceTo(lines, best);
@@ -112,24 +129,6 @@ Point2 clearPoint(const Region& face, std::span<const Segment2> lines) {
     }
     return best;
 }
-
-/// The part of `line` that lies on `other`, if it is longer than a point.
-std::optional<Segment2> commonPart(const Segment2& line, const Segment2& other) {
-    const Vec2 along = line.b - line.a;
-    if (line.a == line.b) return std::nullopt;
-    const auto share = [&](Point2 p) {
-        return std::clamp(dot(p - line.a, along) / dot(along, along), 0.0, 1.0);
-    };
-    const auto [first, last] = std::minmax({share(other.a), share(other.b)});
-    const auto at = [&](double s) { return s == 1 ? line.b : line.a + s * along; };
-    const Segment2 part{at(first), at(last)};
-    if (distance(part.a, part.b) <= kOnLine || distance(part.a, other) > kOnLine ||
-        distance(part.b, other) > kOnLine)
-        return std::nullopt;
-    return part;
-}
-
-}  // namespace
 
 double PlanRegion::area() const {
     return std::accumulate(rooms.begin(), rooms.end(), 0.0,

@@ -41,6 +41,9 @@ constexpr std::size_t kMaxGroups = 500;
 
 constexpr std::size_t kMaxPlaces = 6;  // in one message
 
+/// Metres from the edge of the plan at which a room touches it.
+constexpr double kAtBorder = 1e-3;
+
 double areaOf(const Box2& box) { return box.width() * box.depth(); }
 
 std::string sizeText(const Box2& box) {
@@ -63,10 +66,9 @@ class RoomChooser {
         if (is_odd_)
             out_.warn("the plan is " + lengthText(extent) + " m wide: is its unit right?" +
                       (plan_.unit_hint ? plan_.unit_hint(extent) : ""));
-        const double width = options_.close_gaps.value_or(0);
-        Attempt best = attempt(width, waysUpTo(width));
-        if (!options_.close_gaps && isUncertain(best)) best = closed(std::move(best));
+        Attempt best = chosen();
         PlanRooms rooms;
+        if (out_.wantsRooms()) handOver(best);
         rooms.writes_inside = options_.known_inside.empty() || !options_.inside.empty();
         if (best.groups.empty()) {
             out_.note("nothing is enclosed: all lines are kept");
@@ -79,6 +81,7 @@ class RoomChooser {
             const auto closing = best.faces.closedBy(rooms.regions.back());
             rooms.closing.insert(rooms.closing.end(), closing.begin(), closing.end());
         }
+        for (const Segment2& gap : rooms.closing) out_.closedGap(gap);
         report(best, rooms);
         if (options_.reachable) rooms.reached = reach(rooms, *options_.reachable);
         return rooms;
@@ -94,6 +97,56 @@ class RoomChooser {
         double area = 0;
         bool is_whole = false;  ///< every requested point is in a room
     };
+
+    /// Points choose among the rooms that there are without them; only if one of these lies in
+    /// none, gaps are closed for the points' sake.
+    Attempt chosen() {
+        const std::vector<Point2> points = std::exchange(points_, {});
+        Attempt best = likeliest();
+        if (points.empty()) return best;
+        points_ = points;
+        wider_.reset();
+        best.groups.clear();
+        take(best);
+        return best.is_whole ? std::move(best) : likeliest();
+    }
+
+    Attempt likeliest() {
+        const double width = options_.close_gaps.value_or(0);
+        Attempt best = attempt(width, waysUpTo(width));
+        if (!options_.close_gaps && isUncertain(best)) best = closed(std::move(best));
+        return best;
+    }
+
+    /// Hands over the rooms of the plan, besides those kept only the largest.
+    void handOver(const Attempt& taken) {
+        const Box2 all = boundsOf(plan_.lines);
+        const NearSegments walls(lines_);
+        std::size_t others = 0;
+        for (const PlanFaces::Group& group : taken.faces.groups()) {
+            const bool is_kept =
+                std::find(taken.groups.begin(), taken.groups.end(), &group) != taken.groups.end();
+            if (!is_kept && (others == FoundRooms::kMost || group.area < kMinRoom ||
+                             !isRoom(taken.faces, group)))
+                continue;
+            others += is_kept ? 0 : 1;
+            FoundRoom room{group.area, {}, {}, false, is_kept, {}};
+            Box2 box;
+            for (const std::size_t i : group.faces) {
+                room.floor.push_back(taken.faces.faces()[i]);
+                box.add(bounds(room.floor.back().outline).low);
+                box.add(bounds(room.floor.back().outline).high);
+            }
+            std::vector<Segment2> near;
+            for (const std::size_t i : walls.near(bounds(room.floor.front().outline), 0))
+                near.push_back(lines_[i]);
+            room.inside = shortPointIn(room.floor.front(), clearPoint(room.floor.front(), near));
+            room.touches_border =
+                std::min({box.low.x - all.low.x, box.low.y - all.low.y, all.high.x - box.high.x,
+                          all.high.y - box.high.y}) <= kAtBorder;
+            out_.room(std::move(room));
+        }
+    }
 
     [[nodiscard]] bool isRoom(const PlanFaces& faces, const PlanFaces::Group& group) const {
         if (faces.isHollow(group)) return false;
@@ -132,9 +185,14 @@ class RoomChooser {
 
     [[nodiscard]] Attempt attemptOf(double width, std::size_t closings, PlanFaces faces) const {
         Attempt attempt{width, closings, std::move(faces)};
-        takeGroups(attempt);
-        for (const PlanFaces::Group* group : attempt.groups) attempt.area += group->area;
+        take(attempt);
         return attempt;
+    }
+
+    void take(Attempt& attempt) const {
+        takeGroups(attempt);
+        attempt.area = 0;
+        for (const PlanFaces::Group* group : attempt.groups) attempt.area += group->area;
     }
 
     void takeGroups(Attempt& attempt) const {

@@ -72,6 +72,9 @@ class PlanFaces {
     double thinnest_ = 0;  // radius of the disc that fits into a room
 };
 
+/// A point of the face away from its edges and from lines within it.
+Point2 clearPoint(const Region& face, std::span<const Segment2> lines);
+
 /// Whether each line bounds a room of the regions, or lies in one with its middle or an end.
 std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const Segment2> lines);
 
@@ -122,8 +125,9 @@ struct PlanRooms {
 /// corners of walls drawn as two lines, are closed where they separate a room from the outside.
 /// Without it they are closed as needed: up to 0.2 m if that encloses twice as much, or the home,
 /// and up to 2.5 m if nothing is enclosed otherwise; the smallest width tried wins that encloses
-/// half of the best. Warnings tell closed gaps, rooms that are small in their drawing, and drawings
-/// of less than 2 m or more than 2 km.
+/// half of the best. Points choose among the rooms that are enclosed without them; only if one lies
+/// in none of these, gaps are closed for its sake. Warnings tell closed gaps, rooms that are small
+/// in their drawing, and drawings of less than 2 m or more than 2 km.
 PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out);
 
 /// Adds lines that close gaps as fences, and the inside points; with PlanRooms::reached only its

@@ -186,20 +186,17 @@ std::string readImage(const MapHeader& header, const std::string& path, const st
     }
 }
 
-/// Warns where the thresholds turn much of the picture from unknown to free.
-void warnOfUnknown(const GreyPicture& image, const OccupancyRule& rule, ImportRecords& out) {
-    if (const std::size_t count = unknownCountedFree(image, rule); count > 0)
-        out.warn(countText(count, "pixel") +
-                 " of shade 205, which map_server writes for unknown, count as free because "
-                 "`free_thresh` is " +
-                 formatDouble(rule.free_thresh) + "; with 0.196 they are unknown");
-}
-
-CellMap readCells(const MapHeader& header, const std::string& path, const std::string& name,
-                  ImportRecords& out) {
+CellMap readCells(MapHeader header, const std::string& path, const std::string& name,
+                  bool unknown_is_free, ImportRecords& out) {
     const GreyPicture image = parsePicture(readImage(header, path, name), path);
     checkCellMap(image.width, image.height, header.resolution, path);
-    warnOfUnknown(image, header.rule, out);
+    header.rule.unknown_is_free = unknown_is_free;
+    if (const std::size_t count = unknownCountedFree(image, header.rule);
+        count > 0 && !unknown_is_free)
+        out.warn(countText(count, "pixel") +
+                 " of shade 205, which map_server writes for unknown, are unknown, though "
+                 "`free_thresh` is " +
+                 formatDouble(header.rule.free_thresh) + "; --unknown free takes them as free");
     return {freeCells(image, header.rule), occupiedCells(image, header.rule), header.resolution,
             header.map_from_grid};
 }
@@ -225,7 +222,7 @@ Document readRosMap(std::string_view yaml, const std::string& name, const Import
     const std::string path = sideFilePath(name, header.image);
     ImportRecords out(schemas, name, options);
     out.source(path);
-    const CellMap map = readCells(header, path, name, out);
+    const CellMap map = readCells(header, path, name, options.unknown == "free", out);
     writeCellMap(map, {path, "check `negate` and `free_thresh` of the map"}, options, out);
     return out.take();
 }

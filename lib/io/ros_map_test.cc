@@ -127,14 +127,28 @@ TEST_F(RosMap, PngIsReadAsPgm) {
     EXPECT_TRUE(png.notes.empty());
 }
 
-TEST_F(RosMap, ShadesOfUnknownThatCountAsFreeAreSaid) {
+TEST_F(RosMap, ShadesOfUnknownStayUnknownWhateverTheThreshold) {
     writeImage({"..  ", "..  "});
-    const Document lenient = read(kHeader + "free_thresh: 0.25\n");
-    ASSERT_EQ(lenient.warnings.size(), 1U);
-    EXPECT_EQ(lenient.warnings[0].message,
-              "4 pixels of shade 205, which map_server writes for unknown, count as free because "
-              "`free_thresh` is 0.25; with 0.196 they are unknown");
-    EXPECT_TRUE(read(kHeader + "free_thresh: 0.196\n").notes.empty());
+    const std::string nav2 = kHeader + "free_thresh: 0.25\n";
+    const Document document = read(nav2);
+    EXPECT_DOUBLE_EQ(environmentOf(document).indoor().area(), 4 * 0.25);
+    const auto told = [](const Document& map) {
+        std::string shades;
+        for (const Diagnostic& warning : map.warnings)
+            if (warning.message.find("shade 205") != std::string::npos) shades += warning.message;
+        return shades;
+    };
+    EXPECT_EQ(told(document),
+              "4 pixels of shade 205, which map_server writes for unknown, are unknown, though "
+              "`free_thresh` is 0.25; --unknown free takes them as free");
+    ImportOptions lenient;
+    lenient.unknown = "free";
+    for (const std::string& yaml : {nav2, kHeader}) {
+        const Document all = read(yaml, lenient);
+        EXPECT_DOUBLE_EQ(environmentOf(all).indoor().area(), 8 * 0.25);
+        EXPECT_EQ(told(all), "");
+    }
+    EXPECT_EQ(told(read(kHeader + "free_thresh: 0.196\n")), "");
     writeImage({".. .", ".. ."});
     EXPECT_EQ(read(kHeader).notes,
               std::vector<std::string>{"2 free cells apart from the room dropped; the room has 4"});

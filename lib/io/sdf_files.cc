@@ -30,13 +30,20 @@ std::string joined(const std::string& folder, std::string_view path) {
     return (fs::path(folder) / path).lexically_normal().string();
 }
 
-/// The name of a model on Fuel: what stands behind `/models/`.
-std::string_view fuelName(std::string_view uri) {
+/// What stands behind the last `/models/`: the path below a folder of models.
+std::string_view behindModels(std::string_view uri) {
     constexpr std::string_view kModels = "/models/";
-    const std::size_t at = uri.find(kModels);
-    if (at == std::string_view::npos) return {};
-    const std::string_view rest = uri.substr(at + kModels.size());
-    return rest.substr(0, rest.find('/'));
+    const std::size_t at = uri.rfind(kModels);
+    return at == std::string_view::npos ? std::string_view() : uri.substr(at + kModels.size());
+}
+
+/// The same of a model on Fuel, without its version: NAME/2, or NAME/tip/files/PATH.
+std::string fuelPath(std::string_view uri) {
+    const std::string_view path = behindModels(uri), name = path.substr(0, path.find('/'));
+    constexpr std::string_view kFiles = "/files/";
+    const std::size_t files = path.find(kFiles);
+    return std::string(name) + '/' +
+           std::string(files == std::string_view::npos ? "" : path.substr(files + kFiles.size()));
 }
 
 std::string withBlanks(std::string_view name) {
@@ -54,7 +61,8 @@ std::string_view uriOf(pugi::xml_node include) { return trimmed(include.child_va
 
 /// Gazebo's sun and ground plane, from its own models or from Fuel.
 bool isSurrounding(std::string_view uri) {
-    const std::string_view last = isUrl(uri) ? fuelName(uri) : uri.substr(uri.rfind('/') + 1);
+    const std::string_view path = isUrl(uri) ? behindModels(uri) : uri.substr(uri.rfind('/') + 1);
+    const std::string_view last = path.substr(0, path.find('/'));
     std::string name = withBlanks(last);
     std::transform(name.begin(), name.end(), name.begin(), [](char c) {
         return c == ' ' ? '_' : c >= 'A' && c <= 'Z' ? char(c + 32) : c;
@@ -74,31 +82,47 @@ std::pair<int, int> versionOf(pugi::xml_node node) {
 
 }  // namespace
 
-std::vector<std::string> sdfPaths(std::string_view uri, const std::string& folder) {
-    if (isUrl(uri)) {
-        const std::string name = withBlanks(fuelName(uri));
-        if (name.empty()) return {};
-        return {name, joined("models", name)};
-    }
+std::vector<std::string> SdfFiles::pathsOf(pugi::xml_node node, std::string_view uri) const {
     std::vector<std::string> paths;
+    const auto add_below_roots = [&](std::string_view path) {
+        if (path.empty() || path.starts_with('/')) return;
+        for (const std::string& root : roots_) paths.push_back(joined(root, path));
+    };
+    if (isUrl(uri)) {
+        add_below_roots(withBlanks(fuelPath(uri)));
+        return paths;
+    }
     std::string_view path = uri;
     for (const std::string_view scheme : {"model://", "package://", "file://"})
         if (uri.starts_with(scheme)) path = uri.substr(scheme.size());
     if (path.empty()) return {};
-    if (path.size() == uri.size() || uri.starts_with("file://")) {
-        paths.push_back(joined(folder, path));
-    } else {
-        paths = {std::string(path), joined("models", path)};
+    const std::string unescaped = withBlanks(path);
+    const bool has_scheme = path.size() != uri.size();
+    path = unescaped;
+    const std::string& folder = fileOf(node).folder;
+    if (!has_scheme || uri.starts_with("file://")) paths.push_back(joined(folder, path));
+    if (has_scheme) {
+        add_below_roots(path);
         if (!folder.empty()) paths.push_back(joined(joined(folder, ".."), path));
     }
-    // The folder of a model may be that of the world.
-    if (const std::size_t slash = path.find('/'); slash != std::string_view::npos)
+    // The name may be that of the world's own folder, or of the package that both lie in.
+    if (const std::size_t slash = path.find('/'); slash != std::string_view::npos && slash > 0) {
         paths.emplace_back(path.substr(slash + 1));
+        paths.push_back(joined("..", path.substr(slash + 1)));
+    }
+    add_below_roots(behindModels(path));  // where they lay on another computer
     return paths;
 }
 
-SdfFiles::SdfFiles(std::string_view bytes, std::string name) {
+SdfFiles::SdfFiles(std::string_view bytes, std::string name,
+                   std::span<const std::string> model_folders)
+    : roots_{"", "models", "../models"} {
     std::error_code ignored;
+    const fs::path home = fs::absolute(name == "-" ? "." : fs::path(name).parent_path(), ignored);
+    for (const std::string& folder : model_folders)
+        if (std::string root = fs::proximate(fs::absolute(folder), home, ignored).string();
+            !ignored)
+            roots_.push_back(std::move(root));
     std::string identity = fs::weakly_canonical(name, ignored).string();
     files_.push_back(std::unique_ptr<File>(
         new File{XmlFile(bytes, std::move(name)), "", std::move(identity), nullptr}));
@@ -111,10 +135,21 @@ const SdfFiles::File& SdfFiles::fileOf(pugi::xml_node node) const {
 
 bool SdfFiles::isThere(const std::string& path) const {
     try {
-        return openSideFile(name(), path, false).has_value();
+        return openSideFile(name(), path, false, roots_).has_value();
     } catch (const FormatError&) {
         return false;  // elsewhere, or no file that can be read
     }
+}
+
+std::optional<std::string> SdfFiles::fileNamed(pugi::xml_node node, std::string_view uri) const {
+    for (const std::string& path : pathsOf(node, uri)) {
+        if (!isThere(path)) continue;
+        if (!fs::path(path).is_absolute()) return path;
+        std::error_code ignored;
+        return fs::proximate(path, fs::absolute(sideFilePath(name(), "."), ignored), ignored)
+            .string();
+    }
+    return std::nullopt;
 }
 
 std::string SdfFiles::read(pugi::xml_node user, const std::string& path) {
@@ -149,7 +184,7 @@ std::optional<std::string> SdfFiles::modelFile(pugi::xml_node include, const std
 }
 
 std::optional<std::string> SdfFiles::includedFile(pugi::xml_node include) {
-    for (const std::string& path : sdfPaths(uriOf(include), folderOf(include)))
+    for (const std::string& path : pathsOf(include, uriOf(include)))
         if (std::optional<std::string> file = modelFile(include, path)) return file;
     return std::nullopt;
 }
@@ -211,8 +246,9 @@ void SdfFiles::loadIncludes(pugi::xml_node parent) {
     if (missing.size() > kMostNamed)
         names += " and " + std::to_string(missing.size() - kMostNamed) + " more";
     fail(first, names + (missing.size() == 1 ? " is" : " are") +
-                    " not in the folder of the world or below: put the folder of each model there, "
-                    "write the world with everything in it (`gz sdf -p`), or delete the `include`");
+                    " not in the world's folder, in ../models or below: say with --models DIR (or "
+                    "GAZEBO_MODEL_PATH) which folder holds the models, write the world with "
+                    "everything in it (`gz sdf -p`), or delete the `include`");
 }
 
 pugi::xml_node SdfFiles::included(pugi::xml_node include) const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <pugixml.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -14,22 +15,21 @@
 
 namespace ispace {
 
-/// What a URI in an SDF file may mean: paths relative to the folder of the world, the likeliest
-/// first. The name in `model://NAME/…` and `package://NAME/…` is that of a folder beside the world,
-/// in `models` there, or beside the model that says so; or the world's own folder. Other paths are
-/// relative to the file that holds them. Of a model on Fuel only the name counts: nothing is
-/// fetched. \param folder of the file that holds the URI, relative to the world's; "": the same
-std::vector<std::string> sdfPaths(std::string_view uri, const std::string& folder);
-
-/// A world in SDF and the models that it includes, which lie in its folder or below, links
-/// followed.
+/// A world in SDF and the files that it names: models and meshes. They lie, links followed, below
+/// one of its folders of models: its own one, `models` there and beside it, and those given.
+///
+/// The name in `model://NAME/…` and `package://NAME/…` is that of a folder in one of these, in this
+/// order, or beside the model that says so; or the world's own folder or package. `file://` leads
+/// to a file by its path, relative to the file that holds it or to one of the folders. Other paths
+/// are relative to the file that holds them. Of a model on Fuel only the name counts: nothing is
+/// fetched.
 class SdfFiles {
   public:
     /// Of all models included; each is parsed anew wherever it is included.
     static constexpr std::size_t kMaxIncludes = 10'000, kMaxBytes = 64'000'000;
 
-    /// \throws FormatError with the line: bad XML
-    SdfFiles(std::string_view bytes, std::string name);
+    /// \param model_folders relative to the current one \throws FormatError with the line: bad XML
+    SdfFiles(std::string_view bytes, std::string name, std::span<const std::string> model_folders);
 
     [[nodiscard]] pugi::xml_node root() const { return files_.front()->xml.root(); }
 
@@ -43,10 +43,9 @@ class SdfFiles {
 
     /// Files read besides the world, each once, as opened.
     [[nodiscard]] const std::vector<std::string>& sources() const { return sources_; }
-    /// The folder of the file that a node is in, relative to that of the world.
-    [[nodiscard]] const std::string& folderOf(pugi::xml_node node) const {
-        return fileOf(node).folder;
-    }
+    /// The file that a node names, relative to the folder of the world; nothing if it is not there.
+    [[nodiscard]] std::optional<std::string> fileNamed(pugi::xml_node node,
+                                                       std::string_view uri) const;
     [[nodiscard]] int lineOf(pugi::xml_node node) const { return fileOf(node).xml.lineOf(node); }
     /// \throws FormatError at the node's line of its file
     [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const {
@@ -65,12 +64,13 @@ class SdfFiles {
   private:
     struct File {
         XmlFile xml;
-        std::string folder;
+        std::string folder;    // relative to that of the world
         std::string identity;  // its path without links and detours
         const File* includer = nullptr;
     };
     [[nodiscard]] const File& fileOf(pugi::xml_node node) const;
-    /// Paths relative to the folder of the world, of what is there.
+    /// Paths relative to the folder of the world that a URI may mean, the likeliest first.
+    [[nodiscard]] std::vector<std::string> pathsOf(pugi::xml_node node, std::string_view uri) const;
     [[nodiscard]] bool isThere(const std::string& path) const;
     std::optional<std::string> modelFile(pugi::xml_node include, const std::string& path);
     std::optional<std::string> includedFile(pugi::xml_node include);
@@ -81,6 +81,7 @@ class SdfFiles {
                     const std::string& identity) const;
     [[nodiscard]] const std::string& name() const { return files_.front()->xml.name(); }
 
+    std::vector<std::string> roots_;            // folders of models, relative to the world's
     std::vector<std::unique_ptr<File>> files_;  // the world first
     std::unordered_map<std::size_t, const File*> by_document_;
     std::unordered_map<std::size_t, pugi::xml_node> included_;  // by the include

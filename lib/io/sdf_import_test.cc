@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "base/test_folder.h"
 #include "io/importers.h"
 #include "io/test_import.h"
 #include "layout/schemas.h"
@@ -147,6 +152,76 @@ TEST(SdfImport, FilesOutsideOfItsFolderAreNotOpened) {
     ASSERT_EQ(document.warnings.size(), 1U);
     EXPECT_NE(document.warnings.front().message.find("/etc/../etc/mesh.stl (1)"),
               std::string::npos);
+}
+
+/// A world of one model whose walls are a mesh: a ring of walls 0.2 m thick and 2 m high around
+/// 6 m x 4 m, with a doorway of the given width in the south.
+class SdfMeshWalls : public ::testing::Test {
+  protected:
+    void writeWalls(double door) const {
+        const double left = -door / 2, right = door / 2;
+        const std::array<std::array<double, 4>, 5> boxes{{{-3.2, -2.2, left, -2},
+                                                          {right, -2.2, 3.2, -2},
+                                                          {-3.2, 2, 3.2, 2.2},
+                                                          {-3.2, -2.2, -3, 2.2},
+                                                          {3, -2.2, 3.2, 2.2}}};
+        std::string obj;
+        int first = 1;
+        for (const auto& [x0, y0, x1, y1] : boxes) {
+            for (const double z : {0.0, 2.0})
+                for (const auto& [x, y] : {std::pair{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}})
+                    obj += "v " + formatDouble(x) + ' ' + formatDouble(y) + ' ' + formatDouble(z) +
+                           '\n';
+            for (const char* face : {"0321", "4567", "0154", "1265", "2376", "3047"}) {
+                obj += 'f';
+                for (int i = 0; i < 4; ++i) obj += ' ' + std::to_string(first + face[i] - '0');
+                obj += '\n';
+            }
+            first += 8;
+        }
+        writeAll((folder_ / "walls.obj").string(), obj);
+    }
+    [[nodiscard]] Document read(const std::string& more = "",
+                                const ImportOptions& options = {}) const {
+        const std::string mesh =
+            "<model name='house'><link name='l'><collision name='c'><geometry><mesh><uri>"
+            "walls.obj</uri></mesh></geometry></collision></link></model>";
+        return readSdf(worldOf(mesh + more), (folder_ / "w.sdf").string(), options, sceneSchemas());
+    }
+
+    const testing::TestFolder folder_;
+};
+
+TEST_F(SdfMeshWalls, AreCutWhereBoxesEncloseNoRoom) {
+    writeWalls(0.9);
+    const Document document = read(boxModel("crate", "1 1 0.5 0 0 0", "0.8 0.8 1"));
+    EXPECT_NEAR(environmentOf(document).indoor().area(), 24.09, 0.1);  // the doorway is closed
+    EXPECT_EQ(countOf(document, "mesh"), 0U);
+    EXPECT_EQ(countOf(document, "cube"), 1U);
+    EXPECT_NE(warningsOf(document).find("boxes and polylines enclose no room: 1 mesh cut at a "
+                                        "height of 0.3 m into walls; --slice-walls sets the"),
+              std::string::npos)
+        << warningsOf(document);
+    const Record& wall = document.records.front();
+    EXPECT_EQ(wall.text("id"), "house");
+    EXPECT_EQ(wall.number("height"), 2);
+}
+
+TEST_F(SdfMeshWalls, StayMeshesWhereBoxesDo) {
+    writeWalls(0.9);
+    const std::string room =
+        boxModel("s", "0 -5 1 0 0 0", "10 0.2 2") + boxModel("n", "0 5 1 0 0 0", "10 0.2 2") +
+        boxModel("w", "-5 0 1 0 0 0", "0.2 10 2") + boxModel("e", "5 0 1 0 0 0", "0.2 10 2");
+    EXPECT_EQ(countOf(read(room), "mesh"), 1U);
+    // Unless the user says otherwise.
+    ImportOptions cut;
+    cut.slice_walls = 1;
+    const Document document = read(room, cut);
+    EXPECT_EQ(countOf(document, "mesh"), 0U);
+    EXPECT_GT(countOf(document, "fence"), 0U);
+    EXPECT_NE(notesOf(document).find("1 mesh cut at a height of 1 m"), std::string::npos);
+    cut.slice_walls = 3;  // above all of them
+    EXPECT_NE(notesOf(read(room, cut)).find("0 meshes cut at a height of 3 m"), std::string::npos);
 }
 
 }  // namespace

@@ -39,9 +39,10 @@ class SdfIncludes : public testing::Test {
     static std::string include(const std::string& uri, const std::string& more = "") {
         return "<include><uri>" + uri + "</uri>" + more + "</include>\n";
     }
-    [[nodiscard]] Document read(const std::string& content) const {
+    [[nodiscard]] Document read(const std::string& content,
+                                const ImportOptions& options = {}) const {
         return readSdf("<sdf version='1.9'><world name='w'>\n" + content + "</world></sdf>",
-                       folder_ + "w.sdf", {}, sceneSchemas());
+                       folder_ + "w.sdf", options, sceneSchemas());
     }
     [[nodiscard]] std::string recordsOf(const std::string& content) const {
         const std::string text = writeRecordText(read(content));
@@ -144,6 +145,54 @@ TEST_F(SdfIncludes, FilesAreFoundInTheFolderOrBelow) {
                   folder_ + "models/deep/model.sdf", folder_ + "crate/model.sdf"}));
 }
 
+/// A world in `worlds` of a package, whose models lie beside that.
+class SdfPackages : public SdfIncludes {
+  protected:
+    SdfPackages() { fs::create_directories(folder_ + "worlds"); }
+    [[nodiscard]] std::string idsOf(const std::string& content,
+                                    const std::vector<std::string>& folders = {}) const {
+        ImportOptions options;
+        options.model_folders = folders;
+        std::string ids;
+        for (const Record& record :
+             readSdf("<sdf version='1.9'><world name='w'>" + content + "</world></sdf>",
+                     folder_ + "worlds/w.sdf", options, sceneSchemas())
+                 .records)
+            ids += record.text("id") + ' ';
+        return ids;
+    }
+};
+
+TEST_F(SdfPackages, ModelsLieBesideTheWorldsFolderAndWhereTheUserSays) {
+    putModel("models/shelf");
+    put("models/lamp/model.sdf",
+        "<sdf><model name='lamp'><include><uri>model://lamp/foot</uri></include></model></sdf>");
+    putModel("models/lamp/foot");
+    putModel("elsewhere/crate");
+    EXPECT_EQ(idsOf(include("model://shelf")), "models-shelf ");
+    EXPECT_EQ(idsOf(include("file://shelf")), "models-shelf ");
+    EXPECT_EQ(idsOf(include("package://my_gazebo/models/shelf")), "models-shelf ");
+    EXPECT_EQ(idsOf(include("file:///home/of/someone/models/shelf/model.sdf")), "models-shelf ");
+    EXPECT_EQ(idsOf(include("model://lamp")), "lamp ");
+    EXPECT_EQ(idsOf(include("model://crate"), {folder_ + "none", folder_ + "elsewhere"}),
+              "elsewhere-crate ");
+    EXPECT_THROW((void)idsOf(include("model://crate")), FormatError);
+}
+
+TEST_F(SdfPackages, TheWorldsOwnFolderComesFirstAndNoOtherIsOpen) {
+    putModel("models/crate", "<link name='m'/>");
+    put("worlds/crate/model.sdf",
+        "<sdf><model name='near'><link name='l'><collision name='c'><geometry><box><size>1 1 1"
+        "</size></box></geometry></collision></link></model></sdf>");
+    putModel("elsewhere/crate");
+    EXPECT_EQ(idsOf(include("model://crate"), {folder_ + "elsewhere"}), "near ");
+    // What lies beside a folder of models stays closed, links followed.
+    putModel("secret");
+    fs::create_symlink(folder_ + "secret", folder_ + "models/link");
+    for (const char* uri : {"model://../secret", "model://link", "../secret", "file://../secret"})
+        EXPECT_THROW((void)idsOf(include(uri)), FormatError) << uri;
+}
+
 TEST_F(SdfIncludes, TheLatestVersionIsRead) {
     putModel("crate");
     put("crate/old.sdf", "no SDF at all");
@@ -169,9 +218,10 @@ TEST_F(SdfIncludes, WhatIsMissingIsNamedOnceWithItsPlace) {
     putModel("crate");
     EXPECT_EQ(errorOf(include("model://crate") + include("model://a") + include("model://b") +
                       include("model://a")),
-              "w.sdf:3:1: error: `model://a`, `model://b` are not in the folder of the world or "
-              "below: put the folder of each model there, write the world with everything in it "
-              "(`gz sdf -p`), or delete the `include`");
+              "w.sdf:3:1: error: `model://a`, `model://b` are not in the world's folder, in "
+              "../models or below: say with --models DIR (or GAZEBO_MODEL_PATH) which folder "
+              "holds the models, write the world with everything in it (`gz sdf -p`), or delete "
+              "the `include`");
     EXPECT_EQ(errorOf("<include/>"), "w.sdf:2:1: error: `include` without `uri`");
     putModel("table", "\n\n" + include("model://leg"));
     EXPECT_EQ(
@@ -180,11 +230,10 @@ TEST_F(SdfIncludes, WhatIsMissingIsNamedOnceWithItsPlace) {
     // Nothing outside is read, whatever leads there.
     for (const char* uri : {"../../../../../../etc/passwd", "/etc/passwd", "file:///etc/passwd",
                             "model://../../etc/passwd", "https://example.org/models/../../etc"})
-        EXPECT_NE(errorOf(include(uri)).find(" is not in the folder of the world or below"),
-                  std::string::npos)
+        EXPECT_NE(errorOf(include(uri)).find(" is not in the world's folder, "), std::string::npos)
             << uri;
     fs::create_symlink("/etc", folder_ + "link");
-    EXPECT_NE(errorOf(include("model://link/passwd")).find(" is not in the folder"),
+    EXPECT_NE(errorOf(include("model://link/passwd")).find(" is not in the world's folder"),
               std::string::npos);
     // A sun and a ground are nothing to stand in a room.
     EXPECT_EQ(errorOf(include("model://sun") + include("model://ground_plane") +

@@ -7,6 +7,7 @@
 
 #include "base/number.h"
 #include "io/robot_xml.h"
+#include "layout/robot.h"
 #include "plan/elements.h"
 
 namespace ispace {
@@ -100,6 +101,13 @@ Prism thinWall(const Sheet& sheet) {
             sheet.material};
 }
 
+/// Things, furniture and pillars stand somewhere: their models do so, too.
+bool hasFrame(const Record& record) {
+    const RecordType type = record.schema().type;
+    return (type == RecordType::Other || type == RecordType::Infra) &&
+           record.find("at") != nullptr && record.keyword() != "mesh";
+}
+
 void setPose(pugi::xml_node node, const SdfPart& part) {
     if (part.place == Point3() && part.heading == Angle()) return;
     addText(node, "pose",
@@ -120,6 +128,9 @@ void addGeometry(pugi::xml_node parent, const SdfPart& part, const std::string& 
             addText(cylinder, "length", lengthsText({part.height}));
             return;
         }
+        case SdfPart::Shape::Ball:
+            addText(geometry.append_child("sphere"), "radius", lengthsText({part.radius}));
+            return;
         case SdfPart::Shape::Polyline: {
             pugi::xml_node polyline = geometry.append_child("polyline");
             for (const Point2 p : part.outline) addText(polyline, "point", lengthsText({p.x, p.y}));
@@ -161,19 +172,32 @@ std::vector<SdfPart> sdfParts(const Body& body, const Pose2& frame, double botto
     return parts;
 }
 
-SdfPart sdfPart(const Upright& upright) {
-    SdfPart part;
-    part.place = {upright.center.x, upright.center.y, (upright.bottom + upright.top) / 2};
-    part.height = upright.top - upright.bottom;
-    part.material = Material::Cloth;
-    if (upright.radius > 0) {
-        part.shape = SdfPart::Shape::Cylinder;
-        part.radius = upright.radius;
-    } else {
-        part.length = 2 * upright.half_length;
-        part.width = 2 * upright.half_width;
+FramedSdfParts sdfParts(const Element& element) {
+    Pose2 frame;
+    double bottom = 0;
+    const bool is_framed = hasFrame(element.record);
+    if (is_framed) {
+        frame = floorPoseOf(element.record);
+        const Tuple& at = element.record.tuple("at");
+        if (at.size() > 2) bottom = at[2];
     }
-    return part;
+    return {{{frame.position.x, frame.position.y, bottom}, wrapped(frame.heading), {}, {}},
+            sdfParts(element.body, frame, bottom, is_framed, element.id)};
+}
+
+SdfPart sdfPart(const BodyPart& part) {
+    SdfPart out;
+    out.place = {part.center.x, part.center.y, (part.bottom + part.top) / 2};
+    out.height = part.top - part.bottom;
+    out.material = part.material;
+    if (part.radius > 0) {
+        out.shape = part.is_ball ? SdfPart::Shape::Ball : SdfPart::Shape::Cylinder;
+        out.radius = part.radius;
+    } else {
+        out.length = 2 * part.half_length;
+        out.width = 2 * part.half_width;
+    }
+    return out;
 }
 
 void addSdfMaterial(pugi::xml_node visual, Material material) {
@@ -187,18 +211,18 @@ void addSdfMaterial(pugi::xml_node visual, Material material) {
 }
 
 void addSdfParts(pugi::xml_node link, const std::vector<SdfPart>& parts,
-                 const std::string& mesh_file) {
+                 const std::string& mesh_file, XmlNames& names) {
     int number = 0;
     for (const SdfPart& part : parts) {
         const std::string name = "part" + std::to_string(++number);
         if (part.is_solid) {
             pugi::xml_node collision = link.append_child("collision");
-            collision.append_attribute("name").set_value(name.c_str());
+            collision.append_attribute("name").set_value(names.take(name).c_str());
             setPose(collision, part);
             addGeometry(collision, part, mesh_file);
         }
         pugi::xml_node visual = link.append_child("visual");
-        visual.append_attribute("name").set_value(name.c_str());
+        visual.append_attribute("name").set_value(names.take(name + "_visual").c_str());
         setPose(visual, part);
         addGeometry(visual, part, mesh_file);
         addSdfMaterial(visual, part.material);

@@ -7,19 +7,21 @@
 #include <vector>
 
 #include "env/body.h"
+#include "env/environment.h"
 #include "geom/pose.h"
+#include "io/robot_xml.h"
 #include "layout/bodies.h"
 
 namespace ispace {
 
 /// A shape that SDF has a word for, upright, in the frame of a model.
 struct SdfPart {
-    enum class Shape { Box, Cylinder, Polyline, Mesh };
+    enum class Shape { Box, Cylinder, Ball, Polyline, Mesh };
     Shape shape = Shape::Box;
-    Point3 place;   ///< middle of a box or cylinder; of a polyline its foot, in the origin
+    Point3 place;   ///< middle of a box, cylinder or ball; of a polyline its foot, in the origin
     Angle heading;  ///< of a box
     double length = 0, width = 0, height = 0;  ///< of a box
-    double radius = 0;                         ///< of a cylinder
+    double radius = 0;                         ///< of a cylinder or ball
     Polygon outline = {};                      ///< of a polyline, counter-clockwise
     std::string mesh = {};                     ///< name of the part of the file beside the world
     Material material = Material::Wood;
@@ -36,12 +38,20 @@ constexpr double kSheetThickness = 0.002;
 std::vector<SdfPart> sdfParts(const Body& body, const Pose2& frame, double bottom, bool is_framed,
                               const std::string& mesh);
 
-/// A box or cylinder as a part, of cloth.
-SdfPart sdfPart(const Upright& upright);
+/// An element's frame, that of its record if it has a place, and the parts in it.
+struct FramedSdfParts {
+    Pose3 frame;
+    std::vector<SdfPart> parts;
+};
+FramedSdfParts sdfParts(const Element& element);
+
+/// A part of a standing person.
+SdfPart sdfPart(const BodyPart& part);
 
 /// Adds collision and visual of each part to a link. \param mesh_file beside the world
+/// \param names of the link's children: no two may be equal, whatever they are
 void addSdfParts(pugi::xml_node link, const std::vector<SdfPart>& parts,
-                 const std::string& mesh_file);
+                 const std::string& mesh_file, XmlNames& names);
 
 /// Adds colours to a visual.
 void addSdfMaterial(pugi::xml_node visual, Material material);

@@ -7,6 +7,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "io/import_records.h"
+#include "io/mesh_parts.h"
 #include "io/sdf_files.h"
 #include "io/sdf_frames.h"
 
@@ -20,8 +21,9 @@ constexpr int kDeepest = 64;  // models in models
 
 class SdfReader {
   public:
-    SdfReader(std::string_view bytes, const std::string& name, std::size_t most)
-        : files_(bytes, name), most_(most) {}
+    SdfReader(std::string_view bytes, const std::string& name,
+              std::span<const std::string> model_folders, std::size_t most)
+        : files_(bytes, name, model_folders), most_(most) {}
 
     SdfWorld read() {
         const pugi::xml_node root = files_.root();
@@ -112,7 +114,8 @@ class SdfReader {
             cost += polyline.points.size();
             shape.shape = std::move(polyline);
         } else if (kind == "mesh") {
-            SdfMesh mesh{std::string(trimmed(node.child_value("uri"))), files_.folderOf(node)};
+            SdfMesh mesh{std::string(trimmed(node.child_value("uri"))), {}};
+            if (hasMeshSuffix(mesh.uri)) mesh.file = files_.fileNamed(node, mesh.uri);
             if (node.child("scale")) {
                 const std::vector<double> scale = files_.numbersIn(node, "scale", 3);
                 mesh.scale = {scale[0], scale[1], scale[2]};
@@ -144,8 +147,9 @@ class SdfReader {
 
 }  // namespace
 
-SdfWorld readSdfShapes(std::string_view bytes, const std::string& name, std::size_t most) {
-    return SdfReader(bytes, name, most).read();
+SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
+                       std::span<const std::string> model_folders, std::size_t most) {
+    return SdfReader(bytes, name, model_folders, most).read();
 }
 
 }  // namespace ispace

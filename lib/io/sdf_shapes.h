@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -27,7 +29,8 @@ struct SdfPolyline {
     double height = 0;  ///< from the origin up
 };
 struct SdfMesh {
-    std::string uri, folder;  ///< see sdfPaths()
+    std::string uri;
+    std::optional<std::string> file;  ///< relative to the world's folder; nothing if it is missing
     std::array<double, 3> scale{1, 1, 1};
 };
 
@@ -48,11 +51,12 @@ struct SdfWorld {
 /// Reads the collision shapes of all links, or where a link has none its visuals that every sensor
 /// sees (without `visibility_flags`), in the world and in the models that it includes, with the
 /// poses of SdfFrames. Entities are not resolved.
-/// \param name the world's file, whose folder holds what it includes
+/// \param name the world's file \param model_folders see SdfFiles
 /// \param most shapes and points of polylines
 /// \throws FormatError with the line: bad XML, no world and no model, numbers that are none, frames
 ///         that are not there or depend on each other, models nested too deep, includes that are
 ///         not there or include themselves, more than `most`
-SdfWorld readSdfShapes(std::string_view bytes, const std::string& name, std::size_t most);
+SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
+                       std::span<const std::string> model_folders, std::size_t most);
 
 }  // namespace ispace

@@ -31,13 +31,6 @@ constexpr std::pair<const char*, const char*> kPlugins[] = {
     {"gz-sim-sensors-system", "gz::sim::systems::Sensors"},
 };
 
-/// Things, furniture and pillars stand somewhere: their models do so, too.
-bool hasFrame(const Record& record) {
-    const RecordType type = record.schema().type;
-    return (type == RecordType::Other || type == RecordType::Infra) &&
-           record.find("at") != nullptr && record.keyword() != "mesh";
-}
-
 class WorldWriter {
   public:
     WorldWriter(const Scene& scene, const std::string& name, const std::string& mesh_file)
@@ -103,28 +96,20 @@ class WorldWriter {
         const Box2& limits = scene_.environment.limits();
         const Point2 middle = limits.center();
         pugi::xml_node link = addModel("ground_plane", {{middle.x, middle.y, 0}, {}, {}, {}});
+        constexpr std::string_view kVisual = "visual";
         for (const char* kind : {"collision", "visual"}) {
             pugi::xml_node node = link.append_child(kind);
-            node.append_attribute("name").set_value("floor");
+            node.append_attribute("name").set_value(kind == kVisual ? "floor_visual" : "floor");
             pugi::xml_node plane = node.append_child("geometry").append_child("plane");
             addText(plane, "normal", "0 0 1");
             addText(plane, "size",
                     lengthsText({limits.width() + 2 * kFloorRim, limits.depth() + 2 * kFloorRim}));
-            if (std::string_view(kind) == "visual") addSdfMaterial(node, Material::Floor);
+            if (kind == kVisual) addSdfMaterial(node, Material::Floor);
         }
     }
 
     void addElement(const Element& element) {
-        Pose2 frame;
-        double bottom = 0;
-        const bool is_framed = hasFrame(element.record);
-        if (is_framed) {
-            frame = floorPoseOf(element.record);
-            const Tuple& at = element.record.tuple("at");
-            if (at.size() > 2) bottom = at[2];
-        }
-        const std::vector<SdfPart> parts =
-            sdfParts(element.body, frame, bottom, is_framed, element.id);
+        const auto [pose, parts] = sdfParts(element);
         if (parts.empty()) return;
         if (!element.body.meshes.empty()) {
             if (mesh_file_.empty())
@@ -132,28 +117,28 @@ class WorldWriter {
                     "meshes stand in a file beside an SDF world: name it with -o FILE.sdf");
             mesh_nodes_.push_back({element.id, element.record.keyword(), {}, element.body.meshes});
         }
-        const Pose3 pose{
-            {frame.position.x, frame.position.y, bottom}, wrapped(frame.heading), {}, {}};
-        addSdfParts(addModel(element.id, pose), parts, mesh_file_);
+        XmlNames names;
+        addSdfParts(addModel(element.id, pose), parts, mesh_file_, names);
     }
 
     void addPlaced(const Placed& placed) {
         const Record& record = scene_.records[placed.record];
+        XmlNames names;
         if (sensorKind(record.keyword()) != nullptr) {
-            if (!placed.mount) addSensor(addModel(idOf(placed), placed.pose), placed, {});
+            if (!placed.mount) addSensor(addModel(idOf(placed), placed.pose), placed, {}, names);
         } else if (record.keyword() == "robot") {
-            addRobot(placed);
+            addRobot(placed, names);
         } else if (record.keyword() == "human") {
             std::vector<SdfPart> parts;
-            for (const Upright& upright : humanUprights(record.number("height")))
-                parts.push_back(sdfPart(upright));
-            addSdfParts(addModel(idOf(placed), placed.pose), parts, mesh_file_);
+            for (const BodyPart& part : humanParts(record.number("height")))
+                parts.push_back(sdfPart(part));
+            addSdfParts(addModel(idOf(placed), placed.pose), parts, mesh_file_, names);
         } else {
             ++left_out_[record.keyword()];
         }
     }
 
-    void addRobot(const Placed& placed) {
+    void addRobot(const Placed& placed, XmlNames& names) {
         const RobotModel& robot = scene_.robots[placed.index].model;
         SdfPart body;
         body.place = {robot.center, 0, robot.height / 2};
@@ -167,20 +152,21 @@ class WorldWriter {
             body.radius = robot.radius;
         }
         const pugi::xml_node link = addModel(idOf(placed), placed.pose);
-        addSdfParts(link, {body}, mesh_file_);
+        addSdfParts(link, {body}, mesh_file_, names);
         for (const Placed& other : scene_.placed)
             if (other.mount && other.mount->robot == placed.index)
-                addSensor(link, other, other.mount->robot_from_sensor);
+                addSensor(link, other, other.mount->robot_from_sensor, names);
     }
 
     /// The sensor, and its body as a box that no camera sees.
-    void addSensor(pugi::xml_node link, const Placed& placed, const Pose3& link_from_sensor) {
-        const std::string& id = idOf(placed);
+    void addSensor(pugi::xml_node link, const Placed& placed, const Pose3& link_from_sensor,
+                   XmlNames& names) {
+        const std::string id = names.take(idOf(placed));
         if (!addSdfSensor(link, id, scene_.sensors[placed.index].model, link_from_sensor))
             ++left_out_[scene_.records[placed.record].keyword()];
         const MeshBox box = boxAround(bodyOf(scene_, placed));
         pugi::xml_node visual = link.append_child("visual");
-        visual.append_attribute("name").set_value((id + "_body").c_str());
+        visual.append_attribute("name").set_value(names.take(id + "_body").c_str());
         addText(visual, "visibility_flags", std::to_string(kSensorBodies));
         const Point3 middle = inWorld(Frame3(link_from_sensor), box.center);
         addText(visual, "pose",
@@ -198,7 +184,7 @@ class WorldWriter {
     const std::string& mesh_file_;
     pugi::xml_document file_;
     pugi::xml_node world_;
-    XmlNames names_{{"world", "sun"}};
+    XmlNames names_{{"world", "default", "sun"}};
     std::vector<ModelNode> mesh_nodes_;
     std::map<std::string, std::size_t> left_out_;
 };

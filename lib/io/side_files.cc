@@ -60,11 +60,17 @@ std::string sideFilePath(const std::string& path, const std::string& name) {
 }
 
 std::optional<RegularFile> openSideFile(const std::string& path, const std::string& name,
-                                        bool anywhere) {
+                                        bool anywhere, std::span<const std::string> others) {
     std::error_code error;
     const fs::path place = fs::canonical(sideFilePath(path, name), error);
     if (error || !mayBeRead(place.string())) return std::nullopt;
-    if (!anywhere && !liesIn(fs::canonical(folderOf(path)), place))
+    const bool is_in_others =
+        std::any_of(others.begin(), others.end(), [&](const std::string& other) {
+            std::error_code missing;
+            const fs::path folder = fs::canonical(sideFilePath(path, other), missing);
+            return !missing && liesIn(folder, place);
+        });
+    if (!anywhere && !is_in_others && !liesIn(fs::canonical(folderOf(path)), place))
         failFile(path, "it names the file " + excerpt(name) +
                            ", which lies outside its folder: put it there, or allow it in a `mesh` "
                            "record with side_files=anywhere");

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "base/file.h"
@@ -20,10 +21,10 @@ struct RegularFile {
 RegularFile openRegular(const std::string& path);
 
 /// The file that `path` names, relative to its folder; nothing if it does not exist. \param
-/// anywhere false: it must lie in that folder or below, links followed \throws FormatError for
-/// `path` if the file may not lie there or is not regular
+/// anywhere false: it must lie in that folder, or in one of `others` (relative to it), or below,
+/// links followed \throws FormatError for `path` if the file may not lie there or is not regular
 std::optional<RegularFile> openSideFile(const std::string& path, const std::string& name,
-                                        bool anywhere);
+                                        bool anywhere, std::span<const std::string> others = {});
 
 /// The path that openSideFile() opens: `name` is relative to the folder of `path`, for "-" to the
 /// current one.

@@ -32,7 +32,8 @@ namespace {
 /// What a drawing in SVG shows.
 struct SvgDrawing {
     std::vector<PlanShape> shapes;
-    std::string scale;                            ///< what a unit is, and why, for a note
+    std::string scale;  ///< length of a unit and its source, for a note
+    double metres_per_unit = 0;
     std::map<std::string, std::size_t> left_out;  ///< elements, by what they are
 };
 
@@ -64,8 +65,10 @@ double metresOf(const std::string& unit) {
 
 class SvgReader {
   public:
-    SvgReader(std::string_view bytes, const std::string& name, const ImportOptions& options)
-        : file_(bytes, name), options_(options) {}
+    /// \param metres_per_unit none: as the options or the drawing's size say
+    SvgReader(std::string_view bytes, const std::string& name, const ImportOptions& options,
+              std::optional<double> metres_per_unit = {})
+        : file_(bytes, name), options_(options), asked_scale_(metres_per_unit) {}
 
     SvgDrawing read() {
         const pugi::xml_node root = file_.root();
@@ -122,21 +125,25 @@ class SvgReader {
         const auto box = svgViewBox(root);
         const double pixel = *parseSvgMetres("1");
         page_ = box.value_or(SvgBox{0, 0, width.value_or(0) / pixel, height.value_or(0) / pixel});
+        const bool has_width = width && isSvgPhysical(root.attribute("width").value());
+        const bool has_height = height && isSvgPhysical(root.attribute("height").value());
         double scale = 0;
-        if (!options_.units.empty()) {
+        if (asked_scale_) {
+            scale = *asked_scale_;
+        } else if (!options_.units.empty()) {
             scale = metresOf(options_.units);
             drawing_.scale = "a unit of the drawing is 1 " + options_.units + ", as asked for";
-        } else if (!width && !height) {
-            throw SvgError(
-                "the drawing does not say its size (width and height in mm, cm or in); "
-                "say what its unit is, for example with --units cm");
+        } else if (!has_width && !has_height) {
+            throw SvgError("the drawing has no scale, as its size is " +
+                           std::string(width || height ? "in pixels" : "not said") + ": " +
+                           kScaleHint);
         } else {
             // As large as fits, where both do not agree.
-            scale = std::min(width ? *width / page_.width : HUGE_VAL,
-                             height ? *height / page_.height : HUGE_VAL);
-            drawing_.scale = "a unit of the drawing is " +
-                             formatDouble(std::round(scale * 1e9) / 1e6) + " mm, as its size says";
+            scale = std::min(has_width ? *width / page_.width : HUGE_VAL,
+                             has_height ? *height / page_.height : HUGE_VAL);
+            drawing_.scale = unitText(scale) + ", as its size says";
         }
+        drawing_.metres_per_unit = scale;
         return {{scale, 0}, {0, -scale}, {-page_.x * scale, (page_.y + page_.height) * scale}};
     }
 
@@ -243,6 +250,15 @@ class SvgReader {
         return "(none)";
     }
 
+    /// The innermost element around that is called walls; "" if none is.
+    [[nodiscard]] std::string wallsAround() const {
+        for (auto node = names_.rbegin(); node != names_.rend(); ++node)
+            for (const char* key : {"inkscape:label", "id"})
+                if (const char* text = node->attribute(key).value(); isWallName(text))
+                    return printable(text);
+        return "";
+    }
+
     /// Fills the page, without an outline.
     [[nodiscard]] bool isBackground(pugi::xml_node node, const Affine& frame,
                                     const SvgStyle& style) const {
@@ -275,6 +291,7 @@ class SvgReader {
     void addPath(pugi::xml_node node, const SvgSubpath& path, const Affine& frame) {
         PlanShape shape;
         shape.layer = layer();
+        shape.walls_in = wallsAround();
         shape.path.line = file_.lineOf(node);
         shape.path.closed = path.closed;
         Polygon& points = shape.path.points;
@@ -327,6 +344,7 @@ class SvgReader {
 
     XmlFile file_;
     const ImportOptions& options_;
+    std::optional<double> asked_scale_;
     std::unordered_map<std::string, pugi::xml_node> ids_;
     std::size_t count_ = 0, total_ = 0, budget_ = 0;
     SvgSheet sheet_;
@@ -336,19 +354,55 @@ class SvgReader {
     SvgDrawing drawing_;
 };
 
+/// A drawing's document, and the floor it comes to.
+struct SvgImport {
+    Document document;
+    double area = 0;
+};
+
+SvgDrawing readDrawing(std::string_view bytes, const std::string& name,
+                       const ImportOptions& options) {
+    if (!options.width_is) return SvgReader(bytes, name, options).read();
+    const double metres = metresPerUnit(*options.width_is, name, [&](double metres_per_unit) {
+        LayerSorter sorter({}, options);
+        return sorter.sort(SvgReader(bytes, name, options, metres_per_unit).read().shapes).walls;
+    });
+    SvgDrawing drawing = SvgReader(bytes, name, options, metres).read();
+    drawing.scale =
+        unitText(metres) + ", so that it is " + formatDouble(*options.width_is) + " m wide";
+    return drawing;
+}
+
+/// \param hints whether the drawing may be read again to tell the effect of other options
+SvgImport importSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                    const Schemas& schemas, bool hints) {
+    ImportRecords out(schemas, name, options);
+    SvgDrawing drawing = readDrawing(bytes, name, options);
+    out.note(drawing.scale);
+    for (const auto& [what, count] : drawing.left_out)
+        out.note("left out: " + what + " (" + std::to_string(count) + ')');
+    DrawingSource source{options.units.empty()
+                             ? "units of " + formatDouble(1000 * drawing.metres_per_unit) + " mm"
+                             : options.units,
+                         drawing.metres_per_unit};
+    if (hints)
+        source.area = [&](const ImportOptions& other) {
+            return importSvg(bytes, name, other, schemas, false).area;
+        };
+    LayerSorter sorter({}, options);
+    const LayerSorter::Sorted shapes = sorter.sort(std::move(drawing.shapes));
+    sorter.note(out);
+    const double area = writeLinePlan(shapes, sorter, name, options, &source, out);
+    return {out.take(), area};
+}
+
 }  // namespace
 
 bool isSvg(std::string_view bytes) { return xmlRootName(bytes) == "svg"; }
 
 Document readSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas) {
-    ImportRecords out(schemas, name, options);
-    SvgDrawing drawing = SvgReader(bytes, name, options).read();
-    out.note(drawing.scale);
-    for (const auto& [what, count] : drawing.left_out)
-        out.note("left out: " + what + " (" + std::to_string(count) + ')');
-    writeLinePlan(std::move(drawing.shapes), name, options, out);
-    return out.take();
+    return importSvg(bytes, name, options, schemas, true).document;
 }
 
 }  // namespace ispace

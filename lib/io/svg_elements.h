@@ -57,6 +57,9 @@ Affine parseSvgTransform(std::string_view text);
 /// or nothing for percentages and sizes of fonts. \throws SvgError where there is no number
 std::optional<double> parseSvgMetres(std::string_view text);
 
+/// True for a length on paper: with a unit that is not px.
+bool isSvgPhysical(std::string_view length);
+
 /// The whole ellipse, as one closed path.
 SvgSubpath svgEllipse(Point2 center, double radius_x, double radius_y);
 

@@ -297,6 +297,13 @@ std::optional<double> parseSvgMetres(std::string_view text) {
     return std::nullopt;
 }
 
+bool isSvgPhysical(std::string_view length) {
+    length = trimmed(length);
+    const bool has_unit =
+        !length.empty() && std::isalpha(static_cast<unsigned char>(length.back()));
+    return has_unit && !length.ends_with("px");
+}
+
 SvgSubpath svgEllipse(Point2 center, double radius_x, double radius_y) {
     const Point2 start{center.x + radius_x, center.y};
     return {start, {SvgArc{center, {radius_x, 0}, {0, radius_y}, 0, 2 * kPi, start}}, true};

@@ -139,22 +139,69 @@ TEST(Svg, Uses) {
 
 TEST(Svg, Scale) {
     const std::string room = "<rect width='4' height='3'/></svg>";
-    EXPECT_NEAR(areaOf("<svg width='9600' height='9600px'><rect width='960' height='480'/></svg>"),
-                0.254 * 0.127, 1e-6);
-    EXPECT_NEAR(areaOf("<svg width='10cm' height='10cm' viewBox='0 0 1 1'>" + room), 0.12, 1e-9);
-    EXPECT_NEAR(areaOf("<svg width='10in' viewBox='0 0 1 1'>" + room), 12 * 0.254 * 0.254, 1e-5);
-    EXPECT_NEAR(areaOf("<svg width='72pt' height='6pc' viewBox='0 0 1 1'>" + room),
-                12 * 0.0254 * 0.0254, 1e-6);
+    EXPECT_NEAR(areaOf("<svg width='1000mm' height='100cm' viewBox='0 0 1 1'>" + room), 12, 1e-9);
+    EXPECT_NEAR(areaOf("<svg width='40in' viewBox='0 0 1 1'>" + room), 12 * 1.016 * 1.016, 1e-5);
+    EXPECT_NEAR(areaOf("<svg width='720pt' height='60pc' viewBox='0 0 1 1'>" + room),
+                12 * 0.254 * 0.254, 1e-6);
+    EXPECT_NEAR(areaOf("<svg width='1000px' height='1000mm' viewBox='0 0 1 1'>" + room), 12, 1e-9)
+        << "paper wins over pixels";
     ImportOptions options;
     options.units = "foot";
     EXPECT_NEAR(areaOf("<svg width='1mm' height='1mm' viewBox='0 0 9 9'>" + room, options),
                 12 * 0.3048 * 0.3048, 1e-5);
     EXPECT_NEAR(areaOf("<svg>" + room, options), 12 * 0.3048 * 0.3048, 1e-5);
-    const std::string no_size =
-        "plan.svg:1:1: error: `svg`: the drawing does not say its size (width and height in mm, cm "
-        "or in); say what its unit is, for example with --units cm\n";
-    EXPECT_EQ(errorOf("<svg>" + room), no_size);
-    EXPECT_EQ(errorOf("<svg width='100%' viewBox='0 0 9 9'>" + room), no_size);
+}
+
+TEST(Svg, WithoutAScale) {
+    const std::string room = "<rect width='400' height='300'/></svg>";
+    const std::string hint =
+        ": say its unit, for example with --units cm, or how wide it is, with --width-is 8.3m\n";
+    const std::string begin =
+        "plan.svg:1:1: error: `svg`: the drawing has no scale, as its size is ";
+    for (const char* size :
+         {"", "width='100%'", "viewBox='0 0 9 9'", "width='100%' viewBox='0 0 9 9'"})
+        EXPECT_EQ(errorOf("<svg " + std::string(size) + ">" + room), begin + "not said" + hint)
+            << size;
+    for (const char* size : {"width='800'", "width='100%' height='800px'"})
+        EXPECT_EQ(errorOf("<svg " + std::string(size) + ">" + room), begin + "in pixels" + hint)
+            << size;
+    ImportOptions options;
+    options.width_is = 8;
+    EXPECT_NEAR(areaOf("<svg width='800'>" + room, options), 8 * 6, 1e-5);
+    EXPECT_EQ(errorOf("<svg width='800'><path d='M1 1V9'/></svg>", options),
+              "plan.svg: error: the lines of walls have no width: --width-is needs some\n");
+    // Curves are measured at the scale they come to: a disc 8 m wide.
+    EXPECT_NEAR(areaOf("<svg><circle r='2'/></svg>", options), 16 * std::numbers::pi, 0.02);
+}
+
+TEST(Svg, OfNoBuildingsSize) {
+    const std::string paper = "<svg width='200mm' viewBox='0 0 10 10'>";
+    const std::string room = "<rect width='8' height='5'/></svg>";
+    EXPECT_EQ(errorOf(paper + room),
+              "plan.svg: error: the plan is 0.16 m wide: is its unit right? It is read in units of "
+              "20 mm; with --units m it would be 8.0 m wide and have 40.0 m2 of floor; or say how "
+              "wide it is, with --width-is 8.3m\n");
+    EXPECT_EQ(errorOf("<svg width='900cm' viewBox='0 0 1 1'><rect width='400' height='400'/></svg>")
+                  .find("plan.svg: error: the plan is 3600 m wide: is its unit right?"),
+              0U);
+    ImportOptions options;
+    options.units = "cm";
+    EXPECT_NEAR(areaOf(paper + room, options), 0.004, 1e-9) << "said, it is believed";
+}
+
+TEST(Svg, NamesOfWalls) {
+    // A room of 8 m x 4 m, and a cupboard that parts it.
+    const std::string walls = "<path d='M0 0H8V4H0Z'/>", rest = "<path d='M5 0V4'/>";
+    const auto warned = [](const std::string& svg) { return warningsOf(read(page(svg))); };
+    EXPECT_EQ(warned("<g id='plan'><g id='Walls'>" + walls + "</g>" + rest + "</g>"),
+              "plan.svg: warning: the drawing names its walls: with --wall-layer Walls it would "
+              "have 32.0 m2 of floor, not 20.0 m2\n");
+    EXPECT_NE(warned("<g id='g1' inkscape:label='W\u00c4NDE 1'>" + walls + "</g>" + rest)
+                  .find("--wall-layer 'W\u00c4NDE 1' "),
+              std::string::npos);
+    EXPECT_EQ(warned("<g id='Walls'>" + walls + rest + "</g>"), "") << "all are";
+    EXPECT_EQ(warned("<g id='Walls'>" + walls + "</g><path d='M1 1H2'/>"), "") << "the same room";
+    EXPECT_EQ(warned("<g id='wallpaper'>" + walls + "</g>" + rest), "");
 }
 
 TEST(Svg, Layers) {
@@ -268,7 +315,7 @@ TEST(Svg, BombsAndNests) {
     EXPECT_NE(errorOf(page(bomb + "</defs><use href='#x11'/>")).find("makes too many lines"),
               std::string::npos);
     // Entities of the document's own are not expanded.
-    EXPECT_NE(errorOf("<!DOCTYPE svg [<!ENTITY a 'M0 0H9V9Z'>]><svg width='9' height='9'><path "
+    EXPECT_NE(errorOf("<!DOCTYPE svg [<!ENTITY a 'M0 0H9V9Z'>]><svg width='9mm' height='9mm'><path "
                       "d='&a;'/></svg>")
                   .find("`path`"),
               std::string::npos);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "record/edit.h"
 
 namespace ispace {
 
@@ -26,6 +27,16 @@ SensorModel modelFor(const Record& record, const DeviceCatalogue& devices) {
     }
 }
 
+/// \pre a record of the scene or an added one has the id
+const Record& holderOf(const std::string& id, const Scene& scene,
+                       std::span<const SensorSpec> added) {
+    const auto found = std::find(scene.ids.begin(), scene.ids.end(), id);
+    if (found != scene.ids.end())
+        return scene.records.at(static_cast<std::size_t>(found - scene.ids.begin()));
+    const auto is_holder = [&id](const SensorSpec& spec) { return spec.record.writtenId() == id; };
+    return std::find_if(added.begin(), added.end(), is_holder)->record;
+}
+
 }  // namespace
 
 std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const SensorSpec> added,
@@ -42,7 +53,7 @@ std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const Senso
                                  std::string(key) + '`');
         const std::string id = record.writtenId();
         if (!id.empty() && !taken.insert(id).second)
-            throw UsageError("the id `" + id + "` is taken in this scene");
+            throw UsageError(takenText(id, holderOf(id, scene, added)));
         const int most = count.value_or(open && id.empty() ? kMaxOpen : 1);
         groups.push_back({record, modelFor(record, devices), id, false, most});
     }

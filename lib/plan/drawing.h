@@ -13,6 +13,7 @@
 #include "geom/point.h"
 #include "layout/scene.h"
 #include "plan/elements.h"
+#include "plan/found_rooms.h"
 #include "sensor/kind.h"
 
 namespace ispace {
@@ -75,6 +76,8 @@ class PlanDrawing {
   public:
     PlanDrawing(Picture& picture, const Scene& scene, const PlanStyle& style);
 
+    /// Rooms of an import that are not kept, without their words.
+    void drawOtherRooms(const FoundRooms& found);
     /// Indoor floor with its coverings, holes of it that are no room.
     void drawFloor();
     void drawZones();
@@ -91,6 +94,8 @@ class PlanDrawing {
     void drawSensors();
     /// Names of zones, of things with enough space, and of all that is placed.
     void drawNames();
+    /// Areas and --inside points of rooms that are not kept, and gaps that were closed.
+    void drawOtherRoomsWords(const FoundRooms& found);
     // Instead, the map at a height: free floor, then solids and sheets.
     void drawFreeFloor(double height);
     void drawObstacles(double height);

@@ -21,34 +21,34 @@ using namespace palette;
 /// Of marks and names, metres.
 constexpr double kMark = 0.06, kArrow = 0.3, kText = 0.15;
 
+/// Width that a shut door is drawn with, metres; an open one is a line without.
+constexpr double kLeaf = 0.04;
+
 /// The last point of a closed chain repeats the first.
-void addChain(DxfWriter& out, const char* layer, std::vector<Point2> chain, double width) {
+void addChain(DxfWriter& out, const char* layer, std::vector<Point2> chain, double width,
+              DxfExtrusion upright) {
     const bool closed = chain.size() > 2 && chain.front() == chain.back();
     if (closed) chain.pop_back();
-    out.path(layer, chain, closed, width);
+    out.path(layer, chain, closed, width, upright);
 }
 
-/// The circle that a footprint is inscribed in, if one part of the body covers all of it and is
-/// round.
-const Ellipse* circleOf(const Body& body, const Region& footprint) {
-    for (const Prism& prism : body.prisms)
-        if (prism.curve && prism.curve->half_length == prism.curve->half_width &&
-            footprint.holes.empty() &&
-            std::abs(signedArea(prism.footprint) - footprint.area()) <= 1e-9 * footprint.area())
-            return prism.curve.get();
-    return nullptr;
-}
-
-void addFootprint(DxfWriter& out, const Body& body) {
-    const std::vector<Region> pieces = footprintOf(body);
-    for (const Region& piece : pieces) {
-        const Ellipse* circle = pieces.size() == 1 ? circleOf(body, piece) : nullptr;
-        if (circle != nullptr) {
-            out.circle("objects", circle->center, circle->half_length);
-            continue;
-        }
-        for (const Polygon& ring : curvesOf(piece)) out.path("objects", ring, true);
+/// Each prism and mesh by its outline, those below others, too.
+void addObject(DxfWriter& out, const Body& body) {
+    for (const Prism& prism : body.prisms) {
+        const DxfExtrusion upright{prism.bottom, prism.top - prism.bottom};
+        const Ellipse* round = prism.curve.get();
+        if (round == nullptr)
+            out.path("objects", prism.footprint, true, 0, upright);
+        else if (round->half_length == round->half_width)
+            out.circle("objects", round->center, round->half_length, upright);
+        else
+            out.path("objects", outlineOf(*round), true, 0, upright);
     }
+    Body meshes;
+    meshes.meshes = body.meshes;
+    for (const PartAbove& part : partsFromAbove(meshes))
+        for (const Polygon& ring : part.curves)
+            out.path("objects", ring, true, 0, {part.bottom, part.top - part.bottom});
 }
 
 /// Where a name stands in an area: its middle.
@@ -154,13 +154,15 @@ void addRoomToDxf(DxfWriter& out, const Environment& environment) {
     for (std::size_t i = 0; i < elements.size(); ++i) {
         const std::string& keyword = elements[i].record.keyword();
         const bool is_door = keyword == "door", is_window = keyword == "window";
+        const bool is_shut = is_door && !elements[i].record.flag("open");
         for (const std::vector<Point2>& chain : lines[i].chains) {
             if (is_door || is_window)
-                addChain(out, is_door ? "doors" : "windows", chain, 0);
+                addChain(out, is_door ? "doors" : "windows", chain, is_shut ? kLeaf : 0,
+                         {lines[i].bottom, lines[i].top - lines[i].bottom});
             else
-                addChain(out, "walls", chain, lines[i].thickness);
+                addChain(out, "walls", chain, lines[i].thickness, {0, topOf(elements[i].body)});
         }
-        if (lines[i].chains.empty() && keyword != "floor") addFootprint(out, elements[i].body);
+        if (lines[i].chains.empty() && keyword != "floor") addObject(out, elements[i].body);
     }
 }
 

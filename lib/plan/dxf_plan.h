@@ -13,7 +13,8 @@ namespace ispace {
 /// The layers that a room is drawn on: walls, doors, windows, objects.
 std::vector<DxfLayer> dxfRoomLayers();
 /// Draws it: the mid-lines of walls as polylines as wide as the walls are thick, doors and windows
-/// as lines on them, and the footprints of things.
+/// as lines on them, shut doors 4 cm wide, and the outline of each solid part of a thing; all with
+/// elevation and thickness. readDxf() knows the layers and makes the same room of it.
 void addRoomToDxf(DxfWriter& out, const Environment& environment);
 
 /// The layers of what is placed: sensors, robots.

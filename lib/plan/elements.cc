@@ -186,11 +186,20 @@ std::vector<Polygon> silhouette(const Mesh& mesh) {
     return curvesOf(unite(triangles));
 }
 
-std::vector<PartAbove> partsFromAbove(const Body& body) {
+namespace {
+
+/// What a round prism becomes.
+enum class Rounds { Inscribed, OfSameArea };
+
+std::vector<PartAbove> partsWith(Rounds rounds, const Body& body) {
     std::vector<PartAbove> parts;
     parts.reserve(body.prisms.size() + body.meshes.size());
     for (const Prism& prism : body.prisms)
-        parts.push_back({{prism.footprint}, prism.bottom, prism.top, prism.material});
+        parts.push_back({{rounds == Rounds::OfSameArea && prism.curve ? outlineOf(*prism.curve)
+                                                                      : prism.footprint},
+                         prism.bottom,
+                         prism.top,
+                         prism.material});
     for (const Mesh& mesh : body.meshes) {
         PartAbove part{silhouette(mesh), 0, 0, mesh.material};
         if (part.curves.empty()) continue;
@@ -214,8 +223,14 @@ std::vector<PartAbove> partsFromAbove(const Body& body) {
     return parts;
 }
 
+}  // namespace
+
+std::vector<PartAbove> partsFromAbove(const Body& body) {
+    return partsWith(Rounds::Inscribed, body);
+}
+
 std::vector<Region> footprintOf(const Body& body) {
-    std::vector<PartAbove> parts = partsFromAbove(body);
+    std::vector<PartAbove> parts = partsWith(Rounds::OfSameArea, body);
     std::erase_if(parts, [](const PartAbove& part) { return part.hidden; });
     // A board below a smaller thing of the same body is not hidden, but covers.
     for (const PartAbove& part : parts) {

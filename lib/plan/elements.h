@@ -31,7 +31,8 @@ std::vector<PartAbove> partsFromAbove(const Body& body);
 std::vector<Polygon> silhouette(const Mesh& mesh);
 
 /// The floor that prisms and meshes of a body cover, in disjoint pieces. A single part keeps its
-/// holes; if several parts count, none above all others, holes of meshes are dropped.
+/// holes; if several parts count, none above all others, holes of meshes are dropped. Round prisms
+/// have the area of their curve.
 std::vector<Region> footprintOf(const Body& body);
 
 /// Disjoint pieces of the area that curves bound, outlines counter-clockwise and holes clockwise,

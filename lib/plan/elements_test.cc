@@ -40,7 +40,8 @@ TEST(Footprint, WhatLiesBelowABoardIsHidden) {
         EXPECT_TRUE(pieces.front().holes.empty());
         double largest = 0;
         for (const Prism& prism : body.prisms)
-            largest = std::max(largest, signedArea(prism.footprint));
+            largest =
+                std::max(largest, prism.curve ? prism.curve->area() : signedArea(prism.footprint));
         EXPECT_NEAR(pieces.front().area(), largest, 1e-9) << line;
     }
     std::size_t seen = 0;

@@ -154,7 +154,8 @@ void drawFrame(Picture& picture, const Page& page, const std::string& title,
     picture.pop();
 }
 
-void drawScene(Picture& picture, PlanDrawing& plan, const Page& page) {
+void drawScene(Picture& picture, PlanDrawing& plan, const Page& page, const FoundRooms* found) {
+    if (found != nullptr) plan.drawOtherRooms(*found);
     plan.drawFloor();
     drawGrid(picture, plan, page);
     plan.drawZones();
@@ -166,13 +167,21 @@ void drawScene(Picture& picture, PlanDrawing& plan, const Page& page) {
     plan.drawRobots();
     plan.drawSensors();
     plan.drawNames();
+    if (found != nullptr) plan.drawOtherRoomsWords(*found);
 }
 
 }  // namespace
 
 std::string drawPlan(const Scene& scene, const PlanOptions& options) {
     const bool on_paper = options.format != PictureFormat::Png;
-    const Box2 box = planBox(scene);
+    const FoundRooms* const found = options.slice ? nullptr : options.found;
+    Box2 box = planBox(scene);
+    if (found != nullptr)
+        for (const FoundRoom& room : found->rooms)
+            for (const Region& floor : room.floor) {
+                box.add(bounds(floor.outline).low);
+                box.add(bounds(floor.outline).high);
+            }
     std::vector<std::string> notes;
     if (on_paper) notes.push_back("1:" + formatDouble(paperScale(box)));
     if (options.slice) notes.push_back("obstacles at " + formatDouble(*options.slice) + " m");
@@ -192,7 +201,7 @@ std::string drawPlan(const Scene& scene, const PlanOptions& options) {
         drawGrid(picture, plan, page);
         plan.drawObstacles(*options.slice);
     } else {
-        drawScene(picture, plan, page);
+        drawScene(picture, plan, page, found);
     }
     drawFrame(picture, page, options.title, notes);
     return picture.write(options.format);

@@ -6,6 +6,7 @@
 
 #include "draw/picture.h"
 #include "layout/scene.h"
+#include "plan/found_rooms.h"
 
 namespace ispace {
 
@@ -14,6 +15,9 @@ struct PlanOptions {
     std::optional<double> slice = {};  ///< only the obstacle map at this height, in metres
     int width = 1200;                  ///< of a PNG, in pixels
     std::string title;                 ///< e.g. base name of ENV; "" for none
+    /// Rooms of an import: those not kept are faint, with area and --inside point; gaps that were
+    /// closed are marked. Null: none; not used with `slice`.
+    const FoundRooms* found = nullptr;
 };
 
 /// The scene from above, as a plan: floor, zones, walls (cut as plans are, with their thickness),

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "env/zone.h"
+#include "env/door_zones.h"
 #include "geom/polygon.h"
 #include "sense/sensors.h"
 #include "sense/watch.h"
@@ -167,7 +167,7 @@ struct ExpectationJudge::Data {
 
     const World* world;
     std::vector<Expectation> expectations;
-    std::vector<Polygon> zones;  // of the expectations; empty without
+    std::vector<std::vector<Polygon>> zones;  // of the expectations; empty without
     std::vector<Trial> trials;
     std::optional<Watch> watch;
     std::vector<Pose2> poses;  // of all movers, for the watch
@@ -202,7 +202,8 @@ void ExpectationJudge::Data::addTrials(std::size_t expectation) {
 void ExpectationJudge::Data::checkTarget(const Expectation& expectation) {
     zones.emplace_back();
     if (expectation.state == State::InZone)
-        zones.back() = readZone(expectation.name, world->scene().environment).outline;
+        for (NamedZone& zone : readZones(expectation.name, world->scene().environment))
+            zones.back().push_back(std::move(zone.outline));
     if (expectation.state == State::Near && !expectation.place &&
         !world->moverNamed(expectation.name))
         throw unknown(*world, expectation.name);
@@ -267,8 +268,11 @@ Observation ExpectationJudge::Data::look(const Trial& trial) const {
         case State::Slower:
             return {.holds = speed < expectation.amount, .measure = speed};
         case State::InZone:
-            return {.holds =
-                        locate(zones[trial.expectation], status.pose.position) != Side::Outside};
+            return {.holds = std::any_of(zones[trial.expectation].begin(),
+                                         zones[trial.expectation].end(), [&](const Polygon& zone) {
+                                             return locate(zone, status.pose.position) !=
+                                                    Side::Outside;
+                                         })};
         case State::Seen: {
             const auto count = static_cast<double>(seenBy(*trial.mover));
             return {.holds = count >= expectation.amount, .measure = count};

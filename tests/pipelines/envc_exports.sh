@@ -32,6 +32,18 @@ for format in obj stl geojson svg png pdf; do
     [ "$format" = obj ] || expect_same "room.$format" "again.$format" "$format differs"
 done
 [ -e room.mtl ] || fail "no materials beside room.obj"
+head -n 1 room.obj | grep -q 'y up' || fail "room.obj does not name its axes: $(head -n 2 room.obj)"
+
+# Our own reader finds the walls of an OBJ where they were, and in it a mesh that stands upright.
+envc "$scenes/l-room.env" -q -o l.obj
+envc "$scenes/l-room.env" --info --json >want.json
+envc l.obj --up y --slice-walls 1 --info --json >again.json
+for key in limits indoor_area perimeter; do
+    part=$(grep -o "\"$key\":[^a-z]*" want.json)
+    grep -qF "$part" again.json || fail "another room in l.obj: $(cat again.json), not $part"
+done
+printf '%s\n' '#env 1' 'ispace size=20,20' 'mesh file=l.obj up=y at=0,0' >upright.env
+envc upright.env --info --json | grep -q '"height":2.5,' || fail "l.obj lies: $(envc upright.env --info)"
 
 # figure FILE LABEL: of `assimp info`
 figure() {
@@ -40,8 +52,10 @@ figure() {
 if command -v assimp >/dev/null; then
     for format in obj stl; do
         assimp info "room.$format" >facts 2>&1 || fail "assimp refuses room.$format: $(tail -n 3 facts)"
-        # Limits of the room with its walls, 0.1 m beyond the mid-lines.
-        sed -n 's/^Minimum point *//p' facts | grep -q '(-0.1.* -0.1.* 0' ||
+        # Limits of the room with its walls, 0.1 m beyond the mid-lines: z is up in STL, y in OBJ.
+        corner='(-0.1.* -0.1.* 0'
+        [ "$format" = stl ] || corner='(-0.1[0-9]* 0[0-9.]* -6.1'
+        sed -n 's/^Minimum point *//p' facts | grep -q "$corner" ||
             fail "another corner of room.$format: $(grep '^M.*point' facts)"
     done
     assimp info room.obj >facts 2>/dev/null
@@ -52,10 +66,10 @@ if command -v assimp >/dev/null; then
     [ "$(figure room.obj Faces)" -gt 100 ] || fail "few faces in room.obj"
     [ "$(figure room.obj Faces)" = "$(figure room.stl Faces)" ] ||
         fail "OBJ and STL differ: $(figure room.obj Faces), $(figure room.stl Faces) faces"
-    # The model has y up, and as many faces.
+    # The model has y up, as the OBJ.
     envc room.env -o bare.glb
     assimp info bare.glb >facts 2>&1 || fail "assimp refuses bare.glb: $(tail -n 3 facts)"
-    sed -n 's/^Minimum point *//p' facts | grep -q '(-0.1.* 0' || fail "$(grep '^M.*point' facts)"
+    sed -n 's/^Minimum point *//p' facts | grep -q '(-0.1[0-9]* 0[0-9.]* -6.1' || fail "$(grep '^M.*point' facts)"
     envc room.env room.3dm -o room.glb
     assimp info room.glb >facts 2>&1 || fail "assimp refuses room.glb: $(tail -n 3 facts)"
     for node in $nodes; do
@@ -134,6 +148,9 @@ if command -v ogrinfo >/dev/null; then
     geometry d1 POLYGON
     geometry l1 POINT
     geometry r1 POINT
+    # Metres of the room, no degrees of WGS 84, in which it would lie in the Gulf of Guinea.
+    grep -q '^ENGCRS\["room"' facts && grep -q 'LENGTHUNIT\["metre",1\]' facts && ! grep -q GEOGCRS facts ||
+        fail "GDAL sees another frame: $(cat facts)"
     ! grep -qi 'warning\|error' facts features || fail "GDAL complains: $(grep -i 'warn\|err' facts)"
 else
     echo "no ogrinfo here"

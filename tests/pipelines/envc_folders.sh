@@ -28,7 +28,7 @@ grep -q 'file=../a/room.glb' b/best.3dm || fail "$(cat b/best.3dm)"
 envc b/best.3dm --info >alone.txt
 grep -q 'laser 2' alone.txt || fail "$(cat alone.txt)"
 envc b/best.3dm -o both.glb -MD
-grep -q 'a/room.glb' both.d || fail "the rule lacks the room: $(cat both.d)"
+grep -q 'a/room.glb' both.glb.d || fail "the rule lacks the room: $(cat both.glb.d)"
 envc b/best.3dm --move '*:0.25,0' --to 3dm | tee moved.3dm | coverage --json >moved.json
 grep -q 'file=a/room.glb' moved.3dm || fail "$(cat moved.3dm)"
 

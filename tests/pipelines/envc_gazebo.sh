@@ -87,7 +87,12 @@ fact() {
 $(grep -F "$(echo "$1" | cut -d' ' -f1-2)" facts)"
 }
 sdf_facts room.sdf
+fact Valid.
 fact 'world room'
+sed 's/_visual"/"/' room.sdf >twins.sdf
+if "$read_sdf" "$PWD/twins.sdf" >facts 2>err; then fail "self-test: a collision and a visual of one name pass"; fi
+grep -q 'part1' err || fail "another error: $(cat err)"
+sdf_facts room.sdf
 # Ground, five things, two walls, no zone and no inside point; five sensors, a robot, a person, with
 # the laser on the robot in the robot's model.
 [ "$(grep -c '^model' facts)" -eq 14 ] || fail "other models: $(grep '^model' facts)"
@@ -117,6 +122,10 @@ grep -q '^visual u1 u1_body' facts || fail "no body of u1"
 
 envc room.env room.3dm --add 'mat at=1,2 size=1,1' --add 'gate at=2,2' --to sdf 2>err >more.sdf
 grep -q 'in the world: gate (1), mat (1), ultrasound (1)$' err || fail "not all counted: $(cat err)"
+# Ids that the world or a link has names of its own for.
+envc room.env --add 'cube id=default at=1,2' --add 'robot id=r2 at=5,4' --add 'laser id=part1_visual on=r2 at=0,0,0.3' \
+    --add 'laser id=part1 on=r2 at=0,0,0.4' -o names.sdf
+sdf_facts names.sdf
 
 # Every scene, and the same floor when envc reads its world.
 indoor() { envc "$@" --info --json 2>/dev/null | sed -n 's/.*"indoor_area":\([0-9.e-]*\).*/\1/p'; }

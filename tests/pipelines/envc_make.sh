@@ -7,7 +7,7 @@
 # The make that runs the tests is another one.
 unset MAKEFLAGS MFLAGS MAKELEVEL
 
-mkdir parts meshes "a folder"
+mkdir parts meshes rules "a folder"
 cp "$data"/include/parts/* parts
 cp "$data"/include/building.yaml building.yaml
 cp "$scenes"/meshes/steps.obj meshes
@@ -21,8 +21,8 @@ building.glb: building.yaml
 	@envc $< -o $@ -MD
 map.png: building.glb
 	@echo map
-	@coverage $< -o $@ -MD -MF map.d >/dev/null
--include building.d map.d
+	@coverage $< -o $@ -MD -MF rules/map.d >/dev/null
+-include building.glb.d rules/map.d
 END
 
 # expect_made WORDS WHY: what make says it does.
@@ -37,7 +37,7 @@ touch_later() { sleep 0.02 && touch "$@"; }
 expect_made "building map" "the first time"
 expect_made "make: Nothing to be done for 'all'." "nothing has changed"
 for file in building.yaml parts/furniture.yaml parts/lamp.env meshes/steps.obj mesh.env; do
-    grep -q "$file" building.d || fail "no $file in: $(cat building.d)"
+    grep -q "$file" building.glb.d || fail "no $file in: $(cat building.glb.d)"
     touch_later "$file"
     expect_made "building map" "$file has changed"
     expect_made "make: Nothing to be done for 'all'." "nothing has changed since"
@@ -49,11 +49,48 @@ sed -i '/include: mesh.env/d' building.yaml
 rm mesh.env meshes/steps.obj
 expect_made "building map" "an include is gone"
 
+# README's Makefile, for an office of a file, an include, a mesh and a texture, and a hall of a map's picture:
+# each change makes again what it affects, and no more.
+mkdir readme
+cd readme
+sed -n '/^    all: office.jsonl/,/^    -include/s/^    //p' "$source_dir/README.md" >Makefile
+[ "$(wc -l <Makefile)" -eq 13 ] || fail "README has another Makefile: $(cat Makefile)"
+sed -i '1s/$/ hall.jsonl hall.svg hall.png/' Makefile
+cp "$scenes"/meshes/steps.obj "$data"/map.pgm .
+cp "$data"/map.yaml hall.yaml
+envc "$data/room.env" -o wood.png
+printf '%s\n' 'include: parts.yaml' 'ispace: {size: 8 x 6}' 'records:' \
+    '  - cube: {at: [2, 1], size: [1, 1, 0.5], texture: wood.png}' \
+    '  - mesh: {at: [-2, -1], file: steps.obj, scale: 0.5}' >office.yaml
+printf -- '- desk: {at: [2, -1]}\n' >parts.yaml
+
+# expect_again FILES WHY: the products that `make -j2` writes.
+expect_again() {
+    touch -d '1 hour ago' *
+    touch -d '30 minutes ago' -- $(ls | grep -E '\.(glb|3dm|jsonl|svg|png|txt|d)$' | grep -v wood.png)
+    [ -z "$3" ] || touch "$3"
+    touch -d '10 minutes ago' since
+    make -j2 >said 2>&1 || fail "$2: $(cat said)"
+    local made
+    made=$(find . -newer since \( -name '*.glb' -o -name '*.3dm' -o -name '*.jsonl' -o -name '*.svg' -o -name '*.png' \) \
+        ! -name wood.png -printf '%f\n' | sort | tr '\n' ' ')
+    [ "$made" = "$1" ] || fail "$2: made again: $made, expected: $1"
+}
+make -j2 >said 2>&1 || fail "the first time: $(cat said)"
+office="office.3dm office.glb office.jsonl office.png office.svg "
+expect_again "" "nothing has changed" ""
+expect_again "$office" "an include has changed" parts.yaml
+expect_again "$office" "a mesh has changed" steps.obj
+expect_again "hall.3dm hall.glb hall.jsonl hall.png hall.svg " "a map's picture has changed" map.pgm
+expect_again "office.png " "a texture has changed" wood.png
+expect_again "office.3dm office.jsonl office.png office.svg " "a layout has changed" office.3dm
+cd ..
+
 # Names with blanks.
 cp parts/lamp.env "a folder/my lamp.env"
 printf 'ispace: {size: 8 x 6}\ninclude: "a folder/my lamp.env"\n' >lamp.yaml
 envc lamp.yaml -o lamp.glb -MD
-printf 'lamp.glb: lamp.yaml\n\t@echo lamp\n\t@envc $< -o $@ -MD\n-include lamp.d\n' >lamp.mk
+printf 'lamp.glb: lamp.yaml\n\t@echo lamp\n\t@envc $< -o $@ -MD\n-include lamp.glb.d\n' >lamp.mk
 [ "$(make -f lamp.mk)" = "make: 'lamp.glb' is up to date." ] || fail "a name with blanks: rebuilt"
 touch_later "a folder/my lamp.env"
 [ "$(make -f lamp.mk)" = lamp ] || fail "a name with blanks: not rebuilt"
@@ -67,7 +104,7 @@ all: out.glb
 out.glb:
 	@echo made
 	@touch out.glb
--include out.d
+-include out.glb.d
 END
 for name in 'a|b.env' '|' 'a |b|c' 'a\|b' 'a*b' 'a?b' 'a[x]b' '[' 'a~b' 'a&b' 'a&' '&' \
     'a\b' 'a\ b' 'a\:b' ' a' "a'b" 'a"b' 'a$b' '$(b)c' 'a#b' 'a\#b' 'a:b' 'C:\b' 'a%b' '%' 'a(b)c' 'a,b' \

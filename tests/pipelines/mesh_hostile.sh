@@ -192,7 +192,7 @@ for file in good/*.*; do
     case $file in *.mtl) continue ;; esac
     printf '#env 1\nispace size=4,3\nmesh at=1,1 file=%s\n' "$file" >room.env
     expect_status 0 envc room.env -o room.glb -MD
-    cp room.d "${file##*/}.d"
+    cp room.glb.d "${file##*/}.d"
 done
 grep -q 'good/uri.gltf good/deep/points.bin' <(tr -d '\\\n' <uri.gltf.d | tr -s ' ') ||
     fail "no buffer in: $(cat uri.gltf.d)"
@@ -203,7 +203,7 @@ if grep 'else.mtl' no_materials.obj.d; then fail "materials that are not there";
 envc - --info >in_folder <<<$'#env 1\nispace size=4,3\nmesh at=1,1 file=good/uri.gltf'
 printf '#env 1\nispace size=4,3\nmesh at=1,1 file=bad/uri_up.gltf side_files=anywhere\n' >room.env
 expect_status 0 envc room.env -o room.glb -MD
-grep -q 'outside/points.bin' room.d || fail "no buffer in: $(cat room.d)"
+grep -q 'outside/points.bin' room.glb.d || fail "no buffer in: $(cat room.glb.d)"
 envc room.env --info >anywhere
 expect_same <(grep ^digest in_folder) <(grep ^digest anywhere) "another digest"
 printf '#env 1\nispace size=4,3\nmesh at=1,1 file=bad/uri_fifo.gltf side_files=anywhere\n' >room.env
