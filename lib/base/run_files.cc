@@ -94,9 +94,9 @@ void note(const struct stat& info) {
     if (!file) return;
     const std::lock_guard lock(guard);
     if (!known) return;
+    known->inputs.insert(*file);  // also if it is refused: cleaning up must not replace it
     for (const auto& [place, output] : known->outputs)
         if (output.old == file) refuseInput(output.name);
-    known->inputs.insert(*file);
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ void CommandLine::dependencies(DependencyOptions& options, const std::string& ou
     flag("--MD", options.wanted, "also write a rule for make that names all files read",
          Enters::Nothing);
     file("--MF", "FILE", options.file,
-         "write that rule there (default: the product's name with .d)", Enters::Nothing);
+         "write that rule there (default: the product's name, then .d)", Enters::Nothing);
 }
 
 namespace {

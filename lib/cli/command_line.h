@@ -21,7 +21,7 @@ enum class Enters { History, BaseName, Nothing };
 /// A rule for make that names what the product was made from.
 struct DependencyOptions {
     bool wanted = false;  ///< -MD
-    std::string file;     ///< -MF; "": the product's name with the suffix .d
+    std::string file;     ///< -MF; "": the product's whole name and .d
 };
 
 /// One tool's options and operands. Each option is declared once, in the man page's order, bound

@@ -252,9 +252,12 @@ void addDensityOption(CommandLine& line, double& pixels_per_metre) {
                 Enters::History);
 }
 
-void addAnyEnvironmentOption(CommandLine& line, bool& any_environment) {
-    line.flag("--any-environment", any_environment, "continue if LAYOUT was made for another ENV",
-              Enters::History);
+void addDigestOptions(CommandLine& line, std::optional<bool>& same_environment) {
+    line.switchFlag("--same-environment", "--any-environment", same_environment,
+                    "an error if LAYOUT was made for another ENV (default: a warning if ENV is an "
+                    "operand, an error if LAYOUT names it)",
+                    "neither warning nor error if LAYOUT was made for another ENV",
+                    Enters::History);
 }
 
 std::uint64_t byteCount(const std::string& text) {

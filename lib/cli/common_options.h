@@ -107,8 +107,8 @@ void addCellOptions(CommandLine& line, CellWords& words, const std::string& purp
 /// `--density N|NAME`: pixels a metre that a camera needs; left alone without it.
 void addDensityOption(CommandLine& line, double& pixels_per_metre);
 
-/// `--any-environment`: continue if the digest in LAYOUT is not ENV's.
-void addAnyEnvironmentOption(CommandLine& line, bool& any_environment);
+/// `--same-environment` (true) and `--any-environment` (false), see SceneRequest.
+void addDigestOptions(CommandLine& line, std::optional<bool>& same_environment);
 
 /// `500M`, `2G`, `1.5GB`: powers of 1024, any case. \throws UsageError
 std::uint64_t byteCount(const std::string& text);

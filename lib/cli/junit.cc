@@ -2,10 +2,15 @@
 #include "cli/junit.h"
 
 #include <algorithm>
+#include <exception>
 #include <pugixml.hpp>
 #include <sstream>
+#include <utility>
 
+#include "base/error.h"
 #include "base/message.h"
+#include "base/program.h"
+#include "cli/run_tool.h"
 #include "sim/sim_time.h"
 
 namespace ispace {
@@ -55,6 +60,33 @@ std::string junitXml(const std::string& tool, const std::string& suite,
     std::ostringstream out;
     document.save(out, "  ");
     return out.str();
+}
+
+JunitFile::JunitFile(std::string tool, const std::string& file) : tool_(std::move(tool)) {
+    if (!file.empty()) file_.emplace(file);
+}
+
+void JunitFile::write(const std::string& suite, std::span<const JunitCase> cases) {
+    if (!file_) return;
+    file_->write(junitXml(tool_, suite, cases));
+    file_->commit();
+    file_.reset();
+}
+
+void JunitFile::during(std::span<const std::string> inputs, const std::function<void()>& work) {
+    try {
+        work();
+    } catch (...) {
+        JunitCase error{.name = tool_, .outcome = Outcome::Error};
+        for (const std::string& input : inputs) error.name += ' ' + displayName(baseName(input));
+        for (const std::string& line : currentFailure().lines)
+            error.message.append(error.message.empty() ? "" : "; ").append(line);
+        try {
+            write(error.name, {&error, 1});
+        } catch (const std::exception&) {  // what the work threw is to be told
+        }
+        throw;
+    }
 }
 
 }  // namespace ispace

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
+
+#include "base/file.h"
 
 namespace ispace {
 
@@ -24,5 +28,22 @@ struct JunitCase {
 /// that of its last verdict, with a testcase each. \param suite its name, e.g. the environment's
 std::string junitXml(const std::string& tool, const std::string& suite,
                      std::span<const JunitCase> cases);
+
+/// The file of --junit, which is written whether or not the run succeeds.
+class JunitFile {
+  public:
+    /// \param file "" for none \throws std::system_error, UsageError as OutputFile
+    JunitFile(std::string tool, const std::string& file);
+
+    /// Writes the verdicts of a suite, once.
+    void write(const std::string& suite, std::span<const JunitCase> cases);
+    /// Does a tool's work. If it throws before write(), the file holds one case, an `error` with
+    /// the messages, named after the tool and `inputs`, its operands; the exception goes on.
+    void during(std::span<const std::string> inputs, const std::function<void()>& work);
+
+  private:
+    std::string tool_;
+    std::optional<OutputFile> file_;  // until it is written
+};
 
 }  // namespace ispace

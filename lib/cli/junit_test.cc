@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/file.h"
+
 namespace ispace {
 namespace {
 
@@ -33,6 +38,40 @@ TEST(Junit, IsWhatServersRead) {
         "    </testcase>\n"
         "  </testsuite>\n"
         "</testsuites>\n");
+}
+
+class JunitFileTest : public testing::Test {
+  protected:
+    JunitFileTest() { std::filesystem::remove(file_); }
+    ~JunitFileTest() override { std::filesystem::remove(file_); }
+    std::string file_ = testing::TempDir() + "/junit_file_test.xml";
+};
+
+TEST_F(JunitFileTest, HoldsAnErrorIfTheWorkFails) {
+    const std::vector<std::string> operands = {"rooms/room.env", "-"};
+    JunitFile junit("coverage", file_);
+    EXPECT_THROW(junit.during(operands,
+                              [] {
+                                  throw FormatError({"room.env", 3, 5, "bad size"});
+                              }),
+                 FormatError);
+    const std::string text = readAll(file_);
+    EXPECT_NE(text.find("tests=\"1\" failures=\"0\" errors=\"1\""), std::string::npos) << text;
+    EXPECT_NE(text.find("name=\"coverage room.env stdin\""), std::string::npos) << text;
+    EXPECT_NE(text.find("<error message=\"room.env:3:5: error: bad size\""), std::string::npos)
+        << text;
+}
+
+TEST_F(JunitFileTest, KeepsTheVerdicts) {
+    JunitFile junit("coverage", file_);
+    const JunitCase unmet{.name = "90%", .outcome = JunitCase::Outcome::Unmet, .message = "80%"};
+    EXPECT_THROW(junit.during({},
+                              [&] {
+                                  junit.write("room.env", {&unmet, 1});
+                                  throw UnmetError("80%");
+                              }),
+                 UnmetError);
+    EXPECT_NE(readAll(file_).find("failures=\"1\" errors=\"0\""), std::string::npos);
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 #include "cli/operands.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <iterator>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -25,13 +27,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+ImportOptions defaultImport() {
+    ImportOptions options;
+    addModelFolders(options);
+    return options;
+}
+
 Document parse(std::string_view bytes, const std::string& operand) {
-    return parseDocument(bytes, operand, ImportOptions(), sceneSchemas());
+    return parseDocument(bytes, operand, defaultImport(), sceneSchemas());
 }
 
 Document read(const std::string& operand) {
     return operand == "-" ? parse(readStdin(), operand)
-                          : readDocument(operand, ImportOptions(), sceneSchemas());
+                          : readDocument(operand, defaultImport(), sceneSchemas());
 }
 
 bool hasPlaced(const Document& document, const std::vector<std::string>& keywords) {
@@ -39,6 +47,34 @@ bool hasPlaced(const Document& document, const std::vector<std::string>& keyword
         return std::find(keywords.begin(), keywords.end(), r.keyword()) != keywords.end() &&
                (r.has("at") || r.has("on"));
     });
+}
+
+/// The environment that layouts are held against.
+struct Reference {
+    std::span<const Record> records;
+    std::string operand;
+    bool is_operand = true;  ///< false: a layout's record names it
+};
+
+/// Compares the digest that `layout` records with that of `environment`.
+/// \throws FormatError if they differ and the rule of SceneRequest says so
+void checkDigest(const Document& layout, const Reference& environment,
+                 std::optional<bool> same_environment, std::vector<Diagnostic>& warnings) {
+    if (!same_environment.value_or(true)) return;
+    const auto recorded = environmentReference(layout);
+    if (!recorded || recorded->digest.empty()) return;
+    const std::string digest = environmentDigest(environment.records);
+    if (digest == recorded->digest) return;
+    const auto shortened = [](const std::string& whole) { return whole.substr(0, 15) + "…"; };
+    const std::string file = recorded->file.empty() ? "" : baseName(recorded->file) + ", ";
+    Diagnostic finding = recorded->record.finding(
+        "digest", "the layout was made for another environment (" + file +
+                      shortened(recorded->digest) + ") than " + displayName(environment.operand) +
+                      " (" + shortened(digest) +
+                      "): arrange again, or accept it with --any-environment");
+    if (same_environment || !environment.is_operand) throw FormatError(std::move(finding));
+    finding.severity = Severity::Warning;
+    warnings.push_back(std::move(finding));
 }
 
 /// Names textures relative to the current folder, where pictures are made.
@@ -62,9 +98,11 @@ class OperandReader {
             named_.emplace_back("-");
             takeLayoutFromStdin();
         }
-        if (!environment_) findEnvironment();
-        if (layout_ && !request_.any_environment)
-            checkDigest(*layout_, environment_->records, environment_operand_);
+        const bool is_operand = environment_.has_value();
+        if (!is_operand) findEnvironment();
+        if (layout_)
+            checkDigest(*layout_, {environment_->records, environment_operand_, is_operand},
+                        request_.same_environment, environment_->warnings);
         const Document* const layout = layout_ ? &*layout_ : nullptr;
         Scene scene = makeScene(*environment_, layout, devicesFor({&*environment_, layout}));
         std::string().swap(environment_->derived);  // its memory, too
@@ -149,18 +187,6 @@ std::string bytesReferenced(const EnvironmentReference& reference, const std::st
     }
 }
 
-void checkDigest(const Document& layout, std::span<const Record> environment,
-                 const std::string& environment_operand) {
-    const auto reference = environmentReference(layout);
-    if (!reference || reference->digest.empty()) return;
-    const std::string digest = environmentDigest(environment);
-    if (digest == reference->digest) return;
-    throw FormatError(reference->record.finding(
-        "digest", "the layout was made for another environment than " +
-                      displayName(environment_operand) + " (" + digest.substr(0, 15) +
-                      "…): arrange again, or go on with --any-environment"));
-}
-
 void mustReadStdinOnce(const std::vector<std::string>& files) {
     const auto is_stdin = [](const std::string& file) {
         return file == "-" || file == "/dev/stdin" || file == "/dev/fd/0";
@@ -178,7 +204,7 @@ std::string readStdin() {
 SceneInput readScene(const SceneRequest& request) { return OperandReader(request).read(); }
 
 OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
-                            bool any_environment) {
+                            std::optional<bool> same_environment) {
     std::vector<std::string> operands = input.named;
     operands.push_back(operand);
     mustReadStdinOnce(operands);
@@ -186,12 +212,16 @@ OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
     if (layout.kind != DocumentKind::Layout)
         throw FormatError(
             {displayName(operand), 0, 0, "an environment, where a layout (`#3dm 1`) is wanted"});
-    if (!any_environment) checkDigest(layout, input.environment.records, input.environment_operand);
+    std::vector<Diagnostic> warnings;
+    const bool is_operand = std::find(input.named.begin(), input.named.end(),
+                                      input.environment_operand) != input.named.end();
+    checkDigest(layout, {input.environment.records, input.environment_operand, is_operand},
+                same_environment, warnings);
     std::vector<std::string> files = {operand};
     files.insert(files.end(), layout.sources.begin(), layout.sources.end());
     return {makeScene(input.environment, &layout, devicesFor({&input.environment, &layout}),
                       &input.scene),
-            std::move(files)};
+            std::move(files), std::move(warnings)};
 }
 
 std::vector<std::string> filesOf(const SceneInput& input) {
@@ -302,10 +332,8 @@ void append(std::vector<T>& to, std::vector<T>&& from) {
         to.insert(to.end(), std::move_iterator(from.begin()), std::move_iterator(from.end()));
 }
 
-/// Layouts alone: the first that names its environment brings it along.
-void addEnvironment(std::vector<Document>& documents, const InputRequest& request) {
-    for (const Document& document : documents)
-        if (document.kind == DocumentKind::Environment) return;
+/// Layouts alone: the first that names its environment brings it along. Returns the file's name.
+std::string addEnvironment(std::vector<Document>& documents, const InputRequest& request) {
     for (const Document& document : documents) {
         const auto reference = environmentReference(document);
         if (!reference || reference->file.empty()) continue;
@@ -317,8 +345,22 @@ void addEnvironment(std::vector<Document>& documents, const InputRequest& reques
                 "file", reference->file + " is a layout, not an environment"));
         environment.sources.insert(environment.sources.begin(), reference->file);
         documents.push_back(std::move(environment));
-        return;
+        return reference->file;
     }
+    return "";
+}
+
+/// The environment among the documents, read from the layouts' records if none was given; its
+/// records come later.
+Reference environmentAmong(std::vector<Document>& documents, const InputRequest& request) {
+    Reference environment;
+    for (std::size_t i = 0; i < documents.size(); ++i)
+        if (documents[i].kind == DocumentKind::Environment)
+            environment.operand +=
+                (environment.operand.empty() ? "" : " + ") + displayName(request.inputs[i]);
+    environment.is_operand = !environment.operand.empty();
+    if (!environment.is_operand) environment.operand = addEnvironment(documents, request);
+    return environment;
 }
 
 }  // namespace
@@ -341,28 +383,39 @@ void rebaseFiles(std::vector<Record>& records, const std::string& from, const st
         }
 }
 
-Document readInputs(const InputRequest& request) {
+void addModelFolders(ImportOptions& options) {
+    for (const char* name : {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "SDF_PATH"}) {
+        const char* const value = std::getenv(name);
+        std::istringstream folders(value == nullptr ? "" : value);
+        for (std::string folder; std::getline(folders, folder, ':');)
+            if (!folder.empty()) options.model_folders.push_back(folder);
+    }
+}
+
+Document readInputs(const InputRequest& request, std::vector<Diagnostic>& other_rooms) {
     std::vector<Document> documents = parseInputs(request);
-    if (request.compiles) addEnvironment(documents, request);
+    Reference environment;
+    if (request.compiles) environment = environmentAmong(documents, request);
     std::stable_sort(documents.begin(), documents.end(), [](const Document& a, const Document& b) {
         return a.kind == DocumentKind::Environment && b.kind == DocumentKind::Layout;
     });
     Document joined;
     joined.kind = documents.front().kind;
-    const bool checks_digests = request.compiles && !request.any_environment &&
+    const bool checks_digests = request.compiles && request.same_environment.value_or(true) &&
                                 documents.back().kind == DocumentKind::Layout;
-    std::vector<Record> environment;  // before layouts are applied, where that is asked for
+    std::vector<Record> records;  // of the environment, before layouts are applied
     for (Document& document : documents) {
         append(joined.history, std::move(document.history));
         append(joined.notes, std::move(document.notes));
         append(joined.warnings, std::move(document.warnings));
         append(joined.sources, std::move(document.sources));
         if (document.kind == DocumentKind::Layout) {
-            if (!environment.empty()) checkDigest(document, environment, "the environment given");
+            if (checks_digests && !environment.records.empty())
+                checkDigest(document, environment, request.same_environment, other_rooms);
             joined.records = joinRecords(joined.records, document.records);
         } else {
             append(joined.records, std::move(document.records));
-            if (checks_digests) environment = joined.records;
+            if (checks_digests) environment.records = records = joined.records;
         }
     }
     if (documents.size() > 1) checkIds(joined.records);

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "io/input.h"
 #include "layout/scene.h"
 #include "record/record.h"
@@ -15,7 +15,9 @@ namespace ispace {
 /// How a tool that takes `ENV [LAYOUT]` reads its operands.
 struct SceneRequest {
     std::vector<std::string> operands;  ///< at most two, in any order; recognised by content
-    bool any_environment = false;       ///< another digest is not an error
+    /// If LAYOUT records another digest than ENV's: an error (true) or accepted (false). Unset: a
+    /// warning in environment.warnings if ENV is an operand, an error if LAYOUT's record names it.
+    std::optional<bool> same_environment = {};
     /// Read LAYOUT from stdin where ENV holds no placed sensor, or where there is no operand
     /// (scan and coverage); otherwise a missing operand is a usage error (arrange).
     bool layout_from_stdin = true;
@@ -46,19 +48,16 @@ SceneInput readScene(const SceneRequest& request);
 struct OtherLayout {
     Scene scene;
     std::vector<std::string> files;  ///< that it was read from, for -MD
+    std::vector<Diagnostic> warnings;
 };
 /// Reads it from `operand`, which may be - if stdin was not read yet. \throws as readScene, and
 /// FormatError if it is no layout
 OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
-                            bool any_environment);
+                            std::optional<bool> same_environment);
 
 /// The file of an environment that a layout names. \throws FormatError at the layout's line if it
 /// cannot be read
 std::string bytesReferenced(const EnvironmentReference& reference, const std::string& file);
-
-/// \throws FormatError if `layout` names another digest than that of `environment`'s records
-void checkDigest(const Document& layout, std::span<const Record> environment,
-                 const std::string& environment_operand);
 
 /// \throws UsageError if two of these files are stdin
 void mustReadStdinOnce(const std::vector<std::string>& files);
@@ -70,21 +69,27 @@ std::string readStdin();
 /// its folder, never absolute; "" if ENV came from a stream.
 std::string environmentFileFor(const std::string& output, const std::string& environment_operand);
 
+/// Adds the folders where the environment of the process says that models of Gazebo lie:
+/// GAZEBO_MODEL_PATH, GZ_SIM_RESOURCE_PATH and SDF_PATH.
+void addModelFolders(ImportOptions& options);
+
 /// How a tool that takes any number of environments and layouts reads them as one.
 struct InputRequest {
     std::vector<std::string> inputs;  ///< "-" for stdin
     ImportOptions import;
     std::vector<Record> added;  ///< by edits; importers of plans must know them
-    bool compiles = true;       ///< a layout's digest must match, unless any_environment
-    bool any_environment = false;
+    bool compiles = true;       ///< the environment of layouts is read, and digests are compared
+    std::optional<bool> same_environment = {};  ///< as in SceneRequest
     bool may_be_empty = false;  ///< an empty stdin is an environment without records
 };
 
 /// Joins all inputs: environments in their order, then layouts, whose records replace those with
 /// the same id. If only layouts are given and `compiles` is set, the environment that they name is
 /// read, too. File names are relative to the current folder; history, notes, warnings and sources
-/// are joined. \throws as parseDocument; FormatError for doubled ids and for a digest that differs
-Document readInputs(const InputRequest& request);
+/// are joined. \param other_rooms gets a warning for each layout whose digest differs and is no
+/// error \throws as parseDocument; FormatError for doubled ids and for a digest that must not
+/// differ
+Document readInputs(const InputRequest& request, std::vector<Diagnostic>& other_rooms);
 
 /// Rewrites file names in the records from relative to `from` to relative to `to`; "" is the
 /// current folder. Absolute names stay.

@@ -71,13 +71,13 @@ TEST_F(Operands, AnotherLayoutSharesTheRoom) {
     writeLayout("layout.txt", "");
     writeLayout("other.txt", "laser id=l2 at=3,3,0.2\n");
     const SceneInput input = readScene({{"room.env", "layout.txt"}});
-    const OtherLayout other = readOtherLayout(input, "other.txt", false);
+    const OtherLayout other = readOtherLayout(input, "other.txt", {});
     EXPECT_EQ(&other.scene.environment.elements(), &input.scene.environment.elements());
     EXPECT_EQ(other.scene.sensors.size(), 2U);
     EXPECT_EQ(input.scene.sensors.size(), 1U);
     // One that changes the room has one of its own.
     writeLayout("changed.txt", "cube at=2,2 size=0.5,0.5\n");
-    const OtherLayout changed = readOtherLayout(input, "changed.txt", false);
+    const OtherLayout changed = readOtherLayout(input, "changed.txt", {});
     EXPECT_EQ(changed.scene.environment.elements().size(),
               input.scene.environment.elements().size() + 1);
     EXPECT_EQ(changed.scene.digest(), input.scene.digest());
@@ -100,8 +100,39 @@ TEST_F(Operands, TheDigestMustMatch) {
     const std::string digest = readScene({{"seeing.env"}}).scene.digest();
     writeLayout("layout.3dm", "environment file=room.env digest=" + digest + "\n");
     EXPECT_EQ(readScene({{"layout.3dm"}}).scene.digest(), digest);
-    EXPECT_THROW(readScene({{"other.env", "layout.3dm"}}), FormatError);
-    EXPECT_EQ(readScene({{"other.env", "layout.3dm"}, true}).environment_operand, "other.env");
+    EXPECT_TRUE(readScene({{"seeing.env", "layout.3dm"}}).environment.warnings.empty());
+    EXPECT_THROW(readScene({{"other.env", "layout.3dm"}, true}), FormatError);
+    EXPECT_TRUE(readScene({{"other.env", "layout.3dm"}, false}).environment.warnings.empty());
+    // Where neither is asked for, a room that is an operand is meant.
+    const auto warnings = readScene({{"other.env", "layout.3dm"}}).environment.warnings;
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_TRUE(warnings[0].text().starts_with(
+        "layout.3dm:2:34: warning: the layout was made for another environment (room.env, " +
+        digest.substr(0, 15) + "…) than other.env (sha256:"))
+        << warnings[0].text();
+    writeLayout("stale.3dm", "environment file=other.env digest=" + digest + "\n");
+    EXPECT_THROW(readScene({{"stale.3dm"}}), FormatError);
+    EXPECT_EQ(readScene({{"stale.3dm"}, false}).environment_operand, "other.env");
+}
+
+TEST_F(Operands, TheDigestOfEachInputIsCompared) {
+    const std::string digest = readScene({{"room.env"}, {}, false}).scene.digest();
+    writeLayout("layout.3dm", "environment file=other.env digest=" + digest + "\n");
+    const auto warningsOf = [](const std::vector<std::string>& inputs,
+                               std::optional<bool> same_environment = {}) {
+        InputRequest request;
+        request.inputs = inputs;
+        request.same_environment = same_environment;
+        std::vector<Diagnostic> warnings;
+        readInputs(request, warnings);
+        return warnings.size();
+    };
+    EXPECT_EQ(warningsOf({"room.env", "layout.3dm"}), 0U);
+    EXPECT_EQ(warningsOf({"other.env", "layout.3dm"}), 1U);
+    EXPECT_EQ(warningsOf({"other.env", "layout.3dm"}, false), 0U);
+    EXPECT_EQ(warningsOf({"layout.3dm"}, false), 0U);
+    EXPECT_THROW(warningsOf({"other.env", "layout.3dm"}, true), FormatError);
+    EXPECT_THROW(warningsOf({"layout.3dm"}), FormatError);
 }
 
 TEST_F(Operands, UsageIsChecked) {
@@ -109,7 +140,7 @@ TEST_F(Operands, UsageIsChecked) {
     EXPECT_THROW(readScene({{"-", "-"}}), UsageError);
     EXPECT_THROW(readScene({{"room.env", "other.env"}}), UsageError);
     EXPECT_THROW(readScene({{"layout.3dm", "layout.3dm"}}), UsageError);
-    EXPECT_THROW(readScene({{}, false, false}), UsageError);
+    EXPECT_THROW(readScene({{}, {}, false}), UsageError);
     EXPECT_THROW(readScene({{"missing.env"}}), std::system_error);
 }
 

@@ -92,7 +92,7 @@ std::string inMake(const std::string& name, bool is_target) {
 
 std::string ruleFile(const DependencyOptions& options, const std::string& output) {
     if (!options.file.empty()) return options.file;
-    return std::filesystem::path(output).replace_extension(".d").string();
+    return output + ".d";
 }
 
 }  // namespace
@@ -216,6 +216,15 @@ std::string nameOf(const std::string& id) {
     return name;
 }
 
+/// Makes the folder and those above it, unless they exist.
+void makeFolder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (!error && !fs::is_directory(folder, error) && !error)
+        error = std::make_error_code(std::errc::not_a_directory);
+    if (error) throw std::system_error(error, folder);
+}
+
 std::string padded(int number, std::size_t width) {
     std::string text = std::to_string(number);
     if (text.size() < width) text.insert(0, width - text.size(), '0');
@@ -246,11 +255,7 @@ std::optional<OutputSet> OutputSet::of(const std::string& output) {
 void OutputSet::prepare(const std::vector<std::string>& ids, bool several_frames,
                         const std::vector<std::string>& endings) const {
     if (!folder_.empty()) {
-        std::error_code error;
-        fs::create_directories(folder_, error);
-        if (!error && !fs::is_directory(folder_, error) && !error)
-            error = std::make_error_code(std::errc::not_a_directory);
-        if (error) throw std::system_error(error, folder_);
+        makeFolder(folder_);
     } else {
         const std::string whole = pattern_ + suffix_;
         const auto refuse_pattern = [&whole](const std::string& why) {
@@ -282,6 +287,10 @@ void OutputSet::prepare(const std::vector<std::string>& ids, bool several_frames
             // Most names of a set are those of its first frame.
             claimOutput(file, "--output");
         }
+    if (folder_.empty())
+        for (const std::string& name : names)
+            if (const fs::path folder = fs::path(name).parent_path(); !folder.empty())
+                makeFolder(folder);
 }
 
 std::string OutputSet::fileOf(const std::string& id, int frame, const std::string& ending) const {

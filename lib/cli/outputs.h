@@ -57,7 +57,8 @@ class OutputSet {
     /// Nothing if `output` is one file or stdout.
     static std::optional<OutputSet> of(const std::string& output);
 
-    /// Checks that no two files have the same name, and makes the folder.
+    /// Checks that no two files have the same name, and makes the folder; for a pattern, those of
+    /// the first frame.
     /// \param several_frames whether frames must be told apart
     /// \param endings of the files of one reading; all but the first stand beside it
     /// \throws UsageError for a bad pattern, and where files would have one name; std::system_error

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "base/error.h"
@@ -91,9 +92,21 @@ TEST(ClaimOutputs, RefusesARuleInThePlaceOfTheProduct) {
         claimOutputs(options);
     };
     EXPECT_NO_THROW(claim({true, ""}, "room.glb"));
-    EXPECT_NO_THROW(claim({false, ""}, "room.d"));
-    EXPECT_THROW(claim({true, ""}, "room.d"), UsageError);
+    EXPECT_NO_THROW(claim({true, ""}, "room.d"));
     EXPECT_THROW(claim({true, "./room.glb"}, "room.glb"), UsageError);
+}
+
+TEST(WriteDependencies, NamesTheRuleAfterTheWholeProduct) {
+    const std::string folder = testing::TempDir() + "/rules";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    CommonOptions options;
+    options.dependencies.wanted = true;
+    for (const char* name : {"/office.glb", "/office.3dm", "/office"}) {
+        options.output = folder + name;
+        writeDependencies(options, std::vector<std::string>{"office.yaml"});
+        EXPECT_TRUE(std::filesystem::exists(options.output + ".d")) << name;
+    }
 }
 
 const std::vector<std::string> kPng = {".png", "-color.png", ".yaml"};
@@ -130,6 +143,19 @@ TEST(OutputSet, NamesOfAPattern) {
     EXPECT_EQ(OutputSet::of("100%%-%d.f32")->fileOf("l1", 7, ".raw"), "100%-7.f32")
         << "the suffix that was written";
     EXPECT_EQ(OutputSet::of("%s.x/%d.png")->fileBeside("k", 1, ".yaml"), "k.x/1.yaml");
+}
+
+TEST(OutputSet, MakesTheFoldersOfAPattern) {
+    const std::filesystem::path folder = ::testing::TempDir() + "outputs_test.film";
+    std::filesystem::remove_all(folder);
+    EXPECT_EQ(refusal((folder / "%s" / "%04d.png").string(), {"a", "b"}, true), "");
+    EXPECT_TRUE(std::filesystem::is_directory(folder / "a"));
+    EXPECT_TRUE(std::filesystem::is_directory(folder / "b"));
+    std::filesystem::remove_all(folder);
+    std::ofstream(folder) << "a file";
+    EXPECT_THROW(OutputSet::of((folder / "%d.png").string())->prepare({"a"}, true, {".png"}),
+                 std::system_error);
+    std::filesystem::remove(folder);
 }
 
 TEST(OutputSet, IdsNeitherEscapeNorHide) {

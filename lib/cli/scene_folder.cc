@@ -103,9 +103,9 @@ class ClientNames {
 
 }  // namespace
 
-SceneFolder::SceneFolder(const std::string& folder, bool any_environment)
+SceneFolder::SceneFolder(const std::string& folder, std::optional<bool> same_environment)
     : folder_(canonicalFolder(folder.empty() ? "." : folder)),
-      any_environment_(any_environment),
+      same_environment_(same_environment),
       devices_(shippedDevices()) {}
 
 std::string SceneFolder::of(const SceneInput& input) {
@@ -131,7 +131,7 @@ Scene SceneFolder::load(const std::string& environment, const std::string& layou
         operands.push_back(path(name));
         names.add(operands.back(), name);
     }
-    const SceneRequest request{std::move(operands), any_environment_, false};
+    const SceneRequest request{std::move(operands), same_environment_, false};
     return names.guarded([&] {
         Scene scene = readScene(request).scene;
         // They are read when a picture is taken.

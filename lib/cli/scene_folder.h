@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "cli/operands.h"
@@ -17,7 +18,7 @@ namespace ispace {
 class SceneFolder : public SceneSource {
   public:
     /// "" is the current folder. \throws std::system_error if there is none
-    SceneFolder(const std::string& folder, bool any_environment);
+    SceneFolder(const std::string& folder, std::optional<bool> same_environment);
     /// That of a run's operands: where ENV lies, or LAYOUT if that names ENV.
     static std::string of(const SceneInput& input);
 
@@ -30,7 +31,7 @@ class SceneFolder : public SceneSource {
 
   private:
     std::string folder_;  // canonical
-    bool any_environment_;
+    std::optional<bool> same_environment_;
     DeviceCatalogue devices_;
 };
 

@@ -42,9 +42,12 @@ std::vector<const KeySpec*> placeKeys(const Record& record) {
     return keys;
 }
 
+/// The file that added records are read from.
+constexpr const char* kAdded = "--add";
+
 /// The record of an edit that adds one.
 Record addedRecord(const Edit& edit, const Schemas& schemas) {
-    if (edit.kind == Edit::Kind::Add) return readRecord(edit.text, "--add", schemas);
+    if (edit.kind == Edit::Kind::Add) return readRecord(edit.text, kAdded, schemas);
     const Schema* const schema = schemas.find("fence");
     if (schema == nullptr) throw std::logic_error("no schema of fences");
     Record fence(*schema);
@@ -161,9 +164,28 @@ class Editor {
         for (std::size_t i = 0; i < ids_.size(); ++i)
             if (ids_[i] == edit_->ids || ::fnmatch(edit_->ids.c_str(), ids_[i].c_str(), 0) == 0)
                 places.push_back(i);
-        if (places.empty())
-            fail("nothing has the id `" + edit_->ids + '`' + didYouMean(edit_->ids, ids_));
+        if (places.empty()) fail("no record has the id `" + edit_->ids + '`' + knownIds());
         return places;
+    }
+
+    /// A near id, or the ids that there are: of many the last ones, as layouts follow rooms.
+    [[nodiscard]] std::string knownIds() const {
+        constexpr std::size_t kMost = 20;
+        const bool is_glob = edit_->ids.find_first_of("*?[") != std::string::npos;
+        std::string text = is_glob ? "" : didYouMean(edit_->ids, ids_);
+        if (!text.empty() || ids_.empty()) return text;
+        const bool is_cut = ids_.size() > kMost;
+        text = "; there are ";
+        if (is_cut) text += std::to_string(ids_.size()) + " ids, among them ";
+        const std::size_t first = is_cut ? ids_.size() - kMost : 0;
+        for (std::size_t i = first; i < ids_.size(); ++i)
+            text.append(i == first ? "" : ", ").append(ids_[i]);
+        return text;
+    }
+
+    [[nodiscard]] const Record& holderOf(const std::string& id) const {
+        const auto found = std::find(ids_.begin(), ids_.end(), id);
+        return records_.at(static_cast<std::size_t>(found - ids_.begin()));
     }
 
     void add(Record record) {
@@ -174,7 +196,7 @@ class Editor {
                 id = record.keyword() + std::to_string(++n);
             } while (!taken_.insert(id).second);
         } else if (!taken_.insert(id).second) {
-            fail("the id `" + id + "` is taken");
+            fail(takenText(id, holderOf(id)));
         }
         records_.push_back(std::move(record));
         ids_.push_back(std::move(id));
@@ -249,7 +271,7 @@ class Editor {
     void rename(std::size_t i) {
         const std::string id = records_[i].writtenId();
         if (id == ids_[i]) return;
-        if (!taken_.insert(id).second) fail("the id `" + id + "` is taken");
+        if (!taken_.insert(id).second) fail(takenText(id, holderOf(id)));
         for (Record& record : records_)
             for (const Role role : {Role::Carrier, Role::Reference})
                 forEachWritten(record, role, [&](const KeySpec& key) {
@@ -325,6 +347,17 @@ class Editor {
 };
 
 }  // namespace
+
+std::string takenText(const std::string& id, const Record& holder) {
+    const bool is_written = holder.has("id");
+    std::string text = "the id `" + id + "` is taken by the " + holder.keyword();
+    const Place place = is_written ? holder.keyPlace("id") : holder.place();
+    if (!place.file) return text;
+    if (*place.file == kAdded) return text + " added before";
+    text += " in " + displayName(*place.file);
+    if (place.line > 0) text += ':' + std::to_string(place.line);
+    return is_written ? text : text + ", which has no id written";
+}
 
 std::vector<Record> addedRecords(std::span<const Edit> edits, const Schemas& schemas) {
     std::vector<Record> records;

@@ -39,6 +39,9 @@ std::string optionOf(Edit::Kind kind);
 /// name
 Edit parseEdit(Edit::Kind kind, std::string_view text);
 
+/// "the id `door1` is taken by the door in room.env:3"
+std::string takenText(const std::string& id, const Record& holder);
+
 /// The records that --add and --fence add, in order. \throws FormatError as edited
 std::vector<Record> addedRecords(std::span<const Edit> edits, const Schemas& schemas);
 
@@ -49,8 +52,8 @@ std::vector<Record> addedRecords(std::span<const Edit> edits, const Schemas& sch
 /// new id (`--set l1.id=west`) is followed by the records that name the old one. Where a glob moves
 /// several records, what is mounted on one of them, or has no place of its own, follows by
 /// itself. `result` records are dropped by any edit: they tell of another layout.
-/// \throws FormatError, each message beginning with the edit ("--move l9:1,0: nothing has the id
-///         …"): an id that nothing has, a key that the record has not, a value out of bounds, a
+/// \throws FormatError, each message beginning with the edit ("--move l9:1,0: no record has the id
+///         …"): an id that no record has, a key that the record has not, a value out of bounds, a
 ///         move of what has no place of its own, a record removed that another one names
 std::vector<Record> edited(std::vector<Record> records, std::span<const Edit> edits,
                            const Schemas& schemas);

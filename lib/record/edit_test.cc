@@ -146,7 +146,11 @@ TEST(Edit, RenamesWhatNamesIt) {
     EXPECT_EQ(edit("desk id=d\nlaser id=l on=d\n", {{Kind::Set, "d.id=east"}}),
               "desk id=east\nlaser id=l on=east\n");
     EXPECT_EQ(errorOf("desk id=d\nlaser id=l on=d\n", Kind::Set, "d.id=l"),
-              "error: --set d.id=l: the id `l` is taken");
+              "error: --set d.id=l: the id `l` is taken by the laser in a.env:3");
+    EXPECT_EQ(
+        errorOf("desk at=1,1\n", Kind::Add, "desk id=desk1"),
+        "error: --add desk id=desk1: the id `desk1` is taken by the desk in a.env:2, which has no "
+        "id written");
 }
 
 TEST(Edit, DeletesAndKeepsTheNamesOfTheOthers) {
@@ -161,7 +165,18 @@ TEST(Edit, TakesGlobsInTheOrderOfTheEdits) {
                    {{Kind::Move, "a*:1,0"}, {Kind::Delete, "*/2"}, {Kind::Add, "desk at=9,9"}}),
               "desk id=a/1 at=1,0\nlaser id=l at=1,1\ndesk at=9,9\n");
     EXPECT_EQ(errorOf("desk id=d1\n", Kind::Delete, "d2"),
-              "error: --delete d2: nothing has the id `d2`, did you mean `d1`?");
+              "error: --delete d2: no record has the id `d2`, did you mean `d1`?");
+}
+
+TEST(Edit, AGlobWithoutMatchListsTheIds) {
+    EXPECT_EQ(errorOf("desk id=d\nlaser id=urm1\n", Kind::Rotate, "utm*:30"),
+              "error: --rotate utm*:30: no record has the id `utm*`; there are d, urm1");
+    std::string many;
+    for (int i = 0; i < 30; ++i) many += "desk\n";
+    const std::string error = errorOf(many, Kind::Rotate, "utm*:30");
+    EXPECT_NE(error.find("there are 30 ids, among them desk11, desk12,"), std::string::npos)
+        << error;
+    EXPECT_TRUE(error.ends_with("desk29, desk30")) << error;
 }
 
 TEST(Edit, MovesAllByAGlobOnce) {

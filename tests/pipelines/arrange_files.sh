@@ -17,7 +17,7 @@ grep -q 'bad.csv:2:1: error' err || fail "no place of the error: $(cat err)"
 arrange room.glb --sensor laser,range=4:5 --candidates 1,1,8 --curve curve.csv --trace tried.jsonl \
     -MD -o five.3dm 2>said
 [ "$(wc -l <curve.csv)" -eq 6 ] || fail "not five points: $(cat curve.csv)"
-grep -q '^five.3dm:' five.d && grep -q 'room.glb' five.d || fail "no rule: $(cat five.d)"
+grep -q '^five.3dm:' five.3dm.d && grep -q 'room.glb' five.3dm.d || fail "no rule: $(cat five.3dm.d)"
 [ "$(grep -c '"chosen":true' tried.jsonl)" -eq 5 ] || fail "not five chosen ones"
 candidates=$(grep -o 'candidates=[0-9]*' five.3dm | cut -d= -f2)
 [ "$(wc -l <tried.jsonl)" -eq $((candidates + 1)) ] || fail "not a line a candidate"

@@ -25,6 +25,14 @@ expect_status 0 arrange "${long[@]}" --time-limit 2 -o limited.3dm
 is_whole limited.3dm
 grep -q 'cut short' err || fail "nobody says that time ended it: $(cat err)"
 
+# A proof that ended before the limit stays one: the step that was cut short has a line to itself.
+for limit in 0.3 0.6 1.2 2.4; do
+    expect_status 0 arrange room.glb --sensor laser,range=4,fov=180:3 --candidates 0.5,0.5,8 --optimize exact \
+        --refine --no-progress --time-limit "$limit" -o refined.3dm
+    ! grep 'proven best.*cut short' err || fail "after $limit s both proven and cut short"
+    ! grep -q 'complete=no' refined.3dm || grep -q 'cut short' err || fail "nobody says that time ended it: $(cat err)"
+done
+
 for signal in INT TERM; do
     echo old >best.3dm
     interrupt "$signal" 3 arrange "${long[@]}" -o best.3dm

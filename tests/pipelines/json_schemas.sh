@@ -22,6 +22,8 @@ for scene in "$scenes"/*.env; do
     coverage "$scene" "$layout" -q --json -o "$name.seen.geojson" >"$name.coverage.json"
     scan "$scene" "$layout" -q --frames 2 --noise -o "$name.jsonl"
 done
+envc "$data/map.yaml" -q --rooms list --json >map.rooms.json
+envc "$data/drawings/flat.svg" -q --rooms list -o flat.rooms.json
 for layout in ultrasound ranger; do
     scan "$data/square.env" "$data/$layout.3dm" --any-environment -q -o "$layout.jsonl"
     coverage "$data/square.env" "$data/$layout.3dm" --any-environment -q --report "$layout.json" >/dev/null

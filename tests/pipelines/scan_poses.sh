@@ -112,7 +112,7 @@ printf '#3dm 1\nrobot id=r at=0,0 size=0.5,0.5,0.5\nlaser on=r fov=2 range=9\n' 
 echo '0 0 0 0.15 0 0 0 1' >one.txt
 scan "$room" on.3dm --poses one.txt -o on.jsonl -MD
 grep -q '"ranges":\[2.0003047,2,2.0003047\]' on.jsonl || fail "its own robot: $(cat on.jsonl)"
-grep -q 'one.txt' on.d || fail "rule: $(cat on.d)"
+grep -q 'one.txt' on.jsonl.d || fail "rule: $(cat on.jsonl.d)"
 expect_error 2 scan "$room" --poses one.txt --model laser,tilt=40
 expect_error 2 scan "$room" --poses one.txt --model laser,at=1,1
 # What stands before a bad pose is written, always; inside a desk is worth a word.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The manual against the tools: the same options in both, the sections in order, no complaint of
-# groff, and the examples run.
+# The manual against the tools: the same options in both, the sections in order, and no complaint of
+# groff. tests/recipes runs the examples.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 pages=$binary_dir/share/man/man1
@@ -24,7 +24,7 @@ programs="$tools golden-diff"
 if /usr/bin/python3 -c 'import yaml' 2>/dev/null; then
     programs+=" ispace-sweep"
 else
-    echo "no python3-yaml: the examples of ispace-sweep do not run"
+    echo "no python3-yaml: ispace-sweep does not run"
 fi
 for tool in $programs; do
     page=$pages/$tool.1
@@ -44,22 +44,13 @@ for tool in $programs; do
         groff -man -ww -z -Tutf8 "$page" 2>groff.err
         [ ! -s groff.err ] || fail "$tool: $(cat groff.err)"
     fi
-
-    # Every example runs, in a folder with the scenes.
-    mkdir "$tool"
-    cp -r "$scenes"/* "$tool"
-    plain "$page" | awk '/^\.SH / { inside = $2 == "EXAMPLES" } inside && /^\.EE/ { code = 0 }
-        code { print } inside && /^\.EX/ { code = 1 }' >"$tool/examples.sh"
-    [ -s "$tool/examples.sh" ] || fail "$tool: no examples"
-    (cd "$tool" && bash -euo pipefail examples.sh >../out 2>../err) ||
-        fail "$tool: an example fails: $(cat err "$tool/examples.sh")"
 done
 
 # A build for `make demo` has both sections, too.
 make -C "$source_dir" -n demo BUILD="$binary_dir" >demo
 grep -q -- '--target tools manual$' demo || fail "make demo builds no manual: $(cat demo)"
 
-# Section 5: every keyword and key that the tools know is there, and the examples are what they say.
+# Section 5: every keyword and key that the tools know is there.
 formats=$binary_dir/share/man/man5
 for format in env 3dm yaml; do
     page=$formats/ispace-$format.5
@@ -69,9 +60,6 @@ for format in env 3dm yaml; do
         groff -man -ww -z -Tutf8 "$page" 2>groff.err
         [ ! -s groff.err ] || fail "ispace-$format: $(cat groff.err)"
     fi
-    plain "$page" | awk '/^\.SH / { inside = $2 == "EXAMPLES" } inside && /^\.EE/ { code = 0 }
-        code { print } inside && /^\.EX/ { code = 1 }' >"example.$format"
-    [ -s "example.$format" ] || fail "ispace-$format: no example"
 done
 keywords=$(printf '#env 1\nnothing\n' | { envc --to env 2>&1 >/dev/null || true; } | sed 's/.*known: //; s/,//g')
 [ "$(wc -w <<<"$keywords")" -gt 20 ] || fail "no list of keywords: $keywords"
@@ -80,9 +68,6 @@ for keyword in $keywords; do
         fail "the manual lacks the record $keyword"
 done
 grep -q '^\.BR sill= ' "$formats/ispace-env.5" || fail "the manual lacks keys"
-envc example.env -o example.glb
-envc example.yaml --check
-envc example.3dm --to yaml >/dev/null
 
 # Section 7: every request that the server knows has a paragraph of its own.
 page=$binary_dir/share/man/man7/ispace-protocol.7

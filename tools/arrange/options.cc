@@ -124,7 +124,7 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     addSearchOptions();
     addFileOptions();
     addShareOptions();
-    addAnyEnvironmentOption(line_, options_.any_environment);
+    addDigestOptions(line_, options_.same_environment);
     addCommonOptions(line_, options_.common, "write the layout there (default: stdout)");
     line_.parse(argc, argv);
     settle();
@@ -212,8 +212,8 @@ void ArrangeCommand::addMountOptions() {
 void ArrangeCommand::addGoalOptions() {
     ArrangeOptions& how = options_.how;
     line_.texts("--zone", "ZONE", options_.zones.targets,
-                "cover only this part of the floor: the id of a zone, rect:X,Y,X,Y or "
-                "poly:X,Y;X,Y;...",
+                "cover only this part of the floor: the id of a zone, rect:X,Y,X,Y, "
+                "poly:X,Y;X,Y;..., or door:GLOB,M within M of doors",
                 Enters::History);
     line_.texts("--weight", "ZONE=W", options_.zones.weights,
                 "floor there counts W times (elsewhere once)", Enters::History);

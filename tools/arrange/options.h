@@ -31,7 +31,7 @@ struct ArrangeToolOptions {
     std::optional<double> time_limit;  ///< seconds
     BatchOptions batch;
     double checkpoint_interval = 5;  ///< seconds, of --resume
-    bool any_environment = false;
+    std::optional<bool> same_environment;
 };
 
 class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {

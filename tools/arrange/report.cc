@@ -16,9 +16,15 @@ std::string counted(std::size_t count, const char* one, const char* many) {
     return std::to_string(count) + ' ' + (count == 1 ? one : many);
 }
 
-std::string gapText(double value, double bound) {
-    const double gap = bound > 0 ? (bound - value) / bound : 0;
-    return gap <= 0 ? "proven best" : "gap " + percent(gap);
+/// Share of the bound that is open; 0 for a layout that is proven best.
+double gapOf(const Arrangement& arrangement) {
+    const double bound = arrangement.candidate_bound;
+    return bound > 0 ? std::max(0.0, (bound - arrangement.candidate_value) / bound) : 0;
+}
+
+/// The step that a signal or the time limit ended after the candidates were chosen.
+std::string unfinishedText(const ArrangeOptions& how) {
+    return how.target ? "the search for fewer sensors" : how.refine ? "refining" : "the curve";
 }
 
 std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) {
@@ -37,11 +43,13 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
         text += "; value " + percent(arrangement.candidate_value);
     else if (how.refine)
         text += "; before it was refined " + percent(arrangement.candidate_value);
+    const double gap = gapOf(arrangement);
     text += ", bound " + percent(arrangement.candidate_bound) + " (" +
-            gapText(arrangement.candidate_value, arrangement.candidate_bound) + ") " +
-            overText(how, arrangement);
-    if (!arrangement.is_complete) text += ", cut short";
+            (gap > 0 ? "gap " + percent(gap) : "proven best") + ") " + overText(how, arrangement);
+    if (!arrangement.is_complete && gap > 0) text += ", cut short";
     text += '\n';
+    if (!arrangement.is_complete && gap <= 0)
+        text += "arrange: " + unfinishedText(how) + " was cut short\n";
     if (how.refine && arrangement.refined_after > arrangement.refined_before) {
         text += "arrange: refined from " + formatFixed(arrangement.refined_before, 3) + " to " +
                 formatFixed(arrangement.refined_after, 3) +

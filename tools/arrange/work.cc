@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "cli/outputs.h"
+#include "env/door_zones.h"
 #include "layout/scene.h"
 #include "layout/schemas.h"
 
@@ -15,29 +16,33 @@ namespace ispace {
 
 namespace {
 
-NamedZone zoneOf(const ArrangeToolOptions& options, const std::string& text,
-                 const Environment& environment) {
-    NamedZone zone = readZone(text, environment);
-    if (zone.is_center_outside)
-        warn(options.common, "arrange",
-             "the centre of gravity of " + zone.name + " lies outside of it; a point inside is (" +
-                 formatFixed(zone.inside.x, 2) + ", " + formatFixed(zone.inside.y, 2) +
-                 "): is it the zone that is meant?");
-    return zone;
+std::vector<NamedZone> zonesOf(const ArrangeToolOptions& options, const std::string& text,
+                               const Environment& environment) {
+    std::vector<NamedZone> zones = readZones(text, environment);
+    for (const NamedZone& zone : zones)
+        if (zone.is_center_outside)
+            warn(options.common, "arrange",
+                 "the centre of gravity of " + zone.name +
+                     " lies outside of it; a point inside is (" + formatFixed(zone.inside.x, 2) +
+                     ", " + formatFixed(zone.inside.y, 2) + "): is it the zone that is meant?");
+    return zones;
 }
 
-void readZones(const ArrangeToolOptions& options, const Environment& environment,
+void takeZones(const ArrangeToolOptions& options, const Environment& environment,
                ArrangeOptions& how) {
     const ZoneWords& words = options.zones;
-    for (const std::string& text : words.targets)
-        how.weights.targets.push_back(zoneOf(options, text, environment));
-    for (const std::string& text : words.keep_out)
-        how.mount.keep_out.push_back(zoneOf(options, text, environment));
-    for (const std::string& text : words.keep_in)
-        how.mount.keep_in.push_back(zoneOf(options, text, environment));
+    const auto add = [&](const std::vector<std::string>& texts, std::vector<NamedZone>& zones) {
+        for (const std::string& text : texts)
+            for (NamedZone& zone : zonesOf(options, text, environment))
+                zones.push_back(std::move(zone));
+    };
+    add(words.targets, how.weights.targets);
+    add(words.keep_out, how.mount.keep_out);
+    add(words.keep_in, how.mount.keep_in);
     for (const std::string& text : words.weights) {
-        const auto [zone, weight] = splitWeight(text);
-        how.weights.weights.emplace_back(zoneOf(options, zone, environment), weight);
+        const auto [name, weight] = splitWeight(text);
+        for (NamedZone& zone : zonesOf(options, name, environment))
+            how.weights.weights.emplace_back(std::move(zone), weight);
     }
 }
 
@@ -55,7 +60,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
         added.push_back(ofOption(
             "--sensor", [&] { return readSensorSpec(spec, kinds, sceneSchemas(), devices); }));
     ArrangeWork work{
-        readScene({options.operands, options.any_environment, false}), {}, options.how, {}, {}};
+        readScene({options.operands, options.same_environment, false}), {}, options.how, {}, {}};
     SceneInput& input = work.input;
     warn(options.common, "arrange", input.environment.warnings);
     if (!options.fixed.empty()) {
@@ -68,7 +73,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     work.groups = groupsToPlace(input.scene, added, devices, open);
     if (work.groups.empty())
         throw UsageError("nothing to place: give --sensor, or a LAYOUT with a sensor without `at`");
-    readZones(options, input.scene.environment, work.how);
+    takeZones(options, input.scene.environment, work.how);
     work.files = filesOf(input);
     if (!options.places_file.empty()) {
         work.places = options.places_file == "-" ? readStdin() : readAll(options.places_file);

@@ -16,6 +16,7 @@
 #include "cli/progress.h"
 #include "cli/run_tool.h"
 #include "coverage/judge.h"
+#include "coverage/measured.h"
 #include "coverage/outcome.h"
 #include "layout/scene.h"
 #include "record/text.h"
@@ -49,9 +50,10 @@ class BatchWorker {
   private:
     void measure(const BatchJob& job, SceneOutcome& outcome) const {
         if (!job.wrong.empty()) throw UsageError(job.wrong);
-        const SceneInput input = readScene({.operands = job.operands,
-                                            .any_environment = options_.any_environment,
-                                            .layout_from_stdin = false});
+        SceneInput input = readScene({.operands = job.operands,
+                                      .same_environment = options_.same_environment,
+                                      .layout_from_stdin = false});
+        addZones(options_, input);
         const Scene& scene = input.scene;
         if (!input.layout && scene.sensors.empty())
             throw UsageError(input.environment_operand +
@@ -85,10 +87,8 @@ class BatchWorker {
 /// Writes what became of the jobs, in their order.
 class BatchWriter {
   public:
-    explicit BatchWriter(const CoverageToolOptions& options)
-        : options_(options), reports_(options.common.output) {
-        if (!options.junit.empty()) junit_.emplace(options.junit);
-    }
+    BatchWriter(const CoverageToolOptions& options, JunitFile& junit)
+        : options_(options), reports_(options.common.output), junit_(junit) {}
 
     void take(const BatchJob& job, const SceneOutcome& outcome) {
         reports_.write(outcome.report);
@@ -97,15 +97,12 @@ class BatchWriter {
                      printable(message)});
         if (outcome.failed) ++failed_;
         if (!unmetText(outcome.verdicts).empty()) ++unmet_;
-        if (junit_)
-            verdicts_.insert(verdicts_.end(), outcome.verdicts.begin(), outcome.verdicts.end());
+        verdicts_.insert(verdicts_.end(), outcome.verdicts.begin(), outcome.verdicts.end());
     }
 
     void commit() {
         reports_.commit();
-        if (!junit_) return;
-        junit_->write(junitXml("coverage", baseName(options_.batch), verdicts_));
-        junit_->commit();
+        junit_.write(baseName(options_.batch), verdicts_);
     }
 
     /// \throws as runBatch
@@ -123,7 +120,7 @@ class BatchWriter {
   private:
     const CoverageToolOptions& options_;
     OutputFile reports_;
-    std::optional<OutputFile> junit_;
+    JunitFile& junit_;
     std::vector<JunitCase> verdicts_;
     std::size_t failed_ = 0, unmet_ = 0;
 };
@@ -182,13 +179,12 @@ class Share {
 
 }  // namespace
 
-void runBatch(const CoverageToolOptions& options) {
-    limitThreads(options.common.threads);
-    claimOutputs(options.common);
-    claimOutput(options.junit, "--junit");
+namespace {
+
+void runShare(const CoverageToolOptions& options, JunitFile& junit) {
     Share share(options);
     const BatchWorker worker(options);
-    BatchWriter writer(options);
+    BatchWriter writer(options, junit);
     const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
     progress->begin("scenes", static_cast<std::int64_t>(share.size()));
     const auto finish = [&](std::size_t i, const SceneOutcome& outcome) {
@@ -206,6 +202,16 @@ void runBatch(const CoverageToolOptions& options) {
     writer.commit();
     share.finish();
     writer.conclude(share.size());
+}
+
+}  // namespace
+
+void runBatch(const CoverageToolOptions& options) {
+    limitThreads(options.common.threads);
+    claimOutputs(options.common);
+    claimOutput(options.junit, "--junit");
+    JunitFile junit("coverage", options.junit);
+    junit.during({&options.batch, 1}, [&] { runShare(options, junit); });
 }
 
 }  // namespace ispace

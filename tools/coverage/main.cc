@@ -42,20 +42,19 @@ SceneInput readInput(const CoverageToolOptions& options) {
         if (const std::string scene = RecordedFiles(options.run).scene;
             std::filesystem::exists(scene))
             operands.push_back(scene);
-    return readScene({operands, options.any_environment, true});
+    SceneInput input = readScene({operands, options.same_environment, true});
+    addZones(options, input);
+    return input;
 }
 
 /// Says what is met, and writes the verdicts where that is wanted. \throws UnmetError
 void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
-                   const Coverage& coverage, std::optional<OutputFile>& junit) {
+                   const Coverage& coverage, JunitFile& junit) {
     const std::vector<JunitCase> verdicts = judge(options.requirements, coverage);
     for (const JunitCase& verdict : verdicts)
         if (verdict.outcome == JunitCase::Outcome::Met)
             talk(options.common, "coverage", verdict.message);
-    if (junit) {
-        junit->write(junitXml("coverage", baseName(input.environment_operand), verdicts));
-        junit->commit();
-    }
+    junit.write(baseName(input.environment_operand), verdicts);
     if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
 }
 
@@ -65,20 +64,14 @@ std::string reportText(const CoverageToolOptions& options, const CoverageReport&
     return coverageText(report) + (run == nullptr ? "" : "\n" + runText(*run));
 }
 
-void coverage(CoverageToolOptions options) {
-    limitThreads(options.common.threads);
-    claimOutputs(options.common);
-    claimOutput(options.report, "--report");
-    claimOutput(options.junit, "--junit");
-    if (options.format != nullptr && options.format->beside_suffix != nullptr)
-        claimOutput(withSuffix(options.common.output, options.format->beside_suffix),
-                    "the picture of the map");
+void coverScene(CoverageToolOptions options, JunitFile& junit) {
     const SceneInput& input = leftToExit(readInput(options));
     warn(options.common, "coverage", input.environment.warnings);
     std::vector<std::string> files = filesOf(input);
     std::optional<OtherLayout> other;
     if (!options.other.empty()) {
-        other = readOtherLayout(input, options.other, options.any_environment);
+        other = readOtherLayout(input, options.other, options.same_environment);
+        warn(options.common, "coverage", other->warnings);
         files.insert(files.end(), other->files.begin(), other->files.end());
     }
     if (!options.trace.empty()) {
@@ -86,8 +79,6 @@ void coverage(CoverageToolOptions options) {
         files.push_back(options.trace);
     }
     if (!options.report.empty()) mustBeWritable(options.report);
-    std::optional<OutputFile> junit;
-    if (!options.junit.empty()) junit.emplace(options.junit);
     for (const Requirement& requirement : options.requirements)
         mustHaveZone(requirement, input.scene.environment);
     warn(options.common, "coverage", doubtsOf(input.scene));
@@ -112,6 +103,18 @@ void coverage(CoverageToolOptions options) {
          std::to_string(report.sensors.size()) + " sensors measured on " +
              std::to_string(measured.coverage.target.grid.size()) + " cells");
     checkRequired(options, input, measured.coverage, junit);
+}
+
+void coverage(const CoverageToolOptions& options) {
+    limitThreads(options.common.threads);
+    claimOutputs(options.common);
+    claimOutput(options.report, "--report");
+    claimOutput(options.junit, "--junit");
+    if (options.format != nullptr && options.format->beside_suffix != nullptr)
+        claimOutput(withSuffix(options.common.output, options.format->beside_suffix),
+                    "the picture of the map");
+    JunitFile junit("coverage", options.junit);
+    junit.during(options.operands, [&] { coverScene(options, junit); });
 }
 
 }  // namespace

@@ -173,6 +173,10 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "killed left there",
               Enters::Nothing);
     addMeasureOptions(line, o.measure, words);
+    line.texts("--zone", "ZONE", o.zones,
+               "report this part of the floor, too, as a zone: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
+               "door:GLOB,M within M of doors, whose zones are called DOOR-zone",
+               Enters::History);
     line.texts("--require", "SHARE", words.requirements,
                "exit with 3 if less is covered, by exact metrics where they are known: 95% of the "
                "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class identify:95%, "
@@ -208,7 +212,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "draw the places that arrange --trace wrote to this file on the map, coloured by the "
               "best value there",
               Enters::Nothing);
-    addAnyEnvironmentOption(line, o.any_environment);
+    addDigestOptions(line, o.same_environment);
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
     line.parse(argc, argv);
 

@@ -17,10 +17,11 @@ struct CoverageToolOptions {
     std::vector<std::string> operands;
     CoverageOptions measure;
     std::vector<Requirement> requirements;
-    std::string junit;    ///< file for what became of the requirements; "" for none
-    std::string command;  ///< its history line, without operands
-    std::string batch;    ///< list of many scenes, whose reports are the product; "" for one scene
-    Shard shard;          ///< of the list
+    std::vector<std::string> zones;  ///< to report besides those of the room
+    std::string junit;               ///< file for what became of the requirements; "" for none
+    std::string command;             ///< its history line, without operands
+    std::string batch;  ///< list of many scenes, whose reports are the product; "" for one scene
+    Shard shard;        ///< of the list
     bool resume = false;
     std::string other;  ///< LAYOUT to compare with; "" for none
     bool json = false;
@@ -30,7 +31,7 @@ struct CoverageToolOptions {
     std::string run;    ///< folder of a record, whose robots and people are looked at; "" for none
     MapOptions map;
     std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor that 0, 1, ... sensors see
-    bool any_environment = false;
+    std::optional<bool> same_environment;
     std::string history_line;
 };
 

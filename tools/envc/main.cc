@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "base/left_to_exit.h"
 #include "base/number.h"
@@ -13,6 +14,8 @@
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
+#include "env/door_zones.h"
+#include "env/environment.h"
 #include "env/info.h"
 #include "envc/options.h"
 #include "envc/product.h"
@@ -26,19 +29,46 @@ namespace {
 using namespace ispace;
 namespace fs = std::filesystem;
 
-Document readModel(const EnvcOptions& options) {
+/// Adds the records of --zone.
+void addZones(const EnvcOptions& options, Document& document) {
+    if (options.zones.empty()) return;
+    // Meshes that are not loaded bound no room.
+    std::vector<Record> records = document.records;
+    std::vector<std::string> ids = assignIds(records);
+    const Schemas& schemas = sceneSchemas();
+    for (std::size_t i = records.size(); i-- > 0;)
+        if (records[i].keyword() == "mesh") {
+            records.erase(records.begin() + static_cast<std::ptrdiff_t>(i));
+            ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(i));
+        }
+    for (Record& zone : zoneRecords(options.zones, Environment(records, ids), schemas))
+        document.records.push_back(std::move(zone));
+}
+
+/// \param found takes the rooms of plans; null: they are not asked for
+/// \param report what the imports have to say besides
+Document readModel(const EnvcOptions& options, FoundRooms* found, ImportReport& report) {
     InputRequest request;
     request.inputs = options.inputs;
     request.import = options.import;
+    addModelFolders(request.import);
+    request.import.found = found;
+    request.import.report = &report;
     request.compiles = options.format == nullptr || options.format->write != nullptr;
     request.import.load_files = request.compiles;
     request.added = addedRecords(options.edits, sceneSchemas());
-    request.any_environment = options.any_environment;
+    request.same_environment = options.same_environment;
     request.may_be_empty = !options.edits.empty();
-    Document document = readInputs(request);
+    std::vector<Diagnostic> other_rooms;
+    Document document = readInputs(request, other_rooms);
+    warn(options.common, "envc", other_rooms);
     document.records = edited(std::move(document.records), options.edits, sceneSchemas());
     if (request.compiles) loadFiles(document, "");
+    if (options.format == nullptr || !options.format->takes_zones) addZones(options, document);
     document.history.push_back(options.history_line);
+    CommonOptions loud = options.common;
+    loud.verbose = 1;
+    for (const std::string& choice : report.choices) talk(loud, "envc", choice);
     if (!options.check) warn(options.common, "envc", document.warnings);
     for (const std::string& note : document.notes) talk(options.common, "envc", note);
     return document;
@@ -52,9 +82,10 @@ void rebaseTo(const std::string& output, Document& document) {
 
 /// The warnings of an import and what is wrong with the scene, together; the first count all the
 /// more where no scene can be made of it. \throws FormatError with all findings
-void check(const Document& document, const DeviceCatalogue& devices) {
+void check(const Document& document, const ImportReport& report, const DeviceCatalogue& devices) {
     Diagnostics findings;
     for (const Diagnostic& warning : document.warnings) findings.add(warning);
+    for (const Diagnostic& doubt : report.doubts) findings.add(doubt);
     try {
         checkScene(makeScene(document, nullptr, devices)).throwIfAny();
     } catch (const FormatError& error) {
@@ -74,7 +105,8 @@ Room makeRoom(Document document, const DeviceCatalogue& devices) {
     return {std::move(document), std::move(scene)};
 }
 
-void compile(const EnvcOptions& options, Document document) {
+void compile(const EnvcOptions& options, Document document, const FoundRooms* found,
+             const ImportReport& report) {
     // The model holds its environment: a way to another would only go stale.
     std::erase_if(document.records,
                   [](const Record& record) { return record.keyword() == "environment"; });
@@ -82,7 +114,7 @@ void compile(const EnvcOptions& options, Document document) {
     if (options.format != nullptr) rebaseTo(options.common.output, document);
     const DeviceCatalogue& devices = devicesFor({&document});
     if (options.check) {
-        check(document, devices);
+        check(document, report, devices);
         talk(options.common, "envc", "nothing found");
         return;
     }
@@ -92,7 +124,7 @@ void compile(const EnvcOptions& options, Document document) {
         const EnvironmentInfo info = describe(scene.environment, scene.records, scene.digest());
         writeAll(output, options.json ? infoJson(info) : infoText(info));
     } else {
-        writeProduct(options, scene, compiled);
+        writeProduct(options, scene, compiled, found);
         talk(options.common, "envc",
              std::to_string(scene.records.size()) + " records compiled, indoor area " +
                  formatFixed(scene.environment.indoor().area(), 2) + " m2");
@@ -113,13 +145,23 @@ void envc(const EnvcOptions& options) {
     claimOutputs(options.common);
     if (format != nullptr) claimOutput(besideOf(options), std::string(format->beside_role));
     keepMemory(options.inputs);
-    Document document = readModel(options);
+    FoundRooms found;
+    const bool wants_rooms = options.list_rooms || (format != nullptr && format->draws_rooms);
+    ImportReport report;
+    Document document = readModel(options, wants_rooms ? &found : nullptr, report);
     std::vector<std::string> files = options.inputs;
     files.insert(files.end(), document.sources.begin(), document.sources.end());
-    if (format != nullptr && format->write_records != nullptr)
+    if (options.list_rooms && !found.any_plan)
+        throw UsageError(
+            "--rooms list is about plans, maps and buildings, and no input is one; a mesh becomes "
+            "a "
+            "plan with --slice-walls");
+    if (options.list_rooms)
+        writeAll(options.common.output, options.json ? roomsJson(found) : roomsText(found));
+    else if (format != nullptr && format->write_records != nullptr)
         convert(options, std::move(document));
     else
-        compile(options, std::move(document));
+        compile(options, std::move(document), &found, report);
     writeDependencies(options.common, files);
 }
 

@@ -35,18 +35,20 @@ void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to)
     };
     line.parsed("--slice", "M", take_slice, "write the cut through the room at this height instead",
                 Enters::History);
-    line.meters("--resolution", options.import.resolution, 0.001, 100,
-                "metres per pixel of a picture, or per cell of a ROS map that is written "
-                "(there 0.05 m by default)",
-                Enters::History);
+    line.meters(
+        "--resolution", options.import.resolution, 0.001, 100,
+        "metres per pixel of a picture, per cell in which the points of a cloud are counted, "
+        "or per cell of a ROS map that is written (there 0.05 m by default)",
+        Enters::History);
     line.count("--width", "PIXELS", options.width, 200, 12000, "width of a PNG", Enters::History);
     line.texts("--zone", "ZONE", options.zones,
-               "nav2-keepout: floor to keep out of, a zone's id, rect:X,Y,X,Y or "
-               "poly:X,Y;X,Y;...",
+               "add a zone: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or door:GLOB,M within M of doors; of "
+               "nav2-keepout floor to keep out of, also a zone's id",
                Enters::History);
     line.flag("--info", options.info, "report on the environment instead of writing it",
               Enters::Nothing);
-    line.flag("--json", options.json, "the report of --info as JSON", Enters::Nothing);
+    line.flag("--json", options.json, "the report of --info, or --rooms list, as JSON",
+              Enters::Nothing);
     line.flag("--check", options.check,
               "list errors and warnings about the environment and what stands in it",
               Enters::Nothing);
@@ -99,8 +101,11 @@ void addRoomOptions(CommandLine& line, EnvcOptions& options) {
         import.inside.push_back(pointFrom(text));
     };
     line.ordered("--inside", "X,Y", take_inside, "a point in a room to keep");
-    line.choice("--rooms", options.rooms, {"largest", "all"},
-                "which closed rooms of a plan are kept (default largest)", Enters::History);
+    line.choice(
+        "--rooms", options.rooms, {"largest", "all", "list"},
+        "which closed rooms of a plan are kept (default largest); or list all of them, with "
+        "areas and points for --inside",
+        Enters::History);
     line.meters("--close-gaps", import.close_gaps, 0, 100,
                 "close gaps between a plan's walls up to this wide "
                 "(default: as little as the plan needs, at most 0.2 m)",
@@ -130,29 +135,56 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
         "--clean", import.clean, 0, 100,
         "remove noise below this size from maps made by robots (default 0.5 m; 0: keep all)",
         Enters::History);
+    line.choice("--unknown", import.unknown, {"unknown", "free"},
+                "what shade 205 of a map means, which robots write for unknown (default unknown)",
+                Enters::History);
     line.choice("--units", import.units, kUnits, "unit of a drawing or a mesh", Enters::History);
+    line.meters("--width-is", import.width_is, 0.01, 100'000,
+                "width of a drawing, from its leftmost to its rightmost wall, instead of its unit",
+                Enters::History);
     line.choice("--up", import.up, {"auto", "x", "y", "z"}, "upward axis of a mesh",
                 Enters::History);
     const auto take_cut = [&import](const std::string& text) {
-        import.slice_walls = heightFrom(text);
+        const std::size_t dots = text.find("..");
+        import.slice_walls = heightFrom(text.substr(0, dots));
+        if (dots == std::string::npos) return;
+        import.slice_top = heightFrom(text.substr(dots + 2));
+        if (!(*import.slice_walls < *import.slice_top))
+            throw UsageError("the lower height comes first, as in 0.5..1.8");
     };
-    line.parsed("--slice-walls", "M", take_cut,
-                "cut a mesh of a room at this height into walls (default: only IFC is cut, 1.2 m "
-                "above its lowest storey)",
+    line.parsed("--slice-walls", "M[..M]", take_cut,
+                "cut a mesh of a room, or the meshes of an SDF world, at this height into walls; "
+                "take the points of a cloud between two heights as walls (default: IFC is cut 1 m "
+                "above the floor, SDF at 0.3 m where its boxes enclose no room)",
                 Enters::History);
+    line.text("--storey", "NAME|NUMBER", import.storey,
+              "storey of an IFC building to read: its name, or its number from 1 for the lowest "
+              "(default: the lowest that has spaces or doors)",
+              Enters::History);
     line.texts("--wall-layer", "GLOB", import.wall_layers,
                "layers of a drawing that hold walls (default: all others)", Enters::History);
     line.texts("--door-layer", "GLOB", import.door_layers, "layers that hold doors",
                Enters::History);
     line.texts("--window-layer", "GLOB", import.window_layers, "layers that hold windows",
                Enters::History);
+    line.texts("--models", "DIR", import.model_folders,
+               "folder with models that an SDF world names (besides its own, ../models, and those "
+               "of GAZEBO_MODEL_PATH, GZ_SIM_RESOURCE_PATH and SDF_PATH)",
+               Enters::Nothing);
     line.flag("--points", import.points, "turn points of an ARIA map into obstacles",
               Enters::History);
 }
 
 void checkCombination(const CommandLine& line, const EnvcOptions& options) {
     mustReadStdinOnce(options.inputs);
-    if (options.json && !options.info) throw UsageError("--json is the form of --info: give both");
+    if (options.json && !options.info && !options.list_rooms)
+        throw UsageError("--json is the form of --info and of --rooms list: give one of them");
+    if (options.list_rooms &&
+        (options.info || options.check || options.slice || line.given("--to")))
+        throw UsageError(
+            "--rooms list is the product then: leave --info, --check, --slice and --to out");
+    if (options.import.width_is && line.given("--units"))
+        throw UsageError("--width-is and --units both set the scale: give one of them");
     if (options.check && (options.info || options.slice || line.given("--to") ||
                           line.given("--output") || options.common.dependencies.wanted))
         throw UsageError("--check writes nothing: leave --info, --slice, --to, -o and -MD out");
@@ -161,12 +193,17 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
     if (line.given("--closed") && !line.given("--fence"))
         throw UsageError("--closed is about --fence: give both");
     const bool takes_zones = options.format != nullptr && options.format->takes_zones;
-    if (line.given("--zone") && !takes_zones)
-        throw UsageError("--zone is for --to nav2-keepout: give both");
+    if (!takes_zones &&
+        std::any_of(options.zones.begin(), options.zones.end(),
+                    [](const std::string& zone) { return zone.find(':') == std::string::npos; }))
+        throw UsageError(
+            "--zone is for --to nav2-keepout, or adds rect:X,Y,X,Y, poly:X,Y;X,Y;... or "
+            "door:GLOB,M: the room has the zones that are called by their ids");
     if (options.format == nullptr) return;
     if (takes_zones && options.zones.empty())
-        throw UsageError(std::string(options.format->name) +
-                         ": say which floor to keep out of: --zone NAME, rect:X,Y,X,Y or poly:…");
+        throw UsageError(
+            std::string(options.format->name) +
+            ": say which floor to keep out of: --zone NAME, rect:X,Y,X,Y, poly:… or door:GLOB,M");
     const std::string suffix = suffixOf(options.common.output);
     const ExportFormat& format = *options.format;
     if ((format.needs_beside && suffix != format.suffix) ||
@@ -207,16 +244,18 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     line.flag("--closed", closed, "close the fences of --fence", Enters::History);
     addRoomOptions(line, options);
     addImportOptions(line, options.import);
-    addAnyEnvironmentOption(line, options.any_environment);
+    addDigestOptions(line, options.same_environment);
     addCommonOptions(line, options.common, "write the product there (default: stdout)");
     line.parse(argc, argv);
 
     if (options.inputs.empty()) options.inputs.emplace_back("-");
     if (options.rooms == "all") options.import.rooms = RoomChoice::All;
     for (Edit& edit : options.edits) edit.closed = closed && edit.kind == Edit::Kind::Fence;
-    if (!options.info && !options.check) options.format = productFormat(to, options);
+    options.list_rooms = options.rooms == "list";
+    if (!options.info && !options.check && !options.list_rooms)
+        options.format = productFormat(to, options);
     checkCombination(line, options);
-    if (options.info && !options.json)
+    if ((options.info || options.list_rooms) && !options.json)
         options.json = outputFormat({}, options.common.output, {"txt", "json"}) == "json";
     options.history_line = line.historyLine(options.inputs);
     return options;

@@ -15,12 +15,13 @@ namespace ispace {
 struct EnvcOptions {
     CommonOptions common;
     std::vector<std::string> inputs;       ///< "-" if none is given
-    const ExportFormat* format = nullptr;  ///< of the product; null with info or check
+    const ExportFormat* format = nullptr;  ///< of the product; null with info, check or list
     bool info = false, json = false, check = false;
+    bool list_rooms = false;         ///< instead of writing the room; format is null then, too
     std::optional<double> slice;     ///< height of the obstacle map, which is the product then
     int width = 1200;                ///< pixels of a PNG
-    std::vector<std::string> zones;  ///< to keep out of
-    bool any_environment = false;
+    std::vector<std::string> zones;  ///< to keep out of, or to add
+    std::optional<bool> same_environment;
     ImportOptions import;
     std::string rooms;        ///< "" or a word of --rooms
     std::vector<Edit> edits;  ///< in their order

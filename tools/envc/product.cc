@@ -26,7 +26,8 @@ std::string besideOf(const EnvcOptions& options) {
     return is_none ? "" : withSuffix(options.common.output, format.beside_suffix.data());
 }
 
-void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document) {
+void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document,
+                  const FoundRooms* found) {
     if (options.format->write_to != nullptr) {
         OutputFile file(options.common.output);
         options.format->write_to(scene, document,
@@ -40,7 +41,8 @@ void writeProduct(const EnvcOptions& options, const Scene& scene, const Document
                       options.width,
                       "",
                       fs::path(beside).filename().string(),
-                      options.zones};
+                      options.zones,
+                      found};
     if (!isStream(options.inputs.front())) how.title = baseName(options.inputs.front());
     const ExportedFiles files = options.format->write(scene, document, how);
     if (!files.left_out.empty()) warn(options.common, "envc", files.left_out);

@@ -14,7 +14,8 @@ namespace ispace {
 std::string besideOf(const EnvcOptions& options);
 
 /// Writes the product and what stands beside it. \throws as OutputFile and the format's writer
-void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document);
+void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document,
+                  const FoundRooms* found);
 
 /// For large inputs: what is let go of on the way is used again, and not given back to the system,
 /// which would have to clear it anew. Large rooms come and go through a few hundred megabytes.

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // golden-diff: compares what a tool wrote with what it should write, numbers within a tolerance.
+#include <algorithm>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/golden.h"
+#include "base/json_difference.h"
 #include "base/number.h"
 #include "cli/command_line.h"
 #include "cli/run_tool.h"
@@ -18,6 +21,7 @@ using namespace ispace;
 struct Options {
     std::vector<std::string> operands;
     Tolerance tolerance;
+    std::vector<std::string> ignored;
     bool history = false, quiet = false;
 };
 
@@ -40,6 +44,10 @@ Options parseOptions(int argc, const char* const* argv) {
                 "how far two numbers may lie apart (default 1e-9)", Enters::Nothing);
     line.parsed("--rel", "Y", takeTolerance(o.tolerance.relative),
                 "this much more, times the larger of the two (default 1e-9)", Enters::Nothing);
+    line.texts("--ignore", "KEY,...", o.ignored,
+               "leave out these keys of JSON: a name at any depth (digest) or a path from the top "
+               "(sensors.*.model)",
+               Enters::Nothing);
     line.flag("--history", o.history, "compare history, too", Enters::Nothing);
     line.flag("-q,--quiet", o.quiet, "only the exit status tells", Enters::Nothing);
     line.parse(argc, argv);
@@ -51,12 +59,45 @@ Options parseOptions(int argc, const char* const* argv) {
 
 bool isPng(const std::string& bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
 
-std::string differenceOf(const Options& options, const std::string& expected,
-                         const std::string& actual) {
-    if (isPng(expected) != isPng(actual)) return "one is a PNG and the other is not";
-    if (isPng(expected)) return pictureDifference(expected, actual);
-    if (options.history) return textDifference(expected, actual, options.tolerance);
-    return textDifference(withoutHistory(expected), withoutHistory(actual), options.tolerance);
+/// The parts of comma-separated lists.
+std::vector<std::string> split(const std::vector<std::string>& lists) {
+    std::vector<std::string> parts;
+    for (const std::string& list : lists) {
+        std::istringstream rest(list);
+        for (std::string part; std::getline(rest, part, ',');) parts.push_back(part);
+    }
+    return parts;
+}
+
+/// The differences of JSON, a line each.
+std::string listOf(const std::vector<std::string>& differences) {
+    constexpr std::size_t kMost = 100;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(kMost, differences.size()); ++i)
+        list += '\n' + differences[i];
+    if (differences.size() > kMost)
+        list += "\nand " + std::to_string(differences.size() - kMost) + " more";
+    return list.empty() ? "" : ':' + list;
+}
+
+/// "" if the files agree, else a text that follows "B differs from A".
+std::string differenceOf(const Options& options, std::string expected, std::string actual) {
+    if (isPng(expected) != isPng(actual)) return ", one is a PNG and the other is not";
+    if (isPng(expected)) {
+        const std::string found = pictureDifference(expected, actual);
+        return found.empty() ? "" : ", " + found;
+    }
+    if (!options.history) {
+        expected = withoutHistory(expected);
+        actual = withoutHistory(actual);
+    }
+    if (const auto found =
+            jsonDifferences(expected, actual, options.tolerance, split(options.ignored)))
+        return listOf(*found);
+    if (!options.ignored.empty())
+        throw UsageError("--ignore leaves out keys of JSON, and these files are not JSON");
+    const std::string found = textDifference(expected, actual, options.tolerance);
+    return found.empty() ? "" : ", " + found;
 }
 
 /// True, and says where, if the files do not agree.
@@ -64,8 +105,8 @@ bool differ(const Options& options) {
     const std::string &expected = options.operands[0], &actual = options.operands[1];
     const std::string found = differenceOf(options, readAll(expected), readAll(actual));
     if (!found.empty() && !options.quiet)
-        writeAll("-", displayName(actual) + " differs from " + displayName(expected) + ", " +
-                          found + '\n');
+        writeAll("-",
+                 displayName(actual) + " differs from " + displayName(expected) + found + '\n');
     return !found.empty();
 }
 

@@ -129,7 +129,7 @@ void ScanCommand::declare() {
     addBatchOptions(line_, o.batch, "of its readings");
     line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",
                Enters::Nothing);
-    addAnyEnvironmentOption(line_, o.any_environment);
+    addDigestOptions(line_, o.same_environment);
     addCommonOptions(line_, o.common,
                      "write the readings there: a file, a folder, or a pattern with %d (frame) and "
                      "%s (sensor) (default: stdout)");

@@ -39,7 +39,7 @@ struct ScanToolOptions {
     PhotoOptions photo;
     BatchOptions batch;
     bool list_models = false;
-    bool any_environment = false;
+    std::optional<bool> same_environment;
 };
 
 class ScanCommand : public ToolCommand<ScanToolOptions> {

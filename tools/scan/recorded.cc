@@ -125,7 +125,7 @@ Sensors recordedLasers(const ScanToolOptions& options, const Scene& scene) {
 SceneInput sceneOf(const ScanToolOptions& options) {
     std::vector<std::string> operands = options.operands;
     if (operands.empty()) operands.push_back(RecordedFiles(options.view.run).scene);
-    return readScene({operands, options.any_environment, false, {}});
+    return readScene({operands, options.same_environment, false, {}});
 }
 
 }  // namespace
@@ -133,6 +133,7 @@ SceneInput sceneOf(const ScanToolOptions& options) {
 void writeRecorded(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
     const SceneInput input = sceneOf(options);
+    warn(options.common, "scan", input.environment.warnings);
     const Sensors lasers = recordedLasers(options, input.scene);
     FormatOptions how = formatOptions(command, input);
     const bool wants_moments = options.format == "mcap";

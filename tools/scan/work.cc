@@ -64,7 +64,7 @@ SceneRequest requestOf(const ScanToolOptions& options) {
         throw UsageError("stdin cannot be read twice: only one of operands and --poses can be -");
     // A receiver alone reads nothing.
     return {options.operands,
-            options.any_environment,
+            options.same_environment,
             wants_layout,
             {"laser", "ranger", "camera", "tag"}};
 }

@@ -19,7 +19,7 @@ SceneInput readInput(const SimrunOptions& options) {
                              " holds no scene.env: give ENV and LAYOUT of the run");
         operands.push_back(scene);
     }
-    return readScene({operands, options.any_environment, false});
+    return readScene({operands, options.same_environment, false});
 }
 
 std::string titleOf(const SimrunOptions& options, const SceneInput& input) {

@@ -32,7 +32,7 @@ void claimFiles(const SimrunOptions& options) {
 }
 
 void serve(Simulation& simulation, const SimrunCommand& command, const SceneInput& input,
-           const std::optional<Replay>& replay) {
+           const std::optional<Replay>& replay, JunitFile& junit) {
     const SimrunOptions& options = command.options();
     const World& world = simulation.world();
     auto judge = ofOption("--expect", [&] { return ExpectationJudge(world, options.expected); });
@@ -52,9 +52,6 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
         port_file.emplace(options.port_file);
         port_file->write(std::to_string(server.port()) + '\n');
     }
-    // Before the run, so that none is lost for want of a folder.
-    std::optional<OutputFile> junit;
-    if (!options.junit.empty()) junit.emplace(options.junit);
     const bool odometry = replay ? replay->hasOdometry() : options.noise;
     const auto record =
         recordOf(simulation, options, input.scene, historyOf(command, input), odometry);
@@ -70,10 +67,8 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
     conclude(judge, options, input, junit);
 }
 
-void simrun(const SimrunCommand& command) {
+void run(const SimrunCommand& command, JunitFile& junit) {
     const SimrunOptions& options = command.options();
-    limitThreads(options.common.threads);
-    claimFiles(options);
     SceneInput input = readInput(options);
     warn(options.common, "simrun", input.environment.warnings);
     warnOfLeftOut(input.scene, options.common);
@@ -91,11 +86,21 @@ void simrun(const SimrunCommand& command) {
     if (replay) simulation.replay(*replay, options.holds);
     CollisionLog collisions(world, options.common);
     FailureLog failures(replay, options.common);
+    LagLog lag(simulation, options.common);
+    simulation.onStep([&lag] { lag.tell(); });
     if (replay)
         simulation.onStep([&failures] { failures.tell(); });
     else
         simulation.onStep([&collisions] { collisions.tell(); });
-    serve(simulation, command, input, replay);
+    serve(simulation, command, input, replay, junit);
+}
+
+void simrun(const SimrunCommand& command) {
+    const SimrunOptions& options = command.options();
+    limitThreads(options.common.threads);
+    claimFiles(options);
+    JunitFile junit("simrun", options.junit);
+    junit.during(options.operands, [&] { run(command, junit); });
 }
 
 }  // namespace

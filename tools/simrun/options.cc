@@ -39,7 +39,7 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     declareDrawing();
     declareJudgement();
     declareServer();
-    addAnyEnvironmentOption(line_, options_.any_environment);
+    addDigestOptions(line_, options_.same_environment);
     addCommonOptions(
         line_, options_.common,
         "draw the record of --replay there instead of serving it: the ways (.png, .svg, "

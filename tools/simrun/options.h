@@ -24,7 +24,7 @@ struct DrawingOptions {
 struct SimrunOptions {
     CommonOptions common;
     std::vector<std::string> operands;
-    bool any_environment = false;
+    std::optional<bool> same_environment;
     Clock clock;
     SimTime step = std::chrono::milliseconds(5);
     std::optional<SimTime> until;

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "cli/junit.h"
 
 namespace ispace {
 
@@ -32,20 +31,17 @@ void report(const Simulation& simulation, const SimrunOptions& options) {
 }
 
 void conclude(const ExpectationJudge& judge, const SimrunOptions& options, const SceneInput& input,
-              std::optional<OutputFile>& junit) {
+              JunitFile& junit) {
     const std::vector<RunVerdict> verdicts = judge.verdicts();
-    if (junit) {
-        std::vector<JunitCase> cases;
-        cases.reserve(verdicts.size());
-        for (const RunVerdict& verdict : verdicts)
-            cases.push_back(
-                {.name = verdict.expectation,
-                 .outcome = verdict.is_met ? JunitCase::Outcome::Met : JunitCase::Outcome::Unmet,
-                 .message = verdict.reason,
-                 .time = verdict.time});
-        junit->write(junitXml("simrun", baseName(input.environment_operand), cases));
-        junit->commit();
-    }
+    std::vector<JunitCase> cases;
+    cases.reserve(verdicts.size());
+    for (const RunVerdict& verdict : verdicts)
+        cases.push_back(
+            {.name = verdict.expectation,
+             .outcome = verdict.is_met ? JunitCase::Outcome::Met : JunitCase::Outcome::Unmet,
+             .message = verdict.reason,
+             .time = verdict.time});
+    junit.write(baseName(input.environment_operand), cases);
     if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
     if (!verdicts.empty())
         talk(options.common, "simrun", "all " + std::to_string(verdicts.size()) + " met");

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "base/file.h"
+#include "cli/junit.h"
 #include "cli/operands.h"
 #include "cli/progress.h"
 #include "sim/expect.h"
@@ -22,6 +22,6 @@ void report(const Simulation& simulation, const SimrunOptions& options);
 /// The last word on a run: whether it did what --expect says. Completes the file of --junit.
 /// \throws UnmetError if it did not
 void conclude(const ExpectationJudge& judge, const SimrunOptions& options, const SceneInput& input,
-              std::optional<OutputFile>& junit);
+              JunitFile& junit);
 
 }  // namespace ispace

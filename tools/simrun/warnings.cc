@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base/number.h"
 #include "layout/scene.h"
@@ -57,6 +58,32 @@ void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options)
     warn(options, kTool,
          "--noise changes nothing: no sensor has noise, and no robot has motion_noise, "
          "odometry_noise or start_noise");
+}
+
+void LagLog::tell() {
+    using std::chrono::steady_clock;
+    constexpr std::chrono::seconds kCalm(1);  // without a loss, before the run is said to keep up
+    constexpr int kMost = 10;
+    const auto due = simulation_->due();
+    if (!due) return;
+    const auto now = steady_clock::now();
+    const auto say = [&](const std::string& text) {
+        if (count_ <= kMost)
+            warn(*options_, kTool, "t=" + formatSimTime(simulation_->world().time()) + text);
+    };
+    if (simulation_->lost() > lost_) {
+        lost_ = simulation_->lost();
+        last_ = now;
+        if (std::exchange(is_behind_, true)) return;
+        ++count_;
+        say(" the run falls behind real time, by " + formatMilliseconds(lost_) +
+            " s so far: steps take longer than the clock gives them" +
+            (count_ == kMost ? "; further ones are not reported" : ""));
+    } else if (is_behind_ && now <= *due && now - last_ >= kCalm) {
+        is_behind_ = false;
+        say(" the run keeps up with real time again, " + formatMilliseconds(lost_) +
+            " s behind in all");
+    }
 }
 
 void FailureLog::tell() {

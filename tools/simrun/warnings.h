@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <chrono>
 #include <optional>
 
 #include "cli/common_options.h"
 #include "layout/scene.h"
 #include "sim/replay.h"
+#include "sim/simulation.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -22,6 +24,23 @@ class CollisionLog {
     const World* world_;
     const CommonOptions* options_;
     int count_ = 0;
+};
+
+/// Says on stderr when a run by the clock Real falls behind it, and when it keeps up again.
+class LagLog {
+  public:
+    LagLog(const Simulation& simulation, const CommonOptions& options)
+        : simulation_(&simulation), options_(&options) {}
+    /// Looks at the clock after a step.
+    void tell();
+
+  private:
+    const Simulation* simulation_;
+    const CommonOptions* options_;
+    std::chrono::nanoseconds lost_{};             // as last seen
+    std::chrono::steady_clock::time_point last_;  // when some was lost
+    bool is_behind_ = false;
+    int count_ = 0;  // of times it fell behind
 };
 
 /// Says so if no sensor has noise, nor a robot that moves by itself.
