@@ -17,6 +17,10 @@ SHARE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PATIENCE = 300  # seconds; far more than any command takes
 
 
+# The lists that the report begins with.
+REPRODUCED, FITTED, MISSED = "Reproduced", "Fitted", "Not reproduced"
+
+
 class ToolFailed(Exception):
     """A command did not do what it was to do."""
 
@@ -177,10 +181,12 @@ class Lab:
     def text(self, paragraph):
         self.parts.append(("text", paragraph))
 
-    def row(self, what, thesis, ours, unit="", bound=None, note="", digits=None):
+    def row(self, what, thesis, ours, unit="", bound=None, note="", digits=None, verdict=None):
         """A line of the table: numbers, or words where there are none (None: nothing is said). `bound` is
         (least, most), what ours must keep to; `note` says in a sentence why they differ; whole numbers
-        are shown as they are and others with two decimals, unless `digits` says how many."""
+        are shown as they are and others with two decimals, unless `digits` says how many. `verdict` is the
+        list of the report in which the thesis' figure stands: REPRODUCED unless stated; a number that
+        differs and has no bound needs one."""
         if not self.parts or self.parts[-1][0] != "rows":
             self.parts.append(("rows", []))
         kept = bound is None or (ours is not None and bound[0] <= ours <= bound[1])
@@ -189,8 +195,11 @@ class Lab:
             self.fail(f"{what}: {value}{_gap(unit)} is not within {_interval(bound)}{_gap(unit)}")
         if not note and _differ(thesis, ours, digits):
             self.fail(f"{what}: ours differs from the thesis, and no note says why")
+        if not verdict and bound is None and _differ(thesis, ours, digits):
+            self.fail(f"{what}: ours differs from the thesis without a bound, and no verdict is stated")
         self.parts[-1][1].append({"what": what, "thesis": thesis, "ours": ours, "unit": unit,
-                                  "bound": bound, "kept": kept, "note": note, "digits": digits})
+                                  "bound": bound, "kept": kept, "note": note, "digits": digits,
+                                  "verdict": None if thesis is None else verdict or REPRODUCED})
 
     def picture(self, path, caption):
         """A PNG, JPEG or SVG of the folder; pictures one after another stand side by side."""

@@ -3,6 +3,8 @@
 
 import math
 
+from lab import MISSED
+
 TITLE = "Where people put sensors, and where they are best"
 SOURCE = "section 4.4.5, fig. 4.10"
 SECONDS = 10
@@ -30,7 +32,8 @@ def to_wall(x, y, outline):
 
 def run(lab):
     lab.text("Of ten people whom the author asked, eight put their sensors against walls. We ask the exact search "
-             "for the best three anywhere and for the best three against walls, both proven, in four rooms.")
+             "for the best three anywhere and for the best three against walls, each within 0.1 % of its bound, in "
+             "four rooms.")
     lab.given("80 % of ten people think of places against the wall first", "section 4.4.5")
     lab.assumption("The room of the questionnaire is lost; these are four others. Three lasers of 4 m (3 m in the "
                    "place of table 5.2) and 180 degrees; against a wall means within 0.3 m.")
@@ -58,7 +61,7 @@ def run(lab):
                  f"{stem}-any.png")
         lab.require(shares["wall"] <= shares["any"] + 0.2, f"{room}: against walls is better")
     lab.row("Against walls, by people and by the best anywhere", 80.0, 100 * near / placed, "%", digits=0,
-            note="Other rooms; people were asked for the largest area with the smallest intersection, and the search "
+            verdict=MISSED, note="Other rooms; people were asked for the largest area with the smallest intersection, and the search "
             "minimises no intersection. Anywhere and against walls differ by at most "
             f"{max(gaps):.2f} points here, and by {sorted(gaps)[-2]:.2f} without the room where they differ most.")
     for room, what, _ in ROOMS:

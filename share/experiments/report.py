@@ -4,6 +4,8 @@
 import base64
 import html as markup
 
+from lab import FITTED, MISSED, REPRODUCED
+
 STYLE = """
 :root { color-scheme: light; --ink: #1f2328; --pale: #57606a; --line: #d0d7de; --good: #1a7f37; --bad: #b42318; }
 * { box-sizing: border-box; }
@@ -50,7 +52,7 @@ NOTHING = "–"
 
 def html(labs, quick=False):
     """The report of labs, in their order."""
-    body = [_head(labs, quick), _contents(labs)]
+    body = [_head(labs, quick), _verdicts(labs), _contents(labs)]
     body += [_section(lab) for lab in labs]
     return ("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -63,16 +65,13 @@ def _rows(lab):
 
 
 def _head(labs, quick):
-    rows = [row for lab in labs for row in _rows(lab)]
-    bounds = [row for row in rows if row["bound"] is not None]
-    kept = sum(1 for row in bounds if row["kept"])
     failed = [lab for lab in labs if lab.failures]
     state = (f"<span class=\"bad\">{len(failed)} of {len(labs)} experiments failed</span>" if failed
              else f"<span class=\"good\">no experiment failed, of {len(labs)}</span>")
     few = " This run had few seeds (<code>--quick</code>)." if quick else ""
     return (
         "<h1>ispace: the experiments of the thesis</h1>\n"
-        f"<p>{state}; {kept} of {len(bounds)} bounds are kept.{few}</p>\n"
+        f"<p>{state}.{few}</p>\n"
         "<p>Each test and experiment of the thesis on the simulation of Intelligent Spaces, run with "
         "these tools, without a display and from fixed seeds. Tables have the figure of the thesis, "
         "ours and the difference; where there is one, a line says why. A bound is what ours must keep "
@@ -84,6 +83,30 @@ def _head(labs, quick):
         "<code>PYTHONPATH</code>. How long they took is in <a href=\"timings.csv\">timings.csv</a>. "
         "The thesis draws its floor as x and z and turns clockwise; here are x and y, and headings "
         "counter-clockwise from x. A picture is enlarged by a click.</p>")
+
+
+def _verdicts(labs):
+    """The figures of the thesis in three lists: reproduced, fitted, not reproduced."""
+    out = []
+    for verdict, meaning in ((REPRODUCED, "They come out with the parameters of the thesis, and with the assumptions that each section lists"),
+                             (FITTED, "A scene or a parameter was chosen so that they come out, as far as they do"),
+                             (MISSED, "Ours contradict the thesis, or were measured under other conditions")):
+        listed = [(lab, row) for lab in labs for row in _rows(lab) if row["verdict"] == verdict]
+        out.append(f"<h3>{verdict}: {len(listed)} figures</h3>\n<p class=\"source\">{meaning}."
+                   "</p>\n<ul>")
+        for lab in labs:
+            figures = [_compared(row) for one, row in listed if one is lab]
+            fits = [_safe(fit) for fit in lab.fits] if verdict == FITTED else []
+            if figures or fits:
+                out.append(f"<li><a href=\"#{lab.name}\">{_safe(lab.title)}</a>\n<ul>"
+                           + "".join(f"<li>{item}</li>" for item in fits + figures) + "</ul></li>")
+        out.append("</ul>")
+    return "\n".join(out)
+
+
+def _compared(row):
+    reason = f". {_safe(row['note'])}" if row["verdict"] == MISSED and row["note"] else ""
+    return f"{_safe(row['what'])}: thesis {_value(row['thesis'], row)}, here {_value(row['ours'], row)}{reason}"
 
 
 def _contents(labs):

@@ -44,6 +44,24 @@ def twice():
           f"the report does not have the {len(listed)} experiments there are")
 
 
+def verdicts():
+    """The page begins with what is reproduced, fitted and not reproduced, each with the figures."""
+    page = report("first")
+    lists = [part.split("<h3", 1)[0] for part in page.split("<h3>")[1:4]]
+    check([text.split(":")[0] for text in lists] == ["Reproduced", "Fitted", "Not reproduced"],
+          f"other lists: {[text[:40] for text in lists]}")
+    for text, figure in zip(lists, ("thesis 520 s, here 518 s".replace(" s", "\u00a0s"), "3 m: sensor 1, x: thesis",
+                                    "thesis 230 s, here 339 s".replace(" s", "\u00a0s"))):
+        check(figure in text, f"{figure} is not in the list: {text}")
+    for missed in ("16 m: Hierarchical Random", "32 m: Hierarchical Random", "80\u00a0%, here 67\u00a0%"):
+        check(missed in lists[2], f"{missed} is not in the list: {lists[2]}")
+    sys.path.insert(0, os.path.dirname(DRIVER))
+    from lab import Lab  # pylint: disable=import-outside-toplevel
+    lab = Lab("self", "", "", BUILD, os.path.join(SCRATCH, "self"))
+    lab.row("far off", 230, 339, note="for a reason")
+    check(lab.failures, "a figure that differs without bound and verdict passes as reproduced")
+
+
 def what_goes_wrong():
     """A build whose coverage tool fails: the others are shown, and so is that one."""
     build = os.path.join(SCRATCH, "broken")
@@ -71,4 +89,5 @@ def what_goes_wrong():
 shutil.rmtree(SCRATCH, ignore_errors=True)
 os.makedirs(SCRATCH)
 twice()
+verdicts()
 what_goes_wrong()
