@@ -153,8 +153,8 @@ Document readUpright(const Source& source) {
                               "OBJ taken with " + options.up + " upwards; --up says otherwise");
     return document;
 }
-constexpr auto* readMesh = readUpright<meshDocument>;
-constexpr auto* readWalls = readUpright<readMeshWalls>;
+constexpr auto* kReadMesh = readUpright<meshDocument>;
+constexpr auto* kReadWalls = readUpright<readMeshWalls>;
 /// A mesh that is cut into walls is a plan; a model of ours stays what it is.
 bool isCutMesh(const Source& source) {
     if (!source.options.slice_walls || isPointCloud(source.bytes)) return false;
@@ -164,7 +164,7 @@ bool isCutMesh(const Source& source) {
 }
 Document readGlbOrMesh(const Source& source) {
     return glbHasRecords(source.bytes) ? readGlb(source.bytes, source.operand, source.schemas)
-                                       : readMesh(source);
+                                       : kReadMesh(source);
 }
 Document readRecords(const Source& source) {
     return readRecordText(source.bytes, source.operand, source.schemas);
@@ -178,7 +178,7 @@ bool isHouseExpo(const Source& source) {
 
 /// Formats recognised by their first bytes.
 constexpr InputFormat kFormatsByMagic[] = {
-    {true, isCutMesh, readWalls},
+    {true, isCutMesh, kReadWalls},
     {false, holdsBytes<isGlb>, readGlbOrMesh},
     {false, holdsBytes<isRecordText>, readRecords},
     {true, holdsBytes<isAriaMap>, importPlan<readAriaMap>},
@@ -189,7 +189,7 @@ constexpr InputFormat kFormatsByMagic[] = {
     {true, holdsBytes<isIfc>, importPlan<readIfc>},
     {true, holdsBytes<isPicture>, importPlan<readBarePicture>},
     {true, holdsBytes<isPointCloud>, importPlan<readPointCloud>},
-    {false, holdsBytes<isMeshFile>, readMesh},
+    {false, holdsBytes<isMeshFile>, kReadMesh},
 };
 
 /// Formats recognised within plain text; the last takes everything.
@@ -200,7 +200,7 @@ constexpr InputFormat kFormatsOfText[] = {
 };
 
 constexpr InputFormat kMeshBySuffix = {
-    false, [](const Source& source) { return hasMeshSuffix(source.operand); }, readMesh};
+    false, [](const Source& source) { return hasMeshSuffix(source.operand); }, kReadMesh};
 
 const InputFormat* findFormat(std::span<const InputFormat> formats, const Source& source) {
     const auto found = std::find_if(formats.begin(), formats.end(),
