@@ -352,13 +352,16 @@ MapCells cellsThatAre(Cell kind, const GreyPicture& image, const OccupancyRule& 
     using Mode = OccupancyRule::Mode;
     const bool averaged = rule.mode == Mode::Trinary && !image.opacity.empty();
     const bool wants_opaque = rule.mode == Mode::Scale && !image.opacity.empty();
-    const int white = image.max_value + (averaged ? 255 : 0);
+    const int opaque = averaged ? 255 : 0;
+    const int white = image.max_value + opaque;
     std::vector<std::uint8_t> is_meant(static_cast<std::size_t>(white) + 1);
     for (int sample = 0; sample <= white; ++sample)
         is_meant[static_cast<std::size_t>(sample)] = classify(sample, white, rule) == kind ? 1 : 0;
-    if (const auto unknown = unknownSample(image, rule))
-        is_meant[static_cast<std::size_t>(*unknown + (averaged ? 255 : 0))] =
+    if (const auto unknown = unknownSample(image, rule)) {
+        const int shade = *unknown + opaque;
+        is_meant[static_cast<std::size_t>(shade)] =
             (rule.unknown_is_free ? Cell::Free : Cell::Unknown) == kind ? 1 : 0;
+    }
     MapCells cells(image.width, image.height);
     std::size_t i = 0;
     for (int y = image.height - 1; y >= 0; --y)
