@@ -7,12 +7,13 @@ RACES = build-tsan
 prefix = /usr/local
 JOBS = $(shell nproc)
 FUZZ_SECONDS = 60
+TORTURE_MINUTES = 10
 
 configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev
 build = cmake --build $(1) -j $(JOBS)
 
 .NOTPARALLEL:
-.PHONY: all help deps demo experiments check sanitized races bench fuzz format lint install package package-check clean
+.PHONY: all help deps demo experiments check sanitized races bench fuzz torture format lint install package package-check clean
 
 all: $(BUILD)/configured
 	$(call build,$(BUILD))
@@ -27,6 +28,7 @@ help:
 	@echo "make races       deps, build with ThreadSanitizer, tests of what runs in threads"
 	@echo "make bench       deps, build, benchmarks"
 	@echo "make fuzz        deps, build with Clang, fuzz each reader for FUZZ_SECONDS=$(FUZZ_SECONDS)"
+	@echo "make torture     deps, build, attack the tools for TORTURE_MINUTES=$(TORTURE_MINUTES)"
 	@echo "make format      reformat the sources"
 	@echo "make lint        clang-tidy on what changed (all of it with BASE=)"
 	@echo "make install     install under prefix=$(prefix), honours DESTDIR"
@@ -79,6 +81,12 @@ bench:
 fuzz:
 	@.ci/deps build check
 	@.ci/fuzz $(FUZZ_SECONDS)
+
+torture:
+	@.ci/deps build check
+	@$(MAKE) --no-print-directory $(BUILD)/configured
+	$(call build,$(BUILD)) --target tools
+	@tests/torture/run.py --build $(BUILD) --minutes $(TORTURE_MINUTES)
 
 format:
 	@.ci/deps check

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The fuzz targets of tests/fuzz, all with the same time; what they find to try stays in build-fuzz/corpus."""
+import glob
+import os
+import re
+import shutil
+import subprocess
+
+import lab as labs
+
+AT_ONCE = 2
+
+
+def run(lab):
+    if not shutil.which("clang++"):
+        lab.say("left out: no clang++")
+        return
+    script = os.path.join(labs.SOURCE, ".ci", "fuzz")
+    targets = [os.path.basename(path)[:-8] for path in glob.glob(os.path.join(labs.SOURCE, "tests/fuzz/*_fuzz.cc"))]
+    seconds = max(1, int(lab.seconds * AT_ONCE / len(targets)))
+    # Building them takes time of its own.
+    process = subprocess.run([script, str(seconds), "-1", *sorted(targets)], env={**os.environ, "FUZZ_JOBS": str(AT_ONCE)},
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    for target, executions in re.findall(r"^fuzz: (\w+): (\d+) inputs", process.stdout, re.M):
+        lab.count("targets")
+        lab.count("executions", int(executions))
+        lab.say(f"{target}: {executions} executions")
+    if process.returncode != 0:
+        lab.violated("a fuzzer found an input: " + process.stdout[-3000:])
