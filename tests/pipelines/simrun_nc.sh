@@ -102,9 +102,10 @@ last=$(grep -a '^SCAN' one.out | tail -n 1 | sed 's/.* seq=\([0-9]*\) .*/\1/')
 for reader in one two three; do
     reached() { [ "$(grep -a '^SCAN' $reader.out | tail -n 1 | sed 's/.* seq=\([0-9]*\) .*/\1/')" -ge "$last" ]; }
     eventually "scan $last for $reader" reached
+    # Read to the end: the commands before awk would fail if it closed the pipe.
     grep -a '^SCAN' $reader.out | sed 's/.* seq=\([0-9]*\) .*/\1/' |
-        awk -v last="$last" 'NR > 1 && $1 != before + 1 { print "after " before " came " $1; bad = 1 }
-            { before = $1 } $1 == last { exit } END { exit bad }' || fail "$reader missed a scan"
+        awk -v last="$last" 'is_over { next } NR > 1 && $1 != before + 1 { print "after " before " came " $1; bad = 1 }
+            { before = $1 } $1 == last { is_over = 1 } END { exit bad }' || fail "$reader missed a scan"
 done
 [ "$last" -gt 50 ] || fail "only $last scans"
 for reader in two three; do
