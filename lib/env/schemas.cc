@@ -274,7 +274,7 @@ Schema meshSchema() {
          {.name = "up",
           .type = KeyType::Choice,
           .help = "the file's axis that points up; auto: y in glTF, as the file says in COLLADA, "
-                  "else z",
+                  "and in a comment of OBJ (`y up`), else z",
           .default_value = "auto",
           .choices = {"auto", "x", "y", "z"}},
          {.name = "scale",

@@ -13,8 +13,9 @@ namespace ispace {
 
 /// How a mesh file is read.
 struct MeshOptions {
-    /// auto: rotated so that z points up, glTF from y, COLLADA from the axis it names;
-    /// other formats stay as they are. x, y or z: the upward axis, whatever the file says.
+    /// auto: rotated so that z points up, glTF from y, COLLADA and OBJ from the axis they name, OBJ
+    /// in a comment; without one, and in other formats, z points up. x, y or z: the upward axis,
+    /// whatever the file says.
     std::string up = "auto";
     /// Files that it names may lie anywhere, not only in its folder and below.
     bool side_files_anywhere = false;

@@ -167,10 +167,16 @@ TEST_F(MeshFile, WhatPointsUp) {
     EXPECT_DOUBLE_EQ(volumeOf(load("a.gltf", gltf("[{\"mesh\": 0}]"))), 4);
     EXPECT_EQ(extentOf(load("y.dae", collada("Y_UP", "1"))), (Vertex{2, 4, 3}));
     EXPECT_EQ(extentOf(load("x.dae", collada("X_UP", "1")))[2], 2);
+    EXPECT_EQ(extentOf(load("y.obj", "# ispace: metres, y up: x, z, -y of the room\n" + kObj)),
+              (Vertex{2, 4, 3}));
+    EXPECT_EQ(extentOf(load("z.obj", "# Z-UP\n" + kObj)), (Vertex{2, 3, 4}));
+    EXPECT_EQ(extentOf(load("z.obj", "# geometry updated\n" + kObj)), (Vertex{2, 3, 4}));
+    EXPECT_EQ(extentOf(load("z.obj", kObj + "# y up\n")), (Vertex{2, 3, 4}));
     // As they are.
     EXPECT_EQ(extentOf(load("a.gltf", gltf("[{\"mesh\": 0}]"), "y")), (Vertex{2, 3, 4}));
     EXPECT_EQ(extentOf(load("y.dae", collada("Y_UP", "1"), "y")), (Vertex{2, 3, 4}));
     EXPECT_EQ(extentOf(load("a.obj", kObj, "y")), (Vertex{2, 3, 4}));
+    EXPECT_EQ(extentOf(load("y.obj", "# y up\n" + kObj, "z")), (Vertex{2, 3, 4}));
 }
 
 TEST_F(MeshFile, ColladaComesInMetres) {

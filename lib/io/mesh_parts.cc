@@ -22,14 +22,20 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
+/// The first line, which is removed.
+std::string_view takeLine(std::string_view& bytes) {
+    const std::string_view line = bytes.substr(0, bytes.find('\n'));
+    bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
+    return line;
+}
+
 /// The first line of OBJ is a statement, behind comments; some line is a vertex.
 bool isObj(std::string_view bytes) {
     constexpr std::array<std::string_view, 11> kStatements{"mtllib", "usemtl", "o",  "g", "s", "v",
                                                            "vn",     "vt",     "vp", "f", "l"};
     const bool has_vertex = bytes.starts_with("v ") || bytes.find("\nv ") != std::string_view::npos;
     while (has_vertex && !bytes.empty()) {
-        const std::string_view line = bytes.substr(0, bytes.find('\n'));
-        bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
+        const std::string_view line = takeLine(bytes);
         const std::size_t begin = line.find_first_not_of(kBlanks);
         if (begin == std::string_view::npos || line[begin] == '#') continue;
         const std::string_view word =
@@ -39,13 +45,22 @@ bool isObj(std::string_view bytes) {
     return false;
 }
 
+/// True if a text in lower case has these words, not as parts of longer ones.
+bool hasWords(std::string_view text, const std::string& words) {
+    const auto is_letter = [&](std::size_t at) {
+        return at < text.size() && text[at] >= 'a' && text[at] <= 'z';
+    };
+    for (std::size_t at = text.find(words); at != std::string_view::npos;
+         at = text.find(words, at + 1))
+        if ((at == 0 || !is_letter(at - 1)) && !is_letter(at + words.size())) return true;
+    return false;
+}
+
 /// The axis that a comment names in one of the usual ways.
 std::optional<std::string> upAxisIn(std::string comment) {
     for (char& c : comment) c = c == '-' || c == '_' ? ' ' : static_cast<char>(c | 0x20);
-    for (const char* const axis : {"y", "z"})
-        if (comment.find(axis + std::string(" up")) != std::string::npos ||
-            comment.find("up axis: " + std::string(axis)) != std::string::npos)
-            return axis;
+    for (const std::string axis : {"y", "z"})
+        if (hasWords(comment, axis + " up") || hasWords(comment, "up axis: " + axis)) return axis;
     return std::nullopt;
 }
 
@@ -92,19 +107,22 @@ std::optional<MeshFormat> meshFormatOf(std::string_view bytes) {
     return std::nullopt;
 }
 
+std::optional<std::string> objUpComment(std::string_view bytes) {
+    while (!bytes.empty()) {
+        const std::string_view line = takeLine(bytes);
+        if (line.starts_with("v ")) break;
+        if (!line.starts_with('#')) continue;
+        if (auto axis = upAxisIn(std::string(line))) return axis;
+    }
+    return std::nullopt;
+}
+
 std::string objUpAxis(std::string_view bytes, double metres) {
+    if (auto axis = objUpComment(bytes)) return *std::move(axis);
     constexpr double kLower = 0.95, kLeastFloor = 4;
     VertexExtent extent;
-    bool has_vertex = false;
-    while (!bytes.empty()) {
-        const std::string_view line = bytes.substr(0, bytes.find('\n'));
-        bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
-        if (!has_vertex && line.starts_with('#'))
-            if (auto axis = upAxisIn(std::string(line))) return *std::move(axis);
-        if (!line.starts_with("v ")) continue;
-        has_vertex = true;
-        extent.add(line);
-    }
+    while (!bytes.empty())
+        if (const std::string_view line = takeLine(bytes); line.starts_with("v ")) extent.add(line);
     const double floor = extent.along(0) * extent.along(1) * metres * metres;
     return extent.along(2) < kLower * extent.along(1) && floor >= kLeastFloor ? "z" : "y";
 }

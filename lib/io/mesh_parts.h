@@ -31,9 +31,13 @@ constexpr std::array<MeshSuffix, 6> kMeshSuffixes{{{".obj", MeshFormat::Obj},
 /// OBJ, STL, PLY or COLLADA by content; nothing for other bytes.
 std::optional<MeshFormat> meshFormatOf(std::string_view bytes);
 
-/// The axis of OBJ that points up, "y" or "z", which the format does not say: the one that a
-/// comment before the first vertex names ("z up"); else y, as most programs write it, unless the
-/// extent is that of a room or building with z upwards: less high than wide, over 4 m2 or more.
+/// The axis of OBJ that a comment before the first vertex says points up ("y up", "z-up"): "y" or
+/// "z"; nothing without one.
+std::optional<std::string> objUpComment(std::string_view bytes);
+
+/// The axis of OBJ that points up, "y" or "z", which the format does not say: objUpComment(); else
+/// y, as most programs write it, unless the extent is that of a room or building with z upwards:
+/// less high than wide, over 4 m2 or more.
 /// \param metres of one of its numbers
 std::string objUpAxis(std::string_view bytes, double metres);
 

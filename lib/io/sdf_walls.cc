@@ -186,7 +186,10 @@ void joinEnds(std::vector<SdfWall>& walls) {
     }
 }
 
-std::string sdfMeshUp(const std::string& file) { return meshSuffix(file) == ".dae" ? "z" : "auto"; }
+std::string sdfMeshUp(const std::string& file) {
+    const std::string suffix = meshSuffix(file);
+    return suffix == ".dae" || suffix == ".obj" ? "z" : "auto";
+}
 
 std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::string& name,
                                   double height, const Schemas& schemas) {

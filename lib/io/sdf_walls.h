@@ -55,8 +55,8 @@ SdfWall wallOf(const SdfBlock& block);
 /// meet at their faces, rooms at mid-lines. \pre each wall is one straight piece
 void joinEnds(std::vector<SdfWall>& walls);
 
-/// The upward axis of a mesh file as a `mesh` record has it: Gazebo takes COLLADA as it is,
-/// whatever axis that names.
+/// The upward axis of a mesh file as a `mesh` record has it: Gazebo takes COLLADA and OBJ as
+/// they are, whatever axis those name.
 std::string sdfMeshUp(const std::string& file);
 
 /// A mesh of a world, cut into lines.

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -237,7 +238,8 @@ void leaveOnly(const std::string& suffix, Assimp::Importer& importer) {
 
 }  // namespace
 
-TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up) {
+TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up,
+                        const std::optional<std::string>& obj_up) {
     Assimp::Importer importer;
     const std::string suffix = suffixOf(format);
     leaveOnly(suffix, importer);
@@ -253,7 +255,7 @@ TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& 
     if (scene == nullptr || scene->mRootNode == nullptr)
         fail("bad mesh file: it cannot be read as " + suffix + " (assimp says: " +
              assimpsWords(importer.GetErrorString(), name) + "); is it damaged?");
-    Gatherer gatherer(*scene, !as_is && comesWithYUp(*scene));
+    Gatherer gatherer(*scene, !as_is && (obj_up == "y" || comesWithYUp(*scene)));
     TriangleMesh mesh = gatherer.gather();
     clean(mesh);
     return mesh;

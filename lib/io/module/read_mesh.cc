@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -50,11 +51,18 @@ class MappedInput {
     ::_exit(0);
 }
 
-MeshFormat checkedFormat(std::size_t size, const std::string& suffix) {
+/// What the bytes tell before assimp has them.
+struct MeshHead {
+    MeshFormat format;
+    std::optional<std::string> obj_up;
+};
+
+MeshHead checkedHead(std::size_t size, const std::string& suffix) {
     const MappedInput input(size);
-    const MeshFormat format = meshFormat(input.bytes(), suffix);
-    checkMesh(format, input.bytes());
-    return format;
+    MeshHead head{meshFormat(input.bytes(), suffix), {}};
+    checkMesh(head.format, input.bytes());
+    if (head.format == MeshFormat::Obj) head.obj_up = objUpComment(input.bytes());
+    return head;
 }
 
 std::size_t number(const char* text) { return std::strtoull(text, nullptr, 10); }
@@ -66,7 +74,8 @@ std::string answer(bool is_building, const std::string& suffix, const std::strin
     if (is_building)
         return packedBuilding(readBuilding(MappedInput(size).bytes(), parseDouble(setting)));
     if (isStep(size)) return packedMesh(ifcMesh(MappedInput(size).bytes()));
-    return packedMesh(importMesh(checkedFormat(size, suffix), size, setting));
+    const MeshHead head = checkedHead(size, suffix);
+    return packedMesh(importMesh(head.format, size, setting, head.obj_up));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,7 +27,9 @@ MeshFormat meshFormat(std::string_view bytes, const std::string& suffix);
 void checkMesh(MeshFormat format, std::string_view bytes);
 
 /// Reads the mesh on standard input with assimp, as loadMesh says. \param size in bytes
+/// \param up the upward axis, or auto \param obj_up what objUpComment() finds, of OBJ
 /// \throws std::runtime_error with what is wrong with the file
-TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up);
+TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up,
+                        const std::optional<std::string>& obj_up = {});
 
 }  // namespace ispace
