@@ -49,8 +49,8 @@ void see(const BodyTable& table, std::size_t begin, const ArcView& view, Seen& s
     const double* const lean_y = table.lean_y.data() + begin;
     double low[kLanes], high[kLanes], other_low[kLanes], other_high[kLanes];
     ISPACE_LANES for (int i = 0; i < kLanes; ++i) {
-        const double up = view.z - 0.5 * (bottom[i] + top[i]);
-        const double wx = x[i] + lean_x[i] * up - view.x, wy = y[i] + lean_y[i] * up - view.y;
+        const double wx = x[i] + lean_x[i] * view.z - view.x;
+        const double wy = y[i] + lean_y[i] * view.z - view.y;
         const double square = wx * wx + wy * wy;
         const double distance = std::sqrt(square);
         seen.nearest[i] = distance - reach[i];

@@ -36,9 +36,9 @@ void look(const BodyTable& table, std::size_t begin, const BodyPencil::Hull& hul
     const double no_sides = hull.is_cone ? 0.0 : std::numeric_limits<double>::infinity();
     for (int i = 0; i < kLanes; ++i) {
         const double low = flatMax(bottom[i], hull.low), high = flatMin(top[i], hull.high);
-        const double up = 0.5 * (low + high) - 0.5 * (bottom[i] + top[i]);
-        met.x[i] = x[i] + lean_x[i] * up;
-        met.y[i] = y[i] + lean_y[i] * up;
+        const double middle = 0.5 * (low + high);
+        met.x[i] = x[i] + lean_x[i] * middle;
+        met.y[i] = y[i] + lean_y[i] * middle;
         const double lean = std::fabs(lean_x[i]) + std::fabs(lean_y[i]);
         met.radius[i] = reach[i] + 0.5 * lean * flatMax(high - low, 0.0);
         const double wx = met.x[i] - hull.x, wy = met.y[i] - hull.y;

@@ -127,14 +127,14 @@ void BodyTable::fill(std::span<const std::uint32_t> order, std::span<const Movin
     index.assign(order.begin(), order.end());
     for (std::size_t i = 0; i < order.size(); ++i) {
         const MovingBody& body = bodies[order[i]];
-        x[i] = body.pose.position.x;
-        y[i] = body.pose.position.y;
         const BodyExtent& extent = extents[order[i]];
+        lean_x[i] = body.lean * extent.axes.cos;
+        lean_y[i] = body.lean * extent.axes.sin;
+        x[i] = body.pose.position.x - lean_x[i] * body.middle();
+        y[i] = body.pose.position.y - lean_y[i] * body.middle();
         reach[i] = extent.reach;
         bottom[i] = body.bottom;
         top[i] = body.top;
-        lean_x[i] = body.lean * extent.axes.cos;
-        lean_y[i] = body.lean * extent.axes.sin;
     }
 }
 
