@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "env/level.h"
+#include "layout/movement.h"
 #include "sense/scan_plane.h"
 #include "sense/sensors.h"
 #include "sensor/kind.h"
@@ -39,16 +40,6 @@ Pose3 Watcher::poseAt(const WatchMoment& moment) const {
     return index < poses.size() ? mountedPose(poses[index], from_carrier) : sensor.pose;
 }
 
-/// The pose in the frame of a carrier on the floor.
-Pose3 inFrame(const Pose2& carrier, const Pose3& pose) {
-    const Vec2 way = pose.position.onFloor() - carrier.position;
-    const auto [c, s] = cosSin(carrier.heading);
-    return {{way.x * c + way.y * s, way.y * c - way.x * s, pose.position.z},
-            pose.heading - carrier.heading,
-            pose.tilt,
-            pose.roll};
-}
-
 /// Where the people of a scene start, in its order.
 std::vector<Pose2> peopleOf(const Scene& scene) {
     std::vector<Pose2> people;
@@ -72,7 +63,7 @@ Watcher watcherOf(const Sensor& sensor, const std::vector<Pose2>& people, double
     if (sensor.mount)
         watcher.from_carrier = sensor.mount->robot_from_sensor;
     else if (sensor.person)
-        watcher.from_carrier = inFrame(people[*sensor.person], sensor.pose);
+        watcher.from_carrier = poseOn(people[*sensor.person], sensor.pose);
     return watcher;
 }
 

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "layout/movement.h"
 #include "record/record.h"
 #include "sensor/kind.h"
 #include "sensor/sensor.h"
@@ -30,16 +31,6 @@ bool sameStart(const Record& a, const Record& b) {
         if (of_a != nullptr && *of_a != *of_b) return false;
     }
     return true;
-}
-
-/// A pose that follows its carrier from one place to another.
-Pose3 carried(Pose3 pose, const Pose2& from, const Pose2& to) {
-    const CosSin back = cosSin(from.heading);
-    const Vec2 apart = Point2{pose.position.x, pose.position.y} - from.position;
-    pose.position.x = back.cos * apart.x + back.sin * apart.y;
-    pose.position.y = back.cos * apart.y - back.sin * apart.x;
-    pose.heading = pose.heading - from.heading;
-    return mountedPose(to, pose);
 }
 
 }  // namespace
@@ -85,8 +76,8 @@ void keepInPlace(Scene& next, const std::unordered_set<std::string_view>& stayer
             sensor.pose =
                 mountedPose(next.robots[sensor.mount->robot].pose, sensor.mount->robot_from_sensor);
         else if (sensor.person)
-            sensor.pose =
-                carried(sensor.pose, people_before[*sensor.person], people[*sensor.person]);
+            sensor.pose = mountedPose(people[*sensor.person],
+                                      poseOn(people_before[*sensor.person], sensor.pose));
         placed.pose = sensor.pose;
     }
 }

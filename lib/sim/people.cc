@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/people.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "layout/bodies.h"
+#include "layout/movement.h"
 
 namespace ispace {
-
-namespace {
-
-/// Metres a second from which on limbs swing as far as they do.
-constexpr double kFullSwing = 0.5;
-
-double shareOfSwing(double speed) { return std::min(1.0, std::abs(speed) / kFullSwing); }
-
-}  // namespace
 
 std::vector<Mover> moversOf(const Scene& scene) {
     std::vector<Mover> movers;
@@ -45,10 +35,7 @@ RobotModel modelOf(const PlacedPerson& person) {
     return model;
 }
 
-Angle Gait::swing(double speed) const {
-    return Angle::degrees(kMaxSwingDegrees * shareOfSwing(speed) *
-                          std::sin(2 * std::numbers::pi * phase));
-}
+Angle Gait::swing(double speed) const { return limbSwing(phase, speed); }
 
 void Gait::walk(double height, double way, double speed) {
     if (way == 0 || speed == 0) return;

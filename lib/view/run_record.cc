@@ -2,10 +2,14 @@
 #include "view/run_record.h"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/message.h"
+#include "layout/movement.h"
+#include "sensor/kind.h"
+#include "sensor/sensor.h"
 #include "view/view.h"
 
 namespace ispace {
@@ -16,11 +20,20 @@ bool has(const Scene& scene, const std::string& id) {
     return std::find(scene.ids.begin(), scene.ids.end(), id) != scene.ids.end();
 }
 
-void movePerson(Scene& scene, const std::string& id, const Pose2& pose) {
-    for (Placed& placed : scene.placed)
-        if (scene.ids[placed.record] == id)
+/// With the sensors that she carries.
+void movePerson(Scene& scene, std::size_t person, const Pose2& pose) {
+    const Pose2 before = std::exchange(scene.people[person].pose, pose);
+    for (Placed& placed : scene.placed) {
+        const std::string& keyword = scene.records[placed.record].keyword();
+        if (keyword == "human" && placed.index == person) {
             placed.pose = {
                 {pose.position.x, pose.position.y, placed.pose.position.z}, pose.heading, {}, {}};
+        } else if (sensorKind(keyword) != nullptr) {
+            Sensor& sensor = scene.sensors[placed.index];
+            if (sensor.person != person) continue;
+            placed.pose = sensor.pose = mountedPose(pose, poseOn(before, sensor.pose));
+        }
+    }
 }
 
 }  // namespace
@@ -28,7 +41,8 @@ void movePerson(Scene& scene, const std::string& id, const Pose2& pose) {
 RunRecord::RunRecord(RunReader reader) : name_(reader.name()) {
     while (reader.next())
         for (const RunState& state : reader.states())
-            steps_.push_back({reader.time(), state.who, state.pose});
+            steps_.push_back({reader.time(), state.who, state.pose,
+                              limbSwing(state.phase, std::hypot(state.speed, state.sidespeed))});
     who_ = reader.who();
     if (steps_.empty()) throw FormatError({name_, 0, 0, "holds no pose of a robot"});
 }
@@ -46,20 +60,34 @@ void RunRecord::checkStart(const Scene& scene) const {
     }
 }
 
-void RunRecord::apply(Scene& scene, double time) const {
-    std::map<std::size_t, Pose2> poses;
+std::map<std::size_t, const RunRecord::Step*> RunRecord::lastSteps(double time) const {
+    std::map<std::size_t, const Step*> last;
     const auto later = std::upper_bound(steps_.begin(), steps_.end(), time,
                                         [](double t, const Step& step) { return t < step.time; });
-    for (auto step = steps_.begin(); step != later; ++step) poses[step->who] = step->pose;
-    for (const auto& [who, pose] : poses) {
-        const std::string& id = who_[who].id;
-        if (!has(scene, id)) continue;
-        const auto robot = std::find_if(scene.robots.begin(), scene.robots.end(),
-                                        [&id](const PlacedRobot& r) { return r.id == id; });
-        if (robot != scene.robots.end())
-            moveRobot(scene, static_cast<std::size_t>(robot - scene.robots.begin()), pose);
-        else
-            movePerson(scene, id, pose);
+    for (auto step = steps_.begin(); step != later; ++step) last[step->who] = &*step;
+    return last;
+}
+
+std::vector<Angle> RunRecord::swingsAt(const Scene& scene, double time) const {
+    std::vector<Angle> swings(scene.people.size());
+    for (const auto& [who, step] : lastSteps(time))
+        for (std::size_t i = 0; i < swings.size(); ++i)
+            if (scene.people[i].id == who_[who].id) swings[i] = step->swing;
+    return swings;
+}
+
+void RunRecord::apply(Scene& scene, double time) const {
+    for (const auto& [who, step] : lastSteps(time)) {
+        const auto index_in = [&id = who_[who].id](const auto& list) {
+            const auto found = std::find_if(list.begin(), list.end(),
+                                            [&id](const auto& one) { return one.id == id; });
+            return static_cast<std::size_t>(found - list.begin());
+        };
+        const std::size_t robot = index_in(scene.robots), person = index_in(scene.people);
+        if (robot < scene.robots.size())
+            moveRobot(scene, robot, step->pose);
+        else if (person < scene.people.size())
+            movePerson(scene, person, step->pose);
     }
 }
 

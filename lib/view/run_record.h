@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,12 @@ class RunRecord {
     [[nodiscard]] double end() const { return steps_.back().time; }
     /// \throws FormatError for one of the start that the scene does not have
     void checkStart(const Scene& scene) const;
-    /// Puts robots and people where they were at the last step at or before this time, robots with
-    /// what they carry. Who is not in the scene is passed over.
+    /// Puts robots and people where they were at the last step at or before this time, with what
+    /// they carry. Who is not in the scene is passed over.
     void apply(Scene& scene, double time) const;
+    /// How far the limbs of Scene::people swung at that step, as humanParts() takes it; 0 of those
+    /// who were not there.
+    [[nodiscard]] std::vector<Angle> swingsAt(const Scene& scene, double time) const;
     /// The ways of all from the beginning up to this time, on the floor, without turns on
     /// the spot.
     [[nodiscard]] std::vector<std::vector<Point2>> waysUntil(double time) const;
@@ -34,7 +38,11 @@ class RunRecord {
         double time = 0;
         std::size_t who = 0;
         Pose2 pose;
+        Angle swing = {};  // of a person's limbs
     };
+
+    /// The last step of each at or before this time, by `who`.
+    [[nodiscard]] std::map<std::size_t, const Step*> lastSteps(double time) const;
 
     std::string name_;
     std::vector<RunMember> who_;

@@ -70,12 +70,23 @@ std::vector<Vec3> rimOf(const FieldOfView& view) {
     return rim;
 }
 
+/// bodiesOf() with limbs that swing.
+std::vector<MovingBody> bodiesWith(std::span<const Angle> swings, const Scene& scene) {
+    std::vector<MovingBody> bodies = bodiesOf(scene);
+    if (swings.empty()) return bodies;
+    bodies.resize(scene.robots.size());
+    for (std::size_t i = 0; i < scene.people.size(); ++i)
+        addHumanBodies(scene.people[i].height, scene.people[i].pose,
+                       kFirstPerson + static_cast<std::uint32_t>(i), swings[i], {}, bodies);
+    return bodies;
+}
+
 /// Rays through all that stands, and stops light.
 class Sightlines {
   public:
-    explicit Sightlines(const Scene& scene)
+    Sightlines(const Scene& scene, std::span<const Angle> swings)
         : worlds_(scene.environment),
-          bodies_(bodiesOf(scene)),
+          bodies_(bodiesWith(swings, scene)),
           plan_(scene.environment.limits()),
           height_(scene.environment.height()) {
         worlds_.prepareMesh();
@@ -200,9 +211,10 @@ Rgb linearOf(const Color& color) {
     return {linear(color.red), linear(color.green), linear(color.blue)};
 }
 
-SightMarks sightMarks(const Scene& scene, bool beams, std::optional<Point3> viewer) {
+SightMarks sightMarks(const Scene& scene, bool beams, std::optional<Point3> viewer,
+                      std::span<const Angle> swings) {
     SightMarks marks;
-    Sightlines sightlines(scene);
+    Sightlines sightlines(scene, swings);
     for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
         const Sensor& sensor = scene.sensors[i];
         if (!sensor.is<Laser>() && !isWithin(viewer, sensor))

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "draw/color.h"
@@ -29,9 +30,11 @@ struct SightMarks {
 };
 
 /// View cubes of all sensors with an axis (thesis, fig. 3.15), up to what stops them or a quarter
-/// of the plan, and with `beams` those of lasers, thinned where they would run together. \param
-/// viewer where one looks from: the view cubes about it are left out
-SightMarks sightMarks(const Scene& scene, bool beams, std::optional<Point3> viewer);
+/// of the plan, and with `beams` those of lasers, thinned where they would run together.
+/// \param viewer where one looks from: the view cubes about it are left out
+/// \param swings of the limbs of Scene::people, see humanParts(); none: they stand
+SightMarks sightMarks(const Scene& scene, bool beams, std::optional<Point3> viewer,
+                      std::span<const Angle> swings = {});
 
 /// What sensors cover, as colours on the floor.
 class FloorColors {

@@ -50,6 +50,19 @@ TEST(SightMarks, BeamsEndWhereTheLaserReads) {
     EXPECT_NEAR(marks.lines[2].places[1].y, 2, 1e-6);
 }
 
+TEST(SightMarks, BeamsMeetLegsThatSwing) {
+    // Ahead of the left leg.
+    const Scene room = scene("ispace size=6,4\n",
+                             "human at=0,0\nlaser at=-2,0.0935,0.15 range=8 fov=180 step=90\n");
+    const auto reach = [&](std::span<const Angle> swings) {
+        return sightMarks(room, true, std::nullopt, swings).lines[1].places[1].x;
+    };
+    const double radius = 0.035 * 1.7, hip = 0.48 * 1.7;
+    const Angle swing = Angle::degrees(15);
+    EXPECT_NEAR(reach({}), -radius, 1e-6);
+    EXPECT_NEAR(reach({&swing, 1}), std::tan(swing.radians()) * (hip - 0.15) - radius, 1e-6);
+}
+
 TEST(FloorColors, AreThoseOfTheSensorsThatSeeAPlace) {
     const Scene room = scene("ispace size=6,4 height=2.5\n",
                              "laser at=-2,0 range=1.5\nlaser at=-1.5,0 range=1.5\n");

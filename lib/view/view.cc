@@ -55,7 +55,8 @@ class ViewDrawer {
     Image draw() {
         if (options_.show != ShownSight::None)
             marks_ = sightMarks(scene_, options_.show == ShownSight::Beams,
-                                standpoint_.looks_in ? std::nullopt : standpoint_.place);
+                                standpoint_.looks_in ? std::nullopt : standpoint_.place,
+                                options_.swings);
         for (const std::vector<Point2>& way : options_.ways) addWay(way);
         render();
         if (options_.show == ShownSight::Area) colorFloor();
@@ -101,7 +102,16 @@ class ViewDrawer {
             how.background = Rgb{1, 1, 1};
             if (how.light == Illumination::Auto) how.light = Illumination::Lamps;
         }
-        picture_ = renderInBands(RenderScene(scene_, what), standpoint_.eye->viewpoint(), how);
+        const RenderScene still(scene_, what);
+        picture_ = renderInBands(options_.swings.empty() ? still : walking(still),
+                                 standpoint_.eye->viewpoint(), how);
+    }
+
+    /// With people whose limbs swing.
+    [[nodiscard]] RenderScene walking(const RenderScene& still) const {
+        std::vector<Pose3> poses;
+        for (const Placed& placed : scene_.placed) poses.push_back(placed.pose);
+        return still.at(poses, options_.swings);
     }
 
     void colorFloor() {

@@ -29,6 +29,8 @@ struct ViewOptions {
     /// Where other pictures are taken from: red points in those to scale (thesis, section 3.3.1).
     std::vector<Point3> viewers = {};
     std::vector<std::vector<Point2>> ways = {};  ///< that robots have gone
+    /// Of the limbs of Scene::people, see humanParts(); none: they stand.
+    std::vector<Angle> swings = {};
 };
 
 /// A picture of a scene for people. The same pixels for any number of threads.

@@ -208,6 +208,40 @@ TEST(RunRecord, PutsRobotsWhereTheyWere) {
     EXPECT_TRUE(run.waysUntil(0.5).empty());
 }
 
+TEST(RunRecord, PutsPeopleWhereTheyWalked) {
+    const RunRecord run(RunReader("t,id,x,y,heading_deg\n0,r1,0,0,0\n1,r1,0,0,0\n",
+                                  "t,id,x,y,heading_deg,speed,phase,sidespeed\n0,h1,0,0,0,0,0,0\n"
+                                  "1,h1,0.5,0,90,0,0.25,-0.25\n"));
+    Scene scene =
+        testing::scene("ispace size=6,4\n",
+                       "human id=h0 at=2,1\nhuman id=h1 at=0,0\ncamera id=c on=h1 at=0.1,0,1.6\n");
+    run.apply(scene, 0.5);
+    run.apply(scene, 1);
+    EXPECT_EQ(scene.people[1].pose, (Pose2{{0.5, 0}, Angle::degrees(90)}));
+    EXPECT_EQ(scene.placed[1].pose.position, (Point3{0.5, 0, 0}));
+    EXPECT_LT(distance(scene.sensors[0].pose.position.onFloor(), {0.5, 0.1}), 1e-12);
+    EXPECT_EQ(scene.placed[2].pose.position, scene.sensors[0].pose.position);
+    EXPECT_EQ(run.swingsAt(scene, 0.5), std::vector<Angle>(2));
+    // A quarter of a stride on, at half of the speed of full swing.
+    const std::vector<Angle> swings = run.swingsAt(scene, 1);
+    EXPECT_EQ(swings[0], Angle());
+    EXPECT_NEAR(swings[1].degrees(), 7.5, 1e-9);
+}
+
+TEST(View, PeopleWalk) {
+    const Scene scene =
+        testing::scene("ispace size=6,4\n", "human at=0,0\ncamera id=c at=0,-1.5,0.4 heading=90\n");
+    ViewOptions options;
+    const auto picture = [&] {
+        return viewPicture(scene, parseView("camera:c"), kSmall, options).pixels;
+    };
+    const auto standing = picture();
+    options.swings = {Angle()};
+    EXPECT_EQ(picture(), standing);
+    options.swings = {Angle::degrees(15)};
+    EXPECT_NE(picture(), standing);
+}
+
 TEST(RunRecord, RefusesOtherRuns) {
     EXPECT_THROW(RunRecord(RunReader("t,id,x,y,heading_deg\n", "")), FormatError);
     const Scene scene = room();

@@ -231,6 +231,7 @@ void takeViews(const ScanCommand& command) {
             const double time = run->begin() + share * (run->end() - run->begin());
             makeChanges(*changes, scene, time);
             run->apply(scene, time);
+            drawing.swings = run->swingsAt(scene, time);
             drawing.ways = run->waysUntil(time);
         }
         drawing.samples = options.photo.samples;
