@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "base/number.h"
 #include "layout/test_layout.h"
 #include "sense/sensors.h"
 
@@ -72,6 +73,18 @@ TEST(Watch, FourReceiversSeeTogether) {
     EXPECT_EQ(seenAt(receivers, {0, 0}), 1U);
     const Scene room = scene(kRoom + receivers);
     EXPECT_EQ(Watch(room).sensors(), 1U);
+}
+
+TEST(Watch, PeopleHideNobody) {
+    // A leg or the head stands in the beam that a laser's scan would have there.
+    for (const double z : {0.15, 0.29, 0.30, 0.31, 0.45, 1.68}) {
+        const std::string person = z < 1 ? "human at=0,-0.0935\n" : "human at=0,0\n";
+        const Scene room =
+            scene(kRoom + person + "laser at=-2,0," + formatDouble(z) + " range=8 fov=90\n");
+        const MovingBodies bodies(bodiesOf(room));
+        EXPECT_TRUE(bodies.between({-2, 0, z}, {2, 0, z}, MovingBodies::kNobody)) << z;
+        EXPECT_EQ(Watch(room).seenBy({{2, 0}}), 1U) << z;
+    }
 }
 
 TEST(Watch, SensorsRideAndDoNotSeeTheirCarrier) {
