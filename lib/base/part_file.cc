@@ -64,11 +64,11 @@ bool readField(PartHead& head, std::string_view key, std::string_view value) {
         job.form = value;
     } else if (key == "seed") {
         const auto seed = parseInteger(value);
-        if (!seed) return false;
+        if (!seed || *seed < 0) return false;
         job.seed = static_cast<std::uint64_t>(*seed);
     } else if (key == "units") {
         job.units = parseInteger(value);
-        return value == "-" || job.units;
+        return value == "-" || job.units.value_or(-1) >= 0;
     } else if (key == "shard") {
         try {
             head.shard = parseShard(std::string(value));

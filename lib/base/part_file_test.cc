@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/checkpoint.h"
+#include "base/file.h"
 #include "base/test_damage.h"
 #include "base/test_folder.h"
 
@@ -93,6 +94,19 @@ TEST_F(PartFileTest, SurvivesDamage) {
     writeAll(path("room"), "#env 1\n");
     EXPECT_NE(merging({path("room")}).find("room: error: not a part of a job, as --shard writes"),
               std::string::npos);
+}
+
+TEST_F(PartFileTest, RefusesNegativeFigures) {
+    const auto error_of = [this](const std::string& line, const std::string& damaged) {
+        std::string text = readAll(part(1, 1));
+        text.replace(text.find(line), line.size(), damaged);
+        writeAll(path("damaged"), text);
+        return merging({path("damaged")});
+    };
+    EXPECT_EQ(error_of("seed 7", "seed -7"),
+              "damaged:7: error: bad line `seed` in the header of a part\n");
+    EXPECT_EQ(error_of("units 10", "units -10"),
+              "damaged:10: error: bad line `units` in the header of a part\n");
 }
 
 TEST_F(PartFileTest, AMergeTakesAllShardsOnceAndInAnyOrder) {
