@@ -27,7 +27,7 @@ help:
 	@echo "make sanitized   deps, build with AddressSanitizer and UBSan, unit and golden tests"
 	@echo "make races       deps, build with ThreadSanitizer, tests of what runs in threads"
 	@echo "make bench       deps, build, benchmarks"
-	@echo "make fuzz        deps, build with Clang, fuzz each reader for FUZZ_SECONDS=$(FUZZ_SECONDS)"
+	@echo "make fuzz        deps, build with Clang, fuzz each reader and protocol for FUZZ_SECONDS=$(FUZZ_SECONDS)"
 	@echo "make torture     deps, build, attack the tools for TORTURE_MINUTES=$(TORTURE_MINUTES)"
 	@echo "make format      reformat the sources"
 	@echo "make lint        clang-tidy on what changed (all of it with BASE=)"

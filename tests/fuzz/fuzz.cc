@@ -42,7 +42,7 @@ std::size_t numbersOf(const Record& record) {
     return count;
 }
 
-bool isSmall(const Document& document) {
+bool isSmallScene(const Document& document) {
     if (document.records.size() > kMaxRecords) return false;
     std::size_t numbers = 0;
     for (const Record& record : document.records) numbers += numbersOf(record);
@@ -58,28 +58,49 @@ std::uint64_t hashOf(std::string_view bytes) {
 
 }  // namespace
 
+bool isSmall(const Record& record) { return numbersOf(record) <= kMaxNumbers; }
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    try {
+        tryInput({reinterpret_cast<const char*>(data), size});
+    } catch (const FormatError&) {
+        // The input is refused.
+    }
+    return 0;
+}
+
 void require(bool condition, const char* message) {
     if (condition) return;
     std::fprintf(stderr, "fuzz: %s\n", message);
     std::abort();
 }
 
+void tryPlan(PlanReader read, std::string_view bytes, const std::string& name,
+             const ImportOptions& options) {
+    const Document document = read(bytes, name, options, sceneSchemas());
+    checkText(document);
+    tryScene(document, bytes);
+}
+
+ImportOptions drawingOptions() {
+    ImportOptions options;
+    options.units = "m";
+    options.door_layers = {"D*"};
+    options.window_layers = {"*WIN*"};
+    options.max_points = 2000;
+    return options;
+}
+
 void checkText(const Document& document) {
     const std::string text = writeRecordText(document);
-    Document again;
-    try {
-        again = readRecordText(text, "again", sceneSchemas());
-    } catch (const FormatError& error) {
-        std::fprintf(stderr, "%s\n%s\n", text.c_str(), error.what());
-        require(false, "what was written is refused");
-    }
+    const Document again = readBack([&] { return readRecordText(text, "again", sceneSchemas()); });
     require(again.kind == document.kind, "another kind after writing and reading");
     require(again.records == document.records, "other records after writing and reading");
     require(writeRecordText(again) == text, "another text after writing and reading");
 }
 
 void tryScene(const Document& document, std::string_view bytes) {
-    if (hashOf(bytes) % kEvery != 0 || !isSmall(document)) return;
+    if (hashOf(bytes) % kEvery != 0 || !isSmallScene(document)) return;
     const Scene scene = makeScene(document, nullptr, DeviceCatalogue());
     const Environment& room = scene.environment;
     require(room.indoor().area() > 0, "an indoor region without area");
@@ -90,7 +111,7 @@ void tryScene(const Document& document, std::string_view bytes) {
 }
 
 void tryDerived(const Document& document) {
-    if (document.derived.empty() || !isSmall(document)) return;
+    if (document.derived.empty() || !isSmallScene(document)) return;
     const Environment room = makeScene(document, nullptr, DeviceCatalogue()).environment;
     // The right key and checksum, so that what follows is looked at.
     constexpr std::size_t kHead = 2 * sizeof(WallsKey);
@@ -116,6 +137,32 @@ void writeFile(const std::string& path, std::string_view bytes) {
     require(file != nullptr, "no file in the scratch folder");
     const bool whole = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
     require(std::fclose(file) == 0 && whole, "the scratch folder is full");
+}
+
+std::vector<std::string_view> filesOf(std::string_view bytes) {
+    std::vector<std::string_view> files;
+    for (;;) {
+        const std::size_t end = bytes.find(kSeparator);
+        files.push_back(bytes.substr(0, end));
+        if (end == std::string_view::npos) return files;
+        bytes.remove_prefix(end + kSeparator.size());
+    }
+}
+
+std::size_t takePieceSize(std::string_view& bytes) {
+    if (bytes.empty()) return 1;
+    const std::size_t size = 1 + static_cast<unsigned char>(bytes.front()) % 32;
+    bytes.remove_prefix(1);
+    return size;
+}
+
+std::function<bool(std::string& buffer)> streamOf(std::string_view bytes, std::size_t piece) {
+    return [bytes, piece](std::string& buffer) mutable {
+        buffer += bytes.substr(0, piece);
+        const bool has_more = !bytes.empty();
+        bytes.remove_prefix(std::min(piece, bytes.size()));
+        return has_more;
+    };
 }
 
 const std::string& scratchFolder() {

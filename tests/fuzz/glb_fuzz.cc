@@ -10,26 +10,21 @@
 
 namespace {
 
-constexpr std::string_view kSeparator = "\n---\n";
-
 std::string fileOf(std::string_view bytes) {
     if (ispace::isGlb(bytes)) return std::string(bytes);
-    const std::size_t end = std::min(bytes.find(kSeparator), bytes.size());
-    const std::array data{bytes.substr(std::min(end + kSeparator.size(), bytes.size()))};
-    return ispace::glbContainer(bytes.substr(0, end), data);
+    const std::string_view json = ispace::fuzz::filesOf(bytes).front();
+    bytes.remove_prefix(std::min(json.size() + ispace::fuzz::kSeparator.size(), bytes.size()));
+    return ispace::glbContainer(json, std::array{bytes});
 }
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace ispace;
-    return fuzz::guarded(data, size, [](std::string_view bytes) {
-        const std::string file = fileOf(bytes);
-        const bool has_records = glbHasRecords(file);
-        const Document document = readGlb(file, "room.glb", sceneSchemas());
-        fuzz::require(has_records, "records where none should be");
-        fuzz::checkText(document);
-        fuzz::tryScene(document, bytes);
-        fuzz::tryDerived(document);
-    });
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    const std::string file = fileOf(bytes);
+    const bool has_records = glbHasRecords(file);
+    const Document document = readGlb(file, "room.glb", sceneSchemas());
+    require(has_records, "records where none should be");
+    checkText(document);
+    tryScene(document, bytes);
+    tryDerived(document);
 }

@@ -7,16 +7,13 @@
 #include "io/ifc/storey_import.h"
 #include "layout/schemas.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace ispace;
-    return fuzz::guarded(data, size, [](std::string_view bytes) {
-        Building building;
-        try {
-            building = unpackedBuilding(packedBuilding(readBuilding(bytes, std::nullopt)));
-        } catch (const std::runtime_error&) {
-            return;  // an answer of the reader's process
-        }
-        ImportRecords out(sceneSchemas(), "x.ifc", {});
-        writeStorey(building, chosenStorey(building, {}), {}, out);
-    });
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    Building building;
+    try {
+        building = unpackedBuilding(packedBuilding(readBuilding(bytes, std::nullopt)));
+    } catch (const std::runtime_error&) {
+        return;  // an answer of the reader's process
+    }
+    ImportRecords out(sceneSchemas(), "x.ifc", {});
+    writeStorey(building, chosenStorey(building, {}), {}, out);
 }

@@ -18,24 +18,20 @@ void checkWhole(const std::string& out) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    return fuzz::guarded(data, size, [](std::string_view bytes) {
-        if (bytes.empty()) return;
-        const std::size_t piece = 1 + static_cast<unsigned char>(bytes.front()) % 32;
-        bytes.remove_prefix(1);
-        // Where it has gone must not depend on earlier inputs.
-        fuzz::RoomHost host(
-            "robot id=r1 at=0,0 sonar=0.1,0,0;0,0.1,90 sonar_range=3 bumpers=-30,30;150,210\n"
-            "laser id=l1 on=r1 at=0.1,0,0.3 range=0.02,3\n");
-        P2osSession whole(host, "r1"), cut(host, "r1");
-        const std::string wanted = fuzz::answered(whole, bytes, std::string_view::npos);
-        checkWhole(wanted);
-        fuzz::require(fuzz::answered(cut, bytes, piece) == wanted, "other answers to pieces");
-        constexpr int kSteps = 5;
-        for (int i = 0; i < kSteps && !whole.closing(); ++i) {
-            host.world().step();
-            whole.stepped(0);
-            checkWhole(whole.take());
-        }
-    });
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    const std::size_t piece = takePieceSize(bytes);
+    // Where it has gone must not depend on earlier inputs.
+    RoomHost host(
+        "robot id=r1 at=0,0 sonar=0.1,0,0;0,0.1,90 sonar_range=3 bumpers=-30,30;150,210\n"
+        "laser id=l1 on=r1 at=0.1,0,0.3 range=0.02,3\n");
+    P2osSession whole(host, "r1"), cut(host, "r1");
+    const std::string wanted = answered(whole, bytes, std::string_view::npos);
+    checkWhole(wanted);
+    require(answered(cut, bytes, piece) == wanted, "other answers to pieces");
+    constexpr int kSteps = 5;
+    for (int i = 0; i < kSteps && !whole.closing(); ++i) {
+        host.world().step();
+        whole.stepped(0);
+        checkWhole(whole.take());
+    }
 }

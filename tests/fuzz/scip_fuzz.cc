@@ -16,26 +16,22 @@ void checkWhole(const std::string& out) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static fuzz::RoomHost host(
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    static RoomHost host(
         "laser id=l1 at=0,0 first=-119.53125 step=0.3515625 beams=682 range=0.06,4.095\n");
-    return fuzz::guarded(data, size, [](std::string_view bytes) {
-        if (bytes.empty()) return;
-        const std::size_t piece = 1 + static_cast<unsigned char>(bytes.front()) % 32;
-        bytes.remove_prefix(1);
-        ScipSession whole(host, "l1"), cut(host, "l1");
-        const std::string wanted = fuzz::answered(whole, bytes, std::string_view::npos);
-        checkWhole(wanted);
-        fuzz::require(fuzz::answered(cut, bytes, piece) == wanted, "other answers to pieces");
-        if (whole.closing()) return;
-        constexpr int kSteps = 3;
-        for (int i = 0; i < kSteps; ++i) {
-            host.world().step();
-            whole.stepped(0);
-            cut.stepped(0);
-            const std::string packet = whole.take();
-            checkWhole(packet);
-            fuzz::require(cut.take() == packet, "another scan after pieces");
-        }
-    });
+    const std::size_t piece = takePieceSize(bytes);
+    ScipSession whole(host, "l1"), cut(host, "l1");
+    const std::string wanted = answered(whole, bytes, std::string_view::npos);
+    checkWhole(wanted);
+    require(answered(cut, bytes, piece) == wanted, "other answers to pieces");
+    if (whole.closing()) return;
+    constexpr int kSteps = 3;
+    for (int i = 0; i < kSteps; ++i) {
+        host.world().step();
+        whole.stepped(0);
+        cut.stepped(0);
+        const std::string packet = whole.take();
+        checkWhole(packet);
+        require(cut.take() == packet, "another scan after pieces");
+    }
 }

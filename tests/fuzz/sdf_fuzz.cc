@@ -41,13 +41,10 @@ const std::string& operand() {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace ispace;
-    return fuzz::guarded(data, size, [](std::string_view bytes) {
-        ImportOptions options;
-        options.max_points = 2000;
-        const Document document = readSdf(bytes, operand(), options, sceneSchemas());
-        fuzz::checkText(document);
-        fuzz::tryScene(document, bytes);
-    });
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    ImportOptions options;
+    options.max_points = 2000;
+    const Document document = readSdf(bytes, operand(), options, sceneSchemas());
+    checkText(document);
+    tryScene(document, bytes);
 }

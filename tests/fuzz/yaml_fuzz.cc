@@ -27,17 +27,14 @@ bool mayLeaveFolder(std::string_view bytes) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace ispace;
-    return fuzz::guarded(data, size, [](std::string_view bytes) {
-        if (mayLeaveFolder(bytes)) return;
-        const Document document = readYaml(bytes, operand(), sceneSchemas());
-        fuzz::checkText(document);
-        const std::string yaml = writeYaml(document);
-        const Document again = readYaml(yaml, "again.yaml", sceneSchemas());
-        fuzz::require(again.records == document.records, "other records as YAML");
-        fuzz::require(again.kind == document.kind, "another kind as YAML");
-        fuzz::require(writeYaml(again) == yaml, "another text as YAML");
-        fuzz::tryScene(document, bytes);
-    });
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    if (mayLeaveFolder(bytes)) return;
+    const Document document = readYaml(bytes, operand(), sceneSchemas());
+    checkText(document);
+    const std::string yaml = writeYaml(document);
+    const Document again = readYaml(yaml, "again.yaml", sceneSchemas());
+    require(again.records == document.records, "other records as YAML");
+    require(again.kind == document.kind, "another kind as YAML");
+    require(writeYaml(again) == yaml, "another text as YAML");
+    tryScene(document, bytes);
 }

@@ -21,7 +21,7 @@ def run(lab):
     # Building them takes time of its own.
     process = subprocess.run([script, str(seconds), "-1", *sorted(targets)], env={**os.environ, "FUZZ_JOBS": str(AT_ONCE)},
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    for target, executions in re.findall(r"^fuzz: (\w+): (\d+) inputs", process.stdout, re.M):
+    for target, executions in re.findall(r"^fuzz: (\w+) (\d+) executions", process.stdout, re.M):
         lab.count("targets")
         lab.count("executions", int(executions))
         lab.say(f"{target}: {executions} executions")

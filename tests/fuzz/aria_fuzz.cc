@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Maps of ARIA and MobileSim, with the points of their DATA as obstacles.
+#include "fuzz.h"
+#include "io/importers.h"
+
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    ImportOptions options;
+    options.points = true;
+    tryPlan(readAriaMap, bytes, "plan.map", options);
+}

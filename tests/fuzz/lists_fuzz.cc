@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lists: jobs of `coverage --batch` and places of `arrange --places`.
+#include "cli/batch_list.h"
+#include "fuzz.h"
+#include "place/sites.h"
+
+namespace {
+
+using namespace ispace;
+
+void tryJobs(std::string_view bytes) {
+    int line = 0;
+    for (const BatchJob& job : readBatchList(bytes, "jobs.txt")) {
+        fuzz::require(job.line > line, "jobs are not in the order of their lines");
+        fuzz::require(job.operands.empty() != job.wrong.empty(),
+                      "a job is neither right nor wrong");
+        line = job.line;
+    }
+}
+
+void tryPlaces(const std::string& text) {
+    for (const Site& site : readSites(text, "places.csv", headingsAround(4)))
+        fuzz::require(!site.headings.empty(), "a place without a heading");
+}
+
+}  // namespace
+
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    try {
+        tryJobs(bytes);
+    } catch (const FormatError&) {
+        // It may be a list of places.
+    }
+    tryPlaces(std::string(bytes));
+}

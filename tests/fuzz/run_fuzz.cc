@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Records of runs: robots.csv, people.csv, events.csv, odometry.csv, bumpers.csv and info.csv, with
+// lines `---` between; an empty file is a missing one.
+#include <array>
+#include <filesystem>
+
+#include "fuzz.h"
+#include "layout/run_changes.h"
+#include "layout/run_info.h"
+#include "layout/run_reader.h"
+
+namespace {
+
+using namespace ispace;
+
+constexpr std::array kNames = {"robots.csv",   "people.csv",  "events.csv",
+                               "odometry.csv", "bumpers.csv", "info.csv"};
+
+void writeRecord(std::string_view bytes) {
+    const std::vector<std::string_view> files = fuzz::filesOf(bytes);
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+        const std::string path = fuzz::scratchFolder() + '/' + kNames[i];
+        if (i < files.size() && !files[i].empty())
+            fuzz::writeFile(path, std::string(files[i]) + '\n');
+        else
+            std::filesystem::remove(path);
+    }
+}
+
+void checkMoment(const RunReader& reader, double before) {
+    fuzz::require(reader.time() >= before, "time runs backwards");
+    for (const RunState& state : reader.states())
+        fuzz::require(state.who < reader.who().size(), "a state of an unknown member");
+    for (const RunBumpers& bumpers : reader.bumpers())
+        fuzz::require(!bumpers.hit.empty(), "bumpers without one");
+}
+
+}  // namespace
+
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    writeRecord(bytes);
+    double time = 0;
+    for (const RunChange& change : recordedChanges(scratchFolder()))
+        require(change.line > 1, "a change without its line");
+    if (const auto info = recordedInfo(scratchFolder()))
+        require(info->step > 0 && info->steps >= 0, "a run with negative steps");
+    if (!std::filesystem::exists(RecordedFiles(scratchFolder()).robots)) return;
+    RunReader reader(scratchFolder());
+    while (reader.next()) {
+        checkMoment(reader, time);
+        time = reader.time();
+    }
+}

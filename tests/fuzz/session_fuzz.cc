@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Requests of the Simulator TCP Protocol, in lines of two clients: those that begin with a tab are
+// the second's. Each request has exactly one answer, however its bytes arrive.
+#include <algorithm>
+#include <array>
+
+#include "base/number.h"
+#include "fuzz.h"
+#include "net/connection.h"
+#include "net/session.h"
+#include "served_room.h"
+#include "sim/command.h"
+
+namespace {
+
+using namespace ispace;
+
+constexpr std::size_t kMaxLine = 4096;
+
+/// Lines as a connection cuts them, up to one that is too long.
+std::vector<std::string> linesOf(std::string_view bytes, std::size_t piece) {
+    LineBuffer buffer(kMaxLine);
+    std::vector<std::string> lines;
+    while (!bytes.empty()) {
+        buffer.append(bytes.substr(0, piece));
+        bytes.remove_prefix(std::min(piece, bytes.size()));
+        while (buffer.ready() && !buffer.tooLong()) lines.emplace_back(buffer.take());
+        if (buffer.tooLong()) break;
+    }
+    return lines;
+}
+
+/// Takes a line, and the bytes that a SCAN line announces at its end.
+std::string_view takeLine(std::string_view& text) {
+    constexpr std::string_view kBytes = " bytes=";
+    const std::size_t end = text.find('\n');
+    fuzz::require(end != std::string_view::npos, "half a line");
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end + 1);
+    const std::size_t key = line.starts_with("SCAN ") ? line.find(kBytes) : std::string_view::npos;
+    if (key == std::string_view::npos) return line;
+    const auto bytes = parseInteger(line.substr(key + kBytes.size()));
+    fuzz::require(bytes && static_cast<std::size_t>(*bytes) <= text.size(), "half a scan");
+    text.remove_prefix(static_cast<std::size_t>(*bytes));
+    return line;
+}
+
+/// Answers among the lines: all but events.
+std::size_t answersIn(std::string_view text) {
+    constexpr auto kEvents = std::to_array<std::string_view>({"DONE ", "FAIL ", "EVENT "});
+    constexpr auto kAnswers = std::to_array<std::string_view>({"OK ", "SCAN ", "ERR "});
+    std::size_t answers = 0;
+    while (!text.empty()) {
+        const std::string_view line = takeLine(text);
+        const auto begins = [line](std::string_view word) { return line.starts_with(word); };
+        const bool is_answer = std::any_of(kAnswers.begin(), kAnswers.end(), begins);
+        fuzz::require(is_answer || std::any_of(kEvents.begin(), kEvents.end(), begins),
+                      "a line that is neither answer nor event");
+        answers += is_answer ? 1 : 0;
+    }
+    return answers;
+}
+
+class Client {
+  public:
+    explicit Client(ServerState& state) : session_(state) {}
+    [[nodiscard]] bool mayAsk() const { return !session_.waiting() && !session_.closing(); }
+    void ask(const std::string& line) {
+        if (!wordsOf(line).empty()) ++due_;
+        session_.request(line);
+        settle();
+    }
+    void stepped() {
+        session_.proceed();
+        settle();
+        if (const auto scan = session_.takeScan()) {
+            std::string_view text = *scan;
+            (void)takeLine(text);
+            fuzz::require(text.empty(), "more than a scan");
+        }
+    }
+    void finish() {
+        session_.finish();
+        settle();
+        fuzz::require(due_ == 0, "a request without an answer");
+    }
+
+  private:
+    void settle() {
+        const std::size_t answers = answersIn(session_.take());
+        fuzz::require(answers <= due_, "an answer without a request");
+        due_ -= answers;
+        fuzz::require(session_.waiting() || due_ == 0, "no answer to a request");
+    }
+
+    Session session_;
+    std::size_t due_ = 0;  // answers
+};
+
+}  // namespace
+
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    const std::size_t piece = takePieceSize(bytes);
+    const std::vector<std::string> lines = linesOf(bytes, std::string_view::npos);
+    require(linesOf(bytes, piece) == lines, "other lines after pieces");
+    ServedRoom room;
+    std::array<Client, 2> clients{Client(room.state()), Client(room.state())};
+    for (const std::string& line : lines) {
+        Client& client = clients[line.starts_with('\t') ? 1 : 0];
+        if (client.mayAsk()) client.ask(line);
+        room.run([&] {
+            for (Client& each : clients) each.stepped();
+        });
+    }
+    for (Client& client : clients) client.finish();
+}
