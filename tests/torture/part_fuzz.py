@@ -21,9 +21,9 @@ def run(lab):
     # Building them takes time of its own.
     process = subprocess.run([script, str(seconds), "-1", *sorted(targets)], env={**os.environ, "FUZZ_JOBS": str(AT_ONCE)},
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    for target, executions in re.findall(r"^fuzz: (\w+) (\d+) executions", process.stdout, re.M):
+    for line, executions in re.findall(r"^(fuzz: \w+ (\d+) executions.*)$", process.stdout, re.M):
+        lab.say(line)
         lab.count("targets")
         lab.count("executions", int(executions))
-        lab.say(f"{target}: {executions} executions")
     if process.returncode != 0:
         lab.violated("a fuzzer found an input: " + process.stdout[-3000:])

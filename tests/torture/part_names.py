@@ -2,7 +2,8 @@
 """FIFOs, devices, links, folders and odd names wherever a file may be named, by the user or by a file.
 
 A tool refuses or handles each within five seconds, with bounded memory, and leaves what is no regular file as it is.
-Only a FIFO that the user names may be waited for, as `cat` does; TERM ends that within a second."""
+Only a FIFO or an endless device that the user names may be read on and on, as `cat` does; TERM ends that within a
+second."""
 import os
 import shlex
 import shutil
@@ -15,6 +16,7 @@ import lab as labs
 
 LIMIT = 5        # seconds
 MEMORY = 1 << 30
+ENDLESS = ("fifo", "link to a fifo", "random")
 
 # What the user names; @ stands for it, and the suffix behind it may decide how it is read.
 IMPORTS = ("", ".env", ".yaml", ".glb", ".png", ".jpg", ".tiff", ".dxf", ".svg", ".ifc", ".obj", ".stl", ".ply", ".dae",
@@ -61,6 +63,8 @@ INSIDE = [
     ("in.gltf", GLTF, ["envc in.gltf --to env"]),
     ("in.obj", "mtllib {}\nv 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 3\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n",
      ["envc in.obj --to env"]),
+    ("in.env", "#env 1\n" + FENCE + "camera at=1,1,1 calibration={}\n", ["scan in.env -o new/"]),
+    ("in.env", "#env 1\n" + FENCE + "cube at=1,1 size=1 texture={}\n", ["scan in.env --view bird -o new.png"]),
     ("list", "{} laser.3dm\nroom.env {}\n", ["coverage --batch list"]),
 ]
 RECORDED = ("info.csv", "robots.csv", "people.csv", "events.csv", "scene.env", "scans.jsonl", "odometry.csv",
@@ -119,8 +123,8 @@ class Field:
         for word, text in SHORT.items():
             command = command.replace(word, text)
         path = os.path.join(self.folder, path)
-        if kind in ("fifo", "link to a fifo") and named_by_user:
-            self.wait_for_fifo(command)
+        if kind in ENDLESS and named_by_user:
+            self.wait_for(command, kind)
             return
         before = os.lstat(path)
         argv = [word.replace("~", " ") for word in command.split()]
@@ -133,15 +137,15 @@ class Field:
         if broken:
             self.lab.violated(f"{command} where {os.path.basename(path)} is a {kind}: {broken}")
 
-    def wait_for_fifo(self, command):
-        """Either refuses it, or waits for its other end, until TERM."""
+    def wait_for(self, command, kind):
+        """Either refuses it, or reads on until TERM."""
         process = self.lab.start([word.replace("~", " ") for word in command.split()], self.folder)
         self.lab.count("names")
         try:
             process.wait(0.2)
             status = process.returncode
             if status not in (0, 1, 2, 3):
-                self.lab.violated(f"{command} where @ is a fifo: status {status}")
+                self.lab.violated(f"{command} where special is a {kind}: status {status}")
         except Exception:  # TimeoutExpired
             self.lab.count("waits")
             begin = time.monotonic()
@@ -150,7 +154,7 @@ class Field:
             while process.poll() is None and time.monotonic() < begin + timeout:
                 time.sleep(0.005)
             if process.poll() is None:
-                self.lab.violated(f"{command} where @ is a fifo: TERM does not end the wait within {timeout:.0f} s")
+                self.lab.violated(f"{command} where special is a {kind}: TERM does not end the wait within {timeout:.0f} s")
                 labs.kill_session(process.pid)
                 process.wait()
 
