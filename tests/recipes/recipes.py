@@ -32,8 +32,10 @@ import time
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
 PATIENCE = 300  # seconds for one block, on a busy machine
+TYPING = 0.5  # seconds for a line of a session: scans that are taken ten times a second are of what was answered before
 MARKS = ("not run", "file", "printed by", "serves", "session")
-INPUTS = {"map.yaml": "map.yaml", "map.pgm": "map.pgm", "scan.jpg": "pictures/room.jpg"}  # from tests/data
+INPUTS = {"map.yaml": "map.yaml", "map.pgm": "map.pgm", "scan.jpg": "pictures/room.jpg",
+          "house.ifc": "ifc/cabin-2x3-mm.ifc"}  # from tests/data
 ESCAPES = {r"\-": "-", r"\e": "\\", r"\(aq": "'", r"\(dq": '"', r"\&": ""}
 
 
@@ -199,6 +201,7 @@ class Session:
             if not self.connection:
                 self.connection = socket.create_connection(self.address, timeout=30).makefile("rw")
                 self.greeting = self.connection.readline()
+            time.sleep(TYPING)
             self.connection.write(text + "\n")
             self.connection.flush()
         else:
