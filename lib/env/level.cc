@@ -9,6 +9,7 @@
 
 #include "geom/boolean.h"
 #include "geom/predicates.h"
+#include "geom/uncancelled.h"
 
 namespace ispace {
 
@@ -29,12 +30,13 @@ Level::Level(std::shared_ptr<const Environment::Data> room, double height)
     : room_(std::move(room)), height_(height) {}
 
 const Slice& Level::slice() const {
-    return slice_.get([this] { return room_->slice(height_); });
+    return slice_.get([this] { return uncancelled([this] { return room_->slice(height_); }); });
 }
 
 const std::vector<Region>& Level::freeFloor() const {
     assert(room_ != nullptr);
-    return free_floor_.get([this] { return less(room_->indoor, slice().solids); });
+    return free_floor_.get(
+        [this] { return uncancelled([this] { return less(room_->indoor, slice().solids); }); });
 }
 
 const PolygonIndex& Level::solids() const {
@@ -42,7 +44,10 @@ const PolygonIndex& Level::solids() const {
 }
 
 const VisibilityMap& Level::sight() const {
-    return sight_.get([this] { return VisibilityMap(slice().straightLines(), slice().curves()); });
+    return sight_.get([this] {
+        return uncancelled(
+            [this] { return VisibilityMap(slice().straightLines(), slice().curves()); });
+    });
 }
 
 void Level::prepareSight() const {

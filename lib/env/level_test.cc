@@ -2,6 +2,8 @@
 #include "env/level.h"
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <atomic>
 #include <cmath>
@@ -32,6 +34,30 @@ TEST(Lazy, MakesOnceAndAgainAfterAFailure) {
     EXPECT_EQ(lazy.get([] { return 3; }), 3);
     EXPECT_EQ(lazy.get([] { return 4; }), 3);
     EXPECT_EQ(*lazy.peek(), 3);
+}
+
+// As where another task of a loop finds no memory: loops within that loop are left out.
+TEST(Level, IsWholeIfWhatAsksForItIsCancelled) {
+    const Environment room = environment(kRoom);
+    const auto level = room.level(0.15);
+    const Point2 viewpoint{0.5, 0.25};
+    VisibleRegion seen;
+    tbb::task_group_context context;
+    tbb::parallel_for(
+        0, 1,
+        [&](int) {
+            context.cancel_group_execution();
+            level->query(viewpoint, 0, seen);
+            static_cast<void>(level->freeFloor());
+        },
+        context);
+    const VisibilityMap map(level->slice().straightLines(), level->slice().curves());
+    level->query(viewpoint, 10, seen);
+    EXPECT_EQ(seen.edges.size(), map.query(viewpoint, 10).edges.size());
+    EXPECT_GT(seen.edges.size(), 4U);
+    double area = 0;
+    for (const Region& region : level->freeFloor()) area += region.area();
+    EXPECT_NEAR(area, 48 - testing::areaOf(level->slice().solids), 1e-9);
 }
 
 TEST(Level, AnswersAsItsSliceDoes) {
