@@ -75,9 +75,12 @@ class Browser {
         request.set(http::field::host, host_);
         for (const auto& [name, value] : fields) request.set(name, value);
         http::write(socket_.next_layer(), request);
-        http::response_parser<http::string_body> parser;
-        parser.skip(verb == "HEAD");
-        http::read(socket_.next_layer(), buffer_, parser);
+        return receiveResponse(verb == "HEAD");
+    }
+    Response receiveResponse(bool has_no_body = false) {
+        boost::beast::http::response_parser<boost::beast::http::string_body> parser;
+        parser.skip(has_no_body);
+        boost::beast::http::read(socket_.next_layer(), buffer_, parser);
         return parser.release();
     }
     /// Asks for a WebSocket by hand: 101, or why not.

@@ -151,6 +151,9 @@ void Browser::requested(error_code error) {
     if (request.count(http::field::origin) > 1 ||
         !share_.origin->mayConnect(view(request[http::field::origin])))
         return refuse(http::status::forbidden, "only the page of this server may connect");
+    // Beast would take them for the beginning of the first message.
+    if (in_.size() > 0)
+        return refuse(http::status::bad_request, "frames follow the answer to the upgrade");
     upgrade(request);
 }
 

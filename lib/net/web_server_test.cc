@@ -228,6 +228,18 @@ TEST(WebSocket, GarbageHarmsNobody) {
     EXPECT_TRUE(Browser(server).take("WORLD").ask("TIME").starts_with("OK TIME"));
 }
 
+/// They would be taken for requests as they are.
+TEST(WebSocket, RefusesFramesBeforeItsAnswer) {
+    const WebRunning server;
+    Browser browser(server);
+    boost::asio::write(browser.raw(),
+                       boost::asio::buffer("GET /ws HTTP/1.1\r\nHost: " + server.host() +
+                                           "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+                                           "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
+                                           "dGhlIHNhbXBsZSBub25jZQ==\r\n\r\nWORLD\n"));
+    EXPECT_EQ(browser.receiveResponse().result_int(), 400U);
+}
+
 /// Connections that ask for nothing give way.
 TEST(WebServer, HasPlaceForNewcomersAmongIdlers) {
     const WebRunning server({Clock::Kind::Real, 1});
