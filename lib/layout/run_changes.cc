@@ -49,10 +49,10 @@ std::vector<RunChange> recordedChanges(const std::string& folder) {
         const std::string time = takeField(rest);
         if (takeField(rest) != "change") continue;
         RunChange change;
-        const auto seconds = parseDouble(time);
+        const auto seconds = parseRunTime(time);
         if (!seconds)
             throw FormatError(
-                {name, lines.number(), 0, "t is " + excerpt(time) + ", wanted a number"});
+                {name, lines.number(), 0, "t is " + excerpt(time) + ", wanted seconds from 0 on"});
         change.time = *seconds;
         takeField(rest);  // id
         change.scene = takeField(rest);

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/test_folder.h"
+#include "layout/run_reader.h"
 #include "layout/test_layout.h"
 
 namespace ispace {
@@ -51,6 +52,18 @@ TEST_F(RunChangesTest, AreThoseOfTheTable) {
     EXPECT_EQ(rows[1].scene, "scenes/scene-000001.env");
     EXPECT_EQ(rows[1].text, "LOAD other.env");
     EXPECT_EQ(rows[2].text, "ADD wall name=\"a, b\" from=0,0");
+}
+
+TEST_F(RunChangesTest, HaveTimesOfARun) {
+    for (const char* time : {"-1", "1e300", "soon"}) {
+        const auto error =
+            testing::findings([&] { changes(std::string(time) + ",change,,,,,,\n"); });
+        EXPECT_NE(error.find("events.csv:2: error: t is `" + std::string(time) +
+                             "`, wanted seconds from 0 on"),
+                  std::string::npos)
+            << error;
+        EXPECT_EQ(testing::findings([&] { (void)recordedChange(folder_.path().string()); }), error);
+    }
 }
 
 TEST_F(RunChangesTest, AreMadeInTheirTime) {

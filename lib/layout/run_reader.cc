@@ -142,8 +142,7 @@ void MomentFile::readLine() {
              std::to_string(columns_) + ": " + excerpt(*line));
     Row row;
     row.time = number(kTime);
-    constexpr double kLongest = 4e9;  // seconds: a hundred years
-    if (row.time < 0 || row.time > kLongest) fail("t is out of bounds: " + excerpt(fields_[0]));
+    if (!parseRunTime(fields_[0])) fail("t is out of bounds: " + excerpt(fields_[0]));
     if (before && row.time < before->time) fail("time runs backwards");
     row.state.who = indexOf(fields_[place_[kId]]);
     row.state.pose = {{number(kX), number(kY)}, Angle::degrees(number(kHeading))};
@@ -201,10 +200,10 @@ class EventFile {
         while (const auto line = lines_.next()) {
             splitFields(*line, fields_);
             if (fields_.size() < 4 || fields_[1] != kind_) continue;
-            const auto time = parseDouble(fields_[0]);
+            const auto time = parseRunTime(fields_[0]);
             if (!time)
                 throw FormatError({name_, lines_.number(), 0,
-                                   "t is " + excerpt(fields_[0]) + ", wanted a number"});
+                                   "t is " + excerpt(fields_[0]) + ", wanted seconds from 0 on"});
             row_.emplace(*time, RunCollision{std::string(fields_[2]), std::string(fields_[3])});
             return;
         }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/number.h"
 
 namespace ispace {
 
@@ -50,6 +51,13 @@ class LineSource {
     int number_ = 0;
     bool is_too_long_ = false;
 };
+
+/// A time of a run, in seconds: from 0 to 4e9, beyond the hundred years of the longest run.
+inline std::optional<double> parseRunTime(std::string_view text) {
+    constexpr double kLongest = 4e9;
+    const std::optional<double> time = parseDouble(text);
+    return time && *time >= 0 && *time <= kLongest ? time : std::nullopt;
+}
 
 /// Fields of a line without quotes.
 inline void splitFields(std::string_view line, std::vector<std::string_view>& fields) {
