@@ -14,14 +14,22 @@ using nlohmann::json;
 
 constexpr std::string_view kSchema = "ispace-scan/1";
 
-/// \throws json::exception
+/// \throws FormatError
+int countOf(const json& value, const char* name) {
+    constexpr int kMost = std::numeric_limits<int>::max();
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > kMost)
+        throw FormatError({"", 0, 0, '`' + std::string(name) + "` is no whole number from 0 on"});
+    return value.get<int>();
+}
+
+/// \throws json::exception, FormatError
 RecordedScan scanOf(const json& line) {
     constexpr std::size_t kPose = 6;
     RecordedScan scan;
     scan.sensor = line.at("sensor").get<std::string>();
     scan.time = line.at("t").get<double>();
-    scan.frame = line.at("frame").get<int>();
-    scan.number = line.value("scan", 0);
+    scan.frame = countOf(line.at("frame"), "frame");
+    if (line.contains("scan")) scan.number = countOf(line["scan"], "scan");
     const auto pose = line.at("pose").get<std::vector<double>>();
     if (pose.size() != kPose) throw FormatError({"", 0, 0, "`pose` has not six numbers"});
     scan.pose = {{pose[0], pose[1], pose[2]},

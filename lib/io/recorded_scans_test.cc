@@ -64,6 +64,15 @@ TEST(RecordedScans, LeavesOutALastLineThatIsCut) {
     EXPECT_FALSE(scans.next());
 }
 
+TEST(RecordedScans, RefusesFramesThatAreNoCounts) {
+    for (const char* frame : {"-1", "1e300", "2.5", "2147483648", "null"}) {
+        std::string scan = kScan;
+        scan.replace(scan.find(":2,"), 2, std::string(":") + frame);
+        EXPECT_NE(messageOf(kHeader + scan), "") << frame;
+    }
+    EXPECT_EQ(messageOf(kHeader + kScan + kScan), "");
+}
+
 TEST(RecordedScans, Refuses) {
     EXPECT_EQ(messageOf(kHeader + kScan), "");
     EXPECT_NE(messageOf(kScan).find("run/scans.jsonl:1"), std::string::npos);
