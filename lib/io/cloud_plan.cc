@@ -135,17 +135,20 @@ class CloudPlan {
     /// Some points lie below it: reflections, and those of other storeys.
     [[nodiscard]] double floorHeight(const PointBox& all) const {
         constexpr std::size_t kSteps = 1000;
-        const double height = all.high.z - all.low.z;
+        // Exact, and kSteps times the height of any finite points stays finite.
+        constexpr double kScale = 1.0 / 2048;
+        const double low = kScale * all.low.z, height = kScale * all.high.z - low;
         std::array<std::size_t, kSteps + 1> below{};
         std::size_t points = 0;
         file_.forEach([&](const Point3& p) {
-            ++below[static_cast<std::size_t>(kSteps * (p.z - all.low.z) / std::max(height, 1e-9))];
+            const double above = kScale * p.z - low;
+            ++below[static_cast<std::size_t>(kSteps * above / std::max(height, kScale * 1e-9))];
             ++points;
         });
         std::size_t step = 0;
         const double least = kFloorShare * static_cast<double>(points);
         for (std::size_t sum = below[0]; static_cast<double>(sum) < least;) sum += below[++step];
-        return all.low.z + height * static_cast<double>(step) / kSteps;
+        return (low + height * static_cast<double>(step) / kSteps) / kScale;
     }
 
     [[nodiscard]] std::optional<std::size_t> cellOf(const Point3& p) const {
