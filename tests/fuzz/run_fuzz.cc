@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Records of runs: robots.csv, people.csv, events.csv, odometry.csv, bumpers.csv and info.csv, with
-// lines `---` between; an empty file is a missing one.
+// lines `---` between; an empty file is a missing one. What can be read is replayed.
 #include <array>
 #include <filesystem>
 
@@ -8,6 +8,9 @@
 #include "layout/run_changes.h"
 #include "layout/run_info.h"
 #include "layout/run_reader.h"
+#include "layout/schemas.h"
+#include "record/text.h"
+#include "sim/replay.h"
 
 namespace {
 
@@ -35,6 +38,21 @@ void checkMoment(const RunReader& reader, double before) {
         fuzz::require(!bumpers.hit.empty(), "bumpers without one");
 }
 
+/// The first steps of a replay, in a room of its own.
+void replay() {
+    static const Document room = readRecordText(
+        "#env 1\nispace size=8,6\nrobot id=r1 at=0,0\nrobot id=r2 at=1,0\nhuman id=h1 at=2,2\n",
+        "room.env", sceneSchemas());
+    static const Scene start = makeScene(room, nullptr, DeviceCatalogue());
+    Replay replay(fuzz::scratchFolder());
+    Scene scene = start;
+    replay.placeAtStart(scene);
+    World world(scene, replay.stepLength());
+    constexpr int kSteps = 4;
+    for (int i = 0; i < kSteps && replay.step(world); ++i)
+        fuzz::require(world.time() == (i + 1) * replay.stepLength(), "a step of another length");
+}
+
 }  // namespace
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
@@ -50,4 +68,5 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
         checkMoment(reader, time);
         time = reader.time();
     }
+    replay();
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,10 +20,7 @@ class RoomHost : public WireHost {
   public:
     /// \param layout records
     explicit RoomHost(const std::string& layout)
-        : scene_(makeScene(
-              readRecordText("#env 1\nispace size=8,6\n" + layout, "room.env", sceneSchemas()),
-              nullptr, DeviceCatalogue())),
-          world_(scene_, std::chrono::milliseconds(100)) {}
+        : scene_(sceneOf(layout)), world_(scene_, std::chrono::milliseconds(100)) {}
 
     [[nodiscard]] World& world() override { return world_; }
     [[nodiscard]] bool isReplay() const override { return false; }
@@ -36,7 +34,17 @@ class RoomHost : public WireHost {
     [[nodiscard]] std::chrono::nanoseconds clock() const override { return world_.time(); }
 
   private:
-    Scene scene_;
+    /// Each is made once.
+    static const Scene& sceneOf(const std::string& layout) {
+        static std::map<std::string, Scene> scenes;
+        if (const auto found = scenes.find(layout); found != scenes.end()) return found->second;
+        const Document document =
+            readRecordText("#env 1\nispace size=8,6\n" + layout, "room.env", sceneSchemas());
+        return scenes.emplace(layout, makeScene(document, nullptr, DeviceCatalogue()))
+            .first->second;
+    }
+
+    const Scene& scene_;
     World world_;
 };
 
