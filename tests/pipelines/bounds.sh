@@ -75,3 +75,9 @@ bounded envc --check deep.yaml -- "nested too deep"
 # What a map of maps is bounded by.
 printf 'P5\n30000 30000\n255\n' >huge.pgm
 bounded envc --resolution 0.05 huge.pgm -- "wanted at most 400000000"
+
+# Any input is bounded: a file without blocks on the disk, and a pipe that never ends.
+truncate -s 5G hollow.env
+bounded envc hollow.env -- "more than 4294967296 bytes, the most that an input may have"
+endless() { yes '#' | envc -; }
+bounded endless -- "more than 1073741824 bytes, the most that a pipe or a device may bring"
