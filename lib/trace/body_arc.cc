@@ -38,19 +38,20 @@ struct alignas(64) Seen {
     std::int32_t other_first[BodyTable::kLanes], other_last[BodyTable::kLanes];
 };
 
-ISPACE_SIMD_CLONES
-void see(const BodyTable& table, std::size_t begin, const ArcView& view, Seen& seen) {
+template <bool kLeans>
+ISPACE_INLINE void seeBodies(const BodyTable& table, std::size_t begin, const ArcView& view,
+                             Seen& seen) {
     const double* const x = table.x.data() + begin;
     const double* const y = table.y.data() + begin;
     const double* const reach = table.reach.data() + begin;
     const double* const bottom = table.bottom.data() + begin;
     const double* const top = table.top.data() + begin;
-    const double* const lean_x = table.lean_x.data() + begin;
-    const double* const lean_y = table.lean_y.data() + begin;
+    const double* const lean_x = kLeans ? table.lean_x.data() + begin : nullptr;
+    const double* const lean_y = kLeans ? table.lean_y.data() + begin : nullptr;
     double low[kLanes], high[kLanes], other_low[kLanes], other_high[kLanes];
     ISPACE_LANES for (int i = 0; i < kLanes; ++i) {
-        const double wx = x[i] + lean_x[i] * view.z - view.x;
-        const double wy = y[i] + lean_y[i] * view.z - view.y;
+        const double wx = (kLeans ? x[i] + lean_x[i] * view.z : x[i]) - view.x;
+        const double wy = (kLeans ? y[i] + lean_y[i] * view.z : y[i]) - view.y;
         const double square = wx * wx + wy * wy;
         const double distance = std::sqrt(square);
         seen.nearest[i] = distance - reach[i];
@@ -78,6 +79,16 @@ void see(const BodyTable& table, std::size_t begin, const ArcView& view, Seen& s
         seen.other_first[i] = static_cast<std::int32_t>(other_low[i]);
         seen.other_last[i] = static_cast<std::int32_t>(other_high[i]) - 1;
     }
+}
+
+ISPACE_SIMD_CLONES
+void seeUpright(const BodyTable& table, std::size_t begin, const ArcView& view, Seen& seen) {
+    seeBodies<false>(table, begin, view, seen);
+}
+
+ISPACE_SIMD_CLONES
+void seeLeaning(const BodyTable& table, std::size_t begin, const ArcView& view, Seen& seen) {
+    seeBodies<true>(table, begin, view, seen);
 }
 
 /// What of a body's outline level beams meet: in its frame, as BodyFrom has it.
@@ -281,7 +292,7 @@ void BodyArc::look(const BodyTable& table, std::size_t begin, std::size_t end, s
                        middle_.sin, rate_,     count_,    far_ * (1 + kFarSlack)};
     Seen seen;
     for (std::size_t i = begin; i < end; i += BodyTable::kLanes) {
-        see(table, i, view, seen);
+        (table.lean_x.empty() ? seeUpright : seeLeaning)(table, i, view, seen);
         for (std::size_t k = 0; k < std::min(BodyTable::kLanes, end - i); ++k) {
             const Waiting waiting{seen.nearest[k], table.index[i + k],  seen.first[k],
                                   seen.last[k],    seen.other_first[k], seen.other_last[k]};

@@ -24,23 +24,29 @@ struct alignas(64) Met {
     double nearest[BodyTable::kLanes], may_meet[BodyTable::kLanes];
 };
 
-ISPACE_SIMD_CLONES
-void look(const BodyTable& table, std::size_t begin, const BodyPencil::Hull& hull, Met& met) {
+template <bool kLeans>
+ISPACE_INLINE void lookAt(const BodyTable& table, std::size_t begin, const BodyPencil::Hull& hull,
+                          Met& met) {
     const double* const x = table.x.data() + begin;
     const double* const y = table.y.data() + begin;
     const double* const reach = table.reach.data() + begin;
     const double* const bottom = table.bottom.data() + begin;
     const double* const top = table.top.data() + begin;
-    const double* const lean_x = table.lean_x.data() + begin;
-    const double* const lean_y = table.lean_y.data() + begin;
+    const double* const lean_x = kLeans ? table.lean_x.data() + begin : nullptr;
+    const double* const lean_y = kLeans ? table.lean_y.data() + begin : nullptr;
     const double no_sides = hull.is_cone ? 0.0 : std::numeric_limits<double>::infinity();
     for (int i = 0; i < kLanes; ++i) {
-        const double low = flatMax(bottom[i], hull.low), high = flatMin(top[i], hull.high);
-        const double middle = 0.5 * (low + high);
-        met.x[i] = x[i] + lean_x[i] * middle;
-        met.y[i] = y[i] + lean_y[i] * middle;
-        const double lean = std::fabs(lean_x[i]) + std::fabs(lean_y[i]);
-        met.radius[i] = reach[i] + 0.5 * lean * flatMax(high - low, 0.0);
+        met.x[i] = x[i];
+        met.y[i] = y[i];
+        met.radius[i] = reach[i];
+        if (kLeans) {
+            const double low = flatMax(bottom[i], hull.low), high = flatMin(top[i], hull.high);
+            const double middle = 0.5 * (low + high);
+            met.x[i] += lean_x[i] * middle;
+            met.y[i] += lean_y[i] * middle;
+            const double lean = std::fabs(lean_x[i]) + std::fabs(lean_y[i]);
+            met.radius[i] += 0.5 * lean * flatMax(high - low, 0.0);
+        }
         const double wx = met.x[i] - hull.x, wy = met.y[i] - hull.y;
         const double distance = std::sqrt(wx * wx + wy * wy);
         const double around = met.radius[i] + hull.spread;
@@ -52,6 +58,18 @@ void look(const BodyTable& table, std::size_t begin, const BodyPencil::Hull& hul
                            (top[i] >= hull.low);
         met.may_meet[i] = meets ? 1.0 : 0.0;
     }
+}
+
+ISPACE_SIMD_CLONES
+void lookAtUpright(const BodyTable& table, std::size_t begin, const BodyPencil::Hull& hull,
+                   Met& met) {
+    lookAt<false>(table, begin, hull, met);
+}
+
+ISPACE_SIMD_CLONES
+void lookAtLeaning(const BodyTable& table, std::size_t begin, const BodyPencil::Hull& hull,
+                   Met& met) {
+    lookAt<true>(table, begin, hull, met);
 }
 
 }  // namespace
@@ -111,7 +129,7 @@ void BodyPencil::meet(const BodyTable& table, std::size_t begin, std::size_t end
                       std::span<const MovingBody> bodies, std::span<const BodyExtent> extents) {
     Met met;
     for (std::size_t i = begin; i < end; i += BodyTable::kLanes) {
-        look(table, i, hull_, met);
+        (table.lean_x.empty() ? lookAtUpright : lookAtLeaning)(table, i, hull_, met);
         for (std::size_t k = 0; k < std::min(BodyTable::kLanes, end - i); ++k) {
             if (met.may_meet[k] == 0) continue;
             const std::uint32_t body = table.index[i + k];

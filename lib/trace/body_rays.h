@@ -49,10 +49,12 @@ struct Stretch {
             clear();
         } else if (a != 0) {
             const double half = std::sqrt(root), near = (-b - half) / a, far = (-b + half) / a;
+            const double level = half / radius;
+            if (lean == 0) return cut(near, far, level, level);
+            // The normal of a slanted side is not level.
             const auto slope = [&](double multiple) {
-                // The normal of a slanted side is not level.
                 const double rise = lean * (origin.x + multiple * direction.x) / radius;
-                return lean == 0 ? half / radius : half / radius / std::sqrt(1 + rise * rise);
+                return level / std::sqrt(1 + rise * rise);
             };
             cut(near, far, slope(near), slope(far));
         }

@@ -122,16 +122,23 @@ std::size_t FloorGrid::cellOf(double offset, std::size_t count) const {
 
 void BodyTable::fill(std::span<const std::uint32_t> order, std::span<const MovingBody> bodies,
                      std::span<const BodyExtent> extents) {
-    for (auto* const figures : {&x, &y, &reach, &bottom, &top, &lean_x, &lean_y})
+    for (auto* const figures : {&x, &y, &reach, &bottom, &top})
         figures->resize(order.size() + kLanes);
+    const bool leans = std::any_of(bodies.begin(), bodies.end(),
+                                   [](const MovingBody& body) { return body.lean != 0; });
+    for (auto* const figures : {&lean_x, &lean_y}) figures->resize(leans ? x.size() : 0);
     index.assign(order.begin(), order.end());
     for (std::size_t i = 0; i < order.size(); ++i) {
         const MovingBody& body = bodies[order[i]];
         const BodyExtent& extent = extents[order[i]];
-        lean_x[i] = body.lean * extent.axes.cos;
-        lean_y[i] = body.lean * extent.axes.sin;
-        x[i] = body.pose.position.x - lean_x[i] * body.middle();
-        y[i] = body.pose.position.y - lean_y[i] * body.middle();
+        x[i] = body.pose.position.x;
+        y[i] = body.pose.position.y;
+        if (leans) {
+            lean_x[i] = body.lean * extent.axes.cos;
+            lean_y[i] = body.lean * extent.axes.sin;
+            x[i] -= lean_x[i] * body.middle();
+            y[i] -= lean_y[i] * body.middle();
+        }
         reach[i] = extent.reach;
         bottom[i] = body.bottom;
         top[i] = body.top;

@@ -88,8 +88,8 @@ class FloorGrid {
 struct BodyTable {
     static constexpr std::size_t kLanes = 8;
     std::vector<double> x, y, reach, bottom, top;  ///< x, y of level cuts, extrapolated to height 0
-    std::vector<double> lean_x, lean_y;            ///< how level cuts move, per metre of height
-    std::vector<std::uint32_t> index;              ///< of MovingBodies::bodies()
+    std::vector<double> lean_x, lean_y;  ///< how these move per metre of height; none leans: empty
+    std::vector<std::uint32_t> index;    ///< of MovingBodies::bodies()
 
     void fill(std::span<const std::uint32_t> order, std::span<const MovingBody> bodies,
               std::span<const BodyExtent> extents);
