@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/budget.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+namespace ispace {
+namespace {
+
+TEST(Budget, FollowsTheSizeBetweenItsBounds) {
+    EXPECT_EQ(Budget(0).limit(), Budget::kLeast);
+    EXPECT_EQ(Budget(1000).limit(), Budget::kLeast + 1000 * Budget::kPerByte);
+    EXPECT_EQ(Budget(1'000'000'000).limit(), Budget::kMost);
+    EXPECT_EQ(Budget(SIZE_MAX).limit(), Budget::kMost);
+    EXPECT_EQ(Budget(SIZE_MAX, 7).limit(), 7U);
+}
+
+TEST(Budget, GrowsWithSideFiles) {
+    Budget budget(1000);
+    budget.grant(500);
+    EXPECT_EQ(budget.limit(), Budget::kLeast + 1500 * Budget::kPerByte);
+    for (int i = 0; i < 3; ++i) budget.grant(SIZE_MAX);
+    EXPECT_EQ(budget.limit(), Budget::kMost);
+}
+
+TEST(Budget, TakesAllOrNothing) {
+    Budget budget(0, 10);
+    EXPECT_TRUE(budget.take(7));
+    EXPECT_FALSE(budget.take(4));
+    EXPECT_EQ(budget.left(), 3U);
+    EXPECT_TRUE(budget.take(3));
+    EXPECT_FALSE(budget.take(1));
+    EXPECT_TRUE(budget.take(0));
+    EXPECT_FALSE(budget.take(UINT64_MAX));
+}
+
+TEST(Budget, SaysHowToAllowMore) {
+    EXPECT_EQ(Budget(0, 10).excess(),
+              "more than 10 units of work (`envc --max-work 20` allows more)");
+}
+
+}  // namespace
+}  // namespace ispace
