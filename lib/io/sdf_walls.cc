@@ -2,7 +2,9 @@
 #include "io/sdf_walls.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <compare>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -152,38 +154,73 @@ SdfWall wallOf(const SdfBlock& block) {
             block.line};
 }
 
+namespace {
+
+/// A wall's line, and what decides how far its ends may move.
+struct BoxLine {
+    Segment2 line;
+    double thickness = 0;
+
+    friend auto operator<=>(const BoxLine& a, const BoxLine& b) {
+        const auto key = [](const BoxLine& wall) {
+            return std::array{wall.line.a.x, wall.line.a.y, wall.line.b.x, wall.line.b.y,
+                              wall.thickness};
+        };
+        return key(a) <=> key(b);
+    }
+};
+
+/// Moves the ends of one line onto those of `walls` that it may be meant to meet.
+Segment2 joinedEnds(const BoxLine& wall, std::span<const BoxLine> walls, const NearSegments& search,
+                    double reach) {
+    const Vec2 whole = wall.line.b - wall.line.a;
+    const Vec2 along = 1 / length(whole) * whole;
+    Segment2 joined = wall.line;
+    for (const bool at_b : {false, true}) {
+        const Point2 end = at_b ? wall.line.b : wall.line.a;
+        const Vec2 outward = at_b ? along : -along;
+        double best = HUGE_VAL;
+        for (const std::size_t i : search.near(end, reach)) {
+            const BoxLine& other = walls[i];
+            const Vec2 its = other.line.b - other.line.a;
+            const double turn = cross(outward, its);
+            if (std::abs(turn) < 0.1 * length(its)) continue;  // nearly parallel, or itself
+            const Vec2 way = other.line.a - end;
+            const double ahead = cross(way, its) / turn, share = cross(way, outward) / turn;
+            const double its_reach = other.thickness / 2 + kLooseEnd;
+            const double slack = (wall.thickness / 2 + kLooseEnd) / length(its);
+            if (std::abs(ahead) <= its_reach * length(its) / std::abs(turn) && share >= -slack &&
+                share <= 1 + slack && std::abs(ahead) < std::abs(best))
+                best = ahead;
+        }
+        if (std::isfinite(best) && best != 0) (at_b ? joined.b : joined.a) = end + best * outward;
+    }
+    return joined;
+}
+
+}  // namespace
+
 void joinEnds(std::vector<SdfWall>& walls) {
+    // Models that are included where they stand already make walls by the thousand that coincide.
+    std::map<BoxLine, std::size_t> known;
+    std::vector<BoxLine> distinct;
     std::vector<Segment2> lines;
+    std::vector<std::size_t> line_of;  // of each wall
     double thickest = 0;
     for (const SdfWall& wall : walls) {
-        lines.push_back(wall.paths.front().piece(0));
+        const BoxLine line{wall.paths.front().piece(0), wall.thickness};
+        const auto [at, is_new] = known.try_emplace(line, distinct.size());
+        line_of.push_back(at->second);
+        if (!is_new) continue;
+        distinct.push_back(line);
+        lines.push_back(line.line);
         thickest = std::max(thickest, wall.thickness);
     }
     const NearSegments search(lines);
-    for (std::size_t i = 0; i < walls.size(); ++i) {
-        const Vec2 whole = lines[i].b - lines[i].a;
-        const Vec2 along = 1 / length(whole) * whole;
-        for (const bool at_b : {false, true}) {
-            const Point2 end = at_b ? lines[i].b : lines[i].a;
-            const Vec2 outward = at_b ? along : -along;
-            double best = HUGE_VAL;
-            for (const std::size_t other : search.near(end, thickest / 2 + kLooseEnd)) {
-                if (other == i) continue;
-                const Vec2 its = lines[other].b - lines[other].a;
-                const double turn = cross(outward, its);
-                if (std::abs(turn) < 0.1 * length(its)) continue;  // nearly parallel
-                const Vec2 way = lines[other].a - end;
-                const double ahead = cross(way, its) / turn, share = cross(way, outward) / turn;
-                const double reach = walls[other].thickness / 2 + kLooseEnd;
-                const double slack = (walls[i].thickness / 2 + kLooseEnd) / length(its);
-                if (std::abs(ahead) <= reach * length(its) / std::abs(turn) && share >= -slack &&
-                    share <= 1 + slack && std::abs(ahead) < std::abs(best))
-                    best = ahead;
-            }
-            if (std::isfinite(best) && best != 0)
-                walls[i].paths.front().points[at_b ? 1 : 0] = end + best * outward;
-        }
-    }
+    for (std::size_t i = 0; i < distinct.size(); ++i)
+        lines[i] = joinedEnds(distinct[i], distinct, search, thickest / 2 + kLooseEnd);
+    for (std::size_t i = 0; i < walls.size(); ++i)
+        walls[i].paths.front().points = {lines[line_of[i]].a, lines[line_of[i]].b};
 }
 
 std::string sdfMeshUp(const std::string& file) {
