@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
@@ -20,9 +21,7 @@ namespace ispace {
 
 namespace {
 
-constexpr int kDeepest = 16;                    // blocks in blocks
-constexpr std::size_t kFreePoints = 10'000;     // whatever the file's size …
-constexpr std::size_t kPointsPerEntity = 1000;  // … and for each entity in it
+constexpr int kDeepest = 16;  // blocks in blocks
 
 /// Blocks that are in no file (an outside reference that was not bound), and how often.
 using MissingBlocks = std::map<std::string, std::size_t>;
@@ -38,20 +37,13 @@ constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
 constexpr double kSameEnd = 1e-6;
 
 /// The drawing in metres with all blocks put where they are inserted, entities on layer 0 of a
-/// block on the layer of its insert. Points, plus blocks inserted, are limited to `most`, and to a
-/// number that grows with the file, so that no small file becomes a large plan. Shapes on layers
-/// that nobody uses have no points, and count only where blocks repeat them.
+/// block on the layer of its insert. Each insert, entity and point spends from the budget; shapes
+/// on layers that are not used have no points.
 class Expander {
   public:
-    Expander(const DxfDrawing& drawing, const std::string& name, std::size_t most,
+    Expander(const DxfDrawing& drawing, const std::string& name, const Budget& budget,
              MissingBlocks& missing, LayerSorter& layers)
-        : drawing_(drawing),
-          name_(name),
-          most_(most),
-          total_(kFreePoints + kPointsPerEntity * drawing.size()),
-          budget_(std::min(most, total_)),
-          layers_(layers),
-          missing_(missing) {}
+        : drawing_(drawing), name_(name), budget_(budget), layers_(layers), missing_(missing) {}
 
     std::vector<PlanShape> expand(double metres_per_unit) {
         const Affine metres{{metres_per_unit, 0}, {0, metres_per_unit}, {}};
@@ -64,27 +56,25 @@ class Expander {
         failFile(name_, message, entity.line);
     }
 
-    void spend(const DxfEntity& entity, std::size_t points) {
-        if (points > budget_ && most_ <= total_)
-            fail(entity, "the drawing comes to more than " + std::to_string(most_) +
-                             " points; leave layers out, for example with --wall-layer 'A-WALL*'");
-        if (points > budget_)
+    void spend(const DxfEntity& entity, std::size_t units) {
+        if (!budget_.take(units))
             fail(entity,
-                 "the blocks of this drawing make too many lines of it; is one inserted by "
-                 "mistake, or in too large a grid?");
-        budget_ -= points;
+                 "blocks and curves of the drawing make " + budget_.excess() +
+                     "; is a block inserted by mistake, or in too large a grid? --wall-layer "
+                     "'A-WALL*' leaves layers out");
     }
 
     void add(const std::vector<DxfEntity>& entities, const Affine& outer, const std::string& layer,
              int depth) {
         for (const DxfEntity& entity : entities) {
+            spend(entity, 1);
             const Affine frame = entity.mirrored ? outer * kMirror : outer;
             const bool inherits = depth > 0 && entity.layer == "0";
             const std::string& own = inherits ? layer : entity.layer;
             if (const auto* insert = std::get_if<DxfInsert>(&entity.shape))
                 addInsert(entity, *insert, frame, own, depth);
             else
-                addShape(entity, frame, layerOf(own), depth);
+                addShape(entity, frame, layerOf(own));
         }
     }
 
@@ -131,26 +121,23 @@ class Expander {
         blocks_.pop_back();
     }
 
-    void addShape(const DxfEntity& entity, const Affine& frame, const std::string& layer,
-                  int depth) {
+    void addShape(const DxfEntity& entity, const Affine& frame, const std::string& layer) {
         shape_ = {};
         shape_.layer = layer;
         shape_.path.line = entity.line;
         shape_.walls_in = wallsAround(layer);
         if (!layers_.isUsed(layer)) {
-            if (depth > 0) spend(entity, 1);
             shapes_.push_back(std::move(shape_));
             return;
         }
         if (const auto* polyline = std::get_if<DxfPolyline>(&entity.shape))
-            addPolyline(*polyline, frame);
+            addPolyline(entity, *polyline, frame);
         else if (const auto* arc = std::get_if<DxfArc>(&entity.shape))
             addArc(entity, *arc, frame);
         else if (const auto* ellipse = std::get_if<DxfEllipse>(&entity.shape))
-            addEllipse(*ellipse, frame);
+            addEllipse(entity, *ellipse, frame);
         else if (const auto* spline = std::get_if<DxfSpline>(&entity.shape))
             addSpline(entity, *spline, frame);
-        spend(entity, shape_.path.points.size());
         for (const Point2 p : shape_.path.points)
             if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kFarthestPlan))
                 fail(entity, "lies more than " + formatDouble(kFarthestPlan / 1000) +
@@ -158,20 +145,22 @@ class Expander {
         if (shape_.path.points.size() >= 2) shapes_.push_back(std::move(shape_));
     }
 
-    void addPolyline(const DxfPolyline& polyline, const Affine& frame) {
+    void addPolyline(const DxfEntity& entity, const DxfPolyline& polyline, const Affine& frame) {
         const auto& vertices = polyline.vertices;
+        spend(entity, vertices.size());
         Polygon& points = shape_.path.points;
         shape_.path.closed = polyline.closed && vertices.size() > 1;
         for (std::size_t i = 0; i < vertices.size(); ++i) {
             points.push_back(frame * vertices[i].at);
             const bool is_last = i + 1 == vertices.size();
             if (is_last && !shape_.path.closed) break;
-            addPiece(vertices[i], vertices[is_last ? 0 : i + 1].at, frame);
+            addPiece(entity, vertices[i], vertices[is_last ? 0 : i + 1].at, frame);
         }
     }
 
     /// What lies between a vertex and the next one.
-    void addPiece(const DxfPolyline::Vertex& from, Point2 to, const Affine& frame) {
+    void addPiece(const DxfEntity& entity, const DxfPolyline::Vertex& from, Point2 to,
+                  const Affine& frame) {
         PlanChord chord{{frame * from.at, frame * to}, {}};
         const double bulge = from.bulge;
         const Vec2 along = to - from.at;
@@ -181,6 +170,7 @@ class Expander {
             const Vec2 spoke = from.at - center;
             const double sweep = 4 * std::atan(bulge);
             const int count = arcPieces(sweep, length(spoke) * frame.largestScale());
+            spend(entity, static_cast<std::size_t>(count));
             for (int i = 1; i < count; ++i)
                 shape_.path.points.push_back(frame * (center + turned(spoke, sweep * i / count)));
             chord.center = frame * center;
@@ -199,6 +189,7 @@ class Expander {
         double degrees = std::fmod(arc.to.degrees() - arc.from.degrees(), 360);
         if (degrees <= 0) degrees += 360;
         const int count = arcPieces(degrees / 360 * kFullTurn, arc.radius * frame.largestScale());
+        spend(entity, static_cast<std::size_t>(count));
         shape_.path.closed = full;
         for (int i = 0; i < count + (full ? 0 : 1); ++i) {
             const Angle angle =
@@ -210,13 +201,14 @@ class Expander {
                 {{shape_.path.points.front(), shape_.path.points.back()}, frame * arc.center});
     }
 
-    void addEllipse(const DxfEllipse& ellipse, const Affine& frame) {
+    void addEllipse(const DxfEntity& entity, const DxfEllipse& ellipse, const Affine& frame) {
         double sweep = std::fmod(ellipse.to - ellipse.from, kFullTurn);
         if (sweep <= 1e-9) sweep += kFullTurn;
         const bool full = sweep > kFullTurn - 1e-6;
         const double radius = std::max(length(ellipse.major), length(ellipse.minor));
         if (!(radius > 0)) return;
         const int count = arcPieces(sweep, radius * frame.largestScale());
+        spend(entity, static_cast<std::size_t>(count));
         shape_.path.closed = full;
         for (int i = 0; i < count + (full ? 0 : 1); ++i) {
             const double t = ellipse.from + sweep * i / count;
@@ -226,17 +218,18 @@ class Expander {
     }
 
     void addSpline(const DxfEntity& entity, DxfSpline spline, const Affine& frame) {
+        spend(entity, spline.controls.size());
         for (Point2& control : spline.controls) control = frame * control;
         Polygon& points = shape_.path.points;
-        points = splinePoints(spline, budget_);
-        if (points.size() > budget_) spend(entity, points.size());  // refuses
+        points = splinePoints(spline, budget_.left());
+        spend(entity, points.size());
         shape_.path.closed = distance(points.front(), points.back()) <= kSameEnd;
         if (shape_.path.closed) points.pop_back();
     }
 
     const DxfDrawing& drawing_;
     const std::string& name_;
-    std::size_t most_, total_, budget_;
+    Budget budget_;
     LayerSorter& layers_;
     MissingBlocks& missing_;
     std::vector<const std::string*> blocks_;  // around the entity, the outermost first
@@ -269,8 +262,9 @@ struct DxfImport {
 
 class DxfImporter {
   public:
-    DxfImporter(const DxfDrawing& drawing, const std::string& name, const Schemas& schemas)
-        : drawing_(drawing), name_(name), schemas_(schemas) {}
+    DxfImporter(const DxfDrawing& drawing, const std::string& name, std::size_t bytes,
+                const Schemas& schemas)
+        : drawing_(drawing), name_(name), bytes_(bytes), schemas_(schemas) {}
 
     /// \param hints whether the drawing may be read again to tell the effect of other options
     [[nodiscard]] DxfImport import(const ImportOptions& options, bool hints) const {
@@ -284,7 +278,7 @@ class DxfImporter {
         const ImportOptions own = is_ours ? asDrawn(options) : options;
         LayerSorter sorter(drawing_.hidden_layers, own);
         LayerSorter::Sorted shapes =
-            sorter.sort(Expander(drawing_, name_, options.max_points, missing, sorter)
+            sorter.sort(Expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter)
                             .expand(source.metres_per_unit));
         sorter.note(out);
         if (!drawing_.left_out.empty())
@@ -327,7 +321,7 @@ class DxfImporter {
             MissingBlocks missing;
             LayerSorter sorter(drawing_.hidden_layers, options);
             return sorter
-                .sort(Expander(drawing_, name_, options.max_points, missing, sorter)
+                .sort(Expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter)
                           .expand(metres_per_unit))
                 .walls;
         });
@@ -338,6 +332,7 @@ class DxfImporter {
 
     const DxfDrawing& drawing_;
     const std::string& name_;
+    std::size_t bytes_;  // of the file
     const Schemas& schemas_;
 };
 
@@ -346,7 +341,7 @@ class DxfImporter {
 Document readDxf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas) {
     const DxfDrawing drawing = readDrawing(bytes, name);
-    return DxfImporter(drawing, name, schemas).import(options, true).document;
+    return DxfImporter(drawing, name, bytes.size(), schemas).import(options, true).document;
 }
 
 }  // namespace ispace

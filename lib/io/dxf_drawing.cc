@@ -106,22 +106,6 @@ class Collector : public DL_CreationAdapter {
 
 }  // namespace
 
-std::size_t DxfDrawing::size() const {
-    const auto size_of = [](const std::vector<DxfEntity>& all) {
-        std::size_t size = all.size();
-        for (const DxfEntity& entity : all) {
-            if (const auto* polyline = std::get_if<DxfPolyline>(&entity.shape))
-                size += polyline->vertices.size();
-            else if (const auto* spline = std::get_if<DxfSpline>(&entity.shape))
-                size += spline->controls.size();
-        }
-        return size;
-    };
-    std::size_t size = size_of(entities);
-    for (const auto& [name, block] : blocks) size += size_of(block.entities);
-    return size;
-}
-
 DxfDrawing readDrawing(std::string_view bytes, const std::string& name) {
     DxfText checked = checkedDxf(bytes, name);
     DxfDrawing drawing;

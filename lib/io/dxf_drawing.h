@@ -92,9 +92,6 @@ struct DxfDrawing {
     std::vector<DxfEntity> entities;
     std::map<std::string, std::size_t> left_out;  ///< see DxfText
     std::map<int, DrawnSize> sizes;               ///< see DxfText
-
-    /// Entities and vertices, those of blocks included.
-    [[nodiscard]] std::size_t size() const;
 };
 
 /// True for a drawing with the layers on which writeDxf() draws a room, see dxfRoomLayers().

@@ -182,20 +182,23 @@ TEST(Dxf, BlocksInBlocksEnd) {
                       insert(inner, "0", 0, 0,
                              group(70, 100) + group(71, 100) + group(44, 1) + group(45, 1)));
     }
-    EXPECT_NE(errorOf(drawing(insert("L14", "0", 0, 0), bomb, 6)).find("too many lines"),
+    EXPECT_NE(errorOf(drawing(insert("L14", "0", 0, 0), bomb, 6))
+                  .find("blocks and curves of the drawing make more"),
               std::string::npos);
     EXPECT_NE(
         errorOf(drawing(insert("L0", "0", 0, 0, group(70, 2147483647) + group(71, 2147483647)),
                         block("L0", 0, 0, ""), 6))
-            .find("too many lines"),
+            .find("blocks and curves of the drawing make more"),
         std::string::npos);
     ImportOptions few;
-    few.max_points = 7;
+    few.max_work = 9;
     const std::string two = drawing(rectangle("W", 0, 0, 4, 3) + rectangle("V", 0, 0, 4, 3), "", 6);
     EXPECT_EQ(
         errorOf(two, few),
-        "plan.dxf:40:1: error: the drawing comes to more than 7 points; leave layers out, for "
-        "example with --wall-layer 'A-WALL*'\n");
+        "plan.dxf:40:1: error: blocks and curves of the drawing make more than 9 units of work "
+        "(`envc "
+        "--max-work 18` allows more); is a block inserted by mistake, or in too large a grid? "
+        "--wall-layer 'A-WALL*' leaves layers out\n");
     few.wall_layers = {"W"};
     EXPECT_DOUBLE_EQ(areaOf(two, few), 12);
     EXPECT_EQ(
@@ -361,7 +364,7 @@ TEST(Dxf, SurvivesDamage) {
     ImportOptions options;
     options.door_layers = {"D*"};
     options.window_layers = {"G"};
-    options.max_points = 3000;
+    options.max_work = 3000;
     const std::string dxf =
         drawing(rectangle("W", 0, 0, 4, 3) + line("D1", 1, 0, 2, 0) + line("G", 1, 3, 2, 3) +
                     arc("D1", 4, 1, 1, 90, 180) +

@@ -85,7 +85,7 @@ bool isDxf(std::string_view bytes);
 ///
 /// What is left out is counted in Document::notes.
 /// \throws FormatError: damaged, no unit, no line on the layers, places beyond 900 km, more than
-///         ImportOptions::max_points
+///         ImportOptions::max_work
 Document readDxf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas);
 
@@ -107,7 +107,7 @@ bool isSvg(std::string_view bytes);
 ///
 /// See readDxf for what becomes of the lines. Neither documents nor entities are fetched.
 /// \throws FormatError with the line: damaged, no size, no line on the layers of walls, places
-///         beyond 900 km, elements nested too deep, more points than ImportOptions::max_points
+///         beyond 900 km, elements nested too deep, more than ImportOptions::max_work
 Document readSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas);
 

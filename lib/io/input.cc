@@ -170,7 +170,7 @@ Document readRecords(const Source& source) {
     return readRecordText(source.bytes, source.operand, source.schemas);
 }
 Document readYamlRecords(const Source& source) {
-    return readYaml(source.bytes, source.operand, source.schemas);
+    return readYaml(source.bytes, source.operand, source.schemas, {}, source.options.max_work);
 }
 bool isHouseExpo(const Source& source) {
     return isJson(source.bytes) && source.bytes.find("\"verts\"") != std::string_view::npos;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -60,7 +61,7 @@ struct ImportOptions {
     std::vector<std::string> window_layers;  ///< globs; default none
     std::vector<std::string> model_folders;  ///< of SDF, see SdfFiles; relative to the current one
     bool points = false;                     ///< points of an ARIA map become obstacles
-    std::size_t max_points = 2'000'000;      ///< drawings that come to more are refused
+    std::optional<std::uint64_t> max_work;   ///< of --max-work, see Budget; default: by the size
     FoundRooms* found = nullptr;     ///< takes the rooms of plans, kept or not; null: not asked for
     ImportReport* report = nullptr;  ///< null: choices are notes, doubts are dropped
     bool load_files = true;          ///< false: records keep the files they name unread

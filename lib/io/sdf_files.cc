@@ -23,6 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 3> kIncludable{"model", "light", "actor"};
+/// Units of Budget for a file, however small: its nodes take 32 kB.
+constexpr std::size_t kFileWork = 100;
 /// How many missing models a message names.
 constexpr std::size_t kMostNamed = 8;
 
@@ -115,8 +117,9 @@ std::vector<std::string> SdfFiles::pathsOf(pugi::xml_node node, std::string_view
 }
 
 SdfFiles::SdfFiles(std::string_view bytes, std::string name,
-                   std::span<const std::string> model_folders)
-    : roots_{"", "models", "../models"} {
+                   std::span<const std::string> model_folders,
+                   std::optional<std::uint64_t> max_work)
+    : roots_{"", "models", "../models"}, budget_(bytes.size(), max_work) {
     std::error_code ignored;
     const fs::path home = fs::absolute(name == "-" ? "." : fs::path(name).parent_path(), ignored);
     for (const std::string& folder : model_folders)
@@ -152,15 +155,19 @@ std::optional<std::string> SdfFiles::fileNamed(pugi::xml_node node, std::string_
     return std::nullopt;
 }
 
+void SdfFiles::spend(pugi::xml_node node, std::size_t units) {
+    if (!budget_.take(units))
+        fail(node, "what the world includes and repeats makes " + budget_.excess());
+}
+
 std::string SdfFiles::read(pugi::xml_node user, const std::string& path) {
     const std::string file = sideFilePath(name(), path);
     const std::size_t size = openRegular(file).size;
-    if (size > kMaxBytes - bytes_)
-        fail(user, "the models that are included come to more than " +
-                       std::to_string(kMaxBytes / 1'000'000) + " MB");
-    bytes_ += size;
-    if (std::find(sources_.begin(), sources_.end(), file) == sources_.end())
+    if (std::find(sources_.begin(), sources_.end(), file) == sources_.end()) {
         sources_.push_back(file);
+        budget_.grant(size);
+    }
+    spend(user, kFileWork + Budget::unitsOf(size));
     return readAll(file);
 }
 
@@ -207,8 +214,6 @@ void SdfFiles::load(pugi::xml_node include, const std::string& path) {
     const std::string file = sideFilePath(name(), path);
     std::string identity = fs::weakly_canonical(file, ignored).string();
     checkCycle(include, file, identity);
-    if (files_.size() > kMaxIncludes)
-        fail(include, "more than " + std::to_string(kMaxIncludes) + " includes in all");
     const std::string bytes = read(include, path);
     files_.push_back(
         std::unique_ptr<File>(new File{XmlFile(bytes, file), fs::path(path).parent_path().string(),

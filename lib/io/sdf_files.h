@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <pugixml.hpp>
@@ -11,6 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/budget.h"
 #include "io/xml_file.h"
 
 namespace ispace {
@@ -25,17 +27,16 @@ namespace ispace {
 /// fetched.
 class SdfFiles {
   public:
-    /// Of all models included; each is parsed anew wherever it is included.
-    static constexpr std::size_t kMaxIncludes = 10'000, kMaxBytes = 64'000'000;
-
-    /// \param model_folders relative to the current one \throws FormatError with the line: bad XML
-    SdfFiles(std::string_view bytes, std::string name, std::span<const std::string> model_folders);
+    /// \param model_folders relative to the current one \param max_work see Budget
+    /// \throws FormatError with the line: bad XML
+    SdfFiles(std::string_view bytes, std::string name, std::span<const std::string> model_folders,
+             std::optional<std::uint64_t> max_work);
 
     [[nodiscard]] pugi::xml_node root() const { return files_.front()->xml.root(); }
 
     /// Reads what the includes of a world or model put in it.
     /// \throws FormatError with the line: some are not there, which one error names together, hold
-    ///         no model, light or actor, or include themselves, or there are too many
+    ///         no model, light or actor, or include themselves, and as spend()
     void loadIncludes(pugi::xml_node parent);
     /// The model, light or actor of such an include. Nothing for the sun and the ground plane of
     /// Gazebo where they are not found: neither stands in a room. \pre loadIncludes(its parent)
@@ -47,6 +48,9 @@ class SdfFiles {
     [[nodiscard]] std::optional<std::string> fileNamed(pugi::xml_node node,
                                                        std::string_view uri) const;
     [[nodiscard]] int lineOf(pugi::xml_node node) const { return fileOf(node).xml.lineOf(node); }
+    /// Takes units of work that a node makes, see Budget. Each file is parsed anew wherever it is
+    /// included, and costs by its size. \throws FormatError at the node if there are not so many
+    void spend(pugi::xml_node node, std::size_t units);
     /// \throws FormatError at the node's line of its file
     [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const {
         fileOf(node).xml.fail(node, message);
@@ -74,7 +78,7 @@ class SdfFiles {
     [[nodiscard]] bool isThere(const std::string& path) const;
     std::optional<std::string> modelFile(pugi::xml_node include, const std::string& path);
     std::optional<std::string> includedFile(pugi::xml_node include);
-    /// \throws FormatError at `user` if all files come to too much
+    /// \throws FormatError as spend()
     std::string read(pugi::xml_node user, const std::string& path);
     void load(pugi::xml_node include, const std::string& path);
     void checkCycle(pugi::xml_node include, const std::string& file,
@@ -86,7 +90,7 @@ class SdfFiles {
     std::unordered_map<std::size_t, const File*> by_document_;
     std::unordered_map<std::size_t, pugi::xml_node> included_;  // by the include
     std::vector<std::string> sources_;
-    std::size_t bytes_ = 0;
+    Budget budget_;
 };
 
 }  // namespace ispace

@@ -302,8 +302,8 @@ bool isSdf(std::string_view bytes) { return xmlRootName(bytes) == "sdf"; }
 Document readSdf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas) {
     ImportRecords out(schemas, name, options);
-    SdfImporter(readSdfShapes(bytes, name, options.model_folders, options.max_points), name,
-                options, schemas, out)
+    SdfImporter(readSdfShapes(bytes, name, options.model_folders, options.max_work), name, options,
+                schemas, out)
         .write();
     return out.take();
 }

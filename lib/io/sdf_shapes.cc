@@ -19,11 +19,14 @@ using Transform = Eigen::Isometry3d;
 
 constexpr int kDeepest = 64;  // models in models
 
+/// Units of Budget for a shape, which may become a wall, and for a point of a polyline.
+constexpr std::size_t kShapeWork = 80, kPointWork = 10;
+
 class SdfReader {
   public:
     SdfReader(std::string_view bytes, const std::string& name,
-              std::span<const std::string> model_folders, std::size_t most)
-        : files_(bytes, name, model_folders), most_(most) {}
+              std::span<const std::string> model_folders, std::optional<std::uint64_t> max_work)
+        : files_(bytes, name, model_folders, max_work) {}
 
     SdfWorld read() {
         const pugi::xml_node root = files_.root();
@@ -96,7 +99,7 @@ class SdfReader {
         const std::string_view kind = node.name();
         SdfShape shape{SdfBox(), pose, around.model,
                        around.line == 0 ? files_.lineOf(node) : around.line};
-        std::size_t cost = 1;
+        files_.spend(node, kShapeWork);
         if (kind == "box") {
             const std::vector<double> size = files_.numbersIn(node, "size", 3);
             for (const double side : size)
@@ -111,7 +114,7 @@ class SdfReader {
                 const std::vector<double> at = files_.numbersOf(point, point.child_value(), 2);
                 polyline.points.push_back({at[0], at[1]});
             }
-            cost += polyline.points.size();
+            files_.spend(node, kPointWork * polyline.points.size());
             shape.shape = std::move(polyline);
         } else if (kind == "mesh") {
             SdfMesh mesh{std::string(trimmed(node.child_value("uri"))), {}};
@@ -129,10 +132,6 @@ class SdfReader {
             if (kind != "plane" && kind != "empty") ++found_.left_out[printable(kind)];
             return;
         }
-        spent_ += cost;
-        if (spent_ > most_)
-            files_.fail(node, "the world comes to more than " + std::to_string(most_) +
-                                  " shapes and points");
         if (!pose.matrix().allFinite() || !(pose.translation().norm() <= kFarthestPlan))
             files_.fail(node, "lies more than " + formatDouble(kFarthestPlan / 1000) +
                                   " km from the origin");
@@ -141,15 +140,15 @@ class SdfReader {
 
     SdfFiles files_;
     SdfFrames frames_{files_};
-    std::size_t most_, spent_ = 0;
     SdfWorld found_;
 };
 
 }  // namespace
 
 SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
-                       std::span<const std::string> model_folders, std::size_t most) {
-    return SdfReader(bytes, name, model_folders, most).read();
+                       std::span<const std::string> model_folders,
+                       std::optional<std::uint64_t> max_work) {
+    return SdfReader(bytes, name, model_folders, max_work).read();
 }
 
 }  // namespace ispace

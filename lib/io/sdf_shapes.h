@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
@@ -52,11 +53,12 @@ struct SdfWorld {
 /// sees (without `visibility_flags`), in the world and in the models that it includes, with the
 /// poses of SdfFrames. Entities are not resolved.
 /// \param name the world's file \param model_folders see SdfFiles
-/// \param most shapes and points of polylines
+/// \param max_work see Budget
 /// \throws FormatError with the line: bad XML, no world and no model, numbers that are none, frames
 ///         that are not there or depend on each other, models nested too deep, includes that are
-///         not there or include themselves, more than `most`
+///         not there or include themselves, more work than the budget has
 SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
-                       std::span<const std::string> model_folders, std::size_t most);
+                       std::span<const std::string> model_folders,
+                       std::optional<std::uint64_t> max_work);
 
 }  // namespace ispace

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/importers.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
@@ -37,9 +36,7 @@ struct SvgDrawing {
     std::map<std::string, std::size_t> left_out;  ///< elements, by what they are
 };
 
-constexpr int kDeepest = 200;                    // elements in elements, by `use` or not
-constexpr std::size_t kFreePoints = 10'000;      // whatever the file's size …
-constexpr std::size_t kPointsPerElement = 1000;  // … and for each element in it
+constexpr int kDeepest = 200;  // elements in elements, by `use` or not
 
 /// Radii that differ by less, as shares, are those of a circle.
 constexpr double kRound = 0.01;
@@ -63,22 +60,32 @@ double metresOf(const std::string& unit) {
     throw SvgError("unknown unit " + unit);
 }
 
+/// What is around an element.
+struct Around {
+    Affine frame;
+    SvgStyle style;
+    SvgNames names;
+    int depth = 0;
+    bool is_used = false;  ///< by `use`
+};
+
 class SvgReader {
   public:
     /// \param metres_per_unit none: as the options or the drawing's size say
     SvgReader(std::string_view bytes, const std::string& name, const ImportOptions& options,
               std::optional<double> metres_per_unit = {})
-        : file_(bytes, name), options_(options), asked_scale_(metres_per_unit) {}
+        : file_(bytes, name),
+          options_(options),
+          asked_scale_(metres_per_unit),
+          budget_(bytes.size(), options.max_work) {}
 
     SvgDrawing read() {
         const pugi::xml_node root = file_.root();
         if (svgName(root) != "svg") file_.fail(root, "no `svg` at the root");
         listElements(root);
-        total_ = kFreePoints + kPointsPerElement * count_;
-        budget_ = std::min(options_.max_points, total_);
         at(root, [&] {
             page_frame_ = pageOf(root);
-            addChildren(root, page_frame_, svgStyle(root, {}, sheet_), 0);
+            addChildren(root, {page_frame_, svgStyle({}, svgProperties(root, sheet_)), {}});
         });
         return std::move(drawing_);
     }
@@ -94,12 +101,10 @@ class SvgReader {
         }
     }
 
-    /// Collects ids, rules of style, and the number of elements, without recursion for deep
-    /// nesting.
+    /// Collects ids and rules of style, without recursion for deep nesting.
     void listElements(pugi::xml_node root) {
         for (pugi::xml_node node = root; node;) {
             if (node.type() == pugi::node_element) {
-                ++count_;
                 if (const pugi::xml_attribute id = node.attribute("id"))
                     ids_.emplace(id.value(), node);
                 if (svgName(node) == "style")
@@ -147,36 +152,41 @@ class SvgReader {
         return {{scale, 0}, {0, -scale}, {-page_.x * scale, (page_.y + page_.height) * scale}};
     }
 
-    void addChildren(pugi::xml_node node, const Affine& frame, const SvgStyle& style, int depth) {
+    void addChildren(pugi::xml_node node, const Around& around) {
         for (const pugi::xml_node child : node.children())
-            if (child.type() == pugi::node_element)
-                at(child, [&] { addElement(child, frame, style, depth + 1); });
+            if (child.type() == pugi::node_element) at(child, [&] { addElement(child, around); });
     }
 
-    void addElement(pugi::xml_node node, const Affine& outer, const SvgStyle& outer_style,
-                    int depth) {
+    void addElement(pugi::xml_node node, Around around) {
+        spend(1);
         const std::string_view kind = svgName(node);
         const bool is_group = isOneOf(kGroups, kind), is_shape = isOneOf(kShapes, kind);
         if (isOneOf(kOthers, kind)) ++drawing_.left_out[std::string(kind)];
         if (!is_group && !is_shape && kind != "use") return;
-        if (svgProperty(node, "display", sheet_) == "none") {
+        const SvgElement& element = elementOf(node, around.is_used);
+        spend(element.units);
+        if (element.properties[SvgProperty::Display] == "none") {
             ++drawing_.left_out["elements that are not displayed"];
             return;
         }
-        if (depth > kDeepest)
+        if (++around.depth > kDeepest)
             throw SvgError("elements nested more than " + std::to_string(kDeepest) +
                            " deep: does one use itself?");
-        spend(1);
-        const Affine frame = outer * parseSvgTransform(node.attribute("transform").value());
-        const SvgStyle style = svgStyle(node, outer_style, sheet_);
-        names_.push_back(node);
-        if (is_shape)
-            addShape(node, kind, frame, style);
-        else if (kind == "use")
-            addUse(node, frame, style, depth);
-        else
-            addChildren(node, kind == "svg" ? frame * viewportOf(node, node) : frame, style, depth);
-        names_.pop_back();
+        around.frame = around.frame * element.transform;
+        around.style = svgStyle(around.style, element.properties);
+        around.names = around.names.with(element.names);
+        if (is_shape) return addShape(node, kind, around);
+        if (kind == "use") return addUse(node, around);
+        if (kind == "svg") around.frame = around.frame * viewportOf(node, node);
+        addChildren(node, around);
+    }
+
+    /// The element itself; kept where it may be used again.
+    const SvgElement& elementOf(pugi::xml_node node, bool is_used) {
+        if (!is_used) return element_ = readSvgElement(node, sheet_, options_);
+        const auto [known, is_new] = elements_.try_emplace(node.hash_value());
+        if (is_new) known->second = readSvgElement(node, sheet_, options_);
+        return known->second;
     }
 
     /// The frame of the view box of an inner `svg` or a `symbol` at `placed`.
@@ -193,7 +203,7 @@ class SvgReader {
         return corner * Affine{{scale, 0}, {0, scale}, rest - scale * Vec2{box->x, box->y}};
     }
 
-    void addUse(pugi::xml_node node, const Affine& frame, const SvgStyle& style, int depth) {
+    void addUse(pugi::xml_node node, Around around) {
         std::string_view href = node.attribute("href").value();
         if (href.empty()) href = node.attribute("xlink:href").value();
         const auto target =
@@ -202,61 +212,20 @@ class SvgReader {
             ++drawing_.left_out["uses of what the file lacks"];
             return;
         }
-        const Affine placed =
-            frame * Affine{{1, 0}, {0, 1}, {svgNumber(node, "x"), svgNumber(node, "y")}};
-        if (svgName(target->second) == "symbol")
-            addChildren(target->second, placed * viewportOf(target->second, node),
-                        svgStyle(target->second, style, sheet_), depth);
-        else
-            addElement(target->second, placed, style, depth + 1);
+        around.is_used = true;
+        around.frame =
+            around.frame * Affine{{1, 0}, {0, 1}, {svgNumber(node, "x"), svgNumber(node, "y")}};
+        if (svgName(target->second) != "symbol") return addElement(target->second, around);
+        const SvgElement& symbol = elementOf(target->second, true);
+        spend(symbol.units);
+        around.frame = around.frame * viewportOf(target->second, node);
+        around.style = svgStyle(around.style, symbol.properties);
+        addChildren(target->second, around);
     }
 
-    void spend(std::size_t points) {
-        if (points > budget_ && options_.max_points <= total_)
-            throw SvgError("the drawing comes to more than " + std::to_string(options_.max_points) +
-                           " points; leave layers out, for example with --wall-layer 'walls*'");
-        if (points > budget_)
-            throw SvgError("what is used again makes too many lines of the drawing");
-        budget_ -= points;
-    }
-
-    static bool matches(const std::vector<std::string>& globs, const char* text) {
-        return std::any_of(globs.begin(), globs.end(), [text](const std::string& glob) {
-            return ::fnmatch(glob.c_str(), text, FNM_CASEFOLD) == 0;
-        });
-    }
-    [[nodiscard]] bool isNamed(const char* text) const {
-        return *text != '\0' &&
-               (matches(options_.door_layers, text) || matches(options_.window_layers, text) ||
-                matches(options_.wall_layers, text));
-    }
-
-    /// See readSvg.
-    [[nodiscard]] std::string layer() const {
-        for (auto node = names_.rbegin(); node != names_.rend(); ++node)
-            for (const char* key : {"inkscape:label", "id"})
-                if (const char* text = node->attribute(key).value(); isNamed(text))
-                    return printable(text);
-        const auto name_of = [](pugi::xml_node node) {
-            const pugi::xml_attribute label = node.attribute("inkscape:label");
-            return printable(label ? label.value() : node.attribute("id").value());
-        };
-        for (auto node = names_.rbegin(); node != names_.rend(); ++node)
-            if (std::string_view(node->attribute("inkscape:groupmode").value()) == "layer")
-                if (std::string name = name_of(*node); !name.empty()) return name;
-        for (const pugi::xml_node node : names_)
-            if (svgName(node) == "g")
-                if (std::string name = name_of(node); !name.empty()) return name;
-        return "(none)";
-    }
-
-    /// The innermost element around that is called walls; "" if none is.
-    [[nodiscard]] std::string wallsAround() const {
-        for (auto node = names_.rbegin(); node != names_.rend(); ++node)
-            for (const char* key : {"inkscape:label", "id"})
-                if (const char* text = node->attribute(key).value(); isWallName(text))
-                    return printable(text);
-        return "";
+    void spend(std::size_t units) {
+        if (!budget_.take(units))
+            throw SvgError("uses and curves of the drawing make " + budget_.excess());
     }
 
     /// Fills the page, without an outline.
@@ -274,31 +243,35 @@ class SvgReader {
                covers(node.attribute("height").value(), size("height"), page_.height);
     }
 
-    void addShape(pugi::xml_node node, std::string_view kind, const Affine& frame,
-                  const SvgStyle& style) {
+    void addShape(pugi::xml_node node, std::string_view kind, const Around& around) {
+        const SvgStyle& style = around.style;
         if (!style.visible || (style.no_fill && style.no_stroke)) {
             ++drawing_.left_out["elements that show nothing"];
             return;
         }
-        if (kind == "rect" && isBackground(node, frame, style)) {
+        if (kind == "rect" && isBackground(node, around.frame, style)) {
             ++drawing_.left_out["a background"];
             return;
         }
-        for (const SvgSubpath& path : svgPaths(node, kind)) addPath(node, path, frame);
+        for (const SvgSubpath& path : svgPaths(node, kind)) addPath(node, path, around);
     }
 
     /// A subpath as it lies in the plan.
-    void addPath(pugi::xml_node node, const SvgSubpath& path, const Affine& frame) {
+    void addPath(pugi::xml_node node, const SvgSubpath& path, const Around& around) {
+        const Affine& frame = around.frame;
+        const std::string_view layer = around.names.planLayer();
+        const std::string_view walls = around.names.walls == nullptr ? "" : around.names.walls;
+        spend(1 + Budget::unitsOf(layer.size() + walls.size()));
         PlanShape shape;
-        shape.layer = layer();
-        shape.walls_in = wallsAround();
+        shape.layer = printable(layer);
+        shape.walls_in = printable(walls);
         shape.path.line = file_.lineOf(node);
         shape.path.closed = path.closed;
         Polygon& points = shape.path.points;
         points.push_back(frame * path.start);
         for (const SvgPiece& piece : path.pieces) {
             std::visit([&](const auto& p) { addPiece(p, frame, shape); }, piece);
-            if (points.size() > budget_) spend(points.size());  // refuses
+            if (points.size() > budget_.left()) spend(points.size());  // refuses
         }
         if (path.closed && points.back() != points.front())
             shape.chords.push_back({{points.back(), points.front()}, {}});
@@ -346,11 +319,12 @@ class SvgReader {
     const ImportOptions& options_;
     std::optional<double> asked_scale_;
     std::unordered_map<std::string, pugi::xml_node> ids_;
-    std::size_t count_ = 0, total_ = 0, budget_ = 0;
+    Budget budget_;
+    std::unordered_map<std::size_t, SvgElement> elements_;  // that are used, by node
+    SvgElement element_;                                    // read last, of others
     SvgSheet sheet_;
     SvgBox page_;
     Affine page_frame_;
-    std::vector<pugi::xml_node> names_;  // elements around, and the one itself
     SvgDrawing drawing_;
 };
 

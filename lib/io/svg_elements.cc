@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/svg_elements.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
+#include <array>
 #include <string>
 
+#include "base/budget.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "io/drawing_source.h"
 
 namespace ispace {
 
@@ -25,20 +30,36 @@ double radius(pugi::xml_node node, const char* key) {
     return value;
 }
 
-/// Bytes; rules of drawings are short, hostile ones may be long.
-constexpr std::size_t kMaxRule = 4096;
-
-/// The value of a property in `a: b; c: d`, or ""; the last one counts.
-std::string_view declared(std::string_view rest, std::string_view key) {
-    std::string_view value;
-    while (!rest.empty()) {
-        const std::string_view part = rest.substr(0, rest.find(';'));
-        rest.remove_prefix(std::min(part.size() + 1, rest.size()));
-        const std::size_t colon = part.find(':');
-        if (colon != std::string_view::npos && trimmed(part.substr(0, colon)) == key)
-            value = trimmed(part.substr(colon + 1));
+std::string withoutComments(std::string_view css) {
+    std::string text;
+    while (!css.empty()) {
+        const std::size_t begin = css.find("/*");
+        text += css.substr(0, begin);
+        if (begin == std::string_view::npos) break;
+        const std::size_t end = css.find("*/", begin + 2);
+        css.remove_prefix(end == std::string_view::npos ? css.size() : end + 2);
     }
-    return value;
+    return text;
+}
+
+bool matches(const std::vector<std::string>& globs, const char* text) {
+    return std::any_of(globs.begin(), globs.end(), [text](const std::string& glob) {
+        return ::fnmatch(glob.c_str(), text, FNM_CASEFOLD) == 0;
+    });
+}
+
+/// True if an option names layers like this.
+bool isNamed(const char* text, const ImportOptions& options) {
+    return *text != '\0' &&
+           (matches(options.door_layers, text) || matches(options.window_layers, text) ||
+            matches(options.wall_layers, text));
+}
+
+/// The text before the mark, which goes with it.
+std::string_view takeUntil(std::string_view& rest, char mark) {
+    const std::string_view part = rest.substr(0, rest.find(mark));
+    rest.remove_prefix(std::min(part.size() + 1, rest.size()));
+    return part;
 }
 
 }  // namespace
@@ -49,58 +70,117 @@ std::string_view svgName(pugi::xml_node node) {
     return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
-std::string_view svgProperty(pugi::xml_node node, std::string_view key, const SvgSheet& sheet) {
-    if (const auto own = declared(node.attribute("style").value(), key); !own.empty()) return own;
-    if (const auto ruled = sheet.property(node, key); !ruled.empty()) return ruled;
-    return trimmed(node.attribute(std::string(key).c_str()).value());
+void SvgProperties::declare(std::string_view declarations) {
+    while (!declarations.empty()) {
+        const std::string_view part = takeUntil(declarations, ';');
+        const std::size_t colon = part.find(':');
+        if (colon == std::string_view::npos) continue;
+        const auto name = std::find(kNames.begin(), kNames.end(), trimmed(part.substr(0, colon)));
+        if (name != kNames.end())
+            values_[static_cast<std::size_t>(name - kNames.begin())] =
+                trimmed(part.substr(colon + 1));
+    }
+}
+
+void SvgProperties::addWeaker(const SvgProperties& others) {
+    for (std::size_t i = 0; i < values_.size(); ++i)
+        if (values_[i].empty()) values_[i] = others.values_[i];
+}
+
+void SvgProperties::addStronger(const SvgProperties& others) {
+    SvgProperties both = others;
+    both.addWeaker(*this);
+    *this = both;
 }
 
 void SvgSheet::add(std::string_view css) {
-    std::string text(css);
-    for (std::size_t at = 0; (at = text.find("/*", at)) != std::string::npos;)
-        text.erase(at, std::min(text.find("*/", at), text.size() - 2) + 2 - at);
-    for (std::string_view rest = text; !rest.empty();) {
-        std::string_view selectors = rest.substr(0, rest.find('{'));
-        rest.remove_prefix(std::min(selectors.size() + 1, rest.size()));
-        const std::string_view body = rest.substr(0, rest.find('}'));
-        rest.remove_prefix(std::min(body.size() + 1, rest.size()));
-        while (!selectors.empty()) {
-            const std::string_view part = selectors.substr(0, selectors.find(','));
-            selectors.remove_prefix(std::min(part.size() + 1, selectors.size()));
-            std::string& rule = rules_[std::string(trimmed(part))];
-            if (rule.size() + body.size() < kMaxRule) (rule += body) += ';';
-        }
+    std::string_view rest = texts_.emplace_back(withoutComments(css));
+    while (!rest.empty()) {
+        std::string_view selectors = takeUntil(rest, '{');
+        SvgProperties declared;
+        declared.declare(takeUntil(rest, '}'));
+        while (!selectors.empty())
+            rules_[std::string(trimmed(takeUntil(selectors, ',')))].addStronger(declared);
     }
 }
 
-std::string_view SvgSheet::property(pugi::xml_node node, std::string_view key) const {
-    if (rules_.empty()) return {};
-    const auto find = [&](const std::string& selector) {
-        const auto rule = rules_.find(selector);
-        return rule == rules_.end() ? std::string_view() : declared(rule->second, key);
+void SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) const {
+    if (rules_.empty()) return;
+    const auto add = [&](const std::string& selector) {
+        if (const auto rule = rules_.find(selector); rule != rules_.end())
+            properties.addWeaker(rule->second);
     };
-    if (const auto value = find('#' + std::string(node.attribute("id").value())); !value.empty())
-        return value;
-    for (std::string_view names = node.attribute("class").value(); !names.empty();) {
-        const std::string_view name = names.substr(0, names.find(' '));
-        names.remove_prefix(std::min(name.size() + 1, names.size()));
-        if (const auto value = find('.' + std::string(name)); !value.empty()) return value;
-    }
-    return find(std::string(svgName(node)));
+    add('#' + std::string(node.attribute("id").value()));
+    for (std::string_view names = node.attribute("class").value(); !names.empty();)
+        add('.' + std::string(takeUntil(names, ' ')));
+    add(std::string(svgName(node)));
 }
 
-SvgStyle svgStyle(pugi::xml_node node, SvgStyle style, const SvgSheet& sheet) {
-    if (const auto value = svgProperty(node, "visibility", sheet);
-        !value.empty() && value != "inherit")
+SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet) {
+    SvgProperties properties;
+    properties.declare(node.attribute("style").value());
+    sheet.apply(node, properties);
+    for (std::size_t i = 0; i < SvgProperties::kNames.size(); ++i)
+        properties.setIfUnset(static_cast<SvgProperty>(i),
+                              trimmed(node.attribute(SvgProperties::kNames[i]).value()));
+    return properties;
+}
+
+SvgStyle svgStyle(SvgStyle style, const SvgProperties& properties) {
+    const auto stated = [&](SvgProperty key) {
+        const std::string_view value = properties[key];
+        return value == "inherit" ? std::string_view() : value;
+    };
+    const auto is_none = [](std::string_view value) {
+        return value == "none" || value == "transparent";
+    };
+    if (const auto value = stated(SvgProperty::Visibility); !value.empty())
         style.visible = value == "visible";
-    if (const auto value = svgProperty(node, "fill", sheet); !value.empty() && value != "inherit")
-        style.no_fill = value == "none" || value == "transparent";
-    if (const auto value = svgProperty(node, "stroke", sheet);
-        !value.empty() && value != "inherit") {
-        style.no_stroke = value == "none" || value == "transparent";
+    if (const auto value = stated(SvgProperty::Fill); !value.empty())
+        style.no_fill = is_none(value);
+    if (const auto value = stated(SvgProperty::Stroke); !value.empty()) {
+        style.no_stroke = is_none(value);
         style.has_stroke = !style.no_stroke;
     }
     return style;
+}
+
+SvgNames SvgNames::with(const SvgNames& own) const {
+    return {own.option != nullptr ? own.option : option, own.walls != nullptr ? own.walls : walls,
+            own.layer != nullptr ? own.layer : layer, group != nullptr ? group : own.group};
+}
+
+const char* SvgNames::planLayer() const {
+    for (const char* name : {option, layer, group})
+        if (name != nullptr) return name;
+    return "(none)";
+}
+
+SvgElement readSvgElement(pugi::xml_node node, const SvgSheet& sheet,
+                          const ImportOptions& options) {
+    SvgElement element;
+    element.properties = svgProperties(node, sheet);
+    element.transform = parseSvgTransform(node.attribute("transform").value());
+    SvgNames& names = element.names;
+    const pugi::xml_attribute label = node.attribute("inkscape:label"), id = node.attribute("id");
+    for (const char* text : {label.value(), id.value()}) {
+        if (names.option == nullptr && isNamed(text, options)) names.option = text;
+        if (names.walls == nullptr && isWallName(text)) names.walls = text;
+    }
+    if (const char* const name = (label ? label : id).value(); *name != '\0') {
+        if (std::string_view(node.attribute("inkscape:groupmode").value()) == "layer")
+            names.layer = name;
+        if (svgName(node) == "g") names.group = name;
+    }
+    // Others are parsed each time, or passed over in the search for one that is.
+    constexpr std::array<std::string_view, 3> kParsedOnce{"style", "class", "transform"};
+    std::size_t bytes = 0;
+    for (const pugi::xml_attribute attribute : node.attributes())
+        if (std::find(kParsedOnce.begin(), kParsedOnce.end(), attribute.name()) ==
+            kParsedOnce.end())
+            bytes += 8 + std::string_view(attribute.value()).size();
+    element.units = Budget::unitsOf(bytes);
+    return element;
 }
 
 double svgNumber(pugi::xml_node node, const char* key, double standard) {

@@ -2,13 +2,15 @@
 // For lib/io only: the small languages in SVG's attributes, and what attributes of elements mean.
 #pragma once
 
-#include <functional>
-#include <map>
+#include <array>
+#include <cstddef>
+#include <deque>
 #include <optional>
 #include <pugixml.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -67,7 +69,31 @@ SvgSubpath svgEllipse(Point2 center, double radius_x, double radius_y);
 SvgSubpath svgRectangle(Point2 corner, double width, double height, double radius_x,
                         double radius_y);
 
-/// Inherited properties that decide what is visible.
+/// Properties that decide what is visible, as an element or a rule states them.
+enum class SvgProperty : std::size_t { Display, Visibility, Fill, Stroke };
+class SvgProperties {
+  public:
+    /// "" if unset.
+    std::string_view operator[](SvgProperty key) const {
+        return values_[static_cast<std::size_t>(key)];
+    }
+    /// Reads `a: b; c: d`; the last one of a key counts. O(length)
+    void declare(std::string_view declarations);
+    /// Takes those that are unset here.
+    void addWeaker(const SvgProperties& others);
+    /// Takes those that are set there.
+    void addStronger(const SvgProperties& others);
+    void setIfUnset(SvgProperty key, std::string_view value) {
+        std::string_view& own = values_[static_cast<std::size_t>(key)];
+        if (own.empty()) own = value;
+    }
+    static constexpr std::array<const char*, 4> kNames{"display", "visibility", "fill", "stroke"};
+
+  private:
+    std::array<std::string_view, kNames.size()> values_;
+};
+
+/// What is visible of an element, with what it inherits.
 struct SvgStyle {
     bool visible = true;
     bool no_fill = false, no_stroke = false;  ///< said explicitly: unset means drawn
@@ -77,24 +103,49 @@ struct SvgStyle {
 /// Rules of `style` elements with one plain selector: an element's name, .class or #id.
 class SvgSheet {
   public:
-    /// Adds the rules of a style element, ignoring other selectors.
+    /// Adds the rules of a style element, ignoring other selectors. O(length)
     void add(std::string_view css);
-    /// The value of a property by these rules; "" if none. Ids win over classes, these over names,
+    /// Sets what `properties` leave open by these rules. Ids win over classes, these over names,
     /// later rules over earlier ones.
-    [[nodiscard]] std::string_view property(pugi::xml_node node, std::string_view key) const;
+    void apply(pugi::xml_node node, SvgProperties& properties) const;
 
   private:
-    std::map<std::string, std::string, std::less<>> rules_;  // declarations by selector
+    std::deque<std::string> texts_;                         // without comments
+    std::unordered_map<std::string, SvgProperties> rules_;  // by selector, views of the texts
 };
 
 /// Without the prefix of a name space.
 std::string_view svgName(pugi::xml_node node);
 
-/// A property from `style`, rules or an attribute; "" if unset.
-std::string_view svgProperty(pugi::xml_node node, std::string_view key, const SvgSheet& sheet);
+/// Those of an element: from `style`, else rules, else attributes. Views of the document.
+SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet);
 
-/// The style of an element within one of this style.
-SvgStyle svgStyle(pugi::xml_node node, SvgStyle style, const SvgSheet& sheet);
+/// The style of an element with these properties within one of this style.
+SvgStyle svgStyle(SvgStyle style, const SvgProperties& properties);
+
+/// Names that an element has or inherits, as they stand in the file; null: none.
+struct SvgNames {
+    const char* option = nullptr;  ///< one that an option gives, of the innermost element
+    const char* walls = nullptr;   ///< one that is called walls, see isWallName(); the innermost
+    const char* layer = nullptr;   ///< of the innermost Inkscape layer
+    const char* group = nullptr;   ///< of the outermost group
+
+    /// Those of an element with its own names within one with these.
+    [[nodiscard]] SvgNames with(const SvgNames& own) const;
+    /// The layer of a plan's line, see readSvg; "(none)" without any.
+    [[nodiscard]] const char* planLayer() const;
+};
+
+/// What an element says of itself, wherever it is used. Views of the document and the sheet.
+struct SvgElement {
+    std::size_t units = 0;  ///< of work that its other attributes make each time it is drawn
+    SvgProperties properties;
+    Affine transform;
+    SvgNames names;
+};
+
+/// O(length of the element and its selectors) \throws SvgError
+SvgElement readSvgElement(pugi::xml_node node, const SvgSheet& sheet, const ImportOptions& options);
 
 /// An attribute in the element's own coordinates; lengths with units come in pixels.
 /// \throws SvgError

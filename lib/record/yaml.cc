@@ -368,12 +368,12 @@ Document readHead(std::string_view bytes, const std::string& name) {
 }  // namespace
 
 Document readYaml(std::string_view bytes, const std::string& name, const Schemas& schemas,
-                  const FileReader& read) {
+                  const FileReader& read, std::optional<std::uint64_t> max_work) {
     RecordCollector collector(name, schemas);
     YamlReader reader(collector, name, read);
     YamlScene scene = reader.read(bytes);
     Document document = readHead(bytes, name);
-    document.records = expandItems(std::move(scene), collector);
+    document.records = expandItems(std::move(scene), collector, Budget(bytes.size(), max_work));
     document.sources = reader.files();
     findDoubledIds(document.records, collector.findings());
     collector.findings().throwIfAny();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -48,9 +50,11 @@ using FileReader = std::function<std::string(const std::string& path)>;
 ///         with the chain of includes; also for anchors that add more than a million nodes, more
 ///         than 64 lists and maps in each other, tabs as indentation, doubled keys, null values,
 ///         tags of one's own, NaN, a second document, circles of includes or parts, and for
-///         includes, parts and repetitions that make too much (YamlIncludes, yaml_stages.h)
+///         includes (YamlIncludes, yaml_stages.h), parts and repetitions that make too much: both
+///         copies and placements spend from a Budget
+/// \param max_work see Budget
 Document readYaml(std::string_view bytes, const std::string& name, const Schemas& schemas,
-                  const FileReader& read = {});
+                  const FileReader& read = {}, std::optional<std::uint64_t> max_work = {});
 
 /// The document as YAML that readYaml gives back: magic line, history lines, and a list with a
 /// record a line, `- desk: {id: d1, at: [2, 3], heading: 30}`, its values as in the canonical

@@ -161,7 +161,8 @@ bool isName(const KeySpec& key) { return key.role == Role::Carrier || key.role =
 /// Makes the records of items.
 class Expander {
   public:
-    explicit Expander(RecordCollector& collector) : collector_(collector) {}
+    Expander(RecordCollector& collector, const Budget& budget)
+        : collector_(collector), budget_(budget) {}
 
     /// Of the top: what is neither placed nor repeated costs nothing.
     std::vector<Record> expand(std::vector<YamlItem> items) {
@@ -183,7 +184,7 @@ class Expander {
         const std::size_t count = repetition ? repetition->count() : 1;
         const std::size_t size = sizeOf(item.record);
         for (std::size_t i = 0; i < count; ++i) {
-            spend(item.record.place(), 1, size);
+            spend(item.record.place(), kMadeRecordWork + Budget::unitsOf(size));
             Record copy = item.record;
             copy.setMade();
             if (repetition) moveCopy(copy, *repetition, i, item.repeat->place());
@@ -206,6 +207,7 @@ class Expander {
         PlacementNumbers inner(part.items);
         for (const YamlItem& item : part.items) addCopies(item, inner);
         const std::span<Record> placed = std::span(records_).subspan(begin);
+        spend(placement.place(), placed.size());
         const Tuple& at = placement.tuple("at");
         const Pose2 pose{{at[0], at[1]}, placement.angle("heading")};
         for (Record& record : placed)
@@ -244,7 +246,7 @@ class Expander {
                 if ((key.name != "id" && !isName(key)) || !record.has(key.name)) continue;
                 const std::string& text = record.text(key.name);
                 if (isName(key) && !own.contains(text)) continue;
-                spend(place, 0, prefix.size());
+                spend(place, Budget::unitsOf(prefix.size() + text.size()));
                 record.set(key.name, prefix + text, record.keyPlace(key.name));
             }
         }
@@ -256,29 +258,22 @@ class Expander {
                            [&](const KeySpec& key) { return isName(key) && record.has(key.name); });
     }
 
-    void spend(const Place& place, std::size_t records, std::size_t bytes) {
-        made_ += records;
-        bytes_ += bytes;
-        if (made_ > kMaxMadeRecords) stop(place, std::to_string(kMaxMadeRecords) + " records");
-        if (bytes_ > kMaxMadeBytes)
-            stop(place, std::to_string(kMaxMadeBytes / 1'000'000) + " MB of records");
-    }
-
-    void stop(const Place& place, const std::string& limit) {
-        collector_.finding(place, [&] { return "parts and repetitions make more than " + limit; });
+    void spend(const Place& place, std::size_t units) {
+        if (budget_.take(units)) return;
+        collector_.finding(place, [&] { return "parts and repetitions make " + budget_.excess(); });
         collector_.findings().throwIfAny();
     }
 
     RecordCollector& collector_;
+    Budget budget_;
     std::vector<Record> records_;
-    std::size_t made_ = 0, bytes_ = 0;
 };
 
 }  // namespace
 
-std::vector<Record> expandItems(YamlScene scene, RecordCollector& collector) {
+std::vector<Record> expandItems(YamlScene scene, RecordCollector& collector, Budget budget) {
     if (!PartCheck(collector).isSound(scene)) return {};
-    return Expander(collector).expand(std::move(scene.items));
+    return Expander(collector, budget).expand(std::move(scene.items));
 }
 
 }  // namespace ispace

@@ -240,18 +240,15 @@ TEST(YamlExpansion, IsBounded) {
         word + "}\n";
     std::string path = "fence: {repeat: {count: 1e5, turn: 1}, path: [";
     for (int i = 0; i < 1000; ++i) path += "[1, 2], ";
-    const std::string makes = "parts and repetitions make more than ";
-    for (const auto& [text, wanted] : std::vector<std::pair<std::string, std::string>>{
-             {nested + "place: {part: p19}\n", makes + "50000 records"},
-             {"desk: {repeat: {rows: 1e6, cols: 1e6, step: [0, 0]}}\n", makes + "50000 records"},
-             {empty, makes + "50000 records"},
-             {long_ids, makes + "64 MB of records"},
-             {long_prefix, makes + "50000 records"},
-             {path + "]}\n", makes + "64 MB of records"}}) {
+    for (const std::string& text :
+         {nested + "place: {part: p19}\n",
+          std::string("desk: {repeat: {rows: 1e6, cols: 1e6, step: [0, 0]}}\n"), empty, long_ids,
+          long_prefix, path + "]}\n"}) {
         Texts found;
-        EXPECT_LT(secondsFor(text, found), 20) << wanted;
+        EXPECT_LT(secondsFor(text, found), 20) << text.substr(0, 100);
         ASSERT_EQ(found.size(), 1U);
-        EXPECT_NE(found[0].find(wanted), std::string::npos) << found[0];
+        EXPECT_NE(found[0].find("parts and repetitions make more than 10"), std::string::npos)
+            << found[0];
         EXPECT_TRUE(found[0].starts_with("a.yaml:")) << found[0];
         EXPECT_LT(found[0].size(), 300U);
     }

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/budget.h"
 #include "record/collector.h"
 #include "record/yaml.h"
 
@@ -227,9 +228,8 @@ class YamlItemReader {
     YamlDefaults defaults_;
 };
 
-/// What parts and repetitions may make, beside what is written as it is: a small file shall not
-/// fill the memory.
-constexpr std::size_t kMaxMadeRecords = 50'000, kMaxMadeBytes = 64'000'000;
+/// Units of Budget for a record that parts and repetitions make, which is read, moved and built.
+constexpr std::size_t kMadeRecordWork = 10;
 /// Parts in parts, at most.
 constexpr std::size_t kMaxPartDepth = 32;
 
@@ -241,7 +241,7 @@ constexpr std::size_t kMaxPartDepth = 32;
 /// are taken there. Carriers and references that name an id of the part follow it; others stay.
 /// Records without id stay so. Findings: parts that place each other in a circle (then nothing is
 /// made), numbers that leave their bounds, walls and the like lifted from the floor.
-/// \throws FormatError if more is made than allowed
-std::vector<Record> expandItems(YamlScene scene, RecordCollector& collector);
+/// \throws FormatError if more is made than the budget has
+std::vector<Record> expandItems(YamlScene scene, RecordCollector& collector, Budget budget);
 
 }  // namespace ispace

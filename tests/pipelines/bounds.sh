@@ -68,7 +68,7 @@ bounded simrun room.env --record run --record-limit 2X -- "is not a size like 50
     echo '}'
     echo 'place: {part: p9}'
 } >parts.yaml
-bounded envc --check parts.yaml -- "make more than 50000 records"
+bounded envc --check parts.yaml -- "parts and repetitions make more than 10"
 head -c 100000 /dev/zero | tr '\0' '[' >deep.yaml
 bounded envc --check deep.yaml -- "nested too deep"
 

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Small files that ask for minutes of work: an answer, or one error with the way out, within two seconds
+# of processor time.
+. "$(dirname "$0")/common.sh"
+
+amplify() { python3 "$source_dir/tests/torture/amplify.py" "$@"; }
+
+# quick FAMILY BYTES: the answer of envc to such a file comes in time.
+quick() {
+    local operand
+    status=0
+    operand=$(amplify write "$1" "$2" "$1")
+    (ulimit -t 2 && exec envc --info "$operand") >out 2>err || status=$?
+    [ "$status" -le 1 ] || fail "status $status of $1 with $2 bytes: $(tail -n 1 err)"
+}
+
+# refused FAMILY BYTES PLACE: it is one error with that place, which names the option that allows more.
+refused() {
+    quick "$1" "$2"
+    [ "$status" -eq 1 ] || fail "$1 with $2 bytes is not refused"
+    [ "$(wc -l <err)" -eq 1 ] || fail "not one error for $1: $(cat err)"
+    grep -q "$3:[0-9:]* error: .* make.* more than [0-9]* units of work (\`envc --max-work [0-9]*\` allows more)" err ||
+        fail "another error for $1: $(cat err)"
+}
+
+refused dxf_missing 60000 plan.dxf
+quick dxf_missing_nested 60000
+refused dxf_empty_block 60000 plan.dxf
+refused dxf_empty_polylines 60000 plan.dxf
+refused dxf_circles_of_nothing 60000 plan.dxf
+refused svg_use_text 15000 plan.svg
+refused svg_use_hidden 15000 plan.svg
+refused svg_use_unknown 15000 plan.svg
+refused svg_use_empty 15000 plan.svg
+refused sdf_same 400000 world.sdf
+refused sdf_nested 4000 model.sdf
+refused yaml_parts 15000 room.yaml
+refused yaml_repeats 15000 room.yaml
+
+# Done once, or in one pass.
+quick svg_style 89000
+quick svg_transform 89000
+quick svg_classes 89000
+quick svg_rules 89000
+quick svg_long_ids 89000
+quick svg_css_comments 2000000
+quick svg_css_selectors 400000
+quick sdf_same 12000
+
+# The bound is lifted and lowered.
+printf '#env 1\nispace size=4,4\n' >room.env
+expect_status 0 envc room.env --max-work none
+amplify write dxf_coincident 4000 drawing >operand
+expect_status 0 envc --info "$(cat operand)"
+expect_error 1 envc --info --max-work 10 "$(cat operand)"
+grep -q 'more than 10 units of work (`envc --max-work 20` allows more)' err || fail "another error: $(cat err)"
+for value in 0 -1 1.5 many 99999999999999999999; do
+    expect_error 2 envc room.env --max-work "$value"
+done

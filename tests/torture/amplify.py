@@ -1,0 +1,434 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that ask for far more work than their size says, for every reader that repeats.
+
+A family is a function of a size in bytes that returns the files of one input, the operand first.
+"""
+import argparse
+import base64
+import json
+import math
+import os
+import resource
+import struct
+import subprocess
+import sys
+import tempfile
+
+
+def dxf(blocks, entities):
+    """A drawing in metres. blocks: {name: entities}"""
+    parts = ["0", "SECTION", "2", "HEADER", "9", "$INSUNITS", "70", "6", "0", "ENDSEC", "0", "SECTION", "2", "BLOCKS"]
+    for name, body in blocks.items():
+        parts += ["0", "BLOCK", "8", "0", "2", name, "10", "0", "20", "0", "70", "0", *body, "0", "ENDBLK"]
+    parts += ["0", "ENDSEC", "0", "SECTION", "2", "ENTITIES", *entities, "0", "ENDSEC", "0", "EOF", ""]
+    return {"plan.dxf": "\n".join(parts)}
+
+
+def insert(name, x=0.0, columns=1, rows=1):
+    text = ["0", "INSERT", "8", "0", "2", name, "10", f"{x:g}", "20", "0"]
+    if columns > 1 or rows > 1:
+        text += ["70", str(columns), "71", str(rows), "44", "0.01", "45", "0.01"]
+    return text
+
+
+def line(a, b):
+    return ["0", "LINE", "8", "0", "10", f"{a[0]:g}", "20", f"{a[1]:g}", "11", f"{b[0]:g}", "21", f"{b[1]:g}"]
+
+
+ROOM_OF_LINES = line((0, 0), (8, 0)) + line((8, 0), (8, 6)) + line((8, 6), (0, 6)) + line((0, 6), (0, 0))
+
+
+def repeated(make, size):
+    """As many as fit the size; make(i) gives the groups of one."""
+    count = max(1, size // (len("\n".join(make(1000))) + 1))
+    return [group for i in range(count) for group in make(i)]
+
+
+def dxf_missing(size):
+    """Inserts of a block that the file lacks, in a grid of a block of them."""
+    return dxf({"B": repeated(lambda i: insert("MISSING"), size)},
+               ROOM_OF_LINES + insert("B", 0, 1400, 1400))
+
+
+def dxf_missing_nested(size):
+    return dxf({"B": repeated(lambda i: insert("MISSING", 0, 1400, 1400), size // 2)},
+               ROOM_OF_LINES + repeated(lambda i: insert("B"), size // 2))
+
+
+def dxf_empty_block(size):
+    return dxf({"E": [], "B": repeated(lambda i: insert("E"), size)}, ROOM_OF_LINES + insert("B", 0, 1400, 1400))
+
+
+def dxf_empty_polylines(size):
+    return dxf({"B": repeated(lambda i: ["0", "LWPOLYLINE", "8", "0", "90", "0", "70", "0"], size)},
+               ROOM_OF_LINES + insert("B", 0, 1400, 1400))
+
+
+def dxf_circles_of_nothing(size):
+    return dxf({"B": repeated(lambda i: ["0", "CIRCLE", "8", "0", "10", "0", "20", "0", "40", "0"], size)},
+               ROOM_OF_LINES + insert("B", 0, 1400, 1400))
+
+
+def dxf_lines(size):
+    """What repetition draws lies apart: walls by the million."""
+    return dxf({"B": repeated(lambda i: line((0, i), (5, i)), size)},
+               ROOM_OF_LINES + insert("B", 0, 1400, 1400))
+
+
+def dxf_coincident(size):
+    return dxf({}, ROOM_OF_LINES + repeated(lambda i: line((1, 1), (2, 1)), size))
+
+
+def svg(body, style=""):
+    return {"plan.svg": '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
+                        'width="8000mm" height="6000mm" viewBox="0 0 800 600">\n' + style + '<g id="walls">\n'
+                        '<path d="M 0 0 H 800 V 600 H 0 Z" fill="none" stroke="black"/>\n</g>\n' + body + "</svg>\n"}
+
+
+def use_tree(leaf, size, fan):
+    """Groups that use the one before `fan` times each."""
+    each = len('<use href="#g00"/>') * fan + 30
+    levels = max(2, min(90, (size - len(leaf)) // each))
+    body = f'<defs><g id="g0">{leaf}</g>\n'
+    for i in range(1, levels):
+        body += f'<g id="g{i}">' + f'<use href="#g{i - 1}"/>' * fan + "</g>\n"
+    return svg(body + f'</defs><use href="#g{levels - 1}"/>\n')
+
+
+def svg_use_text(size):
+    leaf = "<text>a</text>\n" * (size // 2 // 15)
+    return use_tree(leaf, size, 10)
+
+
+def svg_use_hidden(size):
+    leaf = '<path d="M0 0h1" display="none"/>\n' * (size // 2 // 33)
+    return use_tree(leaf, size, 10)
+
+
+def svg_use_unknown(size):
+    leaf = "<b/>" * (size // 2 // 4)
+    return use_tree(leaf, size, 10)
+
+
+def svg_use_empty(size):
+    leaf = '<path d=""/>\n' * (size // 2 // 13)
+    return use_tree(leaf, size, 10)
+
+
+def svg_style(size):
+    """An element whose style is long, used as often as fits."""
+    style = "a:b;" * (size // 2 // 4)
+    uses = '<use href="#a"/>\n' * (size // 2 // 17)
+    return svg(f'<defs><path id="a" d="M1 1h1" style="{style}fill:none"/></defs>{uses}')
+
+
+def svg_transform(size):
+    text = "scale(1)" * (size // 2 // 8)
+    uses = '<use href="#a"/>\n' * (size // 2 // 17)
+    return svg(f'<defs><path id="a" d="M1 1h1" transform="{text}"/></defs>{uses}')
+
+
+def svg_classes(size):
+    names = " ".join(f"c{i}" for i in range(size // 2 // 6))
+    uses = '<use href="#a"/>\n' * (size // 2 // 17)
+    return svg(f'<defs><path id="a" d="M1 1h1" class="{names}"/></defs>{uses}', "<style>.x{fill:none}</style>\n")
+
+
+def svg_rules(size):
+    """One class of a long rule, asked for by every element."""
+    rules = ".a{" + "a:b;" * 900 + "fill:none}\n"
+    uses = '<path class="a" d="M1 1"/>\n' * ((size - len(rules)) // 26)
+    return svg(uses, f"<style>{rules}</style>\n")
+
+
+def svg_css_comments(size):
+    return svg("", "<style>" + "/**/" * (size // 4) + "</style>\n")
+
+
+def svg_css_selectors(size):
+    return svg("", "<style>" + ",".join(f"a{i}" for i in range(size // 7)) + "{a:b}</style>\n")
+
+
+def svg_depth(size):
+    deep = 150
+    group = "<g>" * deep + '<path d="M1 1h1"/>' + "</g>" * deep
+    return svg(group * (size // len(group)))
+
+
+def svg_coincident(size):
+    return svg('<path d="M100 100h50"/>\n' * (size // 24))
+
+
+def svg_long_ids(size):
+    """Elements in groups whose names are long."""
+    name = "n" * (size // 2)
+    return svg(f'<g id="{name}">' + '<path d="M100 100h50"/>' * (size // 2 // 23) + "</g>")
+
+
+def sdf_box(i, pose):
+    return (f'<link name="l{i}"><pose>{pose}</pose><collision name="c"><geometry><box><size>2 0.1 1</size></box>'
+            "</geometry></collision></link>\n")
+
+
+def sdf_includes(size, place):
+    boxes = "".join(sdf_box(i, f"{i % 7} {i // 7} 0.5 0 0 {i}") for i in range(50))
+    model = f'<sdf version="1.7"><model name="m">{boxes}</model></sdf>\n'
+    include = [f"<include><uri>model://m</uri>{place(i)}</include>\n" for i in range(1000)]
+    count = size // len(include[0])
+    return {"world.sdf": '<sdf version="1.7"><world name="w">\n' + "".join(include[i % 1000] for i in range(count)) +
+                         "</world></sdf>\n",
+            "m/model.sdf": model,
+            "m/model.config": '<model><name>m</name><sdf version="1.7">model.sdf</sdf></model>\n'}
+
+
+def sdf_same(size):
+    """One model, included where it stands already."""
+    return sdf_includes(size, lambda i: "")
+
+
+def sdf_apart(size):
+    return sdf_includes(size, lambda i: f"<pose>{i % 32 * 20} {i // 32 * 20} 0 0 0 0</pose>")
+
+
+def sdf_nested(size):
+    files = {"world.sdf": '<sdf version="1.7"><world name="w"><include><uri>model://m8</uri></include></world></sdf>\n'}
+    fan = max(2, size // 9 // 60)
+    for i in range(9):
+        body = sdf_box(0, "0 0 0.5 0 0 0") if i == 0 else "".join(
+            f"<include><uri>model://m{i - 1}</uri><name>n{k}</name></include>\n" for k in range(fan))
+        files[f"m{i}/model.sdf"] = f'<sdf version="1.7"><model name="m{i}">{body}</model></sdf>\n'
+        files[f"m{i}/model.config"] = f'<model><name>m{i}</name><sdf version="1.7">model.sdf</sdf></model>\n'
+    return files
+
+
+def sdf_frames(size):
+    """Poses relative to the one before."""
+    links = "".join(f'<link name="l{i}"><pose relative_to="l{i - 1}">0 0 0 0 0 0</pose></link>\n' if i else
+                    '<link name="l0"/>\n' for i in range(size // 65))
+    return {"world.sdf": f'<sdf version="1.7"><model name="m">{links}{sdf_box("x", "0 0 0.5 0 0 0")}</model></sdf>\n'}
+
+
+def env_coincident(size):
+    walls = "wall from=1,1 to=5,1\n"
+    return {"room.env": "#env 1\nfence path=0,0;8,0;8,6;0,6 closed=yes\n" + walls * (size // len(walls))}
+
+
+def env_collinear(size):
+    """Walls on one line that overlap."""
+    count = size // 26
+    return {"room.env": "#env 1\nfence path=0,0;80,0;80,6;0,6 closed=yes\n" +
+                        "".join(f"wall from={1 + i * 10 / count:.5f},1 to={30 + i * 10 / count:.5f},1\n"
+                                for i in range(count))}
+
+
+def yaml_parts(size):
+    parts = "parts:\n  p0: [" + ", ".join(["cube: {at: [1, 1]}"] * (size // 2 // 20)) + "]\n"
+    levels = max(2, min(30, size // 2 // 230))
+    for i in range(1, levels):
+        parts += f"  p{i}: [" + ", ".join([f"place: {{part: p{i - 1}}}"] * 10) + "]\n"
+    return {"room.yaml": "ispace: {size: [8, 6]}\n" + parts + f"place: {{part: p{levels - 1}}}\n"}
+
+
+def yaml_empty_parts(size):
+    """The same without a record at the end."""
+    parts = "parts:\n  p0: []\n"
+    for i in range(1, min(30, max(2, size // 230))):
+        parts += f"  p{i}: [" + ", ".join([f"place: {{part: p{i - 1}}}"] * 10) + "]\n"
+    return {"room.yaml": "ispace: {size: [8, 6]}\n" + parts + f"place: {{part: p{i}}}\n"}
+
+
+def yaml_repeats(size):
+    each = "cube: {at: [1, 1], size: 0.1, repeat: {count: 1000000, step: [0, 0]}}\n"
+    return {"room.yaml": "- ispace: {size: [8, 6]}\n" + ("- " + each) * max(1, size // (len(each) + 2))}
+
+
+def yaml_long_ids(size):
+    """Parts in each other, each of which lengthens the ids of all records in it."""
+    name = "n" * 200
+    parts = "parts:\n  p0: [" + ", ".join(f"cube: {{id: c{i}, at: [1, 1]}}" for i in range(size // 2 // 30)) + "]\n"
+    for i in range(1, 30):
+        parts += f"  p{i}: [place: {{part: p{i - 1}, id: {name}}}]\n"
+    return {"room.yaml": "ispace: {size: [8, 6]}\n" + parts + "place: {part: p29, id: x}\n"}
+
+
+def yaml_aliases(size):
+    levels = max(2, min(60, size // 60))
+    text = "x0: &a0 [1, 1]\n" + "".join(f"x{i}: &a{i} [" + ", ".join([f"*a{i - 1}"] * 8) + "]\n"
+                                         for i in range(1, levels))
+    return {"room.yaml": text}
+
+
+def yaml_includes(size):
+    files = {"room.yaml": "- ispace: {size: [8, 6]}\n" + "- include: b.yaml\n" * (size // 2 // 18),
+             "b.yaml": "- cube: {at: [1, 1]}\n" * (size // 2 // 21)}
+    return files
+
+
+def gltf(nodes, meshes, buffer_uri, accessors, views):
+    return {"mesh.gltf": json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+                                     "nodes": nodes, "meshes": meshes, "accessors": accessors,
+                                     "bufferViews": views, "buffers": [buffer_uri]}, separators=(",", ":"))}
+
+
+def gltf_mesh(nodes, triangles):
+    points = b"".join(struct.pack("<9f", 0, 0, i, 1, 0, i, 0, 1, i) for i in range(triangles))
+    return gltf(nodes, [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                {"byteLength": len(points), "uri": "data:application/octet-stream;base64," +
+                 base64.b64encode(points).decode()},
+                [{"bufferView": 0, "componentType": 5126, "count": 3 * triangles, "type": "VEC3",
+                  "min": [0, 0, 0], "max": [1, 1, triangles - 1]}],
+                [{"buffer": 0, "byteOffset": 0, "byteLength": len(points)}])
+
+
+def gltf_instances(size):
+    """One mesh on as many nodes as fit."""
+    nodes = [{"children": list(range(1, max(2, size // 2 // 18)))}]
+    nodes += [{"mesh": 0} for _ in range(len(nodes[0]["children"]))]
+    return gltf_mesh(nodes, max(1, size // 2 // 48))
+
+
+def gltf_tree(size):
+    """Nodes that hold the next one ten times each."""
+    nodes = [{"children": [i + 1] * 10} for i in range(max(3, min(40, size // 2 // 40)))]
+    nodes.append({"mesh": 0})
+    return gltf_mesh(nodes, max(1, size // 2 // 48))
+
+
+def ifc(body):
+    return {"house.ifc": "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
+                         "FILE_SCHEMA(('IFC4'));\nENDSEC;\nDATA;\n"
+                         "#1=IFCPROJECT('0',$,'p',$,$,$,$,$,#2);\n#2=IFCUNITASSIGNMENT((#3));\n"
+                         "#3=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.);\n#4=IFCCARTESIANPOINT((0.,0.,0.));\n"
+                         "#5=IFCAXIS2PLACEMENT3D(#4,$,$);\n#6=IFCLOCALPLACEMENT($,#5);\n"
+                         "#7=IFCBUILDING('1',$,'b',$,$,#6,$,$,$,$,$,$);\n"
+                         "#8=IFCBUILDINGSTOREY('2',$,'s',$,$,#6,$,$,$,0.);\n"
+                         "#9=IFCRELAGGREGATES('3',$,$,$,#1,(#7));\n#10=IFCRELAGGREGATES('4',$,$,$,#7,(#8));\n" + body +
+                         "ENDSEC;\nEND-ISO-10303-21;\n"}
+
+
+def ifc_box():
+    return ("#20=IFCRECTANGLEPROFILEDEF(.AREA.,$,#21,4.,0.2);\n#21=IFCAXIS2PLACEMENT2D(#22,$);\n"
+            "#22=IFCCARTESIANPOINT((0.,0.));\n#23=IFCDIRECTION((0.,0.,1.));\n"
+            "#24=IFCEXTRUDEDAREASOLID(#20,#5,#23,3.);\n#25=IFCSHAPEREPRESENTATION($,'Body','SweptSolid',(#24));\n"
+            "#26=IFCCARTESIANTRANSFORMATIONOPERATOR3D($,$,#4,$,$);\n")
+
+
+def ifc_mappings(size):
+    """Shapes that map the one before ten times each."""
+    body, previous = ifc_box(), 25
+    count = max(3, min(60, size // 900))
+    for level in range(count):
+        base = 100 + 100 * level
+        body += f"#{base}=IFCREPRESENTATIONMAP(#5,#{previous});\n"
+        items = []
+        for k in range(10):
+            body += f"#{base + 1 + k}=IFCMAPPEDITEM(#{base},#26);\n"
+            items.append(f"#{base + 1 + k}")
+        body += f"#{base + 20}=IFCSHAPEREPRESENTATION($,'Body','MappedRepresentation',({','.join(items)}));\n"
+        previous = base + 20
+    body += (f"#30=IFCPRODUCTDEFINITIONSHAPE($,$,(#{previous}));\n#31=IFCWALL('w',$,'w',$,$,#6,#30,$,$);\n"
+             "#32=IFCRELCONTAINEDINSPATIALSTRUCTURE('c',$,$,$,(#31),#8);\n")
+    return ifc(body)
+
+
+def ifc_mapped_walls(size):
+    """One large shape that all walls map."""
+    half = size // 2
+    boxes = max(1, half // 40)
+    body = ifc_box()
+    body += "".join(f"#{1000 + i}=IFCEXTRUDEDAREASOLID(#20,#5,#23,3.);\n" for i in range(boxes))
+    body += ("#40=IFCSHAPEREPRESENTATION($,'Body','SweptSolid',(" +
+             ",".join(f"#{1000 + i}" for i in range(boxes)) + "));\n#41=IFCREPRESENTATIONMAP(#5,#40);\n"
+             "#42=IFCMAPPEDITEM(#41,#26);\n#43=IFCSHAPEREPRESENTATION($,'Body','MappedRepresentation',(#42));\n"
+             "#30=IFCPRODUCTDEFINITIONSHAPE($,$,(#43));\n")
+    walls = max(1, half // 50)
+    body += "".join(f"#{9000000 + i}=IFCWALL('w',$,'w',$,$,#6,#30,$,$);\n" for i in range(walls))
+    body += ("#32=IFCRELCONTAINEDINSPATIALSTRUCTURE('c',$,$,$,(" +
+             ",".join(f"#{9000000 + i}" for i in range(walls)) + "),#8);\n")
+    return ifc(body)
+
+
+PREFIXES = ("dxf_", "svg_", "sdf_", "env_", "yaml_", "gltf_", "ifc_")
+FAMILIES = {name: make for name, make in globals().items()
+            if callable(make) and name.startswith(PREFIXES) and name not in
+            ("sdf_box", "sdf_includes", "ifc_box", "gltf_mesh")}
+
+
+def write(name, size, folder):
+    """Returns the operand and the size of all files."""
+    total, operand = 0, ""
+    for file, text in FAMILIES[name](size).items():
+        path = os.path.join(folder, file)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as out:
+            out.write(text)
+        total += os.path.getsize(path)
+        operand = operand or path
+    return operand, total
+
+
+def run(command, seconds):
+    """Exit status, processor time in seconds, peak memory in bytes and the last line on stderr."""
+    def bound():
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    with tempfile.TemporaryFile() as err:
+        child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=err, preexec_fn=bound)
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        err.seek(0)
+        lines = err.read().decode(errors="replace").splitlines()
+    return child.returncode, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, (lines or [""])[-1]
+
+
+# Below these an exponent is that of noise, and of what every input costs.
+LEAST_SECONDS, LEAST_BYTES, STEEPEST = 0.3, 64e6, 1.2
+
+
+def measure(envc, size, factor, seconds, names):
+    """Prints time and memory at two sizes, and the exponents between them. Returns how many are too steep."""
+    steep = 0
+    print(f"{'family':26}{'bytes':>10}{'s':>8}{'MB':>8}{'bytes':>10}{'s':>8}{'MB':>8}  exponents")
+    for name in names:
+        rows = []
+        for bytes_wanted in (size, size * factor):
+            with tempfile.TemporaryDirectory() as folder:
+                operand, total = write(name, bytes_wanted, folder)
+                status, spent, memory, line = run([envc, "--info", operand], seconds)
+            rows.append((total, spent, memory))
+        (n1, t1, m1), (n2, t2, m2) = rows
+        growth = math.log(n2 / n1)
+        time = math.log(max(t2, LEAST_SECONDS) / max(t1, LEAST_SECONDS)) / growth
+        space = math.log(max(m2, LEAST_BYTES) / max(m1, LEAST_BYTES)) / growth
+        bad = time > STEEPEST or space > STEEPEST or status not in (0, 1)
+        steep += bad
+        print(f"{name:26}{n1:10}{t1:8.2f}{m1 / 1e6:8.0f}{n2:10}{t2:8.2f}{m2 / 1e6:8.0f}  {time:.2f} {space:.2f}"
+              f"{'  TOO STEEP' if bad else ''}{'  ' + line[-60:] if status not in (0, 1) else ''}", flush=True)
+    return steep
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", required=True)
+    commands.add_parser("list", help="print the families")
+    one = commands.add_parser("write", help="write a family's files and print the operand")
+    one.add_argument("family", choices=FAMILIES)
+    one.add_argument("bytes", type=int)
+    one.add_argument("folder")
+    all_ = commands.add_parser("measure", help="print time and memory against size as exponents; over 1.2 fails")
+    all_.add_argument("envc")
+    all_.add_argument("family", nargs="*", default=list(FAMILIES))
+    all_.add_argument("--bytes", type=int, default=250_000, help="the smaller size")
+    all_.add_argument("--factor", type=int, default=8, help="how many times as large the other is")
+    all_.add_argument("--seconds", type=int, default=60, help="of processor time, at most, for each")
+    options = parser.parse_args()
+    if options.command == "list":
+        print("\n".join(FAMILIES))
+    elif options.command == "write":
+        print(write(options.family, options.bytes, options.folder)[0])
+    else:
+        sys.exit(1 if measure(options.envc, options.bytes, options.factor, options.seconds, options.family) else 0)
+
+
+if __name__ == "__main__":
+    main()
