@@ -155,7 +155,8 @@ std::string ImportRecords::freeId(std::string_view name, const std::string& fall
     word.erase(0, word.find_first_not_of("-."));
     if (word.empty()) word = fallback;
     std::string id = word;
-    for (int i = 2; !ids_.insert(id).second; ++i) id = word + '-' + std::to_string(i);
+    for (int& last = last_numbers_.try_emplace(word, 1).first->second; !ids_.insert(id).second;)
+        id = word + '-' + std::to_string(++last);
     return id;
 }
 

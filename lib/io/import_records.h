@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -77,6 +78,7 @@ class ImportRecords {
     Place place_;
     double wall_height_, wall_thickness_;
     std::set<std::string> ids_;
+    std::map<std::string, int> last_numbers_;  // tried behind each word
     FoundRooms* found_;
     ImportReport* report_;
     Document document_;
