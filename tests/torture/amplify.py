@@ -232,10 +232,12 @@ def yaml_parts(size):
 
 def yaml_empty_parts(size):
     """The same without a record at the end."""
+    levels = 8
+    fan = max(2, size // levels // 20)
     parts = "parts:\n  p0: []\n"
-    for i in range(1, min(30, max(2, size // 230))):
-        parts += f"  p{i}: [" + ", ".join([f"place: {{part: p{i - 1}}}"] * 10) + "]\n"
-    return {"room.yaml": "ispace: {size: [8, 6]}\n" + parts + f"place: {{part: p{i}}}\n"}
+    for i in range(1, levels):
+        parts += f"  p{i}: [" + ", ".join([f"place: {{part: p{i - 1}}}"] * fan) + "]\n"
+    return {"room.yaml": "ispace: {size: [8, 6]}\n" + parts + f"place: {{part: p{levels - 1}}}\n"}
 
 
 def yaml_repeats(size):
@@ -253,8 +255,9 @@ def yaml_long_ids(size):
 
 
 def yaml_aliases(size):
-    levels = max(2, min(60, size // 60))
-    text = "x0: &a0 [1, 1]\n" + "".join(f"x{i}: &a{i} [" + ", ".join([f"*a{i - 1}"] * 8) + "]\n"
+    levels = 12
+    fan = max(2, size // levels // 5)
+    text = "x0: &a0 [1, 1]\n" + "".join(f"x{i}: &a{i} [" + ", ".join([f"*a{i - 1}"] * fan) + "]\n"
                                          for i in range(1, levels))
     return {"room.yaml": text}
 
@@ -315,18 +318,16 @@ def ifc_box():
 
 
 def ifc_mappings(size):
-    """Shapes that map the one before ten times each."""
-    body, previous = ifc_box(), 25
-    count = max(3, min(60, size // 900))
-    for level in range(count):
-        base = 100 + 100 * level
+    """Shapes that map the one before many times each."""
+    body, previous, levels = ifc_box(), 25, 12
+    fan = max(2, size // levels // 50)
+    for level in range(levels):
+        base = 1_000_000 * (level + 1)
         body += f"#{base}=IFCREPRESENTATIONMAP(#5,#{previous});\n"
-        items = []
-        for k in range(10):
-            body += f"#{base + 1 + k}=IFCMAPPEDITEM(#{base},#26);\n"
-            items.append(f"#{base + 1 + k}")
-        body += f"#{base + 20}=IFCSHAPEREPRESENTATION($,'Body','MappedRepresentation',({','.join(items)}));\n"
-        previous = base + 20
+        body += "".join(f"#{base + 1 + k}=IFCMAPPEDITEM(#{base},#26);\n" for k in range(fan))
+        previous = base + fan + 1
+        body += (f"#{previous}=IFCSHAPEREPRESENTATION($,'Body','MappedRepresentation',(" +
+                 ",".join(f"#{base + 1 + k}" for k in range(fan)) + "));\n")
     body += (f"#30=IFCPRODUCTDEFINITIONSHAPE($,$,(#{previous}));\n#31=IFCWALL('w',$,'w',$,$,#6,#30,$,$);\n"
              "#32=IFCRELCONTAINEDINSPATIALSTRUCTURE('c',$,$,$,(#31),#8);\n")
     return ifc(body)
@@ -385,25 +386,42 @@ def run(command, seconds):
 LEAST_SECONDS, LEAST_BYTES, STEEPEST = 0.3, 64e6, 1.2
 
 
-def measure(envc, size, factor, seconds, names):
-    """Prints time and memory at two sizes, and the exponents between them. Returns how many are too steep."""
-    steep = 0
-    print(f"{'family':26}{'bytes':>10}{'s':>8}{'MB':>8}{'bytes':>10}{'s':>8}{'MB':>8}  exponents")
-    for name in names:
+class Growth:
+    """Of a family between two sizes: time and memory as exponents of the size."""
+
+    def __init__(self, envc, family, sizes, seconds):
         rows = []
-        for bytes_wanted in (size, size * factor):
+        for size in sizes:
             with tempfile.TemporaryDirectory() as folder:
-                operand, total = write(name, bytes_wanted, folder)
-                status, spent, memory, line = run([envc, "--info", operand], seconds)
+                operand, total = write(family, size, folder)
+                self.status, spent, memory, self.said = run([envc, "--info", operand], seconds)
             rows.append((total, spent, memory))
-        (n1, t1, m1), (n2, t2, m2) = rows
-        growth = math.log(n2 / n1)
-        time = math.log(max(t2, LEAST_SECONDS) / max(t1, LEAST_SECONDS)) / growth
-        space = math.log(max(m2, LEAST_BYTES) / max(m1, LEAST_BYTES)) / growth
-        bad = time > STEEPEST or space > STEEPEST or status not in (0, 1)
-        steep += bad
-        print(f"{name:26}{n1:10}{t1:8.2f}{m1 / 1e6:8.0f}{n2:10}{t2:8.2f}{m2 / 1e6:8.0f}  {time:.2f} {space:.2f}"
-              f"{'  TOO STEEP' if bad else ''}{'  ' + line[-60:] if status not in (0, 1) else ''}", flush=True)
+        (self.small, self.large), (n1, t1, m1), (n2, t2, m2) = rows, rows[0], rows[1]
+        by_size = math.log(n2 / n1)
+        self.time = math.log(max(t2, LEAST_SECONDS) / max(t1, LEAST_SECONDS)) / by_size
+        self.space = math.log(max(m2, LEAST_BYTES) / max(m1, LEAST_BYTES)) / by_size
+
+    def is_steep(self):
+        return self.time > STEEPEST or self.space > STEEPEST or self.status not in (0, 1)
+
+    def text(self, family):
+        def row(n, spent, memory):
+            return f"{n:10}{spent:8.2f}{memory / 1e6:8.0f}"
+        return (f"{family:26}{row(*self.small)}{row(*self.large)}  {self.time:.2f} {self.space:.2f}" +
+                (f"  TOO STEEP, status {self.status}" if self.is_steep() else ""))
+
+
+HEAD = f"{'family':26}{'bytes':>10}{'s':>8}{'MB':>8}{'bytes':>10}{'s':>8}{'MB':>8}  exponents of time and memory"
+
+
+def measure(options):
+    """Prints the growth of each family. Returns how many grow too fast."""
+    steep = 0
+    print(HEAD)
+    for family in options.family:
+        growth = Growth(options.envc, family, (options.bytes, options.bytes * options.factor), options.seconds)
+        print(growth.text(family), flush=True)
+        steep += growth.is_steep()
     return steep
 
 
@@ -427,7 +445,7 @@ def main():
     elif options.command == "write":
         print(write(options.family, options.bytes, options.folder)[0])
     else:
-        sys.exit(1 if measure(options.envc, options.bytes, options.factor, options.seconds, options.family) else 0)
+        sys.exit(1 if measure(options) else 0)
 
 
 if __name__ == "__main__":
