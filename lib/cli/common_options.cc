@@ -89,6 +89,13 @@ void talk(const CommonOptions& options, const std::string& tool, const std::stri
     if (options.verbose > 0 && !options.quiet) std::cerr << tool << ": " << text << '\n';
 }
 
+void tell(const CommonOptions& options, const std::string& tool,
+          std::span<const std::string> sentences) {
+    if (options.quiet) return;
+    for (const std::string& sentence : sentences)
+        std::cerr << tool << ": " << printable(sentence) << '\n';
+}
+
 void warn(const CommonOptions& options, const std::string& tool,
           std::span<const Diagnostic> warnings) {
     if (options.quiet) return;

@@ -32,6 +32,10 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
 /// Prints `text` on stderr with -v and without -q.
 void talk(const CommonOptions& options, const std::string& tool, const std::string& text);
 
+/// Prints each sentence on stderr unless -q is given.
+void tell(const CommonOptions& options, const std::string& tool,
+          std::span<const std::string> sentences);
+
 /// Prints each warning on stderr unless -q is given.
 void warn(const CommonOptions& options, const std::string& tool,
           std::span<const Diagnostic> warnings);

@@ -14,6 +14,7 @@
 #include "base/message.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
+#include "env/door_zones.h"
 #include "env/walls.h"
 #include "io/input.h"
 #include "io/side_files.h"
@@ -27,19 +28,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ImportOptions defaultImport() {
+ImportOptions defaultImport(ImportReport* report) {
     ImportOptions options;
     addModelFolders(options);
+    options.report = report;
     return options;
 }
 
-Document parse(std::string_view bytes, const std::string& operand) {
-    return parseDocument(bytes, operand, defaultImport(), sceneSchemas());
+Document parse(std::string_view bytes, const std::string& operand, ImportReport* report = nullptr) {
+    return parseDocument(bytes, operand, defaultImport(report), sceneSchemas());
 }
 
-Document read(const std::string& operand) {
-    return operand == "-" ? parse(readStdin(), operand)
-                          : readDocument(operand, defaultImport(), sceneSchemas());
+Document read(const std::string& operand, ImportReport* report = nullptr) {
+    return operand == "-" ? parse(readStdin(), operand, report)
+                          : readDocument(operand, defaultImport(report), sceneSchemas());
 }
 
 bool hasPlaced(const Document& document, const std::vector<std::string>& keywords) {
@@ -93,7 +95,8 @@ class OperandReader {
     SceneInput read() {
         mustReadStdinOnce(request_.operands);
         named_ = request_.operands;
-        for (const std::string& operand : request_.operands) take(operand, ispace::read(operand));
+        for (const std::string& operand : request_.operands)
+            take(operand, ispace::read(operand, &report_));
         if (wantsStdin()) {
             named_.emplace_back("-");
             takeLayoutFromStdin();
@@ -108,7 +111,8 @@ class OperandReader {
         std::string().swap(environment_->derived);  // its memory, too
         return {std::move(scene),           std::move(*environment_),
                 std::move(layout_),         std::move(environment_operand_),
-                std::move(layout_operand_), std::move(named_)};
+                std::move(layout_operand_), std::move(named_),
+                std::move(report_.choices)};
     }
 
   private:
@@ -160,7 +164,7 @@ class OperandReader {
         const fs::path folder =
             layout_operand_ == "-" ? fs::path() : fs::path(layout_operand_).parent_path();
         const std::string operand = (folder / reference->file).string();
-        Document document = parse(bytesReferenced(*reference, operand), operand);
+        Document document = parse(bytesReferenced(*reference, operand), operand, &report_);
         if (document.kind != DocumentKind::Environment)
             throw FormatError(
                 reference->record.finding("file", operand + " is a layout, not an environment"));
@@ -171,6 +175,7 @@ class OperandReader {
     std::optional<Document> environment_, layout_;
     std::string environment_operand_, layout_operand_;
     std::vector<std::string> named_;
+    ImportReport report_;
 };
 
 }  // namespace
@@ -202,6 +207,21 @@ std::string readStdin() {
 }
 
 SceneInput readScene(const SceneRequest& request) { return OperandReader(request).read(); }
+
+void warnOfImport(const CommonOptions& options, const std::string& tool, const SceneInput& input) {
+    tell(options, tool, input.choices);
+    warn(options, tool, input.environment.warnings);
+}
+
+void addZones(std::span<const std::string> zones, SceneInput& input) {
+    if (zones.empty()) return;
+    std::vector<Record> records = input.scene.records;
+    for (Record& zone : zoneRecords(zones, input.scene.environment, sceneSchemas()))
+        records.push_back(std::move(zone));
+    const Document* const layout = input.layout ? &*input.layout : nullptr;
+    input.scene =
+        makeScene(std::move(records), input.scene, devicesFor({&input.environment, layout}));
+}
 
 OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
                             std::optional<bool> same_environment) {

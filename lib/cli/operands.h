@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "record/record.h"
 
 namespace ispace {
+
+struct CommonOptions;
 
 /// How a tool that takes `ENV [LAYOUT]` reads its operands.
 struct SceneRequest {
@@ -34,7 +37,14 @@ struct SceneInput {
     std::string layout_operand;       ///< "" without LAYOUT
     /// For history lines: the operands given, and "-" if stdin was read without one.
     std::vector<std::string> named;
+    std::vector<std::string> choices;  ///< of importers, see ImportReport
 };
+
+/// Prints the warnings and choices of importers on stderr unless -q is given.
+void warnOfImport(const CommonOptions& options, const std::string& tool, const SceneInput& input);
+
+/// Adds the zones of --zone to the scene, as records. \throws UsageError as readZones()
+void addZones(std::span<const std::string> zones, SceneInput& input);
 
 /// The files that a scene was read from, the operands first; for -MD.
 std::vector<std::string> filesOf(const SceneInput& input);

@@ -62,7 +62,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     ArrangeWork work{
         readScene({options.operands, options.same_environment, false}), {}, options.how, {}, {}};
     SceneInput& input = work.input;
-    warn(options.common, "arrange", input.environment.warnings);
+    warnOfImport(options.common, "arrange", input);
     if (!options.fixed.empty()) {
         if (!input.layout) throw UsageError("--fixed is about the sensors of a LAYOUT: give one");
         input.layout = withoutPlaces(*input.layout, options.fixed);

@@ -53,13 +53,14 @@ class BatchWorker {
         SceneInput input = readScene({.operands = job.operands,
                                       .same_environment = options_.same_environment,
                                       .layout_from_stdin = false});
-        addZones(options_, input);
+        addZones(options_.zones, input);
         const Scene& scene = input.scene;
         if (!input.layout && scene.sensors.empty())
             throw UsageError(input.environment_operand +
                              " holds no placed sensor: give a layout after it");
         for (const Requirement& requirement : options_.requirements)
             mustHaveZone(requirement, scene.environment);
+        outcome.messages = input.choices;
         for (const Diagnostic& warning : input.environment.warnings)
             outcome.messages.push_back(warning.text());
         for (const std::string& doubt : doubtsOf(scene))

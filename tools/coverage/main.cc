@@ -43,7 +43,7 @@ SceneInput readInput(const CoverageToolOptions& options) {
             std::filesystem::exists(scene))
             operands.push_back(scene);
     SceneInput input = readScene({operands, options.same_environment, true});
-    addZones(options, input);
+    addZones(options.zones, input);
     return input;
 }
 
@@ -66,7 +66,7 @@ std::string reportText(const CoverageToolOptions& options, const CoverageReport&
 
 void coverScene(CoverageToolOptions options, JunitFile& junit) {
     const SceneInput& input = leftToExit(readInput(options));
-    warn(options.common, "coverage", input.environment.warnings);
+    warnOfImport(options.common, "coverage", input);
     std::vector<std::string> files = filesOf(input);
     std::optional<OtherLayout> other;
     if (!options.other.empty()) {

@@ -12,9 +12,7 @@
 #include "cli/outputs.h"
 #include "cli/recorded_changes.h"
 #include "cover/coverage_formats.h"
-#include "env/door_zones.h"
 #include "layout/scene.h"
-#include "layout/schemas.h"
 
 namespace ispace {
 
@@ -42,16 +40,6 @@ Document documentOf(const CoverageToolOptions& options, const SceneInput& input)
 }
 
 }  // namespace
-
-void addZones(const CoverageToolOptions& options, SceneInput& input) {
-    if (options.zones.empty()) return;
-    std::vector<Record> records = input.scene.records;
-    for (Record& zone : zoneRecords(options.zones, input.scene.environment, sceneSchemas()))
-        records.push_back(std::move(zone));
-    const Document* const layout = input.layout ? &*input.layout : nullptr;
-    input.scene =
-        makeScene(std::move(records), input.scene, devicesFor({&input.environment, layout}));
-}
 
 Measured measure(const CoverageToolOptions& options, const Scene& scene, const Scene* other) {
     Worlds worlds(scene.environment);

@@ -16,9 +16,6 @@ struct Measured {
     std::optional<Coverage> other;
 };
 
-/// Adds the zones of --zone to the scene. \throws UsageError as readZones()
-void addZones(const CoverageToolOptions& options, SceneInput& input);
-
 /// \param other the scene of --compare, null without
 /// \throws FormatError if that is another room
 Measured measure(const CoverageToolOptions& options, const Scene& scene, const Scene* other);

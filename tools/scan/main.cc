@@ -55,7 +55,7 @@ void scan(const ScanCommand& command) {
     if (!options.view.views.empty()) return takeViews(command);
     if (!options.view.run.empty()) return writeRecorded(command);
     const SceneInput input = readScene(requestOf(options));
-    warn(options.common, "scan", input.environment.warnings);
+    warnOfImport(options.common, "scan", input);
     const Scene& scene = input.scene;
     const bool moves = !options.poses.empty();
     std::vector<std::string> files = filesOf(input);

@@ -133,7 +133,7 @@ SceneInput sceneOf(const ScanToolOptions& options) {
 void writeRecorded(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
     const SceneInput input = sceneOf(options);
-    warn(options.common, "scan", input.environment.warnings);
+    warnOfImport(options.common, "scan", input);
     const Sensors lasers = recordedLasers(options, input.scene);
     FormatOptions how = formatOptions(command, input);
     const bool wants_moments = options.format == "mcap";

@@ -203,7 +203,7 @@ PictureSize pictureSize(const std::string& text) {
 void takeViews(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
     const SceneInput input = readScene({options.operands, options.same_environment, false, {}});
-    warn(options.common, "scan", input.environment.warnings);
+    warnOfImport(options.common, "scan", input);
     Scene scene = input.scene;
     std::vector<std::string> files = filesOf(input);
     std::optional<RunRecord> run;

@@ -19,7 +19,9 @@ SceneInput readInput(const SimrunOptions& options) {
                              " holds no scene.env: give ENV and LAYOUT of the run");
         operands.push_back(scene);
     }
-    return readScene({operands, options.same_environment, false});
+    SceneInput input = readScene({operands, options.same_environment, false});
+    addZones(options.zones, input);
+    return input;
 }
 
 std::string titleOf(const SimrunOptions& options, const SceneInput& input) {

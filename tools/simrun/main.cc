@@ -70,7 +70,7 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
 void run(const SimrunCommand& command, JunitFile& junit) {
     const SimrunOptions& options = command.options();
     SceneInput input = readInput(options);
-    warn(options.common, "simrun", input.environment.warnings);
+    warnOfImport(options.common, "simrun", input);
     warnOfLeftOut(input.scene, options.common);
     warn(options.common, "simrun", outsideWarnings(input.scene));
     std::optional<Replay> replay = openReplay(options, input.scene);

@@ -53,6 +53,10 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
 
 void SimrunCommand::declareRun() {
     SimrunOptions& o = options_;
+    line_.texts("--zone", "ZONE", o.zones,
+                "add a zone, which events and --expect know: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
+                "door:GLOB,M within M of doors, whose zones are called DOOR-zone",
+                Enters::History);
     line_.parsed(
         "--clock", "CLOCK", [&o](const std::string& text) { o.clock = parseClock(text); },
         "real[:RATE], fast, or step: simulated time follows wall time (RATE times as fast), runs "

@@ -25,6 +25,7 @@ struct SimrunOptions {
     CommonOptions common;
     std::vector<std::string> operands;
     std::optional<bool> same_environment;
+    std::vector<std::string> zones;  ///< to add to those of the room
     Clock clock;
     SimTime step = std::chrono::milliseconds(5);
     std::optional<SimTime> until;
