@@ -61,7 +61,12 @@ class ImportRecords {
     /// True if all rooms of the plan are asked for.
     [[nodiscard]] bool wantsRooms() const { return found_ != nullptr; }
     /// \pre wantsRooms()
-    void room(FoundRoom room) { found_->rooms.push_back(std::move(room)); }
+    void room(FoundRoom room) {
+        room.storey = storey_;
+        found_->rooms.push_back(std::move(room));
+    }
+    /// Rooms are of this storey from now on, which is as `--storey` takes it.
+    void setStorey(std::string storey) { storey_ = std::move(storey); }
     /// Kept for a drawing of the choice, if one is wanted.
     void closedGap(const Segment2& gap) {
         if (found_ != nullptr) found_->closed_gaps.push_back(gap);
@@ -81,6 +86,7 @@ class ImportRecords {
     std::map<std::string, int> last_numbers_;  // tried behind each word
     FoundRooms* found_;
     ImportReport* report_;
+    std::string storey_;
     Document document_;
 };
 

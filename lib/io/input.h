@@ -28,6 +28,9 @@ enum class RoomChoice {
 struct ImportReport {
     std::vector<std::string> choices;  ///< "FILE: note: …", that people have to know of
     std::vector<Diagnostic> doubts;    ///< warnings that only a check reports
+    bool has_storeys = false;          ///< an input is a building with storeys
+
+    void addChoice(const std::string& operand, const std::string& sentence);
 };
 
 /// How plans, maps and meshes that somebody else made become records.

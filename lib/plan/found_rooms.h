@@ -23,7 +23,8 @@ struct FoundRoom {
 struct FoundRooms {
     std::vector<FoundRoom> rooms;
     std::vector<Segment2> closed_gaps;
-    bool any_plan = false;  ///< an importer of plans ran
+    bool any_plan = false;     ///< an importer of plans ran
+    bool all_storeys = false;  ///< wanted are those of other storeys, too, without their floor
     /// Importers hand over no more rooms than this, the largest ones, besides those kept.
     static constexpr std::size_t kMost = 200;
 };

@@ -146,6 +146,7 @@ void envc(const EnvcOptions& options) {
     FoundRooms found;
     const bool wants_rooms = options.list_rooms || (format != nullptr && format->draws_rooms);
     ImportReport report;
+    found.all_storeys = options.list_rooms;
     Document document = readModel(options, wants_rooms ? &found : nullptr, report);
     std::vector<std::string> files = options.inputs;
     files.insert(files.end(), document.sources.begin(), document.sources.end());

@@ -3,7 +3,10 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "base/error.h"
 #include "env/info.h"
 #include "io/ifc/building_process.h"
 #include "io/ifc/storey_choice.h"
@@ -54,6 +57,31 @@ std::string unreadText(const Building& building) {
     return countText(all, "part") + " of its geometry cannot be read: " + text;
 }
 
+/// Lists the rooms of storeys that are not read.
+void listRooms(const Building& building, std::size_t first, std::size_t end,
+               const std::string& operand, ImportOptions options, const Schemas& schemas) {
+    if (options.found == nullptr || !options.found->all_storeys) return;
+    std::vector<FoundRoom>& listed = options.found->rooms;
+    for (std::size_t storey = first; storey < end; ++storey) {
+        FoundRooms found;
+        options.found = &found;
+        options.report = nullptr;
+        options.inside.clear();
+        ImportRecords out(schemas, operand, options);
+        out.setStorey(storeyWord(building, storey));
+        try {
+            writeStorey(building, storey, options, out);
+        } catch (const FormatError&) {
+            continue;  // neither walls nor spaces: it has no rooms
+        }
+        for (FoundRoom& room : found.rooms) {
+            room.is_kept = false;
+            room.floor.clear();
+            listed.push_back(std::move(room));
+        }
+    }
+}
+
 }  // namespace
 
 bool isIfc(std::string_view bytes) {
@@ -74,11 +102,15 @@ Document readIfc(std::string_view bytes, const std::string& operand, const Impor
         const auto moved = movedHome(building);
         const std::size_t storey = chosenStorey(building, options);
         out.tell(storeysText(building, storey));
+        if (options.report != nullptr) options.report->has_storeys = true;
         if (moved)
             out.tell("moved by " + placeText(Point2{} - *moved) +
                      " m: the building stands in surveyors' coordinates");
         if (!building.unread.empty()) out.warn(unreadText(building));
+        listRooms(building, 0, storey, operand, options, schemas);
+        out.setStorey(storeyWord(building, storey));
         writeStorey(building, storey, options, out);
+        listRooms(building, storey + 1, building.storeys.size(), operand, options, schemas);
     });
     return out.take();
 }

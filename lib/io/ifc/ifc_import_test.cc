@@ -92,6 +92,52 @@ TEST(Ifc, StoreysAreChosen) {
     EXPECT_NE(refused("all").find("several storeys at once are not read yet"), std::string::npos);
 }
 
+TEST(Ifc, RoomsAreListedByStoreys) {
+    const auto rooms_of = [](const std::string& name, bool all_storeys) {
+        FoundRooms found;
+        found.all_storeys = all_storeys;
+        ImportOptions options;
+        options.found = &found;
+        (void)readCabin(name, options);
+        return found.rooms;
+    };
+    const std::vector<FoundRoom> one = rooms_of("cabin-2x3-mm.ifc", false);
+    ASSERT_EQ(one.size(), 1U);
+    EXPECT_EQ(one[0].storey, "Ground floor");
+    EXPECT_TRUE(one[0].is_kept);
+    EXPECT_FALSE(one[0].floor.empty());
+    const std::vector<FoundRoom> all = rooms_of("halt-4x3-m.ifc", true);
+    ASSERT_EQ(all.size(), 2U);
+    EXPECT_EQ(all[0].storey, "Platform level");
+    EXPECT_EQ(all[1].storey, "Roof deck");
+    EXPECT_NEAR(all[1].area, 6.8 * 3.8, 1e-4);
+    EXPECT_FALSE(all[1].is_kept);
+    EXPECT_TRUE(all[1].floor.empty());
+    ImportOptions options;
+    options.storey = all[1].storey;
+    options.inside = {all[1].inside};
+    EXPECT_NEAR(environmentOf(readCabin("halt-4x3-m.ifc", options)).indoor().area(), all[1].area,
+                1e-6);
+}
+
+// A facility of IFC4.3 around the building, walls as polygonal faces, profiles as indexed curves.
+TEST(Ifc, ReadsIfc4x3) {
+    const ImportReport report = reportOf("halt-4x3-m.ifc");
+    EXPECT_EQ(report.choices, std::vector<std::string>{
+                                  "halt-4x3-m.ifc: note: read storey 1 \"Platform level\" at 0.50 "
+                                  "m, 23.4 m2 in 2 spaces, 5 walls, 2 doors, 1 window; others: 2 "
+                                  "\"Roof deck\" at 3.50 m, no spaces; --storey NAME chooses"});
+    const Document document = readCabin("halt-4x3-m.ifc");
+    EXPECT_EQ(warningsOf(document), "");
+    EXPECT_NEAR(environmentOf(document).indoor().area(), 23.4 + 0.9 * 0.1 + 1 * 0.2, 1e-4);
+    EXPECT_NEAR(zonesOf(document), 23.4, 1e-4);
+    EXPECT_EQ(texts(document, "zone", "name"),
+              (std::vector<std::string>{"Waiting room", "Tickets"}));
+    EXPECT_EQ(countOf(document, "door"), 2U);
+    EXPECT_EQ(countOf(document, "window"), 1U);
+    EXPECT_EQ(countOf(document, "cube"), 2U);  // bench and counter; the kerb is outside
+}
+
 TEST(Ifc, StatedAreasAreDoubted) {
     // The file says 7 m2 of the bath, which has 8.8.
     const ImportReport report = reportOf("cabin-2x3-mm.ifc");

@@ -111,6 +111,17 @@ std::size_t chosenStorey(const Building& building, const ImportOptions& options)
     return 0;
 }
 
+std::string storeyWord(const Building& building, std::size_t storey) {
+    const bool several = severalBuildings(building);
+    const std::string word = nameOf(building.storeys[storey], several);
+    const auto is_called_so = [&](const BuildingStorey& other) {
+        return lowerCase(nameOf(other, several)) == lowerCase(word);
+    };
+    const bool is_alone =
+        std::count_if(building.storeys.begin(), building.storeys.end(), is_called_so) == 1;
+    return is_alone && !building.storeys[storey].name.empty() ? word : std::to_string(storey + 1);
+}
+
 std::string storeysText(const Building& building, std::size_t chosen) {
     const BuildingStorey& storey = building.storeys[chosen];
     std::string text = "read storey " + describe(building, chosen) + ", " +

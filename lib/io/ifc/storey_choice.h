@@ -20,6 +20,10 @@ std::size_t chosenStorey(const Building& building, const ImportOptions& options)
 /// the spaces.
 std::string storeysText(const Building& building, std::size_t chosen);
 
+/// The words of `--storey` that choose this one: its name, or its number where it has none or
+/// shares it.
+std::string storeyWord(const Building& building, std::size_t storey);
+
 /// Square metres of a section.
 double areaOfSection(const BuildingSection& section);
 
