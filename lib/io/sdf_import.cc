@@ -28,6 +28,9 @@ namespace {
 constexpr double kFloorTop = 0.02;  // metres: a box that ends below this is floor
 constexpr double kMeshCut = 0.3;    // metres: over most feet, under most sills
 
+/// Doors, in metres; wider ones have two leaves.
+constexpr double kNarrowestDoor = 0.6, kWidestDoor = 2, kDoorHeight = 2;
+
 class SdfImporter {
   public:
     SdfImporter(SdfWorld world, const std::string& name, const ImportOptions& options,
@@ -101,7 +104,10 @@ class SdfImporter {
     /// Meshes stand in for walls where others enclose no room, or as the user says.
     void cutIntoWalls() {
         const auto choose = [this](std::span<const Segment2> lines) {
-            ImportRecords trial(schemas_, name_, options_);  // whose messages do not count
+            ImportOptions quiet = options_;  // the messages and rooms of a trial do not count
+            quiet.found = nullptr;
+            quiet.report = nullptr;
+            ImportRecords trial(schemas_, name_, quiet);
             return lines.empty() ? PlanRooms() : roomsAmong(lines, trial);
         };
         const std::vector<Segment2> lines = ownLines();
@@ -206,8 +212,28 @@ class SdfImporter {
         }
         for (const Fence& fence : fences_)
             if (!take({fence.path}).empty() && rooms.reached.empty()) addFence(fence);
+        if (rooms.reached.empty()) addDoors(rooms.closing);
         writeRooms(rooms, options_, out_);
         regions_ = std::move(rooms.regions);
+    }
+
+    /// Gaps that were closed and are as wide as doors are open doors; takes them from `gaps`.
+    void addDoors(std::vector<Segment2>& gaps) {
+        std::erase_if(gaps, [this](const Segment2& gap) {
+            const double width = distance(gap.a, gap.b);
+            if (width < kNarrowestDoor || width > kWidestDoor) return false;
+            const Segment2 line{wholeMicrometres(gap.a), wholeMicrometres(gap.b)};
+            const std::string wall = out_.freeId("gap", "gap");
+            out_.wall(line, wall, 0);
+            Record& door = out_.add("door", 0);
+            door.set("wall", wall);
+            ImportRecords::setPoint(door, "from", line.a);
+            ImportRecords::setPoint(door, "to", line.b);
+            door.set("height", std::min(kDoorHeight, options_.wall_height));
+            door.set("open", true);
+            ++doors_;
+            return true;
+        });
     }
 
     /// True if neither its middle nor a corner lies in a room, nor a corner of a room in it.
@@ -275,8 +301,8 @@ class SdfImporter {
         if (outside_ + blocks_outside_ > 0)
             out_.note("left out outside of the room: " + countText(outside_, "wall") + " and " +
                       countText(blocks_outside_, "thing"));
-        out_.note("walls: " + std::to_string(walls_.size() - outside_) +
-                  ", fences: " + std::to_string(fences_.size()) +
+        out_.note("walls: " + std::to_string(walls_.size() - outside_) + ", doors: " +
+                  std::to_string(doors_) + ", fences: " + std::to_string(fences_.size()) +
                   ", cubes and cylinders: " + std::to_string(blocks_.size() - blocks_outside_) +
                   ", meshes: " + std::to_string(meshes_));
     }
@@ -292,7 +318,7 @@ class SdfImporter {
     std::vector<SdfBlock> blocks_;
     std::map<std::string, std::size_t> missing_;
     std::vector<PlanRegion> regions_;  // that are kept
-    std::size_t meshes_ = 0, floors_ = 0, outside_ = 0, blocks_outside_ = 0;
+    std::size_t meshes_ = 0, floors_ = 0, outside_ = 0, blocks_outside_ = 0, doors_ = 0;
 };
 
 }  // namespace

@@ -92,6 +92,42 @@ TEST(SdfImport, ThinHighBoxesAreWallsThatMeetAtMidLines) {
     EXPECT_EQ(document.records.front().keyword(), "wall");
 }
 
+/// A room of 6 m x 4 m whose east wall has a gap from y = 1 up.
+std::string roomWithGap(double gap) {
+    const double rest = 3 - gap;
+    return worldOf(boxModel("south", "3 0 1.25 0 0 0", "6 0.1 2.5") +
+                   boxModel("north", "3 4 1.25 0 0 0", "6 0.1 2.5") +
+                   boxModel("west", "0 2 1.25 0 0 0", "0.1 4 2.5") +
+                   boxModel("low", "6 0.5 1.25 0 0 0", "0.1 1 2.5") +
+                   boxModel("high", "6 " + formatDouble(4 - rest / 2) + " 1.25 0 0 0",
+                            "0.1 " + formatDouble(rest) + " 2.5"));
+}
+
+TEST(SdfImport, GapsOfADoorsWidthAreDoors) {
+    const Document door = readSdf(roomWithGap(0.9), "test.sdf", {}, sceneSchemas());
+    EXPECT_NEAR(environmentOf(door).indoor().area(), 24, 1e-6);
+    EXPECT_EQ(countOf(door, "door"), 1U);
+    EXPECT_EQ(countOf(door, "fence"), 0U);
+    const std::string records = recordsOf(roomWithGap(0.9));
+    EXPECT_NE(records.find("door wall=gap from=6,1 to=6,1.9 open=yes"), std::string::npos)
+        << records;
+    // Cracks and missing walls are none.
+    for (const double gap : {0.3, 2.3}) {
+        const Document none = readSdf(roomWithGap(gap), "test.sdf", {}, sceneSchemas());
+        EXPECT_EQ(countOf(none, "door"), 0U) << gap;
+        EXPECT_EQ(countOf(none, "fence"), 1U) << gap;
+    }
+}
+
+TEST(SdfImport, RoomsAreListedOnce) {
+    FoundRooms found;
+    ImportOptions options;
+    options.found = &found;
+    (void)readSdf(roomWithGap(0.9), "test.sdf", options, sceneSchemas());
+    EXPECT_EQ(found.rooms.size(), 1U);
+    EXPECT_EQ(found.closed_gaps.size(), 1U);
+}
+
 TEST(SdfImport, ErrorsNameTheLine) {
     EXPECT_EQ(errorOf("<sdf version='1.9'/>"),
               "test.sdf:1:1: error: no `world` and no `model` in it");
