@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <unordered_map>
 #include <utility>
 
 #include "base/budget.h"
@@ -88,12 +89,19 @@ class Expander {
     }
 
     /// The layer, or the innermost block around, that is called walls; "" if none is.
-    [[nodiscard]] std::string wallsAround(const std::string& layer) const {
-        if (isWallName(layer)) return layer;
+    [[nodiscard]] std::string wallsAround(const std::string& layer) {
+        if (isCalledWalls(layer)) return layer;
         const auto walls =
             std::find_if(blocks_.rbegin(), blocks_.rend(),
-                         [](const std::string* block) { return isWallName(*block); });
+                         [this](const std::string* block) { return isCalledWalls(*block); });
         return walls == blocks_.rend() ? "" : **walls;
+    }
+
+    /// isWallName(), asked once for each name.
+    [[nodiscard]] bool isCalledWalls(const std::string& name) {
+        const auto [found, is_new] = called_walls_.try_emplace(name, false);
+        if (is_new) found->second = isWallName(name);
+        return found->second;
     }
 
     void addInsert(const DxfEntity& entity, const DxfInsert& insert, const Affine& outer,
@@ -233,6 +241,7 @@ class Expander {
     LayerSorter& layers_;
     MissingBlocks& missing_;
     std::vector<const std::string*> blocks_;  // around the entity, the outermost first
+    std::unordered_map<std::string, bool> called_walls_;
     std::vector<PlanShape> shapes_;
     PlanShape shape_;  // in the making
 };

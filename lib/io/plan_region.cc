@@ -5,11 +5,14 @@
 #include <array>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 #include "geom/arrangement.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
+#include "geom/spatial_index.h"
 #include "io/plan_lines.h"
 
 namespace ispace {
@@ -43,54 +46,78 @@ bool contains(const Box2& box, Point2 p) {
 
 Point2 middleOf(const Segment2& s) { return s.a + 0.5 * (s.b - s.a); }
 
-/// Tells for many points whether they lie in one of several disjoint regions; only edges at a
-/// point's level are tested.
+/// Tells for many points which of several disjoint regions holds them: the one above the nearest
+/// edge below. O(n) to build; a point takes as long as it is far from that edge.
 class RegionLocator {
   public:
-    explicit RegionLocator(const std::vector<Region>& regions) {
-        for (const Region& region : regions)
-            region.forEachEdge([&](const Segment2& edge) { edges_.push_back(edge); });
-        for (const Segment2& edge : edges_) {
-            box_.add(edge.a);
-            box_.add(edge.b);
-        }
-        levels_.resize(std::clamp<std::size_t>(edges_.size() / 4, 1, kMaxLevels));
-        for (std::size_t i = 0; i < edges_.size(); ++i) {
-            const auto [low, high] = std::minmax(edges_[i].a.y, edges_[i].b.y);
-            for (std::size_t k = levelOf(low); k <= levelOf(high); ++k) levels_[k].push_back(i);
-        }
-    }
+    explicit RegionLocator(const std::vector<Region>& regions)
+        : edges_(edgesOf(regions, owners_)), grid_(edges_, 0) {}
 
-    /// Even-odd over all edges: an edge between two regions counts twice. \pre p is off the edges
-    [[nodiscard]] bool holds(Point2 p) const {
-        if (!contains(box_, p)) return false;
-        bool inside = false;
-        for (const std::size_t i : levels_[levelOf(p.y)]) {
-            auto [a, b] = edges_[i];
-            if (a.y > b.y) std::swap(a, b);
-            if (a.y <= p.y && p.y < b.y && orientation(a, b, p) == Turn::Left) inside = !inside;
-        }
-        return inside;
+    /// The index of the region. \pre p is off the edges
+    [[nodiscard]] std::optional<std::size_t> at(Point2 p) const {
+        std::optional<Below> nearest;
+        grid_.searchBelow(p, [&](std::span<const std::uint32_t> cell, double bottom) {
+            for (const std::uint32_t i : cell)
+                if (const auto edge = below(p, i); edge && (!nearest || *nearest < *edge))
+                    nearest = edge;
+            return nearest && nearest->y >= bottom;
+        });
+        // What an edge bounds lies to its left.
+        if (!nearest || !nearest->heads_right) return std::nullopt;
+        return owners_[nearest->index];
     }
 
   private:
-    static constexpr std::size_t kMaxLevels = 512;
+    /// An edge below a point. Of those that meet there the steepest is the nearest, and of two that
+    /// are one line the one with its region above.
+    struct Below {
+        double y = 0, slope = 0;
+        bool heads_right = false;
+        std::uint32_t index = 0;
 
-    [[nodiscard]] std::size_t levelOf(double y) const {
-        const double share = (y - box_.low.y) / box_.depth();
-        const auto count = static_cast<double>(levels_.size());
-        return share > 0 ? static_cast<std::size_t>(std::min(share * count, count - 1)) : 0;
+        bool operator<(const Below& other) const {
+            return std::tuple(y, slope, heads_right) <
+                   std::tuple(other.y, other.slope, other.heads_right);
+        }
+    };
+
+    [[nodiscard]] std::optional<Below> below(Point2 p, std::uint32_t index) const {
+        auto [left, right] = edges_[index];
+        const bool heads_right = left.x < right.x;
+        if (!heads_right) std::swap(left, right);
+        if (!(left.x <= p.x && p.x < right.x) || orientation(left, right, p) != Turn::Left)
+            return std::nullopt;
+        const double slope = (right.y - left.y) / (right.x - left.x);
+        return Below{left.y + (p.x - left.x) * slope, slope, heads_right, index};
     }
 
+    static std::vector<Segment2> edgesOf(const std::vector<Region>& regions,
+                                         std::vector<std::size_t>& owners) {
+        std::vector<Segment2> edges;
+        for (std::size_t i = 0; i < regions.size(); ++i)
+            regions[i].forEachEdge([&](const Segment2& edge) {
+                edges.push_back(edge);
+                owners.push_back(i);
+            });
+        return edges;
+    }
+
+    std::vector<std::size_t> owners_;
     std::vector<Segment2> edges_;
-    Box2 box_;
-    std::vector<std::vector<std::size_t>> levels_;
+    SegmentGrid grid_;
 };
 
 double distanceTo(std::span<const Segment2> lines, Point2 p) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Segment2& line : lines) nearest = std::min(nearest, distance(p, line));
     return nearest;
+}
+
+bool hasWithin(std::span<const Segment2> lines, const NearSegments& search, Point2 p,
+               double reach) {
+    const std::vector<std::size_t> near = search.near(p, reach);
+    return std::any_of(near.begin(), near.end(),
+                       [&](std::size_t i) { return distance(p, lines[i]) <= reach; });
 }
 
 /// The part of `line` that lies on `other`, if it is longer than a point.
@@ -116,16 +143,15 @@ Point2 clearPoint(const Region& face, std::span<const Segment2> lines) {
     double best_clear = distanceTo(lines, best);
     if (best_clear >= kClear) return best;
     const Box2 box = bounds(face.outline);
+    const NearSegments search(lines);
     const auto share = [](int step) { return (step + 0.5) / kClearSteps; };
     for (int i = 0; i < kClearSteps * kClearSteps; ++i) {
         const int row = i / kClearSteps, column = i % kClearSteps;
         const Point2 p{box.low.x + share(column) * box.width(),
                        box.low.y + share(row) * box.depth()};
-        if (face.locate(p) != Side::Inside) continue;
-        const double clear = distanceTo(lines, p);
-        if (clear <= best_clear) continue;
+        if (hasWithin(lines, search, p, best_clear) || face.locate(p) != Side::Inside) continue;
         best = p;
-        best_clear = clear;
+        best_clear = distanceTo(lines, p);
     }
     return best;
 }
@@ -195,14 +221,16 @@ void PlanFaces::makeGroups(std::span<const Segment2> doors) {
     std::vector<std::size_t> group_of(faces_.size());
     std::iota(group_of.begin(), group_of.end(), std::size_t{0});
     const auto root = [&group_of](std::size_t i) {
-        while (group_of[i] != i) i = group_of[i];
+        while (group_of[i] != i) i = group_of[i] = group_of[group_of[i]];
         return i;
     };
+    std::optional<RegionLocator> locator;
+    if (!doors.empty()) locator.emplace(faces_);
     for (const Segment2& door : doors) {
         const Vec2 along = door.b - door.a;
         const Vec2 across = kBesideDoor / length(along) * perpendicular(along);
-        const auto left = faceAt(middleOf(door) + across);
-        const auto right = faceAt(middleOf(door) - across);
+        const auto left = locator->at(middleOf(door) + across);
+        const auto right = locator->at(middleOf(door) - across);
         if (!left || !right) continue;
         const std::size_t a = root(*left), b = root(*right);
         group_of[std::max(a, b)] = std::min(a, b);
@@ -299,7 +327,7 @@ std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const
     for (std::size_t i = 0; i < lines.size(); ++i)
         for (const double share : kSharesInside)
             if (!belongs[i])
-                belongs[i] = locator.holds(lines[i].a + share * (lines[i].b - lines[i].a));
+                belongs[i] = locator.at(lines[i].a + share * (lines[i].b - lines[i].a)).has_value();
     return belongs;
 }
 

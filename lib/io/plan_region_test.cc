@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "geom/boolean.h"
@@ -96,6 +99,56 @@ TEST(PlanRegion, InsideIsClearOfLinesThatStandFree) {
 PlanRegion leftRoom(const Lines& lines) {
     const PlanFaces faces(lines);
     return faces.region(*faces.groupAt({1, 3}));
+}
+
+// Rooms of 1 m in a raster that leans, some with a table in them; doors join some of them.
+TEST(PlanRegion, DoorsJoinAsCountedByHand) {
+    constexpr std::size_t kSide = 12;
+    std::mt19937_64 random(5);
+    const Vec2 x = unitVector(Angle::degrees(17)), y = perpendicular(x);
+    const auto at = [&](double i, double k) { return Point2{} + i * x + k * y; };
+    Lines lines, doors;
+    std::vector<std::size_t> group(kSide * kSide);
+    std::iota(group.begin(), group.end(), std::size_t{0});
+    const auto join = [&](std::size_t a, std::size_t b) {
+        std::replace(group.begin(), group.end(), std::size_t{group[b]}, std::size_t{group[a]});
+    };
+    for (std::size_t i = 0; i <= kSide; ++i) {
+        const auto far = static_cast<double>(i);
+        lines.push_back({at(far, 0), at(far, kSide)});
+        lines.push_back({at(0, far), at(kSide, far)});
+    }
+    for (std::size_t i = 0; i < kSide; ++i)
+        for (std::size_t k = 0; k < kSide; ++k) {
+            const auto a = static_cast<double>(i), b = static_cast<double>(k);
+            if (random() % 4 == 0) {
+                const std::array<Point2, 4> table{at(a + 0.4, b + 0.4), at(a + 0.6, b + 0.4),
+                                                  at(a + 0.6, b + 0.6), at(a + 0.4, b + 0.6)};
+                for (std::size_t n = 0; n < 4; ++n) lines.push_back({table[n], table[(n + 1) % 4]});
+            }
+            const std::size_t cell = i * kSide + k;
+            if (i + 1 < kSide && random() % 3 == 0) {
+                doors.push_back({at(a + 1, b + 0.2), at(a + 1, b + 0.7)});
+                join(cell, cell + kSide);
+            }
+            if (k + 1 < kSide && random() % 3 == 0) {
+                doors.push_back({at(a + 0.3, b + 1), at(a + 0.9, b + 1)});
+                join(cell, cell + 1);
+            }
+            if (k == 0 && random() % 3 == 0) doors.push_back({at(a + 0.3, 0), at(a + 0.9, 0)});
+        }
+    const PlanFaces faces(lines, doors);
+    for (std::size_t i = 0; i < group.size(); ++i)
+        for (const std::size_t other : {(i + 1) % group.size(), (i + kSide) % group.size()}) {
+            const auto group_of = [&](std::size_t cell) {
+                const std::size_t row = cell / kSide, column = cell % kSide;
+                return faces.groupAt(
+                    at(static_cast<double>(row) + 0.1, static_cast<double>(column) + 0.1));
+            };
+            ASSERT_NE(group_of(i), nullptr);
+            EXPECT_EQ(group_of(i) == group_of(other), group[i] == group[other])
+                << i << ' ' << other;
+        }
 }
 
 TEST(PlanRegion, LinesThatBelong) {
