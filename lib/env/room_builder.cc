@@ -89,11 +89,22 @@ class Builder {
             takeInBlocks(records, ids);
         inside_ = insideRecords(elements_);
         if (plan_.walls.empty() && walls_whole_)
-            findings_.add(fileFinding(
-                elements_,
-                "no walls: nothing encloses a room; add an ispace, wall or fence record"));
+            findings_.add(fileFinding(elements_, noWallsText()));
         // What a wall that crosses itself encloses says little, and may take long to find.
         if (plan_.walls.empty() || !walls_simple_) findings_.throwIfAny();
+    }
+
+    /// A mesh may be the room itself.
+    [[nodiscard]] std::string noWallsText() const {
+        const bool has_mesh =
+            std::any_of(elements_.begin(), elements_.end(),
+                        [](const Element& element) { return element.record.keyword() == "mesh"; });
+        return std::string("no walls: nothing encloses a room; ") +
+               (has_mesh
+                    ? "envc --slice-walls 1.2 cuts walls out of the mesh of a room, 1.2 m above "
+                      "its floor; or "
+                    : "") +
+               "add an ispace, wall or fence record";
     }
 
     /// The shapes of all that is no wall, while others look at walls. \throws FormatError

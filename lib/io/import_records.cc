@@ -50,7 +50,7 @@ ImportRecords::ImportRecords(const Schemas& schemas, const std::string& name,
 
 void ImportRecords::tell(std::string sentence) {
     if (report_ == nullptr) return note(std::move(sentence));
-    report_->choices.push_back(*place_.file + ": note: " + sentence);
+    report_->addChoice(*place_.file, sentence);
 }
 
 void ImportRecords::doubt(std::string sentence) {

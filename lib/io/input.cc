@@ -140,17 +140,18 @@ Document importPlan(const Source& source) {
 template <Document (*kReader)(const std::string&, const ImportOptions&, const Schemas&)>
 Document readUpright(const Source& source) {
     ImportOptions options = source.options;
-    const bool is_open = options.up == "auto" && meshFormatOf(source.bytes) == MeshFormat::Obj;
-    if (is_open) {
-        const auto* const unit =
-            std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
-                         [&](const LengthUnit& known) { return known.name == options.units; });
-        options.up = objUpAxis(source.bytes, unit == kLengthUnits.end() ? 1 : unit->metres);
-    }
+    if (options.up != "auto" || meshFormatOf(source.bytes) != MeshFormat::Obj)
+        return kReader(source.operand, options, source.schemas);
+    const auto* const unit =
+        std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
+                     [&](const LengthUnit& known) { return known.name == options.units; });
+    options.up = objUpAxis(source.bytes, unit == kLengthUnits.end() ? 1 : unit->metres);
     Document document = kReader(source.operand, options, source.schemas);
-    if (is_open)
-        document.notes.insert(document.notes.begin(),
-                              "OBJ taken with " + options.up + " upwards; --up says otherwise");
+    const std::string choice = "OBJ taken with " + options.up + " upwards";
+    if (!objUpComment(source.bytes) && options.report != nullptr)
+        options.report->addChoice(source.operand, choice + ", by its extent; --up says otherwise");
+    else
+        document.notes.insert(document.notes.begin(), choice);
     return document;
 }
 constexpr auto* kReadMesh = readUpright<meshDocument>;
@@ -251,6 +252,10 @@ Document parseDocument(std::string_view bytes, const std::string& operand,
     Document document = format->read(source);
     if (options.load_files) loadFiles(document, operand);
     return document;
+}
+
+void ImportReport::addChoice(const std::string& operand, const std::string& sentence) {
+    choices.push_back(displayName(operand) + ": note: " + sentence);
 }
 
 void loadFiles(Document& document, const std::string& operand) {

@@ -202,7 +202,7 @@ class LinePlan {
 
     void note(ImportRecords& out) const {
         if (drawn_doors_ > 0)
-            out.note("leaves and swings of " + countText(drawn_doors_, "door") +
+            out.tell("leaves and swings of " + countText(drawn_doors_, "door") +
                      " among the walls close no room");
         const auto windows = static_cast<std::size_t>(
             std::count_if(openings_.begin(), openings_.end(),

@@ -61,6 +61,8 @@ Document readModel(const EnvcOptions& options, FoundRooms* found, ImportReport& 
     request.may_be_empty = !options.edits.empty();
     std::vector<Diagnostic> other_rooms;
     Document document = readInputs(request, other_rooms);
+    if (!options.import.storey.empty() && !report.has_storeys)
+        throw UsageError("--storey is about buildings (IFC), and no input is one");
     warn(options.common, "envc", other_rooms);
     document.records = edited(std::move(document.records), options.edits, sceneSchemas());
     if (request.compiles) loadFiles(document, "");
@@ -144,9 +146,9 @@ void envc(const EnvcOptions& options) {
     if (format != nullptr) claimOutput(besideOf(options), std::string(format->beside_role));
     keepMemory(options.inputs);
     FoundRooms found;
+    found.all_storeys = options.list_rooms;
     const bool wants_rooms = options.list_rooms || (format != nullptr && format->draws_rooms);
     ImportReport report;
-    found.all_storeys = options.list_rooms;
     Document document = readModel(options, wants_rooms ? &found : nullptr, report);
     std::vector<std::string> files = options.inputs;
     files.insert(files.end(), document.sources.begin(), document.sources.end());
