@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -66,6 +67,20 @@ std::size_t readSome(int fd, std::span<char> bytes, const std::string& name) {
         if (n >= 0) return static_cast<std::size_t>(n);
         if (!isToBeRepeated(fd, POLLIN)) fail(name, errno);
     }
+}
+
+/// Opens a pipe or a device for writing. A pipe is waited for until somebody reads it, as ever, but
+/// TERM ends the process meanwhile, also where a tool has a handler for it or ignores it.
+OpenFile openSpecial(const std::string& target) {
+    struct sigaction before {};
+    struct sigaction ends {};
+    ends.sa_handler = SIG_DFL;
+    ::sigaction(SIGTERM, &ends, &before);
+    OpenFile file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+    const int error = errno;
+    ::sigaction(SIGTERM, &before, nullptr);
+    if (file.fd() < 0) fail(target, error);
+    return file;
 }
 
 /// Calls make(name) with names in the folder that nobody should have, until one is free: a killed
@@ -252,8 +267,7 @@ OutputFile::OutputFile(const std::string& target) : state_(std::make_unique<Stat
     const bool exists = ::stat(target.c_str(), &info) == 0;
     if (exists && !S_ISREG(info.st_mode)) {
         s.direct = true;
-        s.file = OpenFile(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-        if (s.file.fd() < 0) fail(target, errno);
+        s.file = openSpecial(target);
         return;
     }
     s.target = followLinks(target);

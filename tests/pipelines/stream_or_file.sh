@@ -50,3 +50,11 @@ done
 # Another room than the one the layout was made for is refused if that is asked for.
 expect_error 1 coverage "$scenes/crowded.env" best.3dm --same-environment
 expect_status 0 coverage "$scenes/crowded.env" best.3dm --any-environment
+
+# TERM ends the wait for the reader of a pipe, also in tools that end their work in order at TERM.
+mkfifo unread
+for command in "arrange $data/room.env --sensor laser,range=1 --candidates 1,1,4 -q -o unread" \
+    "simrun $data/room.env --until 1000 --port-file unread"; do
+    # shellcheck disable=SC2086
+    interrupt TERM 2 timeout --preserve-status 60 $command
+done

@@ -32,7 +32,7 @@ NAMED = [f"envc @{suffix} --to env -o new.env" for suffix in IMPORTS] + [
     "scan @", "scan room.env @", "scan room.env laser.3dm -o @", "scan room.env --poses @ --model laser --to csv",
     "scan --run @", "scan --merge @ -o new.jsonl", "scan room.env laser.3dm --frames 2 --resume -o @.csv",
     "coverage @ laser.3dm", "coverage room.env @", "coverage --batch @", "coverage room.env laser.3dm --compare @",
-    "coverage room.env laser.3dm --run @", "coverage room.env laser.3dm --trace @ -o new.png",
+    "coverage --batch list", "coverage room.env laser.3dm --run @", "coverage room.env laser.3dm --trace @ -o new.png",
     "coverage room.env laser.3dm --require 1% --junit @", "coverage room.env laser.3dm --report @.json",
     "coverage room.env laser.3dm --to png -o @",
     "simrun @ SERVED", "simrun room.env @ SERVED", "simrun room.env robots.3dm SERVED --script @",
@@ -65,7 +65,6 @@ INSIDE = [
      ["envc in.obj --to env"]),
     ("in.env", "#env 1\n" + FENCE + "camera at=1,1,1 calibration={}\n", ["scan in.env -o new/"]),
     ("in.env", "#env 1\n" + FENCE + "cube at=1,1 size=1 texture={}\n", ["scan in.env --view bird -o new.png"]),
-    ("list", "{} laser.3dm\nroom.env {}\n", ["coverage --batch list"]),
 ]
 RECORDED = ("info.csv", "robots.csv", "people.csv", "events.csv", "scene.env", "scans.jsonl", "odometry.csv",
             "sonars.csv", "bumpers.csv", "timing.csv")
@@ -103,7 +102,8 @@ def make_kinds(folder):
 class Field:
     def __init__(self, lab):
         self.lab, self.folder = lab, lab.inputs("inputs")
-        for name, text in (("laser.3dm", "#3dm 1\nlaser id=l1 at=0,0\n"), ("world.sdf", SDF.format("model://m"))):
+        for name, text in (("laser.3dm", "#3dm 1\nlaser id=l1 at=0,0\n"), ("world.sdf", SDF.format("model://m")),
+                           ("list", "special laser.3dm\nroom.env special\n")):
             self.write(name, text)
         for argv in (["simrun", "room.env", "robots.3dm", "--clock", "fast", "--until", "0.1", "--record", "run"],):
             lab.run(argv, self.folder)
@@ -187,7 +187,7 @@ def cases(field):
     """(prepare, command, kind, path, named by the user), in the order of the lists."""
     for kind, make in field.kinds.items():
         for command in NAMED:
-            word = next(word for word in command.split() if "@" in word)
+            word = next((word for word in command.split() if "@" in word), "@")
             name = word.replace("@", "special")
             yield (lambda make=make, name=name: make(os.path.join(field.folder, name)),
                    command.replace("@", "special"), kind, name, True)
