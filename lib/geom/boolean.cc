@@ -2,6 +2,8 @@
 #include "geom/boolean.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -74,12 +76,24 @@ struct EdgeTree {
 
 /// True for the boxes that meet no other one.
 std::vector<bool> alone(const std::vector<Box2>& boxes) {
-    const BoxTree tree(boxes);
-    std::vector<bool> out(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        std::size_t met = 0;
-        tree.search(boxes[i], [&met](std::size_t) { ++met; });
-        out[i] = met == 1;
+    // Boxes that coincide are searched for once: each of many would find all of them.
+    std::map<std::array<double, 4>, std::size_t> copies;
+    const auto key = [](const Box2& box) {
+        return std::array{box.low.x, box.low.y, box.high.x, box.high.y};
+    };
+    std::vector<Box2> distinct;
+    for (const Box2& box : boxes)
+        if (++copies[key(box)] == 1) distinct.push_back(box);
+    const BoxTree tree(distinct);
+    std::vector<bool> out;
+    out.reserve(boxes.size());
+    for (const Box2& box : boxes) {
+        std::size_t met = copies[key(box)];
+        if (met == 1) {
+            met = 0;
+            tree.search(box, [&met](std::size_t) { ++met; });
+        }
+        out.push_back(met == 1);
     }
     return out;
 }

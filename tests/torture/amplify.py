@@ -214,6 +214,11 @@ def env_coincident(size):
     return {"room.env": "#env 1\nfence path=0,0;8,0;8,6;0,6 closed=yes\n" + walls * (size // len(walls))}
 
 
+def env_coincident_things(size):
+    things = "cube at=2,2 size=0.5\n"
+    return {"room.env": "#env 1\nfence path=0,0;8,0;8,6;0,6 closed=yes\n" + things * (size // len(things))}
+
+
 def env_collinear(size):
     """Walls on one line that overlap."""
     count = size // 26
