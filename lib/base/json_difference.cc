@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/json_difference.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/glob.h"
 #include "base/message.h"
 #include "base/number.h"
 
@@ -36,7 +35,7 @@ std::string exponentText(double tolerance) {
 class Comparison {
   public:
     Comparison(Tolerance tolerance, std::span<const std::string> ignored)
-        : tolerance_(tolerance), ignored_(ignored) {}
+        : tolerance_(tolerance), ignored_(ignored.begin(), ignored.end()) {}
 
     /// Compares the values of a line; null stands for one that is missing. \param label "line 3: "
     void compareLines(std::string label, const json* expected, const json* actual) {
@@ -90,14 +89,13 @@ class Comparison {
     }
 
     [[nodiscard]] bool isIgnored(const std::string& name) const {
-        return std::any_of(ignored_.begin(), ignored_.end(), [&name](const std::string& glob) {
-            return ::fnmatch(glob.c_str(), name.c_str(), 0) == 0;
-        });
+        return std::any_of(ignored_.begin(), ignored_.end(),
+                           [&name](const Glob& glob) { return glob.matches(name); });
     }
 
     std::string label_;
     Tolerance tolerance_;
-    std::span<const std::string> ignored_;
+    std::vector<Glob> ignored_;
 };
 
 /// One value, or one a line.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "env/door_zones.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/glob.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "env/openings.h"
@@ -100,11 +99,12 @@ struct DoorZone {
 
 std::vector<DoorZone> doorZones(std::string_view text, const Environment& environment) {
     const auto [glob, metres] = parsedDoors(text);
+    const Glob doors(glob);
     std::vector<DoorZone> zones;
     std::vector<std::string> known;
     for (const Doorway& door : doorwaysOf(environment)) {
         known.push_back(door.id);
-        if (::fnmatch(glob.c_str(), door.id.c_str(), 0) != 0) continue;
+        if (!doors.matches(door.id)) continue;
         zones.push_back(
             {door.id,
              {std::string(kDoor) + door.id + ',' + formatDouble(metres), around(door, metres),

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/scene_edit.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 
 #include "base/error.h"
@@ -48,9 +46,7 @@ std::vector<Edit> parseEdits(std::string_view request) {
     return edits;
 }
 
-bool isAbout(const Edit& edit, const std::string& id) {
-    return edit.ids == id || ::fnmatch(edit.ids.c_str(), id.c_str(), 0) == 0;
-}
+bool isAbout(const Edit& edit, const std::string& id) { return edit.ids.matches(id); }
 
 const char* fileKeyOf(const Record& record) {
     for (const KeySpec& key : record.schema().keys)

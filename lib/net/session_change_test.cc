@@ -90,7 +90,12 @@ TEST(SessionChange, WhatFailsLeavesTheWorldAsItWas) {
     EXPECT_EQ(talk.answer(world, "SET r7.at=1,1"), "ERR 404 no record `r7`, did you mean `r1`?\n");
     EXPECT_EQ(talk.answer(world, "DELETE r1"),
               "ERR 400 DELETE r1: `l2` has `on=r1`; delete it, too, or set that anew\n");
-    EXPECT_EQ(talk.answer(world, "DELETE *a*b*"), "ERR 400 `*a*b*` has more than two stars\n");
+    EXPECT_EQ(talk.answer(world, "DELETE *a*b*c*"),
+              "ERR 404 no record `*a*b*c*`; there is ispace1, r1, r2, l1, l2\n");
+    EXPECT_TRUE(talk.answer(world, "DELETE *" + std::string(256, 'a'))
+                    .ends_with(" has more than 256 bytes, which a glob may have\n"));
+    EXPECT_EQ(talk.answer(world, "DELETE *a *b *c *d *e *f *g *h *i"),
+              "ERR 400 a request has at most 8 globs\n");
     EXPECT_EQ(talk.answer(world, "ADD cube at=3,2 size=1 texture=/etc/passwd"),
               "ERR 400 files are out of reach\n");
     EXPECT_EQ(talk.answer(world, "LOAD missing.env"),

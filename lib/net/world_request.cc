@@ -47,11 +47,17 @@ std::string messageOf(const FormatError& error, std::string_view verb) {
     return text;
 }
 
-/// A glob with many stars may take for ever to match.
-void checkGlob(const Edit& edit) {
-    constexpr auto kMostStars = 2;
-    if (std::count(edit.ids.begin(), edit.ids.end(), '*') > kMostStars)
-        throw Refusal{400, excerpt(edit.ids) + " has more than two stars"};
+/// Globs of one request, and bytes of each: all ids are compared with them.
+void checkGlobs(const std::vector<Edit>& edits) {
+    constexpr std::ptrdiff_t kMost = 8;
+    constexpr std::size_t kMostBytes = 256;
+    for (const Edit& edit : edits)
+        if (edit.ids.isPattern() && edit.ids.text().size() > kMostBytes)
+            throw Refusal{400, excerpt(edit.ids.text()) + " has more than " +
+                                   std::to_string(kMostBytes) + " bytes, which a glob may have"};
+    if (std::count_if(edits.begin(), edits.end(),
+                      [](const Edit& edit) { return edit.ids.isPattern(); }) > kMost)
+        throw Refusal{400, "a request has at most " + std::to_string(kMost) + " globs"};
 }
 
 /// True for records that are no part of a world.
@@ -75,7 +81,7 @@ std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_v
         else
             for (const std::string_view id : words.subspan(1))
                 edits.push_back(parseEdit(Edit::Kind::Delete, id));
-        for (const Edit& edit : edits) checkGlob(edit);
+        checkGlobs(edits);
         return edits;
     } catch (const UsageError& error) {
         throw Refusal{400, error.what()};
@@ -84,17 +90,11 @@ std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_v
     }
 }
 
-/// What came of a change.
-struct Changed {
-    std::string added = {};                // id; "" if nothing was
-    std::vector<std::string> movers = {};  // who was changed or added; one "" for all
-};
-
 /// What a client should know of those whom a change is about.
-std::string warningOf(const World& world, const Changed& changed) {
+std::string warningOf(const World& world, const std::vector<std::string>& movers) {
     constexpr std::size_t kMost = 3;
     std::vector<std::string> warnings;
-    for (const std::string& id : changed.movers) {
+    for (const std::string& id : movers) {
         for (const auto& more : {outsideWarnings(world.scene(), id), startWarnings(world, id)})
             warnings.insert(warnings.end(), more.begin(), more.end());
         if (warnings.size() > kMost) break;
@@ -123,16 +123,22 @@ class Changing {
   private:
     [[nodiscard]] const World& world() const { return state_->simulation().world(); }
     [[nodiscard]] bool is(std::string_view verb) const { return words_[0] == verb; }
-    [[nodiscard]] Changed changed() const;
+    [[nodiscard]] WorldChange change() const;
     [[nodiscard]] std::string done() const;
 
     ServerState* state_;
     std::string line_;
     std::vector<std::string_view> words_;  // of it
-    std::vector<Edit> edits_;
+    std::shared_ptr<const ChangeNews> news_;
 };
 
 WorldChange Changing::begin() {
+    WorldChange change = this->change();
+    news_ = change.news;
+    return change;
+}
+
+WorldChange Changing::change() const {
     WorldEditor& editor = state_->editor();
     if (is("RESET")) return editor.reset();
     if (is("LOAD")) {
@@ -142,34 +148,20 @@ WorldChange Changing::begin() {
         return editor.load(std::string(words_[1]), words_.size() > 2 ? std::string(words_[2]) : "");
     }
     const auto rest = static_cast<std::size_t>(words_[1].data() - line_.data());
-    edits_ = editsOf(words_, std::string_view(line_).substr(rest));
-    for (const Edit& each : edits_)
-        if (!is("ADD") && !editor.finds(each))
-            throw Refusal{404, unknownThing("record", each.ids, world().scene().ids)};
-    return editor.edit(edits_);
-}
-
-Changed Changing::changed() const {
-    const std::string& last = world().scene().ids.empty() ? line_ : world().scene().ids.back();
-    if (is("ADD")) return {last, {last}};
-    if (is("LOAD")) return {"", {""}};
-    if (!is("SET")) return {};
-    // Each of many would be looked for among all.
-    constexpr std::size_t kMany = 100;
-    std::vector<std::string> movers = state_->editor().moversOf(edits_.front());
-    if (movers.size() > kMany) movers = {""};
-    return {"", std::move(movers)};
+    return editor.edit(editsOf(words_, std::string_view(line_).substr(rest)));
 }
 
 std::string Changing::done() const {
-    const Changed changed = this->changed();
-    const bool needs_scene = is("LOAD") || (!is("RESET") && touchFiles(edits_, world().scene()));
-    state_->simulation().tellChange(printable(line_), needs_scene);
+    const std::string added =
+        is("ADD") && !world().scene().ids.empty() ? world().scene().ids.back() : "";
+    state_->simulation().tellChange(printable(line_), news_->needs_scene);
     std::string out = "OK ";
     out += words_[0];
-    if (!changed.added.empty()) out.append(" id=").append(changed.added);
+    if (!added.empty()) out.append(" id=").append(added);
     out.append(" t=").append(formatMilliseconds(world().time()));
-    if (const std::string warning = warningOf(world(), changed); !warning.empty())
+    const std::vector<std::string> movers =
+        added.empty() ? news_->movers : std::vector<std::string>{added};
+    if (const std::string warning = warningOf(world(), movers); !warning.empty())
         out.append(" warning=").append(warning);
     return out += '\n';
 }
@@ -180,6 +172,8 @@ std::string Changing::end(const std::exception_ptr& failure) {
         return done();
     } catch (const Refusal& refusal) {
         return errorLine(refusal.code, {refusal.message});
+    } catch (const UnknownRecord& unknown) {
+        return errorLine(404, {unknownThing("record", unknown.id, world().scene().ids)});
     } catch (const BadEdit& bad) {
         return errorLine(400, {messageOf(bad, words_[0])});
     } catch (const FormatError& bad) {
@@ -199,10 +193,12 @@ std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const 
     const auto end = [changing, asked](const std::exception_ptr& failure) {
         asked->bytes = std::make_shared<const std::string>(changing->end(failure));
     };
+    const WallTime began = std::chrono::steady_clock::now();
     try {
         state.change(changing->begin(), end);
     } catch (const Refusal&) {
         end(std::current_exception());
+        state.changes().spend(began, std::chrono::steady_clock::now());
     }
     return asked;
 }

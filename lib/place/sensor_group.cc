@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "place/sensor_group.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <set>
 
 #include "base/error.h"
+#include "base/glob.h"
 #include "record/edit.h"
 
 namespace ispace {
@@ -64,13 +63,14 @@ Document withoutPlaces(const Document& layout, std::span<const std::string> fixe
     Document freed = layout;
     const std::vector<std::string> ids = assignIds(freed.records);
     std::vector<bool> is_used(fixed.size());
+    const std::vector<Glob> globs(fixed.begin(), fixed.end());
     for (std::size_t i = 0; i < freed.records.size(); ++i) {
         Record& record = freed.records[i];
         const bool rides = record.has("on");
         if (!isArranged(record) || (!record.has("at") && !rides)) continue;
         bool stays = rides;
         for (std::size_t k = 0; k < fixed.size(); ++k) {
-            if (::fnmatch(fixed[k].c_str(), ids[i].c_str(), 0) != 0) continue;
+            if (!globs[k].matches(ids[i])) continue;
             is_used[k] = true;
             stays = true;
         }

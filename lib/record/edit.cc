@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "record/edit.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -162,17 +160,15 @@ class Editor {
     [[nodiscard]] std::vector<std::size_t> found() const {
         std::vector<std::size_t> places;
         for (std::size_t i = 0; i < ids_.size(); ++i)
-            if (ids_[i] == edit_->ids || ::fnmatch(edit_->ids.c_str(), ids_[i].c_str(), 0) == 0)
-                places.push_back(i);
-        if (places.empty()) fail("no record has the id `" + edit_->ids + '`' + knownIds());
+            if (edit_->ids.matches(ids_[i])) places.push_back(i);
+        if (places.empty()) fail("no record has the id `" + edit_->ids.text() + '`' + knownIds());
         return places;
     }
 
     /// A near id, or the ids that there are: of many the last ones, as layouts follow rooms.
     [[nodiscard]] std::string knownIds() const {
         constexpr std::size_t kMost = 20;
-        const bool is_glob = edit_->ids.find_first_of("*?[") != std::string::npos;
-        std::string text = is_glob ? "" : didYouMean(edit_->ids, ids_);
+        std::string text = edit_->ids.isPattern() ? "" : didYouMean(edit_->ids.text(), ids_);
         if (!text.empty() || ids_.empty()) return text;
         const bool is_cut = ids_.size() > kMost;
         text = "; there are ";

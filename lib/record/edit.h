@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/glob.h"
 #include "geom/point.h"
 #include "record/record.h"
 
@@ -26,7 +27,8 @@ struct Edit {
     };
     Kind kind = Kind::Add;
     std::string text;  ///< as written
-    std::string ids, key, value;
+    Glob ids;
+    std::string key, value;
     Vec3 by;              ///< of Move; x of Forward
     Angle angle;          ///< of Rotate and Tilt
     bool closed = false;  ///< of Fence

@@ -23,7 +23,7 @@ std::string_view splitNumbers(std::string_view text, const char* wanted, Edit& e
     const std::size_t colon = text.rfind(':');
     if (colon == std::string_view::npos || colon == 0 || colon + 1 == text.size())
         throw UsageError('`' + std::string(text) + "` is not " + wanted);
-    edit.ids = text.substr(0, colon);
+    edit.ids = Glob(text.substr(0, colon));
     return text.substr(colon + 1);
 }
 
@@ -32,7 +32,7 @@ void parseSet(std::string_view text, Edit& edit) {
     const std::size_t dot = equals == std::string_view::npos ? equals : text.rfind('.', equals);
     if (dot == std::string_view::npos || dot == 0 || dot + 1 == equals)
         throw UsageError('`' + std::string(text) + "` is not ID.KEY=VALUE");
-    edit.ids = text.substr(0, dot);
+    edit.ids = Glob(text.substr(0, dot));
     edit.key = text.substr(dot + 1, equals - dot - 1);
     edit.value = text.substr(equals + 1);
 }
@@ -81,7 +81,7 @@ Edit parseEdit(Edit::Kind kind, std::string_view text) {
         case Edit::Kind::Fence:
             break;
         case Edit::Kind::Delete:
-            edit.ids = text;
+            edit.ids = Glob(text);
             break;
         case Edit::Kind::Set:
             parseSet(text, edit);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/sensors.h"
 
-#include <fnmatch.h>
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/glob.h"
 #include "layout/bodies.h"
 #include "sensor/kind.h"
 
@@ -13,7 +13,7 @@ namespace ispace {
 
 bool isSelected(const std::string& id, const std::vector<std::string>& globs) {
     return globs.empty() || std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
-               return fnmatch(glob.c_str(), id.c_str(), 0) == 0;
+               return Glob(glob).matches(id);
            });
 }
 

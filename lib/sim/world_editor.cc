@@ -14,6 +14,9 @@ namespace {
 
 using Preparer = std::function<NextScene(Scene scene)>;
 
+/// Each of more would be looked for among all.
+constexpr std::size_t kFewMovers = 100;
+
 /// Where robots and people are.
 std::optional<Pose2> placeIn(const World& world, const std::string& id) {
     const auto mover = world.moverNamed(id);
@@ -23,18 +26,19 @@ std::optional<Pose2> placeIn(const World& world, const std::string& id) {
 /// Edits of a scene, and what becomes of it.
 class Editing {
   public:
+    /// Takes little time: names are looked for in prepare().
     Editing(World& world, std::shared_ptr<const SceneSource> source, std::vector<Edit> edits)
         : world_(&world),
           source_(std::move(source)),
           edits_(std::move(edits)),
           before_(world.sharedScene()),
-          prepare_(world.preparer()),
-          placed_(placedBy(edits_, *before_)) {
-        for (const std::string& id : placed_)
-            if (const auto place = placeIn(world, id)) places_.emplace(id, *place);
+          prepare_(world.preparer()) {
+        for (std::size_t i = 0; i < world.movers().size(); ++i)
+            poses_.push_back(world.status(i).pose);
     }
 
     void prepare() {
+        findAll();
         Scene scene = makeScene(goodRecords(), *before_, source_->devices());
         // Whoever is put somewhere is looked for in the room.
         const bool places = std::any_of(edits_.begin(), edits_.end(), [](const Edit& edit) {
@@ -42,14 +46,19 @@ class Editing {
         });
         if (places) static_cast<void>(scene.environment.indoorIndex());
         next_ = prepare_(std::move(scene));
+        news_->needs_scene = touchFiles(edits_, *next_.scene);
+        if (edits_.front().kind == Edit::Kind::Set) news_->movers = moversOf(edits_.front());
     }
 
     std::shared_ptr<const void> adopt() {
         follow();
         return world_->change(next_, placed_);
     }
+    [[nodiscard]] std::shared_ptr<const ChangeNews> news() const { return news_; }
 
   private:
+    void findAll();
+    [[nodiscard]] std::vector<std::string> moversOf(const Edit& edit) const;
     [[nodiscard]] std::vector<Record> records() const;
     [[nodiscard]] std::vector<Record> goodRecords() const;
     void follow();
@@ -59,10 +68,42 @@ class Editing {
     std::vector<Edit> edits_;
     std::shared_ptr<const Scene> before_;
     Preparer prepare_;
+    std::vector<Pose2> poses_;  // of robots and people before, in the order of the scene
     std::vector<std::string> placed_;
     std::unordered_map<std::string, Pose2> places_;  // of robots and people among them
     NextScene next_;
+    std::shared_ptr<ChangeNews> news_ = std::make_shared<ChangeNews>();
 };
+
+/// Whom and what the edits are about. \throws UnknownRecord
+void Editing::findAll() {
+    const std::vector<std::string>& ids = before_->ids;
+    for (const Edit& edit : edits_) {
+        const auto is_meant = [&](const std::string& id) { return isAbout(edit, id); };
+        if (edit.kind != Edit::Kind::Add && std::none_of(ids.begin(), ids.end(), is_meant))
+            throw UnknownRecord(edit);
+    }
+    placed_ = placedBy(edits_, *before_);
+    std::unordered_map<std::string_view, Pose2> poses;
+    for (std::size_t i = 0; i < before_->robots.size(); ++i)
+        poses.emplace(before_->robots[i].id, poses_[i]);
+    for (std::size_t i = 0; i < before_->people.size(); ++i)
+        poses.emplace(before_->people[i].id, poses_[before_->robots.size() + i]);
+    for (const std::string& id : placed_)
+        if (const auto pose = poses.find(id); pose != poses.end())
+            places_.emplace(id, pose->second);
+}
+
+std::vector<std::string> Editing::moversOf(const Edit& edit) const {
+    std::vector<std::string> ids;
+    const auto look = [&](const auto& movers) {
+        for (const auto& mover : movers)
+            if (ids.size() <= kFewMovers && isAbout(edit, mover.id)) ids.push_back(mover.id);
+    };
+    look(next_.scene->robots);
+    look(next_.scene->people);
+    return ids.size() > kFewMovers ? std::vector<std::string>{""} : ids;
+}
 
 std::vector<Record> Editing::records() const {
     std::unordered_map<std::string, Record> with_files;
@@ -113,22 +154,10 @@ void Editing::follow() {
 WorldEditor::WorldEditor(Simulation& simulation, std::shared_ptr<const SceneSource> source)
     : simulation_(&simulation), source_(std::move(source)) {}
 
-bool WorldEditor::finds(const Edit& edit) const {
-    const auto& ids = simulation_->world().scene().ids;
-    return std::any_of(ids.begin(), ids.end(),
-                       [&](const std::string& id) { return isAbout(edit, id); });
-}
-
-std::vector<std::string> WorldEditor::moversOf(const Edit& edit) const {
-    std::vector<std::string> ids;
-    for (const Mover& mover : simulation_->world().movers())
-        if (isAbout(edit, mover.id)) ids.push_back(mover.id);
-    return ids;
-}
-
 WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
     const auto editing = std::make_shared<Editing>(simulation_->world(), source_, std::move(edits));
-    return {[editing] { editing->prepare(); }, [editing] { return editing->adopt(); }};
+    return {[editing] { editing->prepare(); }, [editing] { return editing->adopt(); },
+            editing->news()};
 }
 
 WorldChange WorldEditor::load(std::string environment, std::string layout) const {
@@ -139,14 +168,16 @@ WorldChange WorldEditor::load(std::string environment, std::string layout) const
                 static_cast<void>(scene.environment.indoorIndex());
                 *next = prepare(std::move(scene));
             },
-            [this, next] { return simulation_->world().restart(*next); }};
+            [this, next] { return simulation_->world().restart(*next); },
+            std::make_shared<const ChangeNews>(ChangeNews{{""}, true})};
 }
 
 WorldChange WorldEditor::reset() const {
     const auto next = std::make_shared<NextScene>();
     return {[next, start = simulation_->world().sharedStart(),
              prepare = simulation_->world().preparer()] { *next = prepare(Scene(*start)); },
-            [this, next] { return simulation_->world().restart(*next); }};
+            [this, next] { return simulation_->world().restart(*next); },
+            std::make_shared<const ChangeNews>()};
 }
 
 }  // namespace ispace

@@ -33,15 +33,33 @@ class BadEdit : public FormatError {
     explicit BadEdit(const FormatError& error) : FormatError(error) {}
 };
 
+/// No record has the id that an edit names.
+class UnknownRecord : public FormatError {
+  public:
+    explicit UnknownRecord(const Edit& edit)
+        : FormatError(Diagnostic{"", 0, 0, "no record has the id `" + edit.ids.text() + '`'}),
+          id(edit.ids.text()) {}
+    std::string id;
+};
+
+/// What is to be told of a change once it is made.
+struct ChangeNews {
+    /// Ids of the robots and people that a Set is about; one "" for all, if they are many.
+    std::vector<std::string> movers = {};
+    /// Its request does not say all: it names files.
+    bool needs_scene = false;
+};
+
 /// A change of a world in two parts, for those who have somebody else to serve meanwhile. What
 /// fails leaves the world as it was.
 struct WorldChange {
     /// What takes long: in any thread and while the world goes on, but is changed by nobody else.
-    /// \throws BadEdit, FormatError, UsageError, std::system_error
+    /// \throws BadEdit, UnknownRecord, FormatError, UsageError, std::system_error
     std::function<void()> prepare;
     /// The world goes on with it, between steps. \returns what it was, see World::change
     /// \throws FormatError
     std::function<std::shared_ptr<const void>()> adopt;
+    std::shared_ptr<const ChangeNews> news;  ///< filled by prepare()
 
     void carryOut() const {
         prepare();
@@ -57,10 +75,6 @@ class WorldEditor {
 
     WorldEditor(Simulation& simulation, std::shared_ptr<const SceneSource> source);
 
-    /// True if an edit other than Add is about anything that is there.
-    [[nodiscard]] bool finds(const Edit& edit) const;
-    /// The robots and people that an edit other than Add is about.
-    [[nodiscard]] std::vector<std::string> moversOf(const Edit& edit) const;
     /// The world goes on with its records after these edits, see World::change. Robots and people
     /// whose place or heading is set are where they are then but for that.
     [[nodiscard]] WorldChange edit(std::vector<Edit> edits) const;
