@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "net/request_parts.h"
 
+#include <new>
+#include <stdexcept>
+
 #include "base/message.h"
 #include "base/number.h"
 #include "net/server_state.h"
@@ -35,6 +38,19 @@ std::string errorLine(int code, std::initializer_list<std::string_view> text) {
     line.append(std::to_string(code)).append(" ");
     for (const std::string_view piece : text) line += printable(piece);
     return line += '\n';
+}
+
+std::string errorLineOf(const std::exception_ptr& failure) {
+    constexpr const char* kNoMemory = "there is not enough memory for this";
+    try {
+        std::rethrow_exception(failure);
+    } catch (const std::bad_alloc&) {
+        return errorLine(409, {kNoMemory});
+    } catch (const std::length_error&) {
+        return errorLine(409, {kNoMemory});
+    } catch (const std::exception& error) {
+        return errorLine(409, {error.what()});
+    }
 }
 
 std::string unknownThing(std::string_view kind, std::string_view id,

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <initializer_list>
 #include <span>
 #include <string>
@@ -37,6 +38,9 @@ std::string headingText(Angle heading);
 
 /// "ERR 404 no robot `r9`\n"
 std::string errorLine(int code, std::initializer_list<std::string_view> text);
+
+/// Of a request that failed for want of memory, or because something cannot be written so.
+std::string errorLineOf(const std::exception_ptr& failure);
 
 /// "no robot `r9`" with what may have been meant, or what there is.
 std::string unknownThing(std::string_view kind, std::string_view id,

@@ -2,6 +2,7 @@
 #include "net/server.h"
 
 #include <fcntl.h>
+#include <poll.h>
 
 #include <algorithm>
 #include <atomic>
@@ -50,7 +51,7 @@ struct Server::Data {
           limits(the_limits),
           state(the_simulation, the_limits),
           acceptor(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }) {
-        state.makeAside([this] { asio::post(io, [] {}); });
+        state.makeAside([this] { asio::post(io, [] {}); }, [this] { return isStopped(); });
     }
     ~Data() {
         state.endAside();
@@ -66,6 +67,8 @@ struct Server::Data {
     void sleepUntil(WallTime time);
     void relieve();
     void sweep();
+    [[nodiscard]] bool isStopped();
+    void finishRecord();
     void end();
     void closeAll();
 
@@ -232,10 +235,20 @@ void Server::Data::sweep() {
                       [](const auto& connection) { return connection->serving(); }));
 }
 
+/// A signal has come, which the loop may not have noticed.
+bool Server::Data::isStopped() {
+    if (!stopper.is_open()) return false;
+    pollfd signal{stopper.native_handle(), POLLIN, 0};
+    return ::poll(&signal, 1, 0) > 0;
+}
+
+/// The last step, with its frames unless a signal has ended the run.
+void Server::Data::finishRecord() {
+    while (!simulation.finishRecord(WallTime::max()) && state.await()) continue;
+}
+
 void Server::Data::end() {
-    error_code ignored;
     acceptor.close();
-    stopper.close(ignored);
     for (const auto& connection : connections) connection->end();
     if (web) web->end();
     for (DevicePort& device : devices) device.end();
@@ -282,6 +295,12 @@ std::string Server::serveDevice(const WireProtocol& protocol, const std::string&
         .address();
 }
 
+FrameTaker Server::frameTaker() {
+    return [data = data_.get()](FrameJob job) { data->state.takeFrame(std::move(job)); };
+}
+
+bool Server::isBusy() const { return data_->state.isBusy(); }
+
 std::size_t Server::clients() const { return data_->serving; }
 
 void Server::run() {
@@ -292,7 +311,8 @@ void Server::run() {
         data.serveClients();
         // Last before sleeping: what clients asked for decides for how long.
         std::optional<WallTime> next;
-        if (!data.state.holdsWorld()) next = simulation.run(steady_clock::now(), data.turn());
+        next = data.state.holdsWorld() ? simulation.flushRecord()
+                                       : simulation.run(steady_clock::now(), data.turn());
         if (simulation.finished()) break;
         if (const WallTime turn = data.nextTurn(); turn < WallTime::max())
             next = std::min(next.value_or(turn), turn);
@@ -302,6 +322,7 @@ void Server::run() {
             data.sleepUntil(*next);
     }
     data.serveClients();
+    data.finishRecord();
     data.end();
 }
 

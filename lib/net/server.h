@@ -91,11 +91,17 @@ class Server {
     /// \throws UsageError if the world has no such device, std::system_error naming the endpoint
     std::string serveDevice(const WireProtocol& protocol, const std::string& id,
                             const Endpoint& endpoint);
+    /// Has frames for a record made in the thread of pictures.
+    [[nodiscard]] FrameTaker frameTaker();
+    /// True if other threads are still at pictures, or at a change of the world, which the
+    /// destructor waits for.
+    [[nodiscard]] bool isBusy() const;
     /// Number of clients served now; callable from any thread.
     [[nodiscard]] std::size_t clients() const;
 
-    /// Runs until the simulation is finished, then sends what is pending for at most half a second
-    /// and closes. Call once.
+    /// Runs until the simulation is finished, waits for frames of the record and for pictures that
+    /// clients have asked for, then sends what is pending for at most half a second and closes.
+    /// Once stopOn() ends it, it waits for no picture. Call once.
     void run();
     /// Finishes the simulation. Callable from any thread, and before run(), which then returns at
     /// once.

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "base/number.h"
+#include "net/request_parts.h"
+#include "sim/run_limits.h"
 
 namespace ispace {
 
@@ -148,8 +150,12 @@ bool ServerState::collect() {
     return (builders_ && builders_->collect()) || has_made;
 }
 
-void ServerState::collectAll() {
-    if (workshop_) workshop_->collectAll();
+bool ServerState::await() {
+    // How soon the end of all patience is noticed.
+    constexpr auto kSlice = std::chrono::milliseconds(20);
+    if (!workshop_ || (stopped_ && stopped_())) return false;
+    workshop_->collectWithin(kSlice);
+    return true;
 }
 
 void ServerState::change(WorldChange change,
@@ -172,6 +178,8 @@ void ServerState::adopt(WorldChange change, std::exception_ptr failure, WallTime
                         const std::function<void(const std::exception_ptr& failure)>& end) {
     std::shared_ptr<const void> old;
     try {
+        // The record follows the sensors by their numbers; frames may come later.
+        simulation_->finishRecord(WallTime::max());
         if (!failure) old = change.adopt();
     } catch (...) {
         failure = std::current_exception();
@@ -195,44 +203,82 @@ std::shared_ptr<const ServerState::Asked> ServerState::ask(std::size_t sensor,
     const Text& text = textOf(sensor, form);
     if (!may_wait || (is_taken && text.seq == seq && text.bytes))
         return std::make_shared<const Asked>(Asked{scan(sensor, form)});
-    Making making{sensor, world.changes(), seq, form, std::make_shared<Asked>(), nullptr};
-    for (const Making& other : makings_) {
-        const bool is_same = other.sensor == sensor && other.changes == making.changes;
-        if (!is_same || other.seq != seq) continue;
-        if (other.form == form) return other.asked;
-        making.reading = other.reading;
-    }
-    std::function<SensorReading()> take;
-    if (!making.reading && is_taken) {
-        making.reading = std::make_shared<SensorReading>(world.reading(sensor));
-    } else if (!making.reading) {
-        making.reading = std::make_shared<SensorReading>();
-        take = world.takeLater(sensor);
-    }
-    makings_.push_back(making);
+    Making making{sensor, world.changes(), seq, form, std::make_shared<Asked>(), nullptr, 0};
+    for (const Making& other : makings_)
+        if (other.sensor == sensor && other.changes == making.changes && other.seq == seq &&
+            other.form == form)
+            return other.asked;
+    if (auto refused = refusal(sensor)) return refused;
+    auto take = beginMaking(making);
     make(making, std::move(take));
     return making.asked;
 }
 
+/// Of a picture more than may wait; null: it may.
+std::shared_ptr<const ServerState::Asked> ServerState::refusal(std::size_t sensor) const {
+    const auto sensors = simulation_->world().sensors();
+    double pixels = pixelsOf(sensors[sensor]);
+    for (const Making& making : makings_) pixels += making.pixels;
+    if (makings_.empty() || pixels <= kMostWaitingPixels) return nullptr;
+    return std::make_shared<const Asked>(Asked{
+        counted(errorLine(
+            409, {"pictures of ", formatFixed(pixels, 0), " pixels would wait to be made, at most ",
+                  formatFixed(kMostWaitingPixels, 0), " may: ask again later"})),
+        true});
+}
+
+void ServerState::takeFrame(FrameJob job) {
+    World& world = simulation_->world();
+    Making making{job.sensor, world.changes(),           world.period(job.sensor),
+                  {},         std::make_shared<Asked>(), nullptr,
+                  0};
+    auto take = beginMaking(making);
+    make(making, std::move(take), std::move(job));
+}
+
+/// Finds the reading, or \returns how to take it.
+std::function<SensorReading()> ServerState::beginMaking(Making& making) {
+    World& world = simulation_->world();
+    for (const Making& other : makings_)
+        if (other.sensor == making.sensor && other.changes == making.changes &&
+            other.seq == making.seq)
+            making.reading = other.reading;
+    std::function<SensorReading()> take;
+    if (!making.reading && world.isTaken(making.sensor)) {
+        making.reading = std::make_shared<SensorReading>(world.reading(making.sensor));
+    } else if (!making.reading) {
+        making.reading = std::make_shared<SensorReading>();
+        take = world.takeLater(making.sensor);
+    }
+    making.pixels = pixelsOf(world.sensors()[making.sensor]);
+    makings_.push_back(making);
+    return take;
+}
+
 /// Jobs are done in order: later ones find the reading of the first.
-void ServerState::make(const Making& making, std::function<SensorReading()> take) {
+void ServerState::make(const Making& making, std::function<SensorReading()> take, FrameJob frame) {
     World& world = simulation_->world();
     const auto text = std::make_shared<std::string>();
     const bool takes = take != nullptr;
-    workshop_->give(
-        {[making, text, take = std::move(take), sensor = world.sensors()[making.sensor]] {
-             if (take) *making.reading = take();
-             *text = scanText(sensor, *making.reading, making.form);
-         },
-         [this, making, text, takes](const std::exception_ptr& failure) {
-             std::erase_if(makings_,
-                           [&](const Making& other) { return other.asked == making.asked; });
-             if (failure) std::rethrow_exception(failure);
-             making.asked->bytes = counted(std::move(*text));
-             if (making.changes != simulation_->world().changes()) return;
-             if (takes) simulation_->world().put(making.sensor, *making.reading);
-             keep(textOf(making.sensor, making.form), making.seq, making.asked->bytes);
-         }});
+    doAside({[making, text, take = std::move(take), sensor = world.sensors()[making.sensor],
+              use = std::move(frame.use)] {
+                 if (take) *making.reading = take();
+                 if (use) use(*making.reading);
+                 if (making.form) *text = scanText(sensor, *making.reading, *making.form);
+             },
+             [this, making, text, takes,
+              deliver = std::move(frame.deliver)](const std::exception_ptr& failure) {
+                 std::erase_if(makings_,
+                               [&](const Making& other) { return other.asked == making.asked; });
+                 const bool is_same = making.changes == simulation_->world().changes();
+                 if (!failure && takes && is_same)
+                     simulation_->world().put(making.sensor, *making.reading);
+                 if (deliver) return deliver(failure);
+                 making.asked->is_error = failure != nullptr;
+                 making.asked->bytes = counted(failure ? errorLineOf(failure) : std::move(*text));
+                 if (is_same && !failure)
+                     keep(textOf(making.sensor, *making.form), making.seq, making.asked->bytes);
+             }});
 }
 
 std::shared_ptr<const std::string> ServerState::counted(std::string text) const {

@@ -155,17 +155,21 @@ class ServerState {
     /// A text that was asked for.
     struct Asked {
         std::shared_ptr<const std::string> bytes;  ///< null until it is made
+        bool is_error = false;                     ///< it is a line of ERR
     };
     /// The same as scan(). Of a heavy sensor, it is made in another thread if makeAside() was
-    /// called: as the sensor sees the world now.
+    /// called: as the sensor sees the world now. Refused if too much is waiting to be made.
     std::shared_ptr<const Asked> ask(std::size_t sensor, const ReplyForm& form);
+    /// Takes a frame for a record, likewise; those who ask() for the same one share it.
+    void takeFrame(FrameJob job);
     /// Does something, in another thread if makeAside() was called; collect() then delivers it.
     void doAside(Workshop::Job job);
     /// Lets another thread make what takes long. It calls `wake` when something is ready for
-    /// collect().
-    void makeAside(const std::function<void()>& wake) {
+    /// collect(). \param stopped true once nobody waits for that any more
+    void makeAside(const std::function<void()>& wake, std::function<bool()> stopped) {
         workshop_.emplace(wake);
         builders_.emplace(wake);
+        stopped_ = std::move(stopped);
     }
     void endAside() {
         workshop_.reset();
@@ -177,8 +181,11 @@ class ServerState {
     [[nodiscard]] bool holdsWorld() const;
     /// Completes what was asked for and is ready, between steps. \returns false if nothing is
     bool collect();
-    /// Waits for all that was asked for.
-    void collectAll();
+    /// Waits for readings that were asked for, and completes those that are ready. \returns false,
+    /// and does nothing, once nobody waits any more
+    bool await();
+    /// True if another thread is at something, or will be.
+    [[nodiscard]] bool isBusy() const { return isMaking() || (builders_ && builders_->open() > 0); }
     /// Bytes of outdated scans that connections still have to send.
     [[nodiscard]] std::size_t staleBytes() const { return *alive_ - kept_; }
 
@@ -193,15 +200,18 @@ class ServerState {
         std::size_t sensor;
         std::int64_t changes;  // of the world
         std::int64_t seq;
-        ReplyForm form;
+        std::optional<ReplyForm> form;  // nothing: a frame for the record
         std::shared_ptr<Asked> asked;
         std::shared_ptr<SensorReading> reading;  // once the first job of this sensor is done
+        double pixels = 0;
     };
     [[nodiscard]] bool isMaking() const { return workshop_ && workshop_->open() > 0; }
     [[nodiscard]] std::shared_ptr<const std::string> counted(std::string text) const;
     [[nodiscard]] Text& textOf(std::size_t sensor, const ReplyForm& form);
     void keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string> bytes);
-    void make(const Making& making, std::function<SensorReading()> take);
+    [[nodiscard]] std::shared_ptr<const Asked> refusal(std::size_t sensor) const;
+    std::function<SensorReading()> beginMaking(Making& making);
+    void make(const Making& making, std::function<SensorReading()> take, FrameJob frame = {});
     void adopt(WorldChange change, std::exception_ptr failure, WallTime began,
                const std::function<void(const std::exception_ptr& failure)>& end);
 
@@ -221,6 +231,7 @@ class ServerState {
     std::shared_ptr<std::size_t> alive_ = std::make_shared<std::size_t>(0);
     std::vector<Making> makings_;
     bool is_changing_ = false;
+    std::function<bool()> stopped_;
     // The last, as their jobs are about the others: of pictures, and of changes of the world.
     std::optional<Workshop> workshop_, builders_;
 };

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <initializer_list>
 #include <limits>
+#include <new>
 
 #include "base/message.h"
 #include "base/number.h"
@@ -145,7 +147,13 @@ void Session::request(std::string_view line) {
     if (arguments > found->most)
         return error(400, {"unexpected ", excerpt(words[found->most + 1]), " behind ", found->verb,
                            found->most == 0 ? "" : " ", found->most == 0 ? "" : found->arguments});
-    (this->*found->answer)(words);
+    const std::size_t before = out_.size();
+    try {
+        (this->*found->answer)(words);
+    } catch (const std::bad_alloc&) {
+        out_.resize(before);
+        out_ += errorLineOf(std::current_exception());
+    }
     tellEnds();
 }
 
@@ -202,7 +210,13 @@ void Session::finish() {
     }
     // At last there is time to wait: for the frame before a request, and that which it asks for.
     while (wanted_ || coming_) {
-        state_->collectAll();
+        if (!state_->await()) {
+            if (wanted_ || !held_.empty()) error(405, {"the run has ended"});
+            coming_.reset();
+            wanted_.reset();
+            held_.clear();
+            break;
+        }
         proceed();
     }
     stepped();

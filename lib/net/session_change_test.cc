@@ -104,6 +104,31 @@ TEST(SessionChange, WhatFailsLeavesTheWorldAsItWas) {
     EXPECT_EQ(talk.room.world.changes(), 0);
 }
 
+TEST(SessionChange, SumsAreBounded) {
+    Changing talk;
+    Session& world = talk.client("WORLD");
+    std::string answer;
+    int lasers = 0;
+    // 360 001 beams each.
+    const std::string laser = "ADD laser at=0,1 fov=360 step=0.001 rate=";
+    for (; lasers < 20; ++lasers) {
+        answer = talk.answer(world, laser + "1");
+        if (!answer.starts_with("OK ADD ")) break;
+    }
+    EXPECT_EQ(lasers, 11) << answer;
+    EXPECT_TRUE(answer.starts_with("ERR 409 the world would have ")) << answer;
+    EXPECT_TRUE(answer.ends_with(" beams of lasers and sonars, more than 4000000\n")) << answer;
+    EXPECT_TRUE(talk.answer(world, "DELETE laser2").starts_with("OK DELETE"));
+    answer = talk.answer(world, laser + "400");
+    EXPECT_TRUE(answer.starts_with("ERR 409 ")) << answer;
+    EXPECT_NE(answer.find(" beams a second, more than 100000000\n"), std::string::npos) << answer;
+    EXPECT_TRUE(talk.answer(world, "ADD camera at=0,1,1 pixels=4000,4000").starts_with("OK ADD "));
+    answer = talk.answer(world, "ADD camera at=0,1,1 pixels=8000,8000");
+    EXPECT_NE(answer.find(" pixels of cameras and rangers, more than 64000000\n"),
+              std::string::npos)
+        << answer;
+}
+
 TEST(SessionChange, RecordsOfFilesAreNotAdded) {
     Changing talk;
     Session& world = talk.client("WORLD");

@@ -32,7 +32,7 @@ class SessionSeekTest : public ::testing::Test {
         writeAll(folder_ / "robots.csv", moments());
         replay_ = std::make_unique<Replay>(folder_.path());
         talk_.room.simulation.replay(*replay_, true);
-        talk_.state.makeAside([] {});
+        talk_.state.makeAside([] {}, nullptr);
     }
     void TearDown() override { talk_.state.endAside(); }
 

@@ -80,7 +80,10 @@ void Session::sendReading(std::size_t sensor, const ReplyForm& form) {
 void Session::receiveAsked() {
     if (wanted_ && wanted_->bytes) out_ += *std::exchange(wanted_, nullptr)->bytes;
     if (!coming_ || !coming_->bytes) return;
-    scan_ = std::exchange(coming_, nullptr)->bytes;
+    const auto come = std::exchange(coming_, nullptr);
+    // Nobody asked for it; the next one may be there.
+    if (come->is_error) return;
+    scan_ = come->bytes;
     // It goes before the answer that waits for it.
     if (!held_.empty()) out_ += *std::exchange(scan_, nullptr);
 }

@@ -172,7 +172,7 @@ TEST(SessionSensors, ASlowReaderGetsTheNewestPictureAndCostsNoOthers) {
 /// A client that has left a picture unread for so long that it is stale. Frames are made aside.
 struct SlowTalk : SensorTalk {
     SlowTalk() : slow(client("SENSOR c1")) {
-        state.makeAside([] {});
+        state.makeAside([] {}, nullptr);
         ask(slow, "STREAM");
         step(2);
         EXPECT_EQ(settle(slow), "");

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "net/workshop.h"
 
-#include <tbb/global_control.h>
-
 #include <system_error>
 #include <utility>
 
@@ -23,9 +21,6 @@ Workshop::~Workshop() {
 /// Starts it if that has not been done.
 bool Workshop::hasThread() {
     if (thread_.joinable() || is_refused_) return !is_refused_;
-    using Control = tbb::global_control;
-    is_refused_ = Control::active_value(Control::max_allowed_parallelism) < 2;
-    if (is_refused_) return false;
     try {
         thread_ = std::thread([this] { run(); });
     } catch (const std::system_error&) {
@@ -68,14 +63,16 @@ bool Workshop::collect() {
     return !done.empty();
 }
 
-void Workshop::collectAll() {
-    while (open_ > 0) {
-        {
-            std::unique_lock lock(mutex_);
-            changed_.wait(lock, [this] { return !done_.empty(); });
-        }
-        collect();
+void Workshop::collectWithin(std::chrono::nanoseconds patience) {
+    if (open_ > 0) {
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, patience, [this] { return !done_.empty(); });
     }
+    collect();
+}
+
+void Workshop::collectAll() {
+    while (open_ > 0) collectWithin(std::chrono::seconds(1));
 }
 
 Workshop::Done Workshop::doneNow(Job job) {

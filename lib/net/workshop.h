@@ -2,6 +2,7 @@
 // Private to lib/net.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -14,8 +15,9 @@
 namespace ispace {
 
 /// A thread for what takes so long that clients would notice: jobs are done one after another, in
-/// the order they were given. It begins with the first job. Where only one thread is allowed (TBB's
-/// limit), or the system refuses another, the owner's thread does each job as it is given.
+/// the order they were given. It begins with the first job. It is there however many threads may
+/// compute (TBB's limit, which holds for what a job does): clients are served meanwhile. Where the
+/// system refuses another thread, the owner's does each job as it is given.
 class Workshop {
   public:
     /// \param wake is called by that thread when a job is done
@@ -38,6 +40,8 @@ class Workshop {
     [[nodiscard]] std::size_t open() const { return open_; }
     /// Delivers those that are done. \returns false if there were none
     bool collect();
+    /// Waits for one at least, but not for longer, and delivers those that are done.
+    void collectWithin(std::chrono::nanoseconds patience);
     /// Waits for all, and delivers them.
     void collectAll();
 

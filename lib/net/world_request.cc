@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <new>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -182,6 +184,10 @@ std::string Changing::end(const std::exception_ptr& failure) {
         return errorLine(400, {bad.what()});
     } catch (const std::system_error& bad) {
         return errorLine(404, {bad.what()});
+    } catch (const std::bad_alloc&) {
+        return errorLineOf(std::current_exception());
+    } catch (const std::length_error&) {
+        return errorLineOf(std::current_exception());
     }
 }
 

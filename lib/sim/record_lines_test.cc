@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "base/file.h"
 #include "base/test_folder.h"
@@ -87,6 +89,50 @@ TEST_F(RecordLines, PeopleHaveATable) {
     EXPECT_TRUE(out.starts_with("1,h1,")) << out;
     EXPECT_EQ(std::count(out.begin(), out.end(), ','),
               std::count(kPeopleHead.begin(), kPeopleHead.end(), ','));
+}
+
+/// The same record, whoever makes the frames; what is not made at the end is left out.
+TEST_F(RecordLines, FramesMayBeMadeAside) {
+    const Scene scene = room("laser id=l1 at=0,1 rate=10\n");
+    const auto run = [&](const std::string& name, bool aside, bool ends) {
+        World world(scene, milliseconds(50));
+        std::vector<std::function<void()>> jobs;
+        RecordOptions options;
+        if (aside)
+            options.frame_taker = [&](const FrameJob& job) {
+                jobs.push_back([take = world.takeLater(job.sensor), job] {
+                    const SensorReading reading = take();
+                    job.use(reading);
+                    job.deliver(nullptr);
+                });
+            };
+        Recorder recorder(path(name), world, options);
+        constexpr auto kEver = std::chrono::steady_clock::time_point::max();
+        for (int i = 0; i <= 40; ++i) {
+            EXPECT_EQ(recorder.finishStep(world, kEver), jobs.empty());
+            EXPECT_EQ(recorder.awaitsFrames(), !jobs.empty());
+            if (i == 40 && !ends) break;
+            for (const auto& job : jobs) job();
+            jobs.clear();
+            EXPECT_TRUE(recorder.finishStep(world, kEver));
+            if (i == 40) break;
+            world.step();
+            recorder.record(world);
+        }
+        recorder.end(world);
+        return readAll(path(name + "/scans.jsonl"));
+    };
+    const std::string whole = run("whole", false, true);
+    EXPECT_EQ(run("aside", true, true), whole);
+    EXPECT_EQ(filesIn("aside/pictures"), filesIn("whole/pictures"));
+    const std::string cut = run("cut", true, false);
+    EXPECT_TRUE(whole.starts_with(cut));
+    const std::string last = whole.substr(cut.size());
+    EXPECT_NE(last.find("pictures/c1-000020.png"), std::string::npos) << last;
+    EXPECT_EQ(std::count(last.begin(), last.end(), '\n'), 2) << last;
+    EXPECT_EQ(filesIn("cut/pictures") + 1, filesIn("whole/pictures"));
+    for (const char* file : {"/robots.csv", "/info.csv"})
+        EXPECT_EQ(readAll(path("cut") + file), readAll(path("whole") + file));
 }
 
 TEST_F(RecordLines, FramesAreRecordedAtTheirRate) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -55,6 +56,34 @@ std::int64_t strideOf(double rate, double most) {
     return std::max<std::int64_t>(1, std::llround(std::ceil(rate / most - 1e-9)));
 }
 
+/// A frame of the step, which is written once all before it are made.
+struct Frame {
+    explicit Frame(const RunSensor& the_sensor)
+        : sensor(the_sensor), is_picture(the_sensor.model<Camera>() != nullptr) {}
+
+    /// Makes file and line of a reading. In any thread.
+    void make(const SensorReading& reading) {
+        name = frameName(sensor.id, reading.seq);
+        bytes = frameBytes(sensor, reading);
+        const std::string file = std::string(is_picture ? kPictures : kDepths) + "/" + name;
+        appendReadingLine(line, sensor, reading, {}, file);
+    }
+
+    /// One that memory did not suffice for is left out: a client may have added its camera.
+    void finish(const std::exception_ptr& failure) {
+        is_made = true;
+        try {
+            if (failure) std::rethrow_exception(failure);
+        } catch (const std::bad_alloc&) {
+            line.clear();
+        }
+    }
+
+    RunSensor sensor;
+    bool is_picture, is_made = false;
+    std::string name, bytes, line;  // "": it is left out
+};
+
 }  // namespace
 
 struct Recorder::Data {
@@ -102,6 +131,10 @@ struct Recorder::Data {
     std::vector<std::vector<bool>> felt;  // by the bumpers of each robot
     std::optional<Periods> sonar_periods;
     SimTime sonars_due{};
+    // Of the step recorded last: the next of World::read() to be written, and frames, which follow.
+    bool is_open = false, awaits_frames = false;
+    std::size_t next_reading = 0;
+    std::vector<std::shared_ptr<Frame>> frames;
 
     /// True if something happened since the last record.
     [[nodiscard]] bool hasNewEvents() const {
@@ -114,9 +147,10 @@ struct Recorder::Data {
     void remember(const World& world);
     void lookAtSensors(const World& world);
     void takeFrames(World& world);
-    void appendScans(World& world);
+    bool appendScans(World& world, steady_clock::time_point until);
+    bool finishStep(World& world, steady_clock::time_point until);
     void appendFeelings(World& world);
-    void appendFrame(const RunSensor& sensor, const SensorReading& reading);
+    void appendFrame(const Frame& frame);
     void appendEvents();
     void append(World& world);
     [[nodiscard]] std::uint64_t size() const;
@@ -171,31 +205,55 @@ void Recorder::Data::takeFrames(World& world) {
         if (strides[i] == 0) continue;
         const std::int64_t period = world.period(i);
         if (std::exchange(periods[i], period) == period || period % strides[i] != 0) continue;
-        const SensorReading& reading = world.take(i);
-        if (reading.time == world.time()) appendFrame(world.sensors()[i], reading);
+        if (world.isTaken(i) && world.reading(i).time != world.time()) continue;
+        const auto frame = frames.emplace_back(std::make_shared<Frame>(world.sensors()[i]));
+        if (!options.frame_taker) {
+            frame->make(world.take(i));
+            frame->is_made = true;
+            continue;
+        }
+        // The record may end before the frame does.
+        options.frame_taker(
+            {i, [frame](const SensorReading& reading) { frame->make(reading); },
+             [frame](const std::exception_ptr& failure) { frame->finish(failure); }});
     }
 }
 
-void Recorder::Data::appendFrame(const RunSensor& sensor, const SensorReading& reading) {
-    const bool is_picture = sensor.model<Camera>() != nullptr;
-    const std::string name = frameName(sensor.id, reading.seq);
-    (is_picture ? pictures : depths).write(name, frameBytes(sensor, reading), steps);
-    std::string file = is_picture ? kPictures : kDepths;
-    file.append("/").append(name);
-    appendReadingLine(scans.pending, sensor, reading, receivers, file);
+void Recorder::Data::appendFrame(const Frame& frame) {
+    if (frame.line.empty()) return;
+    (frame.is_picture ? pictures : depths).write(frame.name, frame.bytes, steps);
+    scans.pending += frame.line;
 }
 
-void Recorder::Data::appendScans(World& world) {
-    lookAtSensors(world);
-    for (const std::size_t i : world.read()) {
+/// \returns true once all readings but frames are written
+bool Recorder::Data::appendScans(World& world, steady_clock::time_point until) {
+    if (!world.readSome(until)) return false;
+    while (next_reading < world.read().size()) {
+        const std::size_t i = world.read()[next_reading++];
         const RunSensor& sensor = world.sensors()[i];
         if (sensor.isHeavy()) continue;
         appendReadingLine(scans.pending, sensor, world.reading(i), receivers);
         // One step of many lasers may be more than should be held.
         if (scans.pending.size() > kMaxPending) scans.flush();
+        if (steady_clock::now() >= until) break;
     }
-    takeFrames(world);
-    scans.endStep(world.steps());
+    return next_reading >= world.read().size();
+}
+
+bool Recorder::Data::finishStep(World& world, steady_clock::time_point until) {
+    if (!is_open) return true;
+    flushed_all = false;
+    // Once: the world may be changed before the frames are made.
+    awaits_frames = awaits_frames || appendScans(world, until);
+    if (!awaits_frames) return false;
+    while (!frames.empty() && frames.front()->is_made) {
+        appendFrame(*frames.front());
+        frames.erase(frames.begin());
+    }
+    if (!frames.empty()) return false;
+    scans.endStep(steps);
+    is_open = false;
+    return true;
 }
 
 /// What robots feel by themselves.
@@ -227,8 +285,11 @@ void Recorder::Data::append(World& world) {
     appendPeopleRows(people.pending, world);
     people.endStep(steps);
     appendEvents();
-    appendScans(world);
     appendFeelings(world);
+    is_open = true;
+    awaits_frames = false;
+    next_reading = 0;
+    takeFrames(world);
 }
 
 void Recorder::Data::writeInfo() {
@@ -247,10 +308,13 @@ std::uint64_t Recorder::Data::size() const {
 
 void Recorder::Data::writeLines() {
     for (LineFile* file : stepFiles()) file->flush();
-    for (LineFile* file : stepFiles()) file->forget();
-    pictures.forget();
-    depths.forget();
-    scenes.forget();
+    // Else the step before may have to be the last.
+    if (!is_open) {
+        for (LineFile* file : stepFiles()) file->forget();
+        pictures.forget();
+        depths.forget();
+        scenes.forget();
+    }
     writeInfo();
     const std::chrono::duration<double> wall = flushed - started;
     timing.pending.append(formatSimTime(time)).append(",").append(formatFixed(wall.count(), 6));
@@ -330,6 +394,7 @@ void Recorder::record(World& world) {
     data.remember(world);
     try {
         data.append(world);
+        if (!data.options.frame_taker) data.finishStep(world, steady_clock::time_point::max());
     } catch (const std::system_error&) {
         data.endEarly();
         throw;
@@ -337,6 +402,27 @@ void Recorder::record(World& world) {
     const bool much =
         std::max(data.robots.pending.size(), data.people.pending.size()) > kMaxPending;
     if (much || steady_clock::now() - data.flushed >= kFlushEvery) data.flush();
+}
+
+bool Recorder::finishStep(World& world, steady_clock::time_point until) {
+    Data& data = *data_;
+    if (data.ended) return true;
+    try {
+        return data.finishStep(world, until);
+    } catch (const std::system_error&) {
+        data.endEarly();
+        throw;
+    }
+}
+
+const RecordOptions& Recorder::options() const { return data_->options; }
+
+bool Recorder::awaitsFrames() const { return data_->is_open && data_->awaits_frames; }
+
+void Recorder::end(World& world) {
+    std::erase_if(data_->frames, [](const auto& frame) { return !frame->is_made; });
+    finishStep(world, steady_clock::time_point::max());
+    flush(world);
 }
 
 std::string Recorder::recordScene(const Scene& scene) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -15,6 +16,17 @@
 #include "sim/world.h"
 
 namespace ispace {
+
+/// A picture or depth frame that is to be recorded.
+struct FrameJob {
+    std::size_t sensor = 0;  ///< of the world, heavy
+    /// Called with its reading of now, in any thread.
+    std::function<void(const SensorReading& reading)> use = {};
+    /// Called after it between steps, with what was thrown, or null.
+    std::function<void(const std::exception_ptr& failure)> deliver = {};
+};
+
+using FrameTaker = std::function<void(FrameJob job)>;
 
 struct RecordOptions {
     History history = {};
@@ -29,6 +41,8 @@ struct RecordOptions {
     double frame_rate = 1;
     /// What sonars measure so many times a simulated second, at most. 0: not at all.
     double sonar_rate = 10;
+    /// Has frames made in another thread; null: record() makes them.
+    FrameTaker frame_taker = {};
     /// Limits the record to about this many bytes: the write that exceeds them throws FormatError;
     /// what is written stays.
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
@@ -71,9 +85,18 @@ class Recorder {
     static std::vector<std::string> growingFilesIn(const std::string& folder);
     static std::vector<std::string> filesIn(const std::string& folder);
 
-    /// Records the state after a step, and takes the frames that are due; flushes if 0.1 s have
-    /// passed.
+    /// Records the state after a step; flushes if 0.1 s have passed. Without a frame_taker what
+    /// sensors read is recorded, too, and the frames that are due; else finishStep() does that.
     void record(World& world);
+    /// Records what sensors read in the step recorded last, until about then. \returns true once
+    /// that is done: the world may then go on, or be changed
+    bool finishStep(World& world, std::chrono::steady_clock::time_point until);
+    [[nodiscard]] const RecordOptions& options() const;
+    /// True if only frames that are being made are missing.
+    [[nodiscard]] bool awaitsFrames() const;
+    /// Ends the record: frames that are still being made are left out, with their lines.
+    /// \throws as flush()
+    void end(World& world);
     /// Writes a scene after a change that its request does not say all about. \returns its file
     /// within the folder; "" without scene_text, or if it cannot be written: record() then throws
     std::string recordScene(const Scene& scene);

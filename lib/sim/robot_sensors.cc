@@ -13,7 +13,7 @@ namespace ispace {
 namespace {
 
 constexpr int kCircles = 3, kInFirst = 6;
-constexpr std::size_t kRays = 1 + kInFirst * (1 + 2 + 3);
+static_assert(kSonarRays == 1 + kInFirst * (1 + 2 + 3));
 /// Of the body's height.
 constexpr double kSonarHeight = 0.75;
 /// What is lower is the floor.
@@ -23,7 +23,7 @@ constexpr double kFloor = 1e-3;
 Directions coneOf(Angle heading, Angle fov) {
     const Frame3 frame(Pose3{{}, heading, {}, {}});
     Directions rays;
-    rays.resize(kRays);
+    rays.resize(kSonarRays);
     rays.set(0, frame.forward);
     std::size_t next = 1;
     for (int circle = 1; circle <= kCircles; ++circle) {
@@ -45,13 +45,13 @@ std::vector<float> sonarRanges(const RobotModel& model, const Pose2& pose,
                                std::uint32_t own) {
     const SonarRing& ring = model.sonar;
     std::vector<float> ranges;
-    std::vector<float> cone(kRays);
+    std::vector<float> cone(kSonarRays);
     for (const Pose2& place : ring.places) {
         const Point2 at = pose * place.position;
         const Point3 origin{at.x, at.y, kSonarHeight * model.height};
         const Directions rays = coneOf(pose.heading + place.heading, ring.fov);
         environment.cast(origin, rays, ring.max_range, cone);
-        for (std::size_t i = 0; i < kRays; ++i)
+        for (std::size_t i = 0; i < kSonarRays; ++i)
             if (origin.z + static_cast<double>(cone[i]) * rays.z[i] < kFloor)
                 cone[i] = std::numeric_limits<float>::infinity();
         bodies.shorten(origin, rays, ring.max_range, own, cone);

@@ -2,6 +2,7 @@
 // Private to lib/sim: what robots feel by themselves.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "trace/ray_world.h"
 
 namespace ispace {
+
+constexpr std::size_t kSonarRays = 37;
 
 /// What each sonar of a robot at a pose measures: the nearest surface that one of 37 rays meets,
 /// its axis and three circles about it up to the rim of the cone (6, 12 and 18 rays). +infinity: no

@@ -19,7 +19,7 @@ namespace {
 
 /// Sensors that are read together: enough for other threads to gain by it, few enough for those who
 /// wait meanwhile.
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kBlock = 64, kBlockBeams = 100'000;
 
 /// A pose on a carrier, in the carrier's frame.
 Pose3 localPose(const Pose2& carrier, const Pose3& pose) {
@@ -74,6 +74,8 @@ SensorReader::SensorReader(Setting& setting, const Options& options)
         const auto* laser = sensors_[i].model<Laser>();
         if (laser == nullptr) continue;
         durations_[i] = durationOf(*laser, step_);
+        // What memory does not suffice for is refused before a step needs it.
+        std::get<Scan>(readings_[i].value).ranges.reserve(static_cast<std::size_t>(laser->beams));
         casters_[i].emplace(*worlds_, bodies_, *sensor, sensor->mount.has_value(), options_,
                             beams.of(*laser));
     }
@@ -139,14 +141,34 @@ void SensorReader::begin(SimTime time, const Movers& movers) {
     unread_ = latest_;
     unread_time_ = time;
     next_block_ = 0;
-    unread_blocks_ = (unread_.size() + kBlock - 1) / kBlock;
+    makeBlocks();
+    unread_blocks_ = block_ends_.size();
     is_read_.assign(unread_blocks_, 0);
+}
+
+/// Divides what is to be read into blocks.
+void SensorReader::makeBlocks() {
+    block_ends_.clear();
+    std::size_t count = 0, beams = 0;
+    for (std::size_t k = 0; k < unread_.size(); ++k) {
+        const auto* const laser = sensors_[unread_[k]].model<Laser>();
+        ++count;
+        beams += laser == nullptr ? 0 : static_cast<std::size_t>(laser->beams);
+        if (count < kBlock && beams < kBlockBeams && k + 1 < unread_.size()) continue;
+        block_ends_.push_back(k + 1);
+        count = beams = 0;
+    }
+}
+
+std::size_t SensorReader::blockOf(std::size_t unread) const {
+    const auto end = std::upper_bound(block_ends_.begin(), block_ends_.end(), unread);
+    return static_cast<std::size_t>(end - block_ends_.begin());
 }
 
 void SensorReader::readBlock(std::size_t block) {
     if (std::exchange(is_read_[block], 1) != 0) return;
     --unread_blocks_;
-    tbb::parallel_for(block * kBlock, std::min((block + 1) * kBlock, unread_.size()),
+    tbb::parallel_for(block == 0 ? 0 : block_ends_[block - 1], block_ends_[block],
                       [&](std::size_t k) { measure(unread_[k], unread_time_); });
 }
 
@@ -154,7 +176,7 @@ void SensorReader::readBlock(std::size_t block) {
 void SensorReader::complete(std::size_t sensor) {
     const auto found = std::lower_bound(unread_.begin(), unread_.end(), sensor);
     if (found != unread_.end() && *found == sensor)
-        readBlock(static_cast<std::size_t>(found - unread_.begin()) / kBlock);
+        readBlock(blockOf(static_cast<std::size_t>(found - unread_.begin())));
 }
 
 bool SensorReader::readSome(std::chrono::steady_clock::time_point until) {
@@ -168,7 +190,7 @@ bool SensorReader::readSome(std::chrono::steady_clock::time_point until) {
 void SensorReader::finish() {
     if (std::exchange(unread_blocks_, 0) == 0) return;
     tbb::parallel_for(std::size_t{0}, unread_.size(), [&](std::size_t k) {
-        if (is_read_[k / kBlock] == 0) measure(unread_[k], unread_time_);
+        if (is_read_[blockOf(k)] == 0) measure(unread_[k], unread_time_);
     });
 }
 

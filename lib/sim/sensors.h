@@ -111,6 +111,8 @@ class SensorReader {
     [[nodiscard]] std::size_t matOf(std::size_t sensor) const {
         return gateOf(sensor) + floor_.mats().size();
     }
+    void makeBlocks();
+    [[nodiscard]] std::size_t blockOf(std::size_t unread) const;
     void complete(std::size_t sensor);
     void readBlock(std::size_t block);
     void update(std::span<const std::size_t> due, SimTime time, const Movers& movers);
@@ -167,6 +169,7 @@ class SensorReader {
     // What is due and still to be read, ascending, at the time of the step; in blocks, of which
     // some are read already.
     std::vector<std::size_t> unread_;
+    std::vector<std::size_t> block_ends_;
     std::vector<char> is_read_;  // of blocks
     std::size_t unread_blocks_ = 0, next_block_ = 0;
     SimTime unread_time_{};

@@ -134,8 +134,6 @@ void Simulation::seek(SimTime time, WallTime now) {
 void Simulation::step() {
     if (replay_ != nullptr)
         replay_->step(*world_);
-    else if (recorder_ != nullptr)
-        world_->step();
     else
         world_->stepUnread();
     events_.stepped();
@@ -188,6 +186,14 @@ bool Simulation::isDue(WallTime now) const {
     return clock_.kind != Clock::Kind::Real || dueAt() <= now;
 }
 
+std::optional<WallTime> Simulation::flushRecord() {
+    return recorder_ == nullptr ? std::nullopt : recorder_->flushDue(steady_clock::now());
+}
+
+bool Simulation::finishStep(WallTime until) {
+    return world_->readSome(until) && finishRecord(until);
+}
+
 std::optional<WallTime> Simulation::run(WallTime now, nanoseconds budget) {
     const auto next = runDue(now, budget);
     work_ = threadTime();
@@ -200,8 +206,12 @@ std::optional<WallTime> Simulation::runDue(WallTime now, nanoseconds budget) {
     if (follows && !started_) startAt(now);
     if (follows && !paused_) forgive(now);
     const auto end = steady_clock::now() + budget;
+    const auto next_part = [&] {
+        const bool waits = recorder_ != nullptr && recorder_->awaitsFrames();
+        return waits ? flushRecord() : std::optional(now);
+    };
     // What the last step left, though the next one may be due.
-    if (!world_->readSome(end)) return now;
+    if (!finishStep(end)) return next_part();
     while (isDue(now)) {
         if (paused_)
             --owed_;
@@ -209,13 +219,12 @@ std::optional<WallTime> Simulation::runDue(WallTime now, nanoseconds budget) {
             noteLateness();
         step();
         if (finished_) break;
-        if (!world_->readSome(end)) return now;
+        if (!finishStep(end)) return next_part();
         if (steady_clock::now() >= end) break;
     }
     if (isDue(now)) return now;
     if (finished_) return std::nullopt;
-    const auto flush =
-        recorder_ == nullptr ? std::nullopt : recorder_->flushDue(steady_clock::now());
+    const auto flush = flushRecord();
     if (paused_) return flush;
     return std::min(dueAt(), flush.value_or(WallTime::max()));
 }

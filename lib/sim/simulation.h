@@ -63,6 +63,16 @@ class Simulation {
     /// Takes the steps of a record instead of simulating. At its end the run ends; or, if it is to
     /// hold, it pauses and goes on serving the last moment. \pre the replay outlives the last step
     void replay(Replay& replay, bool holds);
+    /// Null: nothing is recorded.
+    [[nodiscard]] const Recorder* recorder() const { return recorder_; }
+    /// Records what sensors read in the last step, until about then. \returns true once that is
+    /// done, or nothing is recorded: the world may then be changed
+    bool finishRecord(WallTime until) {
+        return recorder_ == nullptr || recorder_->finishStep(*world_, until);
+    }
+    /// Writes out what of the record has been pending for 0.1 s, see Recorder::flushDue: for those
+    /// who do not call run().
+    std::optional<WallTime> flushRecord();
     /// True if robots and people go as recorded, whatever they are told.
     [[nodiscard]] bool isReplay() const { return replay_ != nullptr; }
     /// True if a record that is to hold has come to its end: there are no more steps.
@@ -100,7 +110,8 @@ class Simulation {
     [[nodiscard]] bool finished() const { return finished_; }
 
     /// Takes the steps that are due, for about `budget` of wall time (one step at least, if one is
-    /// due, or a part of reading its sensors). With the clock Real a lag of more than a quarter of
+    /// due, or a part of reading its sensors and recording them). A step begins once the one before
+    /// is recorded, with its frames. With the clock Real a lag of more than a quarter of
     /// a second is forgiven: time then goes slower, instead of faster later. \returns when to call
     /// again; nothing: only once told to step or resume
     std::optional<WallTime> run(WallTime now, std::chrono::nanoseconds budget);
@@ -120,6 +131,7 @@ class Simulation {
 
   private:
     std::optional<WallTime> runDue(WallTime now, std::chrono::nanoseconds budget);
+    bool finishStep(WallTime until);
     void giveScripted();
     void step();
     void endIfReached();

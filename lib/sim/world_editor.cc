@@ -2,17 +2,20 @@
 #include "sim/world_editor.h"
 
 #include <algorithm>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
 #include "base/error.h"
 #include "layout/scene_edit.h"
+#include "sim/run_limits.h"
 
 namespace ispace {
 
 namespace {
 
 using Preparer = std::function<NextScene(Scene scene)>;
+using Check = std::function<void(const Scene& scene)>;
 
 /// Each of more would be looked for among all.
 constexpr std::size_t kFewMovers = 100;
@@ -27,12 +30,14 @@ std::optional<Pose2> placeIn(const World& world, const std::string& id) {
 class Editing {
   public:
     /// Takes little time: names are looked for in prepare().
-    Editing(World& world, std::shared_ptr<const SceneSource> source, std::vector<Edit> edits)
+    Editing(World& world, std::shared_ptr<const SceneSource> source, std::vector<Edit> edits,
+            Check check)
         : world_(&world),
           source_(std::move(source)),
           edits_(std::move(edits)),
           before_(world.sharedScene()),
-          prepare_(world.preparer()) {
+          prepare_(world.preparer()),
+          check_(std::move(check)) {
         for (std::size_t i = 0; i < world.movers().size(); ++i)
             poses_.push_back(world.status(i).pose);
     }
@@ -40,6 +45,7 @@ class Editing {
     void prepare() {
         findAll();
         Scene scene = makeScene(goodRecords(), *before_, source_->devices());
+        check_(scene);
         // Whoever is put somewhere is looked for in the room.
         const bool places = std::any_of(edits_.begin(), edits_.end(), [](const Edit& edit) {
             return edit.kind != Edit::Kind::Delete;
@@ -68,6 +74,7 @@ class Editing {
     std::vector<Edit> edits_;
     std::shared_ptr<const Scene> before_;
     Preparer prepare_;
+    Check check_;
     std::vector<Pose2> poses_;  // of robots and people before, in the order of the scene
     std::vector<std::string> placed_;
     std::unordered_map<std::string, Pose2> places_;  // of robots and people among them
@@ -114,10 +121,6 @@ std::vector<Record> Editing::records() const {
         const auto place = places_.find(id);
         return place == places_.end() ? std::nullopt : std::optional(place->second);
     });
-    constexpr std::size_t kMost = WorldEditor::kMaxRecords;
-    if (records.size() > kMost)
-        throw FormatError(
-            Diagnostic{"", 0, 0, "a world has at most " + std::to_string(kMost) + " records"});
     const std::vector<std::string> ids = assignIds(records);
     for (std::size_t i = 0; i < records.size(); ++i) {
         if (fileKeyOf(records[i]) == nullptr) continue;
@@ -154,22 +157,37 @@ void Editing::follow() {
 WorldEditor::WorldEditor(Simulation& simulation, std::shared_ptr<const SceneSource> source)
     : simulation_(&simulation), source_(std::move(source)) {}
 
+/// For another thread.
+WorldEditor::Check WorldEditor::loadCheck() const {
+    const World& world = simulation_->world();
+    std::optional<RecordOptions> record;
+    if (const Recorder* const recorder = simulation_->recorder()) record = recorder->options();
+    return [before = world.sharedScene(), step = world.stepLength(),
+            record = std::move(record)](const Scene& scene) {
+        const RecordOptions* const options = record ? &*record : nullptr;
+        checkLoad(loadOf(*before, step, options), loadOf(scene, step, options));
+    };
+}
+
 WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
-    const auto editing = std::make_shared<Editing>(simulation_->world(), source_, std::move(edits));
+    const auto editing =
+        std::make_shared<Editing>(simulation_->world(), source_, std::move(edits), loadCheck());
     return {[editing] { editing->prepare(); }, [editing] { return editing->adopt(); },
             editing->news()};
 }
 
 WorldChange WorldEditor::load(std::string environment, std::string layout) const {
     const auto next = std::make_shared<NextScene>();
-    return {[next, source = source_, prepare = simulation_->world().preparer(),
-             environment = std::move(environment), layout = std::move(layout)] {
-                Scene scene = source->load(environment, layout);
-                static_cast<void>(scene.environment.indoorIndex());
-                *next = prepare(std::move(scene));
-            },
-            [this, next] { return simulation_->world().restart(*next); },
-            std::make_shared<const ChangeNews>(ChangeNews{{""}, true})};
+    return {
+        [next, source = source_, prepare = simulation_->world().preparer(),
+         environment = std::move(environment), layout = std::move(layout), check = loadCheck()] {
+            Scene scene = source->load(environment, layout);
+            check(scene);
+            static_cast<void>(scene.environment.indoorIndex());
+            *next = prepare(std::move(scene));
+        },
+        [this, next] { return simulation_->world().restart(*next); },
+        std::make_shared<const ChangeNews>(ChangeNews{{""}, true})};
 }
 
 WorldChange WorldEditor::reset() const {

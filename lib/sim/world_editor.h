@@ -67,12 +67,9 @@ struct WorldChange {
     }
 };
 
-/// Changes a world by its records while it runs.
+/// Changes a world by its records while it runs, within the bounds of run_limits.h.
 class WorldEditor {
   public:
-    /// Scenes of so many records at most are made.
-    static constexpr std::size_t kMaxRecords = 100'000;
-
     WorldEditor(Simulation& simulation, std::shared_ptr<const SceneSource> source);
 
     /// The world goes on with its records after these edits, see World::change. Robots and people
@@ -84,6 +81,9 @@ class WorldEditor {
     [[nodiscard]] WorldChange reset() const;
 
   private:
+    using Check = std::function<void(const Scene& scene)>;
+    [[nodiscard]] Check loadCheck() const;
+
     Simulation* simulation_;
     std::shared_ptr<const SceneSource> source_;
 };

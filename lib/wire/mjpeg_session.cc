@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <chrono>
+#include <new>
 #include <utility>
 
 #include "base/error.h"
@@ -195,6 +196,8 @@ void MjpegSession::show() {
         if (asked->failure) std::rethrow_exception(asked->failure);
     } catch (const FormatError& missing) {
         return streams ? close() : refuse(kNoEncoder, missing.what());
+    } catch (const std::bad_alloc&) {
+        return streams ? close() : refuse(kNoEncoder, "there is not enough memory for this");
     }
     const auto file = asked->file;
     if (file == sent_) return;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // simrun: simulates the robots and sensors of a scene and serves them over TCP.
+#include <cstdlib>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -31,10 +34,28 @@ void claimFiles(const SimrunOptions& options) {
         claimOutput(file, "a file of --record");
 }
 
+/// Does that. If other threads are still at work then, the process ends at once, with the status
+/// and the lines that it would have: they use what would be destroyed, and a picture or a large
+/// room may take minutes.
+void endingAtOnce(const std::function<bool()>& is_busy, JunitFile& junit,
+                  const SimrunOptions& options, const std::function<void()>& work) {
+    std::exception_ptr failure;
+    try {
+        work();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    const auto end = [&failure] {
+        if (failure) std::rethrow_exception(failure);
+    };
+    if (is_busy()) std::_Exit(runTool("simrun", [&] { junit.during(options.operands, end); }));
+    end();
+}
+
 void serve(Simulation& simulation, const SimrunCommand& command, const SceneInput& input,
            const std::optional<Replay>& replay, JunitFile& junit) {
     const SimrunOptions& options = command.options();
-    const World& world = simulation.world();
+    World& world = simulation.world();
     auto judge = ofOption("--expect", [&] { return ExpectationJudge(world, options.expected); });
     judge.observe();
     simulation.onStep([&judge] { judge.observe(); });
@@ -53,18 +74,22 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
         port_file->write(std::to_string(server.port()) + '\n');
     }
     const bool odometry = replay ? replay->hasOdometry() : options.noise;
-    const auto record =
-        recordOf(simulation, options, input.scene, historyOf(command, input), odometry);
+    const auto record = recordOf(simulation, options, input.scene, historyOf(command, input),
+                                 odometry, server.frameTaker());
     const auto progress = progressOf(simulation, options);
     announce(server, web, devices);
     if (port_file) port_file->commit();
-    server.run();
-    progress->end();
-    if (record) record->recorder.flush(world);
-    report(simulation, options);
-    if (replay && replay->isCut())
-        warn(options.common, "simrun", "the record ends in the midst of a step, which is left out");
-    conclude(judge, options, input, junit);
+    const auto serve_and_conclude = [&] {
+        server.run();
+        progress->end();
+        if (record) record->recorder.end(world);
+        report(simulation, options);
+        if (replay && replay->isCut())
+            warn(options.common, "simrun",
+                 "the record ends in the midst of a step, which is left out");
+        conclude(judge, options, input, junit);
+    };
+    endingAtOnce([&server] { return server.isBusy(); }, junit, options, serve_and_conclude);
 }
 
 void run(const SimrunCommand& command, JunitFile& junit) {

@@ -2,6 +2,7 @@
 #include "simrun/record.h"
 
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -42,7 +43,8 @@ void checkRecord(const SimrunOptions& options, const World& world) {
 }
 
 std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOptions& options,
-                                        const Scene& scene, const History& history, bool odometry) {
+                                        const Scene& scene, const History& history, bool odometry,
+                                        FrameTaker frame_taker) {
     if (options.record.empty()) return nullptr;
     RecordOptions record;
     record.history = history;
@@ -56,6 +58,7 @@ std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOpti
     record.frame_rate = options.recorded_frames;
     record.sonar_rate = options.recorded_sonars;
     record.max_bytes = options.max_recorded;
+    record.frame_taker = std::move(frame_taker);
     auto running = std::make_unique<RunningRecord>(options, simulation, record);
     simulation.recordWith(running->recorder);
     return running;

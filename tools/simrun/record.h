@@ -26,6 +26,7 @@ void checkRecord(const SimrunOptions& options, const World& world);
 /// Replaces the records of the run before: to be called when all that may go wrong has gone well.
 /// Null without --record. \param odometry it differs from the true poses
 std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOptions& options,
-                                        const Scene& scene, const History& history, bool odometry);
+                                        const Scene& scene, const History& history, bool odometry,
+                                        FrameTaker frame_taker);
 
 }  // namespace ispace

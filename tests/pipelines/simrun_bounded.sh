@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Requests that are much work: other clients are answered meanwhile, and TERM ends the run.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/../simrun/server.sh"
+command -v python3 >/dev/null || skip "no python3 here"
+# Instrumented, all takes several times as long.
+grep -q 'ISPACE_SANITIZE:[A-Z]*=OFF' "$binary_dir/CMakeCache.txt" || export ISPACE_PATIENCE=12
+heavy() { python3 "$source_dir/tests/simrun/heavy.py" "$port" "$server" "$1" || fail "$1"; }
+
+cat >bounded.3dm <<'END'
+#3dm 1
+robot id=r1 at=-1,0
+laser id=l1 at=0,-1.9 heading=90
+END
+
+awk 'BEGIN {
+    long = "a"; while (length(long) < 1500) long = long long
+    print "#env 1\nispace at=0,0 size=6,4"
+    for (i = 0; i < 4000; ++i) print "zone id=" substr(long, 1, 1500) i " at=0,0 size=1,1"
+}' >long.env
+start long.env bounded.3dm --clock real
+heavy globs
+ended 0
+
+# The record is whole: what was recorded stays, and no line names a picture that is not there.
+start "$data/square.env" bounded.3dm --clock real --record run
+heavy pictures
+ended 0
+steps=$(sed -n '2s/^[^,]*,[^,]*,\([0-9]*\),.*/\1/p' run/info.csv)
+rows=$(($(wc -l <run/robots.csv) - 1))
+[ "$rows" -eq $((steps + 1)) ] || fail "$rows rows of robots after $steps steps"
+[ "$steps" -gt 100 ] || fail "$steps steps in three seconds"
+python3 - <<'END' || fail "the scans of the record"
+import json
+import os
+
+lines = [json.loads(line) for line in open("run/scans.jsonl", encoding="utf-8")][1:]
+assert len(lines) > 5, len(lines)
+for line in lines:
+    assert "file" not in line or os.path.getsize("run/" + line["file"]) > 0, line["file"]
+END
+simrun --replay run --clock fast >/dev/null 2>err || fail "no replay: $(cat err)"
+
+# In little memory, which the sanitizers would not leave.
+if grep -q 'ISPACE_SANITIZE:[A-Z]*=OFF' "$binary_dir/CMakeCache.txt"; then
+    ulimit -v 1700000
+    start "$data/square.env" bounded.3dm --clock real
+    heavy sums
+    ended 0
+fi
