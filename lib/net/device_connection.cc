@@ -37,7 +37,7 @@ DeviceConnection::DeviceConnection(tcp::socket socket, std::unique_ptr<WireSessi
     : socket_(std::move(socket)),
       timer_(socket_.get_executor()),
       session_(std::move(session)),
-      began_(steady_clock::now()) {
+      heard_(steady_clock::now()) {
     // A peer that acknowledges nothing: devices serve one client, who must not hold it for ever.
     using UserTimeout = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_USER_TIMEOUT>;
     error_code ignored;
@@ -112,7 +112,10 @@ void DeviceConnection::receive() {
     error_code error;
     const std::size_t size = socket_.read_some(asio::buffer(block), error);
     if (error && !wouldBlock(error) && error != asio::error::eof) return close();
-    if (size > 0) session_->receive({block.data(), size});
+    if (size > 0) {
+        session_->receive({block.data(), size});
+        if (session_->understood()) heard_ = steady_clock::now();
+    }
     if (error == asio::error::eof) {
         ended_ = true;
         session_->ended();

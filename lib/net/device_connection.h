@@ -5,6 +5,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "sim/simulation.h"
@@ -35,10 +36,10 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
     [[nodiscard]] bool closed() const { return !socket_.is_open(); }
     /// False once its session has ended: only what is pending is still sent.
     [[nodiscard]] bool serving() const { return session_ != nullptr; }
-    /// True if it has stood since that time, and its client has not said a word of the device's
-    /// language yet.
-    [[nodiscard]] bool isMute(WallTime since) const {
-        return session_ && !session_->understood() && began_ <= since;
+    /// Since when its client has asked nothing of a device that does nothing for it; nothing if
+    /// that is not so. Bytes that the device does not understand are no request.
+    [[nodiscard]] std::optional<WallTime> idleSince() const {
+        return session_ && !session_->isEngaged() ? std::optional(heard_) : std::nullopt;
     }
     /// True once its client sends no more, though it may read.
     [[nodiscard]] bool ended() const { return ended_; }
@@ -57,8 +58,8 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
     boost::asio::steady_timer timer_;       // of lingering
     std::unique_ptr<WireSession> session_;  // none: the connection is about to end
     std::string out_;
-    std::size_t sent_ = 0;  // of out_
-    WallTime began_, stuck_{};
+    std::size_t sent_ = 0;      // of out_
+    WallTime heard_, stuck_{};  // heard_: of its last request, or its beginning
     bool ended_ = false;
     bool reading_ = false, writing_ = false;  // handlers on their way
     bool lingering_ = false;

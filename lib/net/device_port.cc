@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "net/idle_rule.h"
 #include "record/edit.h"
 
 namespace ispace {
@@ -17,8 +18,6 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 using std::chrono::steady_clock;
 
-/// A client that has not spoken the device's language by then makes room for another.
-constexpr auto kMute = std::chrono::seconds(1);
 /// Connections of a port that only have to close.
 constexpr std::size_t kMaxLeaving = 8;
 
@@ -98,6 +97,8 @@ std::chrono::nanoseconds DeviceHost::clock() const {
 DevicePort::DevicePort(boost::asio::io_context& io, DeviceHost& host, const ServerLimits& limits,
                        const WireProtocol& protocol, std::string id, const Endpoint& endpoint)
     : host_(&host),
+      roleless_(limits.roleless),
+      grace_(limits.roleless_grace),
       allowed_(limits.allowed),
       protocol_(&protocol),
       id_(std::move(id)),
@@ -130,11 +131,10 @@ bool DevicePort::makeRoom() {
     auto idle = std::find_if(connections_.begin(), connections_.end(), [](const auto& connection) {
         return connection->serving() && connection->ended();
     });
-    if (idle == connections_.end() && !protocol_->listens_only)
-        idle = std::find_if(connections_.begin(), connections_.end(),
-                            [since = steady_clock::now() - kMute](const auto& connection) {
-                                return connection->isMute(since);
-                            });
+    if (idle == connections_.end()) {
+        const auto longest = longestIdle(connections_, steady_clock::now() - grace_);
+        idle = connections_.begin() + (longest - connections_.cbegin());
+    }
     if (idle == connections_.end()) return false;
     (*idle)->close();
     sweep();
@@ -154,6 +154,8 @@ void DevicePort::serve(WallTime now) {
     for (const auto& connection : connections_) {
         connection->proceed();
         connection->checkPatience(now);
+        if (const auto idle = connection->idleSince(); idle && *idle <= now - roleless_)
+            connection->close();
     }
     sweep();
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <chrono>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -76,6 +77,7 @@ class DevicePort {
     void sweep();
 
     DeviceHost* host_;
+    std::chrono::nanoseconds roleless_, grace_;  // see ServerLimits
     std::vector<Network> allowed_;
     const WireProtocol* protocol_;
     std::string id_;

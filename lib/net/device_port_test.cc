@@ -40,6 +40,7 @@ class EchoSession : public WireSession {
     void ended() override {
         if (!streams_) close();
     }
+    [[nodiscard]] bool isEngaged() const override { return hold_ || streams_; }
     [[nodiscard]] bool waitsToChange() const override { return turns_ > 0; }
     void proceed() override {
         if (--turns_ == 0) send("done\n");
@@ -79,8 +80,24 @@ std::unique_ptr<WireSession> open(WireHost& host, const std::string& id) {
     return std::make_unique<EchoSession>(host, id);
 }
 
+/// Whose clients have nothing to say.
+class ListenedSession : public EchoSession {
+  public:
+    using EchoSession::EchoSession;
+    [[nodiscard]] bool isEngaged() const override { return true; }
+};
+
 const WireProtocol kEcho{"echo", "ROBOT", "for tests", 7, 2, refusalOfRobot, open};
-const WireProtocol kListened{"listened", "ROBOT", "for tests", 7, 2, refusalOfRobot, open, true};
+const WireProtocol kListened{
+    "listened",
+    "ROBOT",
+    "for tests",
+    7,
+    2,
+    refusalOfRobot,
+    [](WireHost& host, const std::string& id) {
+        return std::unique_ptr<WireSession>(std::make_unique<ListenedSession>(host, id));
+    }};
 
 /// A server with such a port, in a thread.
 class EchoServer {
@@ -172,6 +189,33 @@ TEST(DevicePort, WhoSaysNothingThatIsUnderstoodMakesRoom) {
     }));
     EXPECT_EQ(mute.rest(), "");
     EXPECT_EQ(other.ask("still"), "still");
+}
+
+TEST(DevicePort, WhoHasSaidAWordAndNoMoreMakesRoomUnlessItIsServed) {
+    EchoServer run;
+    Client idle(run.echoPort()), served(run.echoPort());
+    EXPECT_EQ(idle.connect().ask("a"), "a");
+    EXPECT_EQ(served.connect().ask("hold"), "yes");
+    Client early(run.echoPort());
+    EXPECT_EQ(early.connect().rest(), "");
+    EXPECT_TRUE(soon([&] {
+        Client next(run.echoPort());
+        next.connect().send("d\n");
+        return next.line() == "d";
+    }));
+    EXPECT_EQ(idle.rest(), "");
+    EXPECT_EQ(served.ask("still"), "still");
+}
+
+TEST(DevicePort, WhoAsksNothingForLongEnds) {
+    ServerLimits limits;
+    limits.roleless = std::chrono::milliseconds(200);
+    EchoServer run({Clock::Kind::Real, 100}, limits);
+    Client idle(run.echoPort()), served(run.echoPort());
+    EXPECT_EQ(served.connect().ask("stream"), "stream");
+    EXPECT_EQ(idle.connect().ask("a"), "a");
+    EXPECT_EQ(idle.rest(), "");
+    for (int i = 0; i < 100; ++i) EXPECT_EQ(served.line().size(), kPacket - 1);
 }
 
 TEST(DevicePort, ChangesHaveTheirTurnWhileTheWorldWaits) {

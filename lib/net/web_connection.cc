@@ -75,6 +75,11 @@ class Browser final : public WebConnection, public std::enable_shared_from_this<
         if (writing_ && now - writing_since_ > limits().patience) close();
     }
     [[nodiscard]] bool isSocket() const override { return socket_.has_value(); }
+    [[nodiscard]] std::optional<WallTime> idleSince() const override {
+        const bool is_idle = session_ && !session_->hasRole() && !session_->closing() && !ending_;
+        return is_idle ? std::optional(heard_) : std::nullopt;
+    }
+    void dismiss() override;
     void end() override;
     void close() override;
     [[nodiscard]] bool closed() const override { return closed_; }
@@ -110,7 +115,7 @@ class Browser final : public WebConnection, public std::enable_shared_from_this<
     std::deque<std::string> held_;  // requests that are not answered yet
     std::string out_;               // replies that are not sent yet
     std::shared_ptr<const std::string> sending_;
-    WallTime writing_since_{};
+    WallTime writing_since_{}, heard_{};  // heard_: of its last message
     std::int64_t known_frame_ = 0, known_scene_ = -1;
     bool wants_frame_ = false;
     bool reading_ = false, writing_ = false;  // handlers on their way
@@ -220,6 +225,7 @@ void Browser::upgrade(const Request& request) {
         if (self->closed_) return;
         if (error) return self->close();
         self->session_.emplace(*self->share_.state);
+        self->heard_ = steady_clock::now();
         self->out_ = Session::greeting();
         self->flush();
         self->listen();
@@ -240,6 +246,7 @@ void Browser::listen() {
 
 void Browser::received() {
     if (!session_) return;  // it came after the goodbye
+    heard_ = steady_clock::now();
     const auto data = in_.cdata();
     std::string_view lines(static_cast<const char*>(data.data()), data.size());
     while (!lines.empty()) {
@@ -320,6 +327,15 @@ void Browser::flush() {
         self->flush();
         self->listen();
     });
+}
+
+void Browser::dismiss() {
+    session_.reset();
+    held_.clear();
+    out_ += "ERR 408 no role taken in time: ROBOT id, SENSOR id or WORLD comes first\n";
+    wants_frame_ = false;
+    ending_ = true;
+    flush();
 }
 
 void Browser::sayGoodbye() {

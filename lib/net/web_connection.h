@@ -4,6 +4,7 @@
 
 #include <boost/asio/ip/tcp.hpp>
 #include <memory>
+#include <optional>
 
 #include "net/server_state.h"
 #include "net/web_frames.h"
@@ -42,6 +43,10 @@ class WebConnection {
     virtual void checkPatience(WallTime now) = 0;
     /// True once it is a WebSocket.
     [[nodiscard]] virtual bool isSocket() const = 0;
+    /// Of a WebSocket without a role: since when nothing has been asked; else nothing.
+    [[nodiscard]] virtual std::optional<WallTime> idleSince() const = 0;
+    /// Says why, and closes.
+    virtual void dismiss() = 0;
     /// Ends what is under way, sends what is pending and closes.
     virtual void end() = 0;
     virtual void close() = 0;

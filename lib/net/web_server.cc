@@ -5,6 +5,8 @@
 #include <chrono>
 #include <utility>
 
+#include "net/idle_rule.h"
+
 namespace ispace {
 
 namespace {
@@ -25,15 +27,18 @@ WebServer::WebServer(boost::asio::io_context& io, ServerState& state, const Endp
       share_{&state, &frames_, &origin_},
       alarm_(io) {}
 
-/// If all places are taken, the oldest connection goes that has not become a WebSocket.
+/// If all places are taken, the oldest connection goes that has not become a WebSocket, or the
+/// WebSocket that has been idle longest.
 void WebServer::welcome(tcp::socket socket) {
     sweep();
     if (connections_.size() >= kMaxConnections) {
-        const auto oldest =
-            std::find_if(connections_.begin(), connections_.end(),
-                         [](const auto& connection) { return !connection->isSocket(); });
-        if (oldest == connections_.end()) return;
-        (*oldest)->close();
+        auto leaves = std::find_if(connections_.cbegin(), connections_.cend(),
+                                   [](const auto& connection) { return !connection->isSocket(); });
+        if (leaves == connections_.cend())
+            leaves = longestIdle(connections_,
+                                 steady_clock::now() - share_.state->limits().roleless_grace);
+        if (leaves == connections_.cend()) return;
+        (*leaves)->close();
         sweep();
     }
     connections_.push_back(serveBrowser(std::move(socket), share_));
@@ -49,6 +54,10 @@ void WebServer::serve() {
     for (const auto& connection : connections_) {
         if (connection->waiting()) connection->proceed();
         connection->checkPatience(now);
+        // One that waits for a frame of a world that stands has asked for something.
+        const auto idle = connection->idleSince();
+        if (idle && *idle <= now - share_.state->limits().roleless && !connection->wantsFrame())
+            connection->dismiss();
         wanted = wanted || connection->wantsFrame();
     }
     sweep();

@@ -249,6 +249,19 @@ TEST(WebServer, HasPlaceForNewcomersAmongIdlers) {
     EXPECT_TRUE(Browser(server).take("WORLD").ask("TIME").starts_with("OK TIME"));
 }
 
+/// So do WebSockets without a role, though they answer pings.
+TEST(WebServer, HasPlaceForNewcomersAmongSocketsWithoutARole) {
+    const WebRunning server({Clock::Kind::Real, 1});
+    Browser driver(server);
+    driver.take("ROBOT r1");
+    std::list<Browser> idlers;
+    for (int i = 0; i < 63; ++i) idlers.emplace_back(server).take("");
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    for (int i = 0; i < 5; ++i)
+        EXPECT_TRUE(Browser(server).take("WORLD").ask("TIME").starts_with("OK TIME"));
+    EXPECT_TRUE(driver.ask("STATUS").starts_with("OK STATUS"));
+}
+
 TEST(WebServer, WhoNeverReadsHoldsNoMoreThanAFrame) {
     const WebRunning server({Clock::Kind::Fast, 1});
     Browser deaf(server), other(server);

@@ -43,6 +43,8 @@ class ColaSession : public WireSession {
     void receive(std::string_view bytes) override;
     void stepped(std::size_t unsent) override;
 
+    [[nodiscard]] bool isEngaged() const override { return streams_; }
+
   private:
     /// What LMDscandatacfg asks for.
     struct Content {

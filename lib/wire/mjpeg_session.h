@@ -35,6 +35,7 @@ class MjpegSession : public WireSession {
     void stepped(std::size_t unsent) override;
     /// Pictures go on to who has asked.
     void ended() override;
+    [[nodiscard]] bool isEngaged() const override { return request_.has_value(); }
 
   private:
     void answer(const PictureRequest& request);

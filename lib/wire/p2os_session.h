@@ -55,6 +55,7 @@ class P2osSession : public WireSession {
     void stepped(std::size_t unsent) override;
     [[nodiscard]] bool waitsToChange() const override { return new_place_.has_value(); }
     void proceed() override;
+    [[nodiscard]] bool isEngaged() const override { return understood(); }
 
   private:
     struct Handler;

@@ -26,6 +26,8 @@ class ScipSession : public WireSession {
     void receive(std::string_view bytes) override;
     void stepped(std::size_t unsent) override;
 
+    [[nodiscard]] bool isEngaged() const override { return stream_.on; }
+
   private:
     /// What a stream of scans sends. Values of three characters, or two; with intensities.
     struct Stream {

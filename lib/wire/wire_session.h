@@ -90,8 +90,10 @@ class WireSession {
     [[nodiscard]] virtual bool waitsToChange() const { return false; }
     /// Asks for it again. \pre waitsToChange()
     virtual void proceed() {}
-    /// True once the client has said something in the device's language. Until then it has no claim
-    /// to a port that others want.
+    /// True while it does something lasting for its client: sends by itself, or holds a robot. Any
+    /// other has no claim to a port that others want unless it has just been asked something.
+    [[nodiscard]] virtual bool isEngaged() const = 0;
+    /// True once the client has said something in the device's language.
     [[nodiscard]] bool understood() const { return understood_; }
     /// True once nothing more is read: the connection ends when all is sent.
     [[nodiscard]] bool closing() const { return closing_; }
@@ -121,7 +123,6 @@ struct WireProtocol {
     std::string (*refusal)(const World& world, std::string_view id) = nullptr;
     /// \pre the host outlives the session, and there is no refusal
     std::unique_ptr<WireSession> (*open)(WireHost& host, const std::string& id) = nullptr;
-    bool listens_only = false;  ///< its clients have nothing to say
 };
 
 /// All of them, in the order of the options.

@@ -85,6 +85,6 @@ std::unique_ptr<WireSession> open(WireHost& host, const std::string& id) {
 const WireProtocol kZps{
     "zps", "TAG",    "positions of an ultrasonic tag (of all: a receiver), as lines of text",
     kPort, kClients, refusal,
-    open,  true};
+    open};
 
 }  // namespace ispace

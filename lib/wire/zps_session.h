@@ -23,6 +23,7 @@ class ZpsSession : public WireSession {
     void stepped(std::size_t unsent) override;
     /// Lines go on.
     void ended() override {}
+    [[nodiscard]] bool isEngaged() const override { return true; }
 
   private:
     struct Followed {

@@ -58,9 +58,9 @@ TEST(ZpsSession, LeavesOutWhatNobodyReads) {
 }
 
 TEST(ZpsSession, NeedsNothingSaid) {
-    EXPECT_TRUE(kZps.listens_only);
     TestHost host(kSystem);
     ZpsSession session(host, "t1");
+    EXPECT_TRUE(session.isEngaged());
     session.take();
     session.ended();
     host.run(session, 0.1);

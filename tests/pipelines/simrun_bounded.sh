@@ -42,6 +42,17 @@ for line in lines:
 END
 simrun --replay run --clock fast >/dev/null 2>err || fail "no replay: $(cat err)"
 
+# Places at every port.
+{ cat bounded.3dm; echo "camera id=c1 at=0,-1.5,1 pixels=32,24"; } >places.3dm
+rm -f port
+simrun "$data/square.env" places.3dm --web 127.0.0.1:0 --scip l1=0 --cola l1=0 --mjpeg c1=0 --port-file port \
+    >announced 2>simrun.err &
+server=$!
+eventually "the port file" test -s port
+port=$(cat port)
+heavy places
+ended 0
+
 # In little memory, which the sanitizers would not leave.
 if grep -q 'ISPACE_SANITIZE:[A-Z]*=OFF' "$binary_dir/CMakeCache.txt"; then
     ulimit -v 1700000

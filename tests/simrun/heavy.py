@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """heavy.py PORT PID KIND: requests that are much work; others are answered meanwhile, and TERM is
 obeyed. Prints how long the slowest answer took."""
+import json
 import os
 import signal
+import socket
 import threading
 import time
 
@@ -98,4 +100,42 @@ def sums():
     term("sums")
 
 
-{"globs": globs, "pictures": pictures, "sums": sums}[KIND]()
+def connected(address):
+    host, port = address.rsplit(":", 1)
+    connection = socket.create_connection((host, int(port)), timeout=60)
+    return connection
+
+
+def web_socket(address):
+    connection = connected(address)
+    connection.sendall((f"GET /ws HTTP/1.1\r\nHost: {address}\r\nUpgrade: websocket\r\n"
+                        "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+                        "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n").encode())
+    check(b" 101 " in connection.recv(100), "no WebSocket")
+    return connection
+
+
+def places():
+    """All places of each port taken by clients that say a word and no more."""
+    with open("announced", encoding="utf-8") as file:
+        ports = json.load(file)
+    web = ports["web"].removeprefix("http://").rstrip("/")
+    idlers = [web_socket(web) for _ in range(64)]
+    words = {"scip": b"VV\n", "cola": b"\x02sRN DeviceIdent\x03", "mjpeg": b"GET / "}
+    for protocol, word in words.items():
+        for _ in range(8):
+            idlers.append(connected(*ports[protocol].values()))
+            idlers[-1].sendall(word)
+    time.sleep(1.5)
+    for _ in range(3):
+        idlers.append(web_socket(web))
+    words["mjpeg"] = b"GET / HTTP/1.1\r\n\r\n"
+    for protocol, word in words.items():
+        program = connected(*ports[protocol].values())
+        program.sendall(word)
+        check(program.recv(100), f"no place for a client of {protocol}")
+        idlers.append(program)
+    term("places")
+
+
+{"globs": globs, "pictures": pictures, "sums": sums, "places": places}[KIND]()
