@@ -48,8 +48,11 @@ def term(what):
     os.kill(PID, signal.SIGTERM)
 
     def is_gone():
-        with open(f"/proc/{PID}/stat", encoding="ascii") as stat:
-            return stat.read().rsplit(")", 1)[1].split()[0] == "Z"
+        try:
+            with open(f"/proc/{PID}/stat", encoding="ascii") as stat:
+                return stat.read().rsplit(")", 1)[1].split()[0] == "Z"
+        except (FileNotFoundError, ProcessLookupError):  # the script's shell has taken its status
+            return True
 
     while not is_gone():
         check(time.monotonic() < begin + 60, f"{what}: TERM is not obeyed")
