@@ -81,6 +81,25 @@ expect_same whole.3dm single.3dm "a target out of reach"
 expect_same err.single <(sed 's/^arrange: //' err) "what is said of it"
 for i in 1 2; do "${laser[@]}" "${coarse[@]}" --shard $i/2 -o s$i.part; done
 
+# A part whose command lacks its NUL, or is empty, takes no memory without end.
+python3 - <<'PY'
+data = open('s1.part', 'rb').read()
+at = data.index(b'\n=command ') + 1
+line = data.index(b'\n', at) + 1
+size = int(data[at:line].split()[1])
+for name, command in ('cut', data[line:line + size - 1]), ('none', b''), ('one', b'arrange'):
+    hash = 0xcbf29ce484222325
+    for byte in command:
+        hash = (hash ^ byte) * 0x100000001b3 % (1 << 64)
+    with open(name + '.part', 'wb') as part:
+        part.write(data[:at] + b'=command %d %016x\n' % (len(command), hash) + command +
+                   data[line + size:])
+PY
+for name in cut none one; do
+    (ulimit -v 8000000 && expect_error 1 arrange --merge $name.part s2.part -o none.3dm)
+    grep -q 'does not say which command made it' err || fail "$name.part: $(cat err)"
+done
+
 # What does not belong together, and what makes no sense.
 expect_error 1 arrange --merge s2.part -o none.3dm
 grep -q 'missing shard 1 of 2' err || fail "$(cat err)"

@@ -47,11 +47,11 @@ std::unique_ptr<ArrangeCommand> commandOf(const std::vector<PartFile>& parts,
                                           const ArrangeToolOptions& merge) {
     const PartFile& first = parts.front();
     const std::string text = first.find(std::string(kCommand)).value_or("");
+    if (!text.ends_with('\0'))
+        throw FormatError({first.file(), 0, 0, "it does not say which command made it"});
     std::vector<const char*> words;
     for (std::size_t at = 0; at < text.size(); at = text.find('\0', at) + 1)
         words.push_back(text.c_str() + at);
-    if (words.empty() || text.back() != '\0')
-        throw FormatError({first.file(), 0, 0, "it does not say which command made it"});
     auto command = std::make_unique<ArrangeCommand>(static_cast<int>(words.size()), words.data());
     const PartHead& head = first.head();
     for (const Shared what : kShared) {
