@@ -32,8 +32,19 @@ namespace fs = std::filesystem;
     throw std::system_error(error, std::generic_category(), displayName(name));
 }
 
+void mustBeRegular(const struct stat& info, const std::string& path) {
+    if (S_ISDIR(info.st_mode)) fail(path, EISDIR);
+    if (!S_ISREG(info.st_mode))
+        throw FormatError({displayName(path), 0, 0, "it is no regular file"});
+}
+
 /// \param info of the file
-OpenFile openInput(const std::string& operand, struct stat& info) {
+OpenFile openInput(const std::string& operand, InputKind kind, struct stat& info) {
+    if (kind == InputKind::Regular) {
+        RegularFile regular = openRegular(operand);
+        if (::fstat(regular.file.fd(), &info) != 0) fail(operand, errno);
+        return std::move(regular.file);
+    }
     mustBeReadable(operand);
     OpenFile file(operand == "-" ? STDIN_FILENO : ::open(operand.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.fd() < 0 || ::fstat(file.fd(), &info) != 0) fail(operand, errno);
@@ -127,9 +138,22 @@ bool OpenFile::close() {
     return fd <= STDERR_FILENO || ::close(fd) == 0;
 }
 
-std::string readAll(const std::string& operand) {
+RegularFile openRegular(const std::string& path) {
+    mustBeReadable(path);
+    // Before it is opened, too: to open a device may do things.
     struct stat info {};
-    const OpenFile file = openInput(operand, info);
+    if (::stat(path.c_str(), &info) != 0) fail(path, errno);
+    mustBeRegular(info, path);
+    OpenFile file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+    if (file.fd() < 0 || ::fstat(file.fd(), &info) != 0) fail(path, errno);
+    mustBeRegular(info, path);
+    noteInput(file.fd());
+    return {std::move(file), static_cast<std::size_t>(info.st_size)};
+}
+
+std::string readAll(const std::string& operand, InputKind kind) {
+    struct stat info {};
+    const OpenFile file = openInput(operand, kind, info);
     const bool regular = S_ISREG(info.st_mode);
     const std::uint64_t most = regular ? kMaxFileBytes : kMaxStreamBytes;
     if (regular && static_cast<std::uint64_t>(info.st_size) > most) refuseLength(operand, regular);
@@ -152,9 +176,9 @@ std::string readAll(const std::string& operand) {
     return bytes;
 }
 
-InputFile::InputFile(const std::string& operand) : name_(operand) {
+InputFile::InputFile(const std::string& operand, InputKind kind) : name_(operand) {
     struct stat info {};
-    file_ = openInput(operand, info);
+    file_ = openInput(operand, kind, info);
 }
 
 bool InputFile::read(std::string& bytes) {

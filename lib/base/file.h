@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -31,17 +32,32 @@ class OpenFile {
     int fd_;
 };
 
+/// A regular file, open for reading.
+struct RegularFile {
+    OpenFile file;
+    std::size_t size = 0;
+};
+
+/// Opens a file that must be regular, without waiting for pipes. \throws FormatError for devices,
+/// pipes and sockets; std::system_error if it cannot be opened, also for a folder
+RegularFile openRegular(const std::string& path);
+
+/// The files that a reader accepts. A file that the user names may be a pipe or a device; one that
+/// another file names must be regular and is refused unopened otherwise.
+enum class InputKind { Any, Regular };
+
 /// The content of a file, or of standard input for "-".
 /// \throws std::system_error naming the file; also for a directory
-/// \throws FormatError naming the file if it is too large, or is a pipe or device that begins with
-/// 64 KiB of zeros
-std::string readAll(const std::string& operand);
+/// \throws FormatError naming the file if it is too large, is no regular file where one is wanted,
+/// or is a pipe or device that begins with 64 KiB of zeros
+std::string readAll(const std::string& operand, InputKind kind = InputKind::Any);
 
 /// A file, or standard input for "-", read piece by piece.
 class InputFile {
   public:
-    /// \throws std::system_error naming the file; also for a directory
-    explicit InputFile(const std::string& operand);
+    /// \throws std::system_error naming the file; also for a directory; FormatError if it is no
+    /// regular file where one is wanted
+    explicit InputFile(const std::string& operand, InputKind kind = InputKind::Any);
 
     /// Appends what is available, waiting only if nothing is; false at the end.
     bool read(std::string& bytes);

@@ -127,11 +127,15 @@ void PartFile::refuse(const std::string& message, int line) const {
 }
 
 PartFile::PartFile(const std::string& file) : file_(file) {
-    open_ = OpenFile(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
     struct stat info {};
-    if (open_.fd() < 0 || ::fstat(open_.fd(), &info) != 0)
-        throw std::system_error(errno, std::generic_category(), file);
-    if (!S_ISREG(info.st_mode)) refuse("a part is a regular file: it is read more than once");
+    const auto check = [&](bool is_found) {
+        if (!is_found) throw std::system_error(errno, std::generic_category(), file);
+        if (!S_ISREG(info.st_mode)) refuse("a part is a regular file: it is read more than once");
+    };
+    // Before it is opened, too, as openRegular() does; but a checkpoint is an output as well.
+    check(::stat(file.c_str(), &info) == 0);
+    open_ = OpenFile(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+    check(open_.fd() >= 0 && ::fstat(open_.fd(), &info) == 0);
     readHead();
     findRecords(static_cast<std::uint64_t>(info.st_size));
 }

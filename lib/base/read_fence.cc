@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <filesystem>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <system_error>
@@ -49,16 +49,21 @@ void mustBeReadable(const std::string& name) {
         throw std::system_error(ENOENT, std::generic_category(), displayName(name));
 }
 
+bool liesIn(const fs::path& folder, const fs::path& file) {
+    return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
+           folder.end();
+}
+
 bool liesOpenlyIn(const std::string& folder, const std::string& name) {
     std::error_code error;
     const fs::path within = fs::canonical(folder, error);
     if (error) return false;
     const fs::path file = fs::canonical(name, error);
     if (error || !fs::is_regular_file(file, error)) return false;
-    const auto [end, rest] = std::mismatch(within.begin(), within.end(), file.begin(), file.end());
-    return end == within.end() && std::none_of(rest, file.end(), [](const fs::path& part) {
-               return part.string().starts_with('.');
-           });
+    if (!liesIn(within, file)) return false;
+    const auto below = std::next(file.begin(), std::distance(within.begin(), within.end()));
+    return std::none_of(below, file.end(),
+                        [](const fs::path& part) { return part.string().starts_with('.'); });
 }
 
 }  // namespace ispace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ class ReadFence {
 bool mayBeRead(const std::string& name);
 /// \throws std::system_error, as for a missing file, if it may not be read
 void mustBeReadable(const std::string& name);
+
+/// True if the file lies in the folder or below. \pre both are canonical
+bool liesIn(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 /// True if `name` leads, links followed, to a regular file in this folder or below, and no part of
 /// the way below it is hidden.

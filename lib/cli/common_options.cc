@@ -259,12 +259,21 @@ void addDensityOption(CommandLine& line, double& pixels_per_metre) {
                 Enters::History);
 }
 
-void addDigestOptions(CommandLine& line, std::optional<bool>& same_environment) {
-    line.switchFlag("--same-environment", "--any-environment", same_environment,
+void addSceneRules(CommandLine& line, SceneRules& rules) {
+    line.switchFlag("--same-environment", "--any-environment", rules.same_environment,
                     "an error if LAYOUT was made for another ENV (default: a warning if ENV is an "
                     "operand, an error if LAYOUT names it)",
                     "neither warning nor error if LAYOUT was made for another ENV",
                     Enters::History);
+    const auto read = [&rules](const std::string& word) {
+        if (word != "folder" && word != "anywhere")
+            throw UsageError(excerpt(word) + " is neither folder nor anywhere");
+        rules.includes = word == "folder" ? IncludeFiles::InFolder : IncludeFiles::Anywhere;
+    };
+    line.parsed("--include-files", "folder|anywhere", read,
+                "where files that YAML includes may lie: in the folder of the file that is read or "
+                "below (default), or anywhere",
+                Enters::Nothing);
 }
 
 std::uint64_t byteCount(const std::string& text) {

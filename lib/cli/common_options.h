@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "cli/command_line.h"
+#include "cli/scene_rules.h"
 #include "cover/target.h"
 #include "layout/devices.h"
 
@@ -111,8 +112,8 @@ void addCellOptions(CommandLine& line, CellWords& words, const std::string& purp
 /// `--density N|NAME`: pixels a metre that a camera needs; left alone without it.
 void addDensityOption(CommandLine& line, double& pixels_per_metre);
 
-/// `--same-environment` (true) and `--any-environment` (false), see SceneRequest.
-void addDigestOptions(CommandLine& line, std::optional<bool>& same_environment);
+/// `--same-environment`, `--any-environment` and `--include-files`.
+void addSceneRules(CommandLine& line, SceneRules& rules);
 
 /// `500M`, `2G`, `1.5GB`: powers of 1024, any case. \throws UsageError
 std::uint64_t byteCount(const std::string& text);

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
+#include "base/read_fence.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "env/door_zones.h"
@@ -28,20 +29,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ImportOptions defaultImport(ImportReport* report) {
+ImportOptions defaultImport(const SceneRules& rules, ImportReport* report) {
     ImportOptions options;
+    options.includes = rules.includes;
     addModelFolders(options);
     options.report = report;
     return options;
 }
 
-Document parse(std::string_view bytes, const std::string& operand, ImportReport* report = nullptr) {
-    return parseDocument(bytes, operand, defaultImport(report), sceneSchemas());
+Document parse(std::string_view bytes, const std::string& operand, const SceneRules& rules,
+               ImportReport* report = nullptr) {
+    return parseDocument(bytes, operand, defaultImport(rules, report), sceneSchemas());
 }
 
-Document read(const std::string& operand, ImportReport* report = nullptr) {
-    return operand == "-" ? parse(readStdin(), operand, report)
-                          : readDocument(operand, defaultImport(report), sceneSchemas());
+Document read(const std::string& operand, const SceneRules& rules, ImportReport* report = nullptr) {
+    return operand == "-" ? parse(readStdin(), operand, rules, report)
+                          : readDocument(operand, defaultImport(rules, report), sceneSchemas());
 }
 
 bool hasPlaced(const Document& document, const std::vector<std::string>& keywords) {
@@ -59,7 +62,7 @@ struct Reference {
 };
 
 /// Compares the digest that `layout` records with that of `environment`.
-/// \throws FormatError if they differ and the rule of SceneRequest says so
+/// \throws FormatError if they differ and SceneRules::same_environment says so
 void checkDigest(const Document& layout, const Reference& environment,
                  std::optional<bool> same_environment, std::vector<Diagnostic>& warnings) {
     if (!same_environment.value_or(true)) return;
@@ -79,6 +82,43 @@ void checkDigest(const Document& layout, const Reference& environment,
     warnings.push_back(std::move(finding));
 }
 
+/// The environment that a layout names. \param layout the operand \param parse makes a document of
+/// its bytes \throws FormatError at the layout's line if it cannot be opened or is no regular file;
+/// where `parse` does, without what it quotes of a file that is neither in the layout's folder nor
+/// begins as records do
+template <typename Parse>
+Document documentReferenced(const EnvironmentReference& reference, const std::string& file,
+                            const std::string& layout, const Parse& parse) {
+    const auto refuse = [&](const std::string& reason) {
+        throw FormatError(
+            reference.record.finding("file", "environment " + excerpt(file) + reason));
+    };
+    std::string bytes;
+    try {
+        bytes = readAll(file, InputKind::Regular);
+    } catch (const std::system_error& error) {
+        refuse(" cannot be opened: " + error.code().message() +
+               "; names are relative to the folder of the layout: if it was moved, give the "
+               "environment, too");
+    } catch (const FormatError& error) {
+        refuse(": " + error.diagnostics().front().message);
+    }
+    Document document;
+    try {
+        document = parse(bytes);
+    } catch (const FormatError& error) {
+        const std::string folder = layout == "-" ? "." : sideFilePath(layout, ".");
+        if (isRecordText(bytes) || liesOpenlyIn(folder, file)) throw;
+        Diagnostic finding = error.diagnostics().front();
+        finding.message =
+            "no environment, and not quoted, as it lies outside the folder of the layout: `envc "
+            "--check` says more";
+        throw FormatError(std::move(finding));
+    }
+    if (document.kind != DocumentKind::Environment) refuse(" is a layout, not an environment");
+    return document;
+}
+
 /// Names textures relative to the current folder, where pictures are made.
 void rebaseTextures(std::vector<Record>& records, const std::string& operand) {
     constexpr const char* kKey = "texture";
@@ -96,7 +136,7 @@ class OperandReader {
         mustReadStdinOnce(request_.operands);
         named_ = request_.operands;
         for (const std::string& operand : request_.operands)
-            take(operand, ispace::read(operand, &report_));
+            take(operand, ispace::read(operand, request_.rules, &report_));
         if (wantsStdin()) {
             named_.emplace_back("-");
             takeLayoutFromStdin();
@@ -105,7 +145,7 @@ class OperandReader {
         if (!is_operand) findEnvironment();
         if (layout_)
             checkDigest(*layout_, {environment_->records, environment_operand_, is_operand},
-                        request_.same_environment, environment_->warnings);
+                        request_.rules.same_environment, environment_->warnings);
         const Document* const layout = layout_ ? &*layout_ : nullptr;
         Scene scene = makeScene(*environment_, layout, devicesFor({&*environment_, layout}));
         std::string().swap(environment_->derived);  // its memory, too
@@ -146,7 +186,7 @@ class OperandReader {
                                    (environment_ ? ": " + displayName(environment_operand_) +
                                                        " holds no placed sensor"
                                                  : "")});
-        Document document = parse(bytes, "-");
+        Document document = parse(bytes, "-", request_.rules);
         if (document.kind != DocumentKind::Layout)
             throw FormatError(
                 {"stdin", 0, 0, "an environment, where a layout (`#3dm 1`) is wanted"});
@@ -164,11 +204,10 @@ class OperandReader {
         const fs::path folder =
             layout_operand_ == "-" ? fs::path() : fs::path(layout_operand_).parent_path();
         const std::string operand = (folder / reference->file).string();
-        Document document = parse(bytesReferenced(*reference, operand), operand, &report_);
-        if (document.kind != DocumentKind::Environment)
-            throw FormatError(
-                reference->record.finding("file", operand + " is a layout, not an environment"));
-        take(operand, std::move(document));
+        take(operand,
+             documentReferenced(*reference, operand, layout_operand_, [&](std::string_view bytes) {
+                 return parse(bytes, operand, request_.rules, &report_);
+             }));
     }
 
     const SceneRequest& request_;
@@ -179,18 +218,6 @@ class OperandReader {
 };
 
 }  // namespace
-
-std::string bytesReferenced(const EnvironmentReference& reference, const std::string& file) {
-    try {
-        return readAll(file);
-    } catch (const std::system_error& error) {
-        throw FormatError(reference.record.finding(
-            "file", "environment " + excerpt(file) +
-                        " cannot be opened: " + error.code().message() +
-                        "; names are relative to the folder of the layout: if it was moved, give "
-                        "the environment, too"));
-    }
-}
 
 void mustReadStdinOnce(const std::vector<std::string>& files) {
     const auto is_stdin = [](const std::string& file) {
@@ -224,11 +251,11 @@ void addZones(std::span<const std::string> zones, SceneInput& input) {
 }
 
 OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
-                            std::optional<bool> same_environment) {
+                            const SceneRules& rules) {
     std::vector<std::string> operands = input.named;
     operands.push_back(operand);
     mustReadStdinOnce(operands);
-    const Document layout = read(operand);
+    const Document layout = read(operand, rules);
     if (layout.kind != DocumentKind::Layout)
         throw FormatError(
             {displayName(operand), 0, 0, "an environment, where a layout (`#3dm 1`) is wanted"});
@@ -236,7 +263,7 @@ OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
     const bool is_operand = std::find(input.named.begin(), input.named.end(),
                                       input.environment_operand) != input.named.end();
     checkDigest(layout, {input.environment.records, input.environment_operand, is_operand},
-                same_environment, warnings);
+                rules.same_environment, warnings);
     std::vector<std::string> files = {operand};
     files.insert(files.end(), layout.sources.begin(), layout.sources.end());
     return {makeScene(input.environment, &layout, devicesFor({&input.environment, &layout}),
@@ -354,15 +381,14 @@ void append(std::vector<T>& to, std::vector<T>&& from) {
 
 /// Layouts alone: the first that names its environment brings it along. Returns the file's name.
 std::string addEnvironment(std::vector<Document>& documents, const InputRequest& request) {
-    for (const Document& document : documents) {
-        const auto reference = environmentReference(document);
+    for (std::size_t i = 0; i < documents.size(); ++i) {
+        const auto reference = environmentReference(documents[i]);
         if (!reference || reference->file.empty()) continue;
         // Names are relative to the current folder by now.
-        const RawInput raw{reference->file, bytesReferenced(*reference, reference->file)};
-        Document environment = parseInput(raw, request, request.import);
-        if (environment.kind != DocumentKind::Environment)
-            throw FormatError(reference->record.finding(
-                "file", reference->file + " is a layout, not an environment"));
+        Document environment = documentReferenced(
+            *reference, reference->file, request.inputs[i], [&](const std::string& bytes) {
+                return parseInput({reference->file, bytes}, request, request.import);
+            });
         environment.sources.insert(environment.sources.begin(), reference->file);
         documents.push_back(std::move(environment));
         return reference->file;

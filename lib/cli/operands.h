@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "cli/scene_rules.h"
 #include "io/input.h"
 #include "layout/scene.h"
 #include "record/record.h"
@@ -18,9 +19,8 @@ struct CommonOptions;
 /// How a tool that takes `ENV [LAYOUT]` reads its operands.
 struct SceneRequest {
     std::vector<std::string> operands;  ///< at most two, in any order; recognised by content
-    /// If LAYOUT records another digest than ENV's: an error (true) or accepted (false). Unset: a
-    /// warning in environment.warnings if ENV is an operand, an error if LAYOUT's record names it.
-    std::optional<bool> same_environment = {};
+    /// Warnings of the digest go to environment.warnings.
+    SceneRules rules = {};
     /// Read LAYOUT from stdin where ENV holds no placed sensor, or where there is no operand
     /// (scan and coverage); otherwise a missing operand is a usage error (arrange).
     bool layout_from_stdin = true;
@@ -63,11 +63,7 @@ struct OtherLayout {
 /// Reads it from `operand`, which may be - if stdin was not read yet. \throws as readScene, and
 /// FormatError if it is no layout
 OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
-                            std::optional<bool> same_environment);
-
-/// The file of an environment that a layout names. \throws FormatError at the layout's line if it
-/// cannot be read
-std::string bytesReferenced(const EnvironmentReference& reference, const std::string& file);
+                            const SceneRules& rules);
 
 /// \throws UsageError if two of these files are stdin
 void mustReadStdinOnce(const std::vector<std::string>& files);
@@ -89,7 +85,7 @@ struct InputRequest {
     ImportOptions import;
     std::vector<Record> added;  ///< by edits; importers of plans must know them
     bool compiles = true;       ///< the environment of layouts is read, and digests are compared
-    std::optional<bool> same_environment = {};  ///< as in SceneRequest
+    std::optional<bool> same_environment = {};  ///< as in SceneRules
     bool may_be_empty = false;  ///< an empty stdin is an environment without records
 };
 

@@ -101,8 +101,8 @@ TEST_F(Operands, TheDigestMustMatch) {
     writeLayout("layout.3dm", "environment file=room.env digest=" + digest + "\n");
     EXPECT_EQ(readScene({{"layout.3dm"}}).scene.digest(), digest);
     EXPECT_TRUE(readScene({{"seeing.env", "layout.3dm"}}).environment.warnings.empty());
-    EXPECT_THROW(readScene({{"other.env", "layout.3dm"}, true}), FormatError);
-    EXPECT_TRUE(readScene({{"other.env", "layout.3dm"}, false}).environment.warnings.empty());
+    EXPECT_THROW(readScene({{"other.env", "layout.3dm"}, {true}}), FormatError);
+    EXPECT_TRUE(readScene({{"other.env", "layout.3dm"}, {false}}).environment.warnings.empty());
     // Where neither is asked for, a room that is an operand is meant.
     const auto warnings = readScene({{"other.env", "layout.3dm"}}).environment.warnings;
     ASSERT_EQ(warnings.size(), 1U);
@@ -112,7 +112,7 @@ TEST_F(Operands, TheDigestMustMatch) {
         << warnings[0].text();
     writeLayout("stale.3dm", "environment file=other.env digest=" + digest + "\n");
     EXPECT_THROW(readScene({{"stale.3dm"}}), FormatError);
-    EXPECT_EQ(readScene({{"stale.3dm"}, false}).environment_operand, "other.env");
+    EXPECT_EQ(readScene({{"stale.3dm"}, {false}}).environment_operand, "other.env");
 }
 
 TEST_F(Operands, TheDigestOfEachInputIsCompared) {

@@ -8,7 +8,7 @@ namespace ispace {
 
 RunChanges changesOfRun(const std::string& folder, const Scene& start) {
     return {folder, start, shippedDevices(), [](const std::string& file) {
-                return readScene({{file}, true, false}).scene;
+                return readScene({{file}, {.same_environment = true}, false}).scene;
             }};
 }
 

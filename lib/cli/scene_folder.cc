@@ -103,9 +103,9 @@ class ClientNames {
 
 }  // namespace
 
-SceneFolder::SceneFolder(const std::string& folder, std::optional<bool> same_environment)
+SceneFolder::SceneFolder(const std::string& folder, const SceneRules& rules)
     : folder_(canonicalFolder(folder.empty() ? "." : folder)),
-      same_environment_(same_environment),
+      rules_(rules),
       devices_(shippedDevices()) {}
 
 std::string SceneFolder::of(const SceneInput& input) {
@@ -131,7 +131,7 @@ Scene SceneFolder::load(const std::string& environment, const std::string& layou
         operands.push_back(path(name));
         names.add(operands.back(), name);
     }
-    const SceneRequest request{std::move(operands), same_environment_, false};
+    const SceneRequest request{std::move(operands), rules_, false};
     return names.guarded([&] {
         Scene scene = readScene(request).scene;
         // They are read when a picture is taken.

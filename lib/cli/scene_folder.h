@@ -18,7 +18,7 @@ namespace ispace {
 class SceneFolder : public SceneSource {
   public:
     /// "" is the current folder. \throws std::system_error if there is none
-    SceneFolder(const std::string& folder, std::optional<bool> same_environment);
+    SceneFolder(const std::string& folder, const SceneRules& rules);
     /// That of a run's operands: where ENV lies, or LAYOUT if that names ENV.
     static std::string of(const SceneInput& input);
 
@@ -31,7 +31,7 @@ class SceneFolder : public SceneSource {
 
   private:
     std::string folder_;  // canonical
-    std::optional<bool> same_environment_;
+    SceneRules rules_;
     DeviceCatalogue devices_;
 };
 

@@ -44,7 +44,7 @@ class SceneFolderTest : public ::testing::Test {
             return false;
         }
     }
-    SceneFolder folder() { return {(root_ / "scenes").string(), false}; }
+    SceneFolder folder() { return {(root_ / "scenes").string(), {false}}; }
     fs::path root_ =
         fs::canonical(::testing::TempDir()) / ("scene_folder_test." + std::to_string(::getpid()));
 };
@@ -132,7 +132,7 @@ TEST_F(SceneFolderTest, IsThere) {
                                     std::pair("secret.env", "Not a directory")}) {
         const std::string folder = (root_ / name).string();
         try {
-            SceneFolder(folder, false);
+            SceneFolder(folder, {false});
             FAIL() << folder;
         } catch (const std::system_error& error) {
             EXPECT_EQ(error.what(), folder + ": " + why);

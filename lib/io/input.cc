@@ -17,7 +17,6 @@
 #include "io/mesh_parts.h"
 #include "raster/picture.h"
 #include "record/text.h"
-#include "record/yaml.h"
 
 namespace ispace {
 
@@ -171,7 +170,8 @@ Document readRecords(const Source& source) {
     return readRecordText(source.bytes, source.operand, source.schemas);
 }
 Document readYamlRecords(const Source& source) {
-    return readYaml(source.bytes, source.operand, source.schemas, {}, source.options.max_work);
+    return readYaml(source.bytes, source.operand, source.schemas, {}, source.options.max_work,
+                    source.options.includes);
 }
 bool isHouseExpo(const Source& source) {
     return isJson(source.bytes) && source.bytes.find("\"verts\"") != std::string_view::npos;

@@ -12,6 +12,7 @@
 #include "geom/pose.h"
 #include "plan/found_rooms.h"
 #include "record/record.h"
+#include "record/yaml.h"
 
 namespace ispace {
 
@@ -65,6 +66,7 @@ struct ImportOptions {
     std::vector<std::string> model_folders;  ///< of SDF, see SdfFiles; relative to the current one
     bool points = false;                     ///< points of an ARIA map become obstacles
     std::optional<std::uint64_t> max_work;   ///< of --max-work, see Budget; default: by the size
+    IncludeFiles includes = IncludeFiles::InFolder;  ///< of YAML
     FoundRooms* found = nullptr;     ///< takes the rooms of plans, kept or not; null: not asked for
     ImportReport* report = nullptr;  ///< null: choices are notes, doubts are dropped
     bool load_files = true;          ///< false: records keep the files they name unread

@@ -2,12 +2,7 @@
 #include "io/side_files.h"
 #include "io/input.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -15,7 +10,6 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/read_fence.h"
-#include "base/run_files.h"
 
 namespace ispace {
 
@@ -23,37 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// \pre both are canonical
-bool liesIn(const fs::path& folder, const fs::path& file) {
-    return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
-           folder.end();
-}
-
 fs::path folderOf(const std::string& path) {
     const fs::path folder = fs::path(path).parent_path();
     return folder.empty() ? "." : folder;
 }
 
 }  // namespace
-
-RegularFile openRegular(const std::string& path) {
-    struct stat info {};
-    const auto check_kind = [&] {
-        if (S_ISDIR(info.st_mode)) throw std::system_error(EISDIR, std::generic_category(), path);
-        if (!S_ISREG(info.st_mode)) failFile(path, "it is no regular file");
-    };
-    mustBeReadable(path);
-    // Before it is opened, too: to open a device may do things.
-    if (::stat(path.c_str(), &info) != 0)
-        throw std::system_error(errno, std::generic_category(), path);
-    check_kind();
-    OpenFile file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
-    if (file.fd() < 0 || ::fstat(file.fd(), &info) != 0)
-        throw std::system_error(errno, std::generic_category(), path);
-    check_kind();
-    noteInput(file.fd());
-    return {std::move(file), static_cast<std::size_t>(info.st_size)};
-}
 
 std::string sideFilePath(const std::string& path, const std::string& name) {
     return (fs::path(path).parent_path() / name).string();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,16 +8,6 @@
 #include "base/file.h"
 
 namespace ispace {
-
-/// A regular file, open for reading.
-struct RegularFile {
-    OpenFile file;
-    std::size_t size = 0;
-};
-
-/// Opens a file that must be regular, without waiting for pipes. \throws FormatError for devices,
-/// pipes and sockets; std::system_error if it cannot be opened, also for a folder
-RegularFile openRegular(const std::string& path);
 
 /// The file that `path` names, relative to its folder; nothing if it does not exist. \param
 /// anywhere false: it must lie in that folder, or in one of `others` (relative to it), or below,

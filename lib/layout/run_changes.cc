@@ -39,7 +39,7 @@ std::string takeField(std::string_view& rest) {
 std::vector<RunChange> recordedChanges(const std::string& folder) {
     const std::string name = RecordedFiles(folder).events;
     if (!std::filesystem::exists(name)) return {};
-    LineSource lines(InputFile(name), "");
+    LineSource lines = tableOf(name);
     const auto head = lines.next();
     if (head && !head->starts_with("t,kind,id,other"))
         throw FormatError({name, 1, 0, "no events of a run: wanted t,kind,id,other,…"});
@@ -80,7 +80,7 @@ RunChanges::Step RunChanges::stepOf(const RunChange& change, const Scene& now,
     if (loads && change.scene.empty())
         throw UsageError("the record does not hold the scene that was loaded");
     if (!change.scene.empty()) {
-        Scene scene = read_((std::filesystem::path(folder_) / change.scene).string());
+        Scene scene = read_(fileOfRecord(folder_, change.scene));
         if (loads) start_ = std::make_shared<const Scene>(scene);
         return {std::move(scene), loads,
                 loads ? std::vector<std::string>() : placedBy(parseEdits(change.text), now)};

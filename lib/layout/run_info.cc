@@ -5,11 +5,13 @@
 #include <cmath>
 #include <filesystem>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/read_fence.h"
 #include "layout/table_lines.h"
 
 namespace ispace {
@@ -24,13 +26,33 @@ RecordedFiles::RecordedFiles(const std::string& folder) {
     people = in_folder("people.csv");
     events = in_folder("events.csv");
     info = in_folder("info.csv");
-    scene = in_folder("scene.env");
+}
+
+std::string fileOfRecord(const std::string& folder, const std::string& name) {
+    std::string file = (std::filesystem::path(folder) / name).string();
+    std::error_code error;
+    static_cast<void>(std::filesystem::status(file, error));
+    if (error) throw std::system_error(error, file);
+    if (!liesOpenlyIn(folder, file))
+        throw FormatError(
+            {displayName(file), 0, 0,
+             "it is no regular file in the folder of the record, or is hidden there"});
+    return file;
+}
+
+std::string sceneOfRecord(const std::string& folder) {
+    const char* const name = "scene.env";
+    // A link to a pipe is there, too.
+    return std::filesystem::exists(
+               std::filesystem::symlink_status(std::filesystem::path(folder) / name))
+               ? fileOfRecord(folder, name)
+               : "";
 }
 
 std::optional<RunInfo> recordedInfo(const std::string& folder) {
     const std::string name = RecordedFiles(folder).info;
     if (!std::filesystem::exists(name)) return std::nullopt;
-    const std::string text = readAll(name);
+    const std::string text = readAll(name, InputKind::Regular);
     if (text.empty()) return std::nullopt;
     std::vector<std::string_view> columns, fields;
     const std::string_view all(text);

@@ -279,15 +279,12 @@ std::optional<double> RunReader::Data::upcoming() {
 RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()) {
     const RecordedFiles files(folder);
     data_->name = files.robots;
-    data_->add(files.robots, LineSource(InputFile(files.robots), ""), false);
-    if (exists(files.people))
-        data_->add(files.people, LineSource(InputFile(files.people), ""), true);
-    if (exists(files.odometry))
-        data_->addOdometry(files.odometry, LineSource(InputFile(files.odometry), ""));
-    if (exists(files.bumpers))
-        data_->bumper_file.emplace(files.bumpers, LineSource(InputFile(files.bumpers), ""));
+    data_->add(files.robots, tableOf(files.robots), false);
+    if (exists(files.people)) data_->add(files.people, tableOf(files.people), true);
+    if (exists(files.odometry)) data_->addOdometry(files.odometry, tableOf(files.odometry));
+    if (exists(files.bumpers)) data_->bumper_file.emplace(files.bumpers, tableOf(files.bumpers));
     if (!exists(files.events)) return;
-    data_->events.emplace(files.events, LineSource(InputFile(files.events), ""));
+    data_->events.emplace(files.events, tableOf(files.events));
     if (!recordedChange(folder)) return;
     const auto info = recordedInfo(folder);
     data_->letGo(info && info->steps > 0 ? info->step * static_cast<double>(info->steps)
@@ -379,7 +376,7 @@ const std::string& RunReader::name() const { return data_->name; }
 std::optional<double> recordedChange(const std::string& folder) {
     const std::string name = RecordedFiles(folder).events;
     if (!exists(name)) return std::nullopt;
-    return EventFile(name, LineSource(InputFile(name), ""), "change").upcoming();
+    return EventFile(name, tableOf(name), "change").upcoming();
 }
 
 }  // namespace ispace

@@ -52,6 +52,11 @@ class LineSource {
     bool is_too_long_ = false;
 };
 
+/// The lines of a table of a record. \throws as InputFile, for anything but a regular file, too
+inline LineSource tableOf(const std::string& file) {
+    return LineSource(InputFile(file, InputKind::Regular), "");
+}
+
 /// A time of a run, in seconds: from 0 to 4e9, beyond the hundred years of the longest run.
 inline std::optional<double> parseRunTime(std::string_view text) {
     constexpr double kLongest = 4e9;

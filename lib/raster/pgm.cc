@@ -46,8 +46,10 @@ class PgmParser {
     bool readMagic() {
         if (bytes_.empty()) fail("empty file, wanted a PGM picture (P2 or P5)");
         const std::string_view word = nextWord();
+        // Only a word as long as a magic is quoted: a map may name a file that is no picture.
         if (word != "P2" && word != "P5")
-            fail("wrong magic " + excerpt(word) + ", wanted a PGM picture (P2 or P5)");
+            fail("wrong magic" + (word.size() == 2 ? ' ' + excerpt(word) : "") +
+                 ", wanted a PGM picture (P2 or P5)");
         return word == "P2";
     }
 

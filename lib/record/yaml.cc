@@ -24,9 +24,10 @@ namespace {
 class YamlReader {
   public:
     /// \param operand the file read, for the names of those it includes
-    /// \param read see YamlIncludes
-    YamlReader(RecordCollector& collector, const std::string& operand, FileReader read)
-        : collector_(&collector), includes_(operand, std::move(read)) {}
+    /// \param read, where see YamlIncludes
+    YamlReader(RecordCollector& collector, const std::string& operand, FileReader read,
+               IncludeFiles where)
+        : collector_(&collector), includes_(operand, std::move(read), where) {}
 
     /// \throws FormatError with the findings if the operand is no YAML or holds nothing, and if
     ///         aliases expand without end or includes are too many
@@ -368,9 +369,10 @@ Document readHead(std::string_view bytes, const std::string& name) {
 }  // namespace
 
 Document readYaml(std::string_view bytes, const std::string& name, const Schemas& schemas,
-                  const FileReader& read, std::optional<std::uint64_t> max_work) {
+                  const FileReader& read, std::optional<std::uint64_t> max_work,
+                  IncludeFiles includes) {
     RecordCollector collector(name, schemas);
-    YamlReader reader(collector, name, read);
+    YamlReader reader(collector, name, read, includes);
     YamlScene scene = reader.read(bytes);
     Document document = readHead(bytes, name);
     document.records = expandItems(std::move(scene), collector, Budget(bytes.size(), max_work));

@@ -15,6 +15,12 @@ namespace ispace {
 /// message, std::system_error
 using FileReader = std::function<std::string(const std::string& path)>;
 
+/// Where the files that YAML includes may lie, links followed.
+enum class IncludeFiles {
+    InFolder,  ///< in the folder of the operand, or below
+    Anywhere,
+};
+
 /// Reads the records of an environment or layout from YAML.
 ///
 /// The top is a list of records, or a map from keywords to a record or a list of records, or a
@@ -44,7 +50,8 @@ using FileReader = std::function<std::string(const std::string& path)>;
 /// place or the point `about`.
 ///
 /// \param name for messages as it is; includes are relative to its folder, for "-" the current one
-/// \param read gives the content of included files; without it regular files on the disk are read
+/// \param read gives the content of included files; without it regular files on the disk are read,
+///        which lie where `includes` says
 /// \return Document::sources has the files included
 /// \throws FormatError with file:line:column and hints, several at once, those of included files
 ///         with the chain of includes; also for anchors that add more than a million nodes, more
@@ -54,7 +61,8 @@ using FileReader = std::function<std::string(const std::string& path)>;
 ///         copies and placements spend from a Budget
 /// \param max_work see Budget
 Document readYaml(std::string_view bytes, const std::string& name, const Schemas& schemas,
-                  const FileReader& read = {}, std::optional<std::uint64_t> max_work = {});
+                  const FileReader& read = {}, std::optional<std::uint64_t> max_work = {},
+                  IncludeFiles includes = IncludeFiles::InFolder);
 
 /// The document as YAML that readYaml gives back: magic line, history lines, and a list with a
 /// record a line, `- desk: {id: d1, at: [2, 3], heading: 30}`, its values as in the canonical

@@ -61,8 +61,9 @@ class YamlIncludes {
     static constexpr std::size_t kMaxAgain = 16'000'000;
 
     /// \param operand the file read first; "-" lies in the current folder
-    /// \param read gives the content of files; without it they are read from the disk
-    YamlIncludes(const std::string& operand, FileReader read);
+    /// \param read gives the content of files; without it they are read from the disk, where they
+    /// may lie in these places
+    YamlIncludes(const std::string& operand, FileReader read, IncludeFiles where);
 
     /// Reads the file that the file read at present names; it is the one read from now on.
     /// \return its bytes
@@ -90,10 +91,12 @@ class YamlIncludes {
     void checkCycle(const Open& next) const;
     [[nodiscard]] std::string identityOf(const std::string& name) const;
     [[nodiscard]] std::string read(const std::string& name) const;
+    void checkPlace(const std::string& name) const;
     void spend(const Open& file, std::size_t size);
     [[noreturn]] void exhaust(const std::string& message);
 
     FileReader read_;
+    IncludeFiles where_;
     std::vector<Open> open_;
     std::vector<std::string> files_;
     std::set<std::string> identities_;  // of those

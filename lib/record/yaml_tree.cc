@@ -7,18 +7,16 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/message.h"
 #include "base/read_fence.h"
-#include "base/run_files.h"
 
 namespace ispace {
 
@@ -134,30 +132,21 @@ std::string joined(const fs::path& folder, const std::string& path) {
 
 /// The content of a regular file: others, as devices are, may have no end.
 std::string readRegularFile(const std::string& name) {
-    mustBeReadable(name);
-    std::error_code error;
-    const fs::file_status status = fs::status(name, error);
-    if (error) throw std::system_error(error);
-    if (!fs::is_regular_file(status)) refuse("it is no regular file");
-    const auto size = static_cast<std::size_t>(fs::file_size(name));
+    const std::size_t size = openRegular(name).size;
     if (size > YamlIncludes::kMaxBytes) refuse("it holds more than all included files may");
-    noteInput(name);
-    errno = 0;
-    std::ifstream stream(name, std::ios::binary);
-    if (!stream) throw std::system_error(errno, std::generic_category());
+    InputFile file(name, InputKind::Regular);
+    std::string bytes;
     // Those of /proc may tell a size of 0 and have no end either.
     constexpr std::size_t kMore = 1 << 16;
-    std::string bytes(size + kMore, '\0');
-    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (stream.bad()) throw std::system_error(errno, std::generic_category());
-    if (!stream.eof()) refuse("it holds more than its size says");
-    bytes.resize(static_cast<std::size_t>(stream.gcount()));
+    while (file.read(bytes))
+        if (bytes.size() > size + kMore) refuse("it holds more than its size says");
     return bytes;
 }
 
 }  // namespace
 
-YamlIncludes::YamlIncludes(const std::string& operand, FileReader read) : read_(std::move(read)) {
+YamlIncludes::YamlIncludes(const std::string& operand, FileReader read, IncludeFiles where)
+    : read_(std::move(read)), where_(where) {
     open_.push_back({operand, "", operand == "-" ? operand : identityOf(operand)});
 }
 
@@ -212,13 +201,29 @@ std::string YamlIncludes::read(const std::string& name) const {
                "; names are relative to the folder of the file that includes");
     };
     try {
-        return read_ ? read_(name) : readRegularFile(name);
+        if (read_) return read_(name);
+        mustBeReadable(name);
+        if (where_ == IncludeFiles::InFolder) checkPlace(name);
+        return readRegularFile(name);
     } catch (const FormatError& error) {
         fail(error.diagnostics().front().message);
     } catch (const std::system_error& error) {
         fail(error.code().message());
     }
     return {};
+}
+
+/// \throws FormatError if it is there, but not in the folder of the operand or below
+void YamlIncludes::checkPlace(const std::string& name) const {
+    std::error_code error;
+    const fs::path file = fs::canonical(name, error);
+    if (error) return;  // for the reader to explain
+    const std::string& operand = open_.front().name;
+    const fs::path parent = operand == "-" ? fs::path() : fs::path(operand).parent_path();
+    const fs::path folder = fs::canonical(parent.empty() ? "." : parent, error);
+    if (error || !liesIn(folder, file))
+        refuse("it lies outside the folder of " + excerpt(displayName(operand)) +
+               ": put it there, or allow it with --include-files anywhere");
 }
 
 void YamlIncludes::spend(const Open& file, std::size_t size) {

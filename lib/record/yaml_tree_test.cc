@@ -36,12 +36,13 @@ class YamlInclude : public ::testing::Test {
         fs::remove_all(folder_);
     }
 
-    static Document read(const std::string& name) {
-        return readYaml(readAll(name), name, placedSchemas());
+    static Document read(const std::string& name, IncludeFiles includes = IncludeFiles::InFolder) {
+        return readYaml(readAll(name), name, placedSchemas(), {}, {}, includes);
     }
-    static Texts records(const std::string& name) {
+    static Texts records(const std::string& name, IncludeFiles includes = IncludeFiles::InFolder) {
         Texts lines;
-        for (const Record& record : read(name).records) lines.push_back(formatRecord(record));
+        for (const Record& record : read(name, includes).records)
+            lines.push_back(formatRecord(record));
         return lines;
     }
     static Texts findings(const std::string& name) {
@@ -65,10 +66,40 @@ TEST_F(YamlInclude, PutsRecordsInPlace) {
     EXPECT_TRUE(document.history.empty());
     EXPECT_EQ(readYaml("include: sub/b.yaml\n", "-", placedSchemas()).records.size(), 3U);
     EXPECT_EQ(readYaml("include: b.yaml\n", "sub/-", placedSchemas()).records.size(), 3U);
-    EXPECT_EQ(readYaml("include: " + fs::current_path().string() + "/sub/e.yaml\n", "x/y",
+    EXPECT_EQ(readYaml("include: " + fs::current_path().string() + "/sub/e.yaml\n", "sub/y",
                        placedSchemas())
                   .records.size(),
               1U);
+}
+
+TEST_F(YamlInclude, StaysInTheFolder) {
+    writeAll("secret.env", "#env 1\ndesk id=d\n");
+    writeAll("sub/up.yaml", "include: ../secret.env\n");
+    writeAll("sub/absolute.yaml", "include: " + fs::current_path().string() + "/secret.env\n");
+    fs::create_symlink("../secret.env", "sub/link.env");
+    writeAll("sub/link.yaml", "include: link.env\n");
+    writeAll("sub/deep/up.yaml", "include: ../../secret.env\n");
+    writeAll("sub/nested.yaml", "include: deep/up.yaml\n");
+    for (const char* name :
+         {"sub/up.yaml", "sub/absolute.yaml", "sub/link.yaml", "sub/nested.yaml"}) {
+        const Texts found = findings(name);
+        ASSERT_EQ(found.size(), 1U) << name;
+        EXPECT_NE(found[0].find("it lies outside the folder of `" + std::string(name) +
+                                "`: put it there, or allow it with --include-files anywhere"),
+                  std::string::npos)
+            << found[0];
+        EXPECT_EQ(records(name, IncludeFiles::Anywhere), Texts{"desk id=d"});
+    }
+    writeAll("sub/missing.yaml", "include: ../missing.env\n");
+    EXPECT_NE(findings("sub/missing.yaml").at(0).find("No such file"), std::string::npos);
+    fs::current_path("sub");
+    EXPECT_NE(findings("up.yaml").at(0).find("outside the folder of `up.yaml`"), std::string::npos);
+    EXPECT_THROW(readYaml("include: ../secret.env\n", "-", placedSchemas()), FormatError);
+    fs::current_path("..");
+    fs::create_directory_symlink("sub", "other");
+    EXPECT_EQ(findings("other/up.yaml").size(), 1U);
+    writeAll("top.yaml", "include: sub/deep/up.yaml\n");
+    EXPECT_EQ(records("top.yaml"), Texts{"desk id=d"}) << "an include of an include in the folder";
 }
 
 TEST_F(YamlInclude, RebasesFiles) {
@@ -82,7 +113,7 @@ TEST_F(YamlInclude, RebasesFiles) {
     fs::current_path("sub");
     EXPECT_EQ(records("../room.yaml"), from_here) << "relative to the operand's folder";
     writeAll("up.yaml", "include: ../room.yaml\n");
-    EXPECT_EQ(records("up.yaml").at(1), "mesh file=../sub/b.obj");
+    EXPECT_EQ(records("up.yaml", IncludeFiles::Anywhere).at(1), "mesh file=../sub/b.obj");
 }
 
 TEST_F(YamlInclude, SharesPartsButNoDefaults) {
@@ -172,9 +203,7 @@ TEST_F(YamlInclude, ErrorsCarryTheChain) {
               "file or directory" +
                   relative);
     EXPECT_EQ(found[5],
-              "b.yaml:2:47: error: cannot read the included file `sub`: it is no regular "
-              "file" +
-                  relative);
+              "b.yaml:2:47: error: cannot read the included file `sub`: Is a directory" + relative);
     EXPECT_EQ(found[6],
               "f.yaml: error: no records found, wanted a list or map of records" + chain(52));
     EXPECT_EQ(found[7], "a.yaml:2:10: error: unknown key `heigth`, did you mean `height`?");
@@ -214,7 +243,7 @@ TEST_F(YamlInclude, WantsNames) {
     writeAll("a.yaml",
              "- include:\n- include: {a: b}\n- include: [[b]]\n- include: ''\n- include: "
              "\"a\\nb\"\n- include: /dev/zero\n- include: /proc/self/pagemap\n");
-    const Texts found = findings("a.yaml");
+    const Texts found = findingsOf([&] { (void)read("a.yaml", IncludeFiles::Anywhere); });
     ASSERT_EQ(found.size(), 7U);
     EXPECT_EQ(found[0],
               "a.yaml:1:3: error: nothing (null) is given, the name of a file or a list "

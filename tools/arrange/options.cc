@@ -124,7 +124,7 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     addSearchOptions();
     addFileOptions();
     addShareOptions();
-    addDigestOptions(line_, options_.same_environment);
+    addSceneRules(line_, options_.rules);
     addCommonOptions(line_, options_.common, "write the layout there (default: stdout)");
     line_.parse(argc, argv);
     settle();

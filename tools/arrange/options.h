@@ -31,7 +31,7 @@ struct ArrangeToolOptions {
     std::optional<double> time_limit;  ///< seconds
     BatchOptions batch;
     double checkpoint_interval = 5;  ///< seconds, of --resume
-    std::optional<bool> same_environment;
+    SceneRules rules;
 };
 
 class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {

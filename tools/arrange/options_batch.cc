@@ -70,6 +70,7 @@ void ArrangeCommand::becomeMerge(const ArrangeToolOptions& merge, Shared what, i
     const std::uint64_t seed = options_.common.seed;
     options_.common = merge.common;
     options_.common.seed = seed;
+    options_.rules.includes = merge.rules.includes;
     options_.trace_file = merge.trace_file;
     options_.curve_file = merge.curve_file;
     options_.mps_file = merge.mps_file;

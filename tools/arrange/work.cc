@@ -59,8 +59,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     for (const std::string& spec : options.sensors)
         added.push_back(ofOption(
             "--sensor", [&] { return readSensorSpec(spec, kinds, sceneSchemas(), devices); }));
-    ArrangeWork work{
-        readScene({options.operands, options.same_environment, false}), {}, options.how, {}, {}};
+    ArrangeWork work{readScene({options.operands, options.rules, false}), {}, options.how, {}, {}};
     SceneInput& input = work.input;
     warnOfImport(options.common, "arrange", input);
     if (!options.fixed.empty()) {

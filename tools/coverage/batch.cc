@@ -50,9 +50,8 @@ class BatchWorker {
   private:
     void measure(const BatchJob& job, SceneOutcome& outcome) const {
         if (!job.wrong.empty()) throw UsageError(job.wrong);
-        SceneInput input = readScene({.operands = job.operands,
-                                      .same_environment = options_.same_environment,
-                                      .layout_from_stdin = false});
+        SceneInput input = readScene(
+            {.operands = job.operands, .rules = options_.rules, .layout_from_stdin = false});
         addZones(options_.zones, input);
         const Scene& scene = input.scene;
         if (!input.layout && scene.sensors.empty())

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // coverage: measures and draws what the sensors of a scene see.
-#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <utility>
@@ -39,10 +38,9 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const Scene
 SceneInput readInput(const CoverageToolOptions& options) {
     std::vector<std::string> operands = options.operands;
     if (!options.run.empty() && operands.empty())
-        if (const std::string scene = RecordedFiles(options.run).scene;
-            std::filesystem::exists(scene))
+        if (const std::string scene = sceneOfRecord(options.run); !scene.empty())
             operands.push_back(scene);
-    SceneInput input = readScene({operands, options.same_environment, true});
+    SceneInput input = readScene({operands, options.rules, true});
     addZones(options.zones, input);
     return input;
 }
@@ -70,7 +68,7 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     std::vector<std::string> files = filesOf(input);
     std::optional<OtherLayout> other;
     if (!options.other.empty()) {
-        other = readOtherLayout(input, options.other, options.same_environment);
+        other = readOtherLayout(input, options.other, options.rules);
         warn(options.common, "coverage", other->warnings);
         files.insert(files.end(), other->files.begin(), other->files.end());
     }

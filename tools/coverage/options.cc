@@ -212,7 +212,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "draw the places that arrange --trace wrote to this file on the map, coloured by the "
               "best value there",
               Enters::Nothing);
-    addDigestOptions(line, o.same_environment);
+    addSceneRules(line, o.rules);
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
     line.parse(argc, argv);
 

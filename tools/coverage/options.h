@@ -31,7 +31,7 @@ struct CoverageToolOptions {
     std::string run;    ///< folder of a record, whose robots and people are looked at; "" for none
     MapOptions map;
     std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor that 0, 1, ... sensors see
-    std::optional<bool> same_environment;
+    SceneRules rules;
     std::string history_line;
 };
 

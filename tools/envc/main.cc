@@ -57,7 +57,8 @@ Document readModel(const EnvcOptions& options, FoundRooms* found, ImportReport& 
     request.compiles = options.format == nullptr || options.format->write != nullptr;
     request.import.load_files = request.compiles;
     request.added = addedRecords(options.edits, sceneSchemas());
-    request.same_environment = options.same_environment;
+    request.import.includes = options.rules.includes;
+    request.same_environment = options.rules.same_environment;
     request.may_be_empty = !options.edits.empty();
     std::vector<Diagnostic> other_rooms;
     Document document = readInputs(request, other_rooms);

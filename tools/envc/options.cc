@@ -258,7 +258,7 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     line.flag("--closed", closed, "close the fences of --fence", Enters::History);
     addRoomOptions(line, options);
     addImportOptions(line, options.import);
-    addDigestOptions(line, options.same_environment);
+    addSceneRules(line, options.rules);
     addCommonOptions(line, options.common, "write the product there (default: stdout)");
     line.parse(argc, argv);
 

@@ -21,7 +21,7 @@ struct EnvcOptions {
     std::optional<double> slice;     ///< height of the obstacle map, which is the product then
     int width = 1200;                ///< pixels of a PNG
     std::vector<std::string> zones;  ///< to keep out of, or to add
-    std::optional<bool> same_environment;
+    SceneRules rules;
     ImportOptions import;
     std::string rooms;        ///< "" or a word of --rooms
     std::vector<Edit> edits;  ///< in their order

@@ -129,7 +129,7 @@ void ScanCommand::declare() {
     addBatchOptions(line_, o.batch, "of its readings");
     line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",
                Enters::Nothing);
-    addDigestOptions(line_, o.same_environment);
+    addSceneRules(line_, o.rules);
     addCommonOptions(line_, o.common,
                      "write the readings there: a file, a folder, or a pattern with %d (frame) and "
                      "%s (sensor) (default: stdout)");

@@ -39,7 +39,7 @@ struct ScanToolOptions {
     PhotoOptions photo;
     BatchOptions batch;
     bool list_models = false;
-    std::optional<bool> same_environment;
+    SceneRules rules;
 };
 
 class ScanCommand : public ToolCommand<ScanToolOptions> {

@@ -124,8 +124,8 @@ Sensors recordedLasers(const ScanToolOptions& options, const Scene& scene) {
 /// A record knows its scene.
 SceneInput sceneOf(const ScanToolOptions& options) {
     std::vector<std::string> operands = options.operands;
-    if (operands.empty()) operands.push_back(RecordedFiles(options.view.run).scene);
-    return readScene({operands, options.same_environment, false, {}});
+    if (operands.empty()) operands.push_back(fileOfRecord(options.view.run, "scene.env"));
+    return readScene({operands, options.rules, false, {}});
 }
 
 }  // namespace
@@ -146,7 +146,7 @@ void writeRecorded(const ScanCommand& command) {
     format->checkStream();
     if (format->isBinary()) refuseTerminal(options.common.output, options.format);
     const std::string name = options.view.run + "/scans.jsonl";
-    const auto file = std::make_shared<InputFile>(name);
+    const auto file = std::make_shared<InputFile>(name, InputKind::Regular);
     RecordedScans scans([file](std::string& bytes) { return file->read(bytes); }, name);
     RecordedOdometry odometry(options.view.run, input.scene, lasers);
     const bool wants_odometry = options.format == "carmen";

@@ -202,7 +202,7 @@ PictureSize pictureSize(const std::string& text) {
 
 void takeViews(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
-    const SceneInput input = readScene({options.operands, options.same_environment, false, {}});
+    const SceneInput input = readScene({options.operands, options.rules, false, {}});
     warnOfImport(options.common, "scan", input);
     Scene scene = input.scene;
     std::vector<std::string> files = filesOf(input);

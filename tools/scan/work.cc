@@ -63,10 +63,7 @@ SceneRequest requestOf(const ScanToolOptions& options) {
     if (options.poses == "-" && takes_stdin)
         throw UsageError("stdin cannot be read twice: only one of operands and --poses can be -");
     // A receiver alone reads nothing.
-    return {options.operands,
-            options.same_environment,
-            wants_layout,
-            {"laser", "ranger", "camera", "tag"}};
+    return {options.operands, options.rules, wants_layout, {"laser", "ranger", "camera", "tag"}};
 }
 
 Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simrun/inputs.h"
 
-#include <filesystem>
-
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_files.h"
@@ -13,13 +11,13 @@ namespace ispace {
 SceneInput readInput(const SimrunOptions& options) {
     std::vector<std::string> operands = options.operands;
     if (!options.replay.empty() && operands.empty()) {
-        const std::string scene = RecordedFiles(options.replay).scene;
-        if (!std::filesystem::exists(scene))
+        const std::string scene = sceneOfRecord(options.replay);
+        if (scene.empty())
             throw UsageError(options.replay +
                              " holds no scene.env: give ENV and LAYOUT of the run");
         operands.push_back(scene);
     }
-    SceneInput input = readScene({operands, options.same_environment, false});
+    SceneInput input = readScene({operands, options.rules, false});
     addZones(options.zones, input);
     return input;
 }

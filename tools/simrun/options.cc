@@ -39,7 +39,7 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     declareDrawing();
     declareJudgement();
     declareServer();
-    addDigestOptions(line_, options_.same_environment);
+    addSceneRules(line_, options_.rules);
     addCommonOptions(
         line_, options_.common,
         "draw the record of --replay there instead of serving it: the ways (.png, .svg, "

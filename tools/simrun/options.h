@@ -24,7 +24,7 @@ struct DrawingOptions {
 struct SimrunOptions {
     CommonOptions common;
     std::vector<std::string> operands;
-    std::optional<bool> same_environment;
+    SceneRules rules;
     std::vector<std::string> zones;  ///< to add to those of the room
     Clock clock;
     SimTime step = std::chrono::milliseconds(5);

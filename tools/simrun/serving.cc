@@ -40,7 +40,7 @@ ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input) {
     }
     const std::string& folder = options.load_folder;
     limits.source = std::make_shared<SceneFolder>(folder.empty() ? SceneFolder::of(input) : folder,
-                                                  options.same_environment);
+                                                  options.rules);
     return limits;
 }
 

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "record/yaml.h"
+
+namespace ispace {
+
+/// How tools take what the files of a scene say of other files.
+struct SceneRules {
+    /// If a layout records another digest than that of the environment: an error (true) or accepted
+    /// (false). Unset: a warning if the environment is an operand, an error if the layout's record
+    /// names it.
+    std::optional<bool> same_environment = {};
+    IncludeFiles includes = IncludeFiles::InFolder;
+};
+
+}  // namespace ispace
