@@ -148,7 +148,6 @@ class OperandReader {
                         request_.rules.same_environment, environment_->warnings);
         const Document* const layout = layout_ ? &*layout_ : nullptr;
         Scene scene = makeScene(*environment_, layout, devicesFor({&*environment_, layout}));
-        std::string().swap(environment_->derived);  // its memory, too
         return {std::move(scene),           std::move(*environment_),
                 std::move(layout_),         std::move(environment_operand_),
                 std::move(layout_operand_), std::move(named_),

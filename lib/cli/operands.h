@@ -31,7 +31,7 @@ struct SceneRequest {
 /// What the operands hold.
 struct SceneInput {
     Scene scene;
-    Document environment;  ///< but for what was derived from it, which the scene has
+    Document environment;
     std::optional<Document> layout;
     std::string environment_operand;  ///< "-" for stdin; found through LAYOUT if left out
     std::string layout_operand;       ///< "" without LAYOUT

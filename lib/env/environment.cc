@@ -8,11 +8,9 @@
 #include <mutex>
 #include <utility>
 
-#include "env/derived_walls.h"
 #include "env/level.h"
 #include "env/room_builder.h"
 #include "env/slice.h"
-#include "geom/triangulation.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -35,30 +33,16 @@ void forEachStanding(std::span<const Element> elements, double bottom, double to
 
 }  // namespace
 
-/// How results about walls came about, and what a file knows besides.
-struct Environment::Data::Derivation {
-    WallsKey key;
-    std::vector<Segment2> lines;      ///< of the walls, before they were welded
-    std::vector<std::size_t> source;  ///< of each wall line
-    std::vector<DerivedWalls::Triangles> floor;
-    std::shared_ptr<const KnownOrder> order;
-};
-
-Environment::Environment(std::span<const Record> records, std::span<const std::string> ids,
-                         std::string_view stored) {
+Environment::Environment(std::span<const Record> records, std::span<const std::string> ids) {
     assert(records.size() == ids.size());
-    BuiltRoom room = buildRoom(records, ids, stored);
-    DerivedWalls& derived = room.derived;
+    BuiltRoom room = buildRoom(records, ids);
     auto data = std::make_shared<Data>();
-    data->indoor = std::move(derived.enclosure.indoor);
-    data->inside = derived.enclosure.inside;
+    data->indoor = std::move(room.enclosure.indoor);
+    data->inside = room.enclosure.inside;
     data->limits = room.limits;
     data->height = room.height;
     data->elements = std::move(room.elements);
-    data->wall_lines = std::move(derived.welded.pieces);
-    data->derivation = std::make_shared<const Data::Derivation>(
-        Data::Derivation{room.key, std::move(room.lines), std::move(derived.welded.source),
-                         std::move(derived.floor), std::move(derived.order)});
+    data->wall_lines = std::move(room.wall_lines);
     data_ = std::move(data);
     levels_ = std::make_shared<Levels>();
 }
@@ -67,27 +51,12 @@ const std::vector<Triangulation>& Environment::Data::floorParts() const {
     return floor.get([this] {
         std::vector<Triangulation> parts;
         parts.reserve(indoor.parts.size());
-        const bool is_known = derivation->floor.size() == indoor.parts.size();
-        for (std::size_t i = 0; i < indoor.parts.size(); ++i) {
-            auto known =
-                is_known ? triangulationOf(indoor.parts[i], derivation->floor[i]) : std::nullopt;
-            parts.push_back(known ? *std::move(known) : triangulate(indoor.parts[i]));
-        }
+        for (const Region& part : indoor.parts) parts.push_back(triangulate(part));
         return parts;
     });
 }
 
 Mesh Environment::floor() const { return floorMesh(data_->floorParts()); }
-
-std::string Environment::stored() const {
-    const Data& data = *data_;
-    const Data::Derivation& known = *data.derivation;
-    const std::vector<Segment2> lines = slice(kScanHeight).straightLines();
-    const bool is_of_these = known.order != nullptr && known.order->find(lines) != nullptr;
-    return storedWalls(known.key, known.lines,
-                       {data.wall_lines, known.source, data.indoor, data.inside, data.floorParts(),
-                        is_of_these ? *known.order : KnownOrder::of(lines)});
-}
 
 const std::string& Environment::digest() const {
     return data_->digest.get([this] {
@@ -105,7 +74,6 @@ const RegionIndex& Environment::Data::indoorIndex() const {
 Slice Environment::Data::slice(double at) const {
     Slice slice;
     slice.height = at;
-    slice.order = derivation->order;
     const auto add_sheet = [&](const Sheet& sheet, std::size_t owner) {
         if (!isAmong(Surfaces::Opaque, sheet)) return;
         slice.sheets.push_back(sheet.line);

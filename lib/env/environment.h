@@ -4,7 +4,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/lazy.h"
@@ -38,10 +37,7 @@ class Environment {
     ///         fence outlines, doors and windows that are in no wall or overlap, nothing that
     ///         encloses, or lines that do not close ("not enclosed: 0.12 m between w3 and w4 near
     ///         (4.1, 2.0)"); the last two only where every wall has made its lines
-    /// \param stored what stored() gave for records with the same walls, openings and inside
-    ///        points, which need not be derived again; of others, or damaged: as if there were none
-    Environment(std::span<const Record> records, std::span<const std::string> ids,
-                std::string_view stored = {});
+    Environment(std::span<const Record> records, std::span<const std::string> ids);
 
     [[nodiscard]] const std::vector<Element>& elements() const { return data_->elements; }
     /// Bounding rectangle of the wall lines (thesis, Limit Acquire).
@@ -61,8 +57,6 @@ class Environment {
     /// The wall lines, welded, with all openings closed; for drawings, and for the parity rule
     /// where no open door joins rooms: there the lines that enclose are the edges of indoor().
     [[nodiscard]] const std::vector<Segment2>& wallLines() const { return data_->wall_lines; }
-    /// What took longest to derive, for a file; see env/derived_walls.h.
-    [[nodiscard]] std::string stored() const;
     /// Of its records, see environmentDigest(). Computed when it is first asked for; thread-safe.
     [[nodiscard]] const std::string& digest() const;
     /// Height of the highest wall, in metres.
@@ -96,8 +90,6 @@ class Environment {
         [[nodiscard]] const std::vector<Triangulation>& floorParts() const;
         Lazy<std::vector<Triangulation>> floor = {};
         Lazy<std::string> digest = {};
-        struct Derivation;
-        std::shared_ptr<const Derivation> derivation = {};
     };
     struct Levels;
 

@@ -70,10 +70,6 @@ Diagnostic fileFinding(std::span<const Element> elements, std::string message) {
 /// other.
 class Builder {
   public:
-    /// \param stored as storedWalls() wrote it; cutWalls() throws unless it is of these walls.
-    /// Empty: all is derived
-    explicit Builder(std::string_view stored = {}) : stored_(stored) {}
-
     /// \param with_things else giveThings() is still to be called
     void takeRecords(std::span<const Record> records, std::span<const std::string> ids,
                      bool with_things) {
@@ -120,23 +116,17 @@ class Builder {
     /// Lines of walls, and what is cut out of them. \pre there are walls
     /// \throws FormatError with all findings so far, or some if `at_once`
     void cutWalls(bool at_once) {
-        WeldedLines& welded = derived_.welded;
         const auto place = [this] { openings_ = placeOpenings(elements_, plan_, findings_); };
-        const auto weld_all = [&] { welded = at_once ? weld(plan_.lines) : weldedLines(); };
-        if (stored_.empty())
-            doBoth(at_once, place, weld_all);
-        else
-            place();
-        key_ = keyOf(plan_, elements_, openings_, inside_);
-        if (!stored_.empty()) restore();
-        for (const Segment2& piece : welded.pieces) {
+        const auto weld_all = [&] { welded_ = at_once ? weld(plan_.lines) : weldedLines(); };
+        doBoth(at_once, place, weld_all);
+        for (const Segment2& piece : welded_.pieces) {
             limits_.add(piece.a);
             limits_.add(piece.b);
         }
         if (!openings_.empty())
-            cut_ = cutOpenings(elements_, plan_, welded, openings_, findings_);
+            cut_ = cutOpenings(elements_, plan_, welded_, openings_, findings_);
         else
-            cut_.parts = wallParts(plan_.walls, welded);
+            cut_.parts = wallParts(plan_.walls, welded_);
     }
 
     /// What of walls is no opening, and what fills openings. Their parts are let go.
@@ -156,7 +146,7 @@ class Builder {
     /// \throws FormatError with all findings
     void enclose() {
         try {
-            if (stored_.empty()) derived_.enclosure = enclosed();
+            enclosure_ = enclosed();
         } catch (const FormatError& error) {
             // What is left of broken walls need not enclose anything.
             if (walls_whole_) findings_.add(withFile(error));
@@ -168,26 +158,14 @@ class Builder {
     [[nodiscard]] BuiltRoom take() {
         double height = 0;
         for (const WallLine& wall : plan_.walls) height = std::max(height, wall.top);
-        return {std::move(elements_),
-                std::move(plan_.lines),
-                key_,
-                std::move(derived_),
-                limits_,
+        return {std::move(elements_), std::move(welded_.pieces), std::move(enclosure_), limits_,
                 height};
     }
 
   private:
-    /// \throws FormatError, for no human to read, where what is stored is of other walls
-    void restore() {
-        auto derived = restoredWalls(stored_, key_, plan_.lines);
-        if (!derived) throw FormatError(Diagnostic{"", 0, 0, "other walls than were compiled"});
-        derived_ = *std::move(derived);
-    }
-
     [[nodiscard]] Enclosure enclosed() const {
-        const std::vector<Region> faces = cut_.passages.empty()
-                                              ? boundedFaces(derived_.welded)
-                                              : boundedFaces(cut_.lines, cut_.passages);
+        const std::vector<Region> faces =
+            cut_.passages.empty() ? boundedFaces(welded_) : boundedFaces(cut_.lines, cut_.passages);
         return ispace::enclose(plan_, faces, limits_, elements_, inside_);
     }
 
@@ -240,9 +218,7 @@ class Builder {
 
     void giveShape(Element& element, Diagnostics& findings) const {
         element.body = bodyBesideWalls(element.record);
-        // Stored are results of walls that have passed.
-        if (stored_.empty() || !isWall(element.record))
-            checkShape(element.record, element.body, findings);
+        checkShape(element.record, element.body, findings);
     }
 
     void countCorners(const Element& element) {
@@ -292,9 +268,8 @@ class Builder {
     std::vector<Opening> openings_;
     CutWalls cut_;
     Box2 limits_;
-    std::string_view stored_;
-    WallsKey key_;
-    DerivedWalls derived_;
+    WeldedLines welded_;
+    Enclosure enclosure_;
 };
 
 /// One step after another, so that findings come in order.
@@ -326,16 +301,13 @@ void buildAtOnce(std::span<const Record> records, std::span<const std::string> i
 
 }  // namespace
 
-BuiltRoom buildRoom(std::span<const Record> records, std::span<const std::string> ids,
-                    std::string_view stored) {
-    const bool is_many = records.size() >= kManyRecords;
-    if (is_many || !stored.empty()) {
+BuiltRoom buildRoom(std::span<const Record> records, std::span<const std::string> ids) {
+    if (records.size() >= kManyRecords) {
         try {
-            Builder builder(stored);
-            (is_many ? buildAtOnce : buildInOrder)(records, ids, builder);
+            Builder builder;
+            buildAtOnce(records, ids, builder);
             return builder.take();
         } catch (const FormatError&) {
-            if (!stored.empty()) return buildRoom(records, ids, {});
         }
     }
     Builder builder;

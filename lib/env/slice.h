@@ -2,10 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
-#include "env/known_order.h"
 #include "geom/curve.h"
 #include "geom/polygon.h"
 
@@ -26,8 +24,6 @@ struct Slice {
     std::vector<Round> rounds = {};  ///< ascending by solid; none in a band
     /// Indices in Environment::elements(); empty in a slice that is of no environment.
     std::vector<std::size_t> sheet_owners = {}, solid_owners = {};
-    /// What a compiled file knows of its straightLines(), or of those at another height; or null.
-    std::shared_ptr<const KnownOrder> order = {};
 
     /// Calls visit(Segment2) for every line that stops a beam: sheets, then edges of solids.
     template <typename Visit>

@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <limits>
-#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -251,47 +250,7 @@ class Orderer {
     BoxOrder order_;
 };
 
-/// Follows the shape of a tree that may be none.
-class ShapeReader {
-  public:
-    explicit ShapeReader(std::span<const std::uint8_t> shape) : rest_(shape) {}
-
-    /// The boxes of all; nothing if it is not the shape of a tree.
-    std::optional<std::size_t> boxes() {
-        if (!readNode(0) || !rest_.empty()) return std::nullopt;
-        return boxes_;
-    }
-
-  private:
-    bool readNode(int depth) {
-        if (depth == BoxOrder::kDepth || rest_.empty()) return false;
-        const std::size_t count = rest_.front();
-        if (count == 0 || count > kWidth || count >= rest_.size()) return false;
-        // Below the root a node divides: else few boxes could be a tree of very many nodes.
-        if (count == 1 && depth > 0) return false;
-        const auto children = rest_.subspan(1, count);
-        rest_ = rest_.subspan(1 + count);
-        return std::all_of(children.begin(), children.end(), [&](std::uint8_t size) {
-            boxes_ += size;
-            return size == 0 ? readNode(depth + 1) : size <= kWidth;
-        });
-    }
-
-    std::span<const std::uint8_t> rest_;
-    std::size_t boxes_ = 0;
-};
-
 }  // namespace
-
-bool BoxOrder::isOf(std::size_t boxes) const {
-    if (items.size() != boxes || ShapeReader(shape).boxes() != boxes) return false;
-    std::vector<bool> is_seen(boxes);
-    for (const std::uint32_t item : items) {
-        if (item >= boxes || is_seen[item]) return false;
-        is_seen[item] = true;
-    }
-    return true;
-}
 
 BoxOrder orderOf(std::span<const Box2> boxes, std::size_t most) {
     std::vector<Item> items;

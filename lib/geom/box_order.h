@@ -10,8 +10,7 @@
 
 namespace ispace {
 
-/// How boxes are gathered into a tree: what is to be kept of one to make it again without looking
-/// for it. Whatever it is, rays among the boxes meet the same things, sooner or later.
+/// How boxes are gathered into a tree.
 struct BoxOrder {
     /// Children of a node, and boxes of a leaf, at most.
     static constexpr std::size_t kWidth = 8;
@@ -24,9 +23,6 @@ struct BoxOrder {
     /// Of each node, the root first: the number of its children; of each child the number of its
     /// boxes if it is a leaf, 0 if it is a node; then all this of each child that is one.
     std::vector<std::uint8_t> shape;
-
-    /// True if it is a tree of so many boxes, each once. O(n)
-    [[nodiscard]] bool isOf(std::size_t boxes) const;
 };
 
 /// By binned surface area heuristic, with up to `most` boxes a leaf. O(n log n)

@@ -18,7 +18,6 @@
 #include "geom/planar_map.h"
 #include "geom/polygon.h"
 #include "geom/predicates.h"
-#include "geom/triangulation.h"
 
 namespace ispace {
 
@@ -133,22 +132,6 @@ Triangulation triangulate(const Region& region) {
         result.triangles.push_back(triangle);
     }
     std::sort(result.triangles.begin(), result.triangles.end());
-    return result;
-}
-
-std::optional<Triangulation> triangulationOf(const Region& region,
-                                             std::vector<std::array<std::uint32_t, 3>> triangles) {
-    constexpr double kRounding = 1e-9;  // of areas
-    Triangulation result{distinctVertices(region), std::move(triangles)};
-    double area = 0;
-    for (const auto& [a, b, c] : result.triangles) {
-        if (std::max({a, b, c}) >= result.vertices.size()) return std::nullopt;
-        const Point2 &p = result.vertices[a], &q = result.vertices[b], &r = result.vertices[c];
-        if (orientation(p, q, r) != Turn::Left) return std::nullopt;
-        area += cross(q - p, r - p) / 2;
-    }
-    const double wanted = region.area();
-    if (!(std::abs(area - wanted) <= kRounding * wanted)) return std::nullopt;
     return result;
 }
 

@@ -45,7 +45,6 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
         std::uint64_t positions = kWrong, indices = kWrong;
     };
     std::optional<std::uint64_t> records;  ///< extras.ispace
-    std::uint64_t derived = kWrong;        ///< extras.ispace_derived
     std::vector<FileMesh> files;           ///< extras.ispace_meshes
     std::vector<View> views;
     std::size_t error_position = 0;
@@ -102,10 +101,7 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
     }
 
     bool take(std::uint64_t value) {
-        if (depth_ == 2 && section_ == "extras") {
-            if (key_ == "ispace") records = value;
-            if (key_ == "ispace_derived") derived = value;
-        }
+        if (depth_ == 2 && section_ == "extras" && key_ == "ispace") records = value;
         if (depth_ == 3 && section_ == "bufferViews" && !views.empty()) {
             if (key_ == "buffer") views.back().buffer = value;
             if (key_ == "byteOffset") views.back().offset = value;
@@ -169,14 +165,6 @@ class Glb {
     [[nodiscard]] bool hasRecords() const { return finder_.records.has_value(); }
     [[nodiscard]] std::string_view records() {
         return viewOf(*finder_.records, "extras.ispace", "the records lie");
-    }
-
-    /// What is derived of them; "" if there is nothing. Another program may have dropped the view.
-    [[nodiscard]] std::string derived() {
-        const std::vector<Finder::View>& views = finder_.views;
-        if (finder_.derived >= views.size() || !isWithin(views[finder_.derived])) return "";
-        const Finder::View& view = views[finder_.derived];
-        return std::string(data_->read(view.offset, view.length));
     }
 
     /// Gives records of files the content that is in this one.
@@ -272,7 +260,6 @@ Glb glbOf(std::string_view bytes, const std::string& name) {
 Document documentOf(Glb& glb, const std::string& name, const Schemas& schemas) {
     Document document = readRecordText(glb.records(), name, schemas);
     glb.attachMeshes(document.records);
-    document.derived = glb.derived();
     return document;
 }
 

@@ -183,10 +183,10 @@ class Resolver {
 
 /// Throws what is wrong with the room together with the findings about sensors.
 Environment makeEnvironment(const std::vector<Record>& records, const std::vector<std::string>& ids,
-                            std::string_view stored, Diagnostics& findings) {
+                            Diagnostics& findings) {
     std::optional<Environment> environment;
     try {
-        environment.emplace(records, ids, stored);
+        environment.emplace(records, ids);
     } catch (const FormatError& error) {
         findings.add(error);
     }
@@ -212,16 +212,14 @@ bool isSameRoom(const Scene& before, const std::vector<Record>& records,
 }
 
 /// The scene of records without those that are meta, but for `records` and `digest`.
-/// \param stored results about the walls, see Environment
 Scene sceneOf(const std::vector<Record>& records, const Scene* before,
-              const DeviceCatalogue& devices, std::string_view stored = {}) {
+              const DeviceCatalogue& devices) {
     std::vector<std::string> ids = assignIds(records);
     Diagnostics findings;
     Placements placements = Resolver(records, ids, devices).resolve(findings);
     const bool is_same = before != nullptr && isSameRoom(*before, records, ids);
     if (is_same) findings.throwIfAny();
-    Environment room =
-        is_same ? before->environment : makeEnvironment(records, ids, stored, findings);
+    Environment room = is_same ? before->environment : makeEnvironment(records, ids, findings);
     return {.records = {},
             .ids = std::move(ids),
             .environment = std::move(room),
@@ -272,7 +270,7 @@ Scene makeScene(const Document& environment, const Document* layout, const Devic
     std::vector<Record> records =
         layout == nullptr ? environment.records : joinRecords(environment.records, layout->records);
     std::erase_if(records, isMeta);
-    Scene scene = sceneOf(records, before, devices, environment.derived);
+    Scene scene = sceneOf(records, before, devices);
     scene.records = std::move(records);
     const auto is_of_room = [](const Record& record) { return record.schema().isEnvironment(); };
     if (layout != nullptr &&

@@ -227,11 +227,8 @@ void GlbBuilder::addNode(const GlbNode& node) {
     nodes_json_.putAside();
 }
 
-void GlbBuilder::addDerived(std::string_view derived) { derived_view_ = addView({{derived}}); }
-
 void GlbBuilder::writeExtras(JsonWriter& json) const {
     json.key("extras").beginObject().key("ispace").value(static_cast<int>(kRecords));
-    if (derived_view_ >= 0) json.key("ispace_derived").value(derived_view_);
     if (!files_.empty()) {
         json.key("ispace_meshes").beginArray();
         for (const FileMesh& file : files_) {

@@ -124,10 +124,6 @@ class GlbBuilder {
     int addMesh(std::string_view name, const std::vector<Primitive>& primitives);
     void addNode(const GlbNode& node);
 
-    /// What is derived of the records, see Environment::stored(), in a view of its own.
-    /// \pre it stays as it is until finish(), and is the only one
-    void addDerived(std::string_view derived);
-
     /// Writes the whole file. All nodes stand in a node `room` at this place, in glTF's axes.
     /// \throws FormatError as writeGlbContainer does
     void finish(std::string_view records, const std::array<double, 3>& origin,
@@ -173,7 +169,6 @@ class GlbBuilder {
     Section materials_json_, meshes_json_, accessors_json_, nodes_json_;
     int material_count_ = 0, meshes_ = 0, accessors_ = 0, nodes_ = 0;
     int picture_view_ = -1;  ///< of the picture; -1 for none
-    int derived_view_ = -1;  ///< of what is derived; -1 for none
 };
 
 }  // namespace ispace

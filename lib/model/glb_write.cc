@@ -274,17 +274,15 @@ void writeGlb(const Scene& scene, const Document& document, const ByteSink& sink
     GlbBuilder builder;
     GlbScene nodes(builder, origin, picture);
     std::vector<ModelNode> placed;
-    std::string records, derived;
+    std::string records;
     const bool at_once = document.records.size() >= kManyRecords;
     const auto add_elements = [&] { addElements(scene.environment.elements(), origin, nodes); };
     const auto prepare_rest = [&] {
         placed = placedNodes(scene, true);
         records = recordsText(document);
-        derived = scene.environment.stored();
     };
     doBoth(at_once, add_elements, prepare_rest);
     for (const ModelNode& node : placed) nodes.add(node);
-    builder.addDerived(derived);
     builder.finish(records, gltfAxes(origin - Point3()), sink);
 }
 

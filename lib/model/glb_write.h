@@ -24,9 +24,6 @@ struct FloorPicture {
 /// The contents of mesh files are stored once each, in the file's own numbers: nodes turn, scale
 /// and move them. `extras.ispace_meshes` names digest, positions (3 floats a vertex) and indices
 /// (3 uint32 a triangle) of each by their buffer views; records find theirs by `digest`.
-///
-/// What takes longest to derive from the walls is in the view `extras.ispace_derived`, with a key
-/// of what it was derived from: readers may use it where the key fits, and need not.
 /// \param picture laid on the floor of the indoor region instead of its colour; null for none
 /// \throws FormatError for a model of more than 2 GiB
 std::string writeGlb(const Scene& scene, const Document& document,

@@ -157,9 +157,6 @@ struct Document {
     std::vector<std::string> notes = {};
     /// Warnings of an importer.
     std::vector<Diagnostic> warnings = {};
-    /// What was derived from the records when they were compiled, see Environment::stored(); it
-    /// tells itself whether it is still of these. "": nothing is known.
-    std::string derived = {};
 };
 
 /// Ids of all records, in order: the written one, else keyword and number. Numbers count from 1

@@ -2,11 +2,11 @@
 #include "trace/flat_tree.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
+#include "geom/box_order.h"
 #include "geom/point.h"
 
 namespace ispace {
@@ -136,15 +136,13 @@ void addLines(std::span<const Segment2> lines, const BoxOrder& order, FlatTree& 
 
 }  // namespace
 
-FlatTree::FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies,
-                   const BoxOrder* order) {
-    assert(order == nullptr || order->isOf(lines.size()));
+FlatTree::FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies) {
     if (std::any_of(lines.begin(), lines.end(), isPoint)) {
         std::vector<Segment2> some(lines.begin(), lines.end());
         std::erase_if(some, isPoint);
         if (!some.empty()) addLines(some, orderOf(some), *this);
     } else if (!lines.empty()) {
-        addLines(lines, order != nullptr ? *order : orderOf(lines), *this);
+        addLines(lines, orderOf(lines), *this);
     }
     if (round_bodies.empty()) return;
     if (nodes.empty()) nodes.push_back({});

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "geom/box_order.h"
 #include "geom/curve.h"
 #include "geom/polygon.h"
 
@@ -46,11 +45,8 @@ struct FlatTree {
         double cx, cy, xx, xy, yx, yy;
     };
 
-    /// \param order that of the lines if it is known; null: it is found. Not used if some lines
-    ///        are points. \pre order->isOf(lines.size())
-    /// O(n log n), O(n) with an order.
-    explicit FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies = {},
-                      const BoxOrder* order = nullptr);
+    /// Lines that are points are left out. O(n log n)
+    explicit FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies = {});
 
     /// Of a child.
     [[nodiscard]] const Node& node(std::int32_t child) const {

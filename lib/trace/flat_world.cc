@@ -165,10 +165,8 @@ struct FlatWorld::Data {
     double widest_packet;
     bool is_for_scan;
 
-    Data(std::span<const Segment2> lines, std::span<const Ellipse> rounds, const BoxOrder* order)
-        : tree(lines, rounds, order),
-          widest_packet(widestPacket(tree)),
-          is_for_scan(isForScan(tree)) {}
+    Data(std::span<const Segment2> lines, std::span<const Ellipse> rounds)
+        : tree(lines, rounds), widest_packet(widestPacket(tree)), is_for_scan(isForScan(tree)) {}
 
     void castRay(const Cast& cast, std::size_t i) const {
         const Point2 origin = cast.origin(i);
@@ -258,9 +256,8 @@ struct FlatWorld::Data {
     }
 };
 
-FlatWorld::FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds,
-                     const BoxOrder* order)
-    : data_(new Data(lines, rounds, order)) {}
+FlatWorld::FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds)
+    : data_(new Data(lines, rounds)) {}
 FlatWorld::FlatWorld(FlatWorld&&) noexcept = default;
 FlatWorld& FlatWorld::operator=(FlatWorld&&) noexcept = default;
 FlatWorld::~FlatWorld() = default;

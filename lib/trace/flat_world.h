@@ -4,7 +4,6 @@
 #include <memory>
 #include <span>
 
-#include "geom/box_order.h"
 #include "geom/curve.h"
 #include "geom/polygon.h"
 #include "trace/rays.h"
@@ -28,9 +27,7 @@ namespace ispace {
 /// the processor.
 class FlatWorld {
   public:
-    /// \param order that of the lines, if it is known, see FlatTree
-    explicit FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {},
-                       const BoxOrder* order = nullptr);
+    explicit FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});
     FlatWorld(FlatWorld&&) noexcept;
     FlatWorld& operator=(FlatWorld&&) noexcept;
     ~FlatWorld();

@@ -14,6 +14,7 @@
 #include "base/test_paths.h"
 #include "geom/point.h"
 #include "layout/test_layout.h"
+#include "trace/flat_tree.h"
 #include "trace/test_scans.h"
 
 namespace ispace {
@@ -262,6 +263,21 @@ TEST(FlatWorld, Sizes) {
             const Point2 origin{place(random), place(random)};
             EXPECT_LT(worstError(world, lines, origin, beams, kInfinity), 1e-3 + 1e-7 * scale);
         }
+    }
+}
+
+TEST(FlatWorld, LinesTooShortForALengthCountAsPoints) {
+    // The square of 1e-170 is 0. Leaves tell by lengths how many lines they have.
+    const Lines lines = {
+        {{0, 0}, {1e-170, 0}}, {{0, 1}, {2, 1}}, {{3, 0}, {3, 1e-170}}, {{0, 2}, {2, 2}}};
+    const FlatTree tree(lines);
+    ASSERT_EQ(tree.leaves.size(), 1U);
+    EXPECT_EQ(tree.leaves.front().count(), 2);
+    EXPECT_EQ(FlatTree(Lines{lines[0], lines[2]}).leaves.size(), 0U);
+    for (std::size_t count = 1; count <= 8; ++count) {
+        const FlatTree few(Lines(count, lines[1]));
+        ASSERT_EQ(few.leaves.size(), 1U);
+        EXPECT_EQ(few.leaves.front().count(), static_cast<int>(count));
     }
 }
 

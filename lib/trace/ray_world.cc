@@ -63,11 +63,10 @@ RayWorld RayWorld::ofSlice(const Slice& slice) {
     auto data = std::make_unique<Data>(Data{middleOf(plan)});
     const auto local = [&](Point2 p) { return data->local({p.x, p.y, 0}).onFloor(); };
     std::vector<Segment2> straight = slice.straightLines();
-    const BoxOrder* const order = slice.order == nullptr ? nullptr : slice.order->find(straight);
     for (Segment2& line : straight) line = {local(line.a), local(line.b)};
     std::vector<Ellipse> rounds = slice.curves();
     for (Ellipse& round : rounds) round.center = local(round.center);
-    data->flat.emplace(straight, rounds, order);
+    data->flat.emplace(straight, rounds);
     return RayWorld(std::move(data));
 }
 

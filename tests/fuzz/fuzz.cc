@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <variant>
 
-#include "env/derived_walls.h"
 #include "env/level.h"
 #include "env/slice.h"
 #include "io/glb.h"
@@ -108,28 +107,6 @@ void tryScene(const Document& document, std::string_view bytes) {
     (void)room.band(0, room.height());
     const Document compiled = readGlb(writeGlb(scene, document), "scene.glb", sceneSchemas());
     require(compiled.records == document.records, "other records in the compiled file");
-}
-
-void tryDerived(const Document& document) {
-    if (document.derived.empty() || !isSmallScene(document)) return;
-    const Environment room = makeScene(document, nullptr, DeviceCatalogue()).environment;
-    // The right key and checksum, so that what follows is looked at.
-    constexpr std::size_t kHead = 2 * sizeof(WallsKey);
-    Document trusted = document;
-    if (trusted.derived.size() < kHead) return;
-    trusted.derived.replace(0, kHead, room.stored(), 0, kHead);
-    seal(trusted.derived);
-    const Environment told = makeScene(trusted, nullptr, DeviceCatalogue()).environment;
-    require(told.indoor().area() > 0, "an indoor region without area");
-    require(told.indoor().locate(told.inside()) == Side::Inside, "an inside point outside");
-    (void)told.floor();
-    (void)told.level(kScanHeight)->freeFloor();
-    const Slice slice = told.slice(kScanHeight);
-    const std::vector<Segment2> lines = slice.straightLines();
-    const BoxOrder* const order = slice.order == nullptr ? nullptr : slice.order->find(lines);
-    require(order == nullptr || order->isOf(lines.size()), "a tree that is none of the lines");
-    (void)told.level(kScanHeight)->isFree(told.inside());
-    (void)told.stored();
 }
 
 void writeFile(const std::string& path, std::string_view bytes) {

@@ -57,10 +57,6 @@ bool isSmall(const Record& record);
 /// scenes: geometry takes a thousand times as long as reading.
 void tryScene(const Document& document, std::string_view bytes);
 
-/// Makes the scene of a small document as if what its file says of its walls were of these:
-/// whatever it says, it is refused or can be worked with.
-void tryDerived(const Document& document);
-
 /// A folder in memory of this process, for readers that open files beside theirs.
 const std::string& scratchFolder();
 

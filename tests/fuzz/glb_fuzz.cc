@@ -26,5 +26,4 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     require(has_records, "records where none should be");
     checkText(document);
     tryScene(document, bytes);
-    tryDerived(document);
 }
