@@ -221,12 +221,12 @@ bool isSound(const TriangleMesh& mesh) {
 
 }  // namespace
 
-MeshLimits meshLimits(std::size_t file_bytes, bool is_building) {
+ConfinedLimits meshLimits(std::size_t file_bytes, bool is_building) {
     constexpr std::size_t kMega = 1U << 20U;
     const std::size_t megas = std::min<std::size_t>(file_bytes / kMega, 1024);
     const std::size_t machine = static_cast<std::size_t>(::sysconf(_SC_PHYS_PAGES)) *
                                 static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-    MeshLimits limits;
+    ConfinedLimits limits;
     limits.memory = std::max(1024 * kMega, std::min((1024 + 32 * megas) * kMega, machine / 4 * 3));
     // Solids of a building are cut by each other.
     limits.seconds = is_building ? 60 + 10 * megas : 20 + 2 * megas;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/confined.h"
 #include "record/record.h"
 
 namespace ispace {
@@ -59,29 +60,9 @@ constexpr std::size_t kMaxMeshTriangles = 50'000'000;
 constexpr std::size_t kMaxMeshNodes = 1'000'000;  ///< each instance counts
 constexpr std::size_t kMaxMeshNodeDepth = 1000;
 
-/// What lib/ispace/read-mesh may use.
-struct MeshLimits {
-    std::size_t memory = 0;   ///< bytes of address space
-    std::size_t seconds = 0;  ///< of processor time
-};
-
-/// For files of so many bytes in all; 1 GB of memory and 20 s at least, and never more than three
-/// quarters of the memory there is beyond that.
-MeshLimits meshLimits(std::size_t file_bytes, bool is_building);
-
-/// Messages of lib/ispace/read-mesh to the program that started it: a kind, the size of the rest in
-/// eight native bytes, and the rest.
-enum class MeshAnswer : char {
-    WantsFile = 'F',    ///< its name as the mesh gives it; the reply is a byte, see MeshReply
-    Parts = 'P',        ///< packedMesh() or packedBuilding(); the last
-    Error = 'E',        ///< what is wrong with the file; the last
-    OutOfMemory = 'M',  ///< nothing follows; the last
-};
-
-/// The reply to WantsFile. `Handed` carries a descriptor, and the size as eight bytes.
-enum class MeshReply : char { Handed = 'Y', Missing = 'N' };
-
-constexpr std::size_t kMeshAnswerHead = 1 + sizeof(std::uint64_t);
+/// Limits of lib/ispace/read-mesh for files of so many bytes in all: 1 GB of memory and 20 s at
+/// least, and never more than three quarters of the memory there is beyond that.
+ConfinedLimits meshLimits(std::size_t file_bytes, bool is_building);
 
 std::string packedMesh(const TriangleMesh& mesh);
 

@@ -28,9 +28,10 @@ std::string pngOfDrawing(int columns, int rows, std::span<const std::uint32_t> p
 /// A 16-bit grey PNG. \pre columns * rows samples
 std::string pngOfGrey16(int columns, int rows, std::span<const std::uint16_t> samples);
 
-/// A JPEG of red, green and blue bytes, by OpenCV's imgcodecs, which is opened on demand as
-/// decodePicture() does. \param quality 1 to 100 \throws FormatError if that
-/// cannot be opened (with what to install), or the picture is wider or higher than 65500 pixels
+/// A JPEG of red, green and blue bytes, by the module `lib/ispace/pictures.so` beside the program,
+/// opened on demand because OpenCV's imgcodecs loads 140 more libraries. \param quality 1 to 100
+/// \throws FormatError if that cannot be opened (with what to install), or the picture is wider or
+/// higher than 65500 pixels
 std::string jpegOfRgb(int columns, int rows, std::span<const std::uint8_t> samples,
                       int quality = 95);
 

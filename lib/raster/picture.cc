@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "base/confined.h"
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
@@ -180,22 +182,41 @@ const PictureFormat* formatOf(std::string_view bytes) {
     return found == std::end(kFormats) ? nullptr : found;
 }
 
-/// A function of the module. Opened anew each time: the loader counts, and pictures are few.
-/// \throws FormatError with the hint what else one can do
-void* moduleFunction(const char* function, const std::string& format, const std::string& name,
-                     const char* hint) {
-    std::string error;
-    void* const found = moduleSymbol("pictures.so", function, error);
-    if (found != nullptr) return found;
-    throw FormatError(Diagnostic{
-        displayName(name), 0, 0,
-        "a " + format +
-            " picture needs OpenCV (Debian: libopencv-imgcodecs406): " + printable(error) + hint});
+/// For pictures of so many pixels, of 16 bits a sample at most: OpenCV and its libraries take some
+/// 600 MB of addresses.
+ConfinedLimits limitsOf(std::size_t pixels) {
+    constexpr std::size_t kBase = std::size_t{2} << 30U, kBytes = 40, kPixelsASecond = 2'000'000;
+    return {kBase + kBytes * pixels, 20 + pixels / kPixelsASecond};
 }
 
-PictureDecoder& decoder(const std::string& format, const std::string& name) {
-    return *reinterpret_cast<PictureDecoder*>(moduleFunction(
-        kPictureDecoder, format, name, "; or convert it, for example with `convert FILE map.png`"));
+/// Decoded by lib/ispace/read-picture. \throws FormatError
+DecodedPicture decodedApart(std::string_view bytes, const std::string& name,
+                            const std::string& format, std::size_t pixels) {
+    const OpenFile file = fileInMemory(bytes);
+    const std::string answer = readConfined(
+        {.name = name,
+         .program = "read-picture",
+         .arguments = {format},
+         .file = file.fd(),
+         .bytes = bytes.size(),
+         .limits = [pixels](std::size_t /*bytes*/) { return limitsOf(pixels); },
+         .kind = format + " picture",
+         .reader = "OpenCV",
+         .subject = format + " pictures are",
+         .hint = "; OpenCV is needed (Debian: libopencv-imgcodecs406), or convert it, for example "
+                 "with `convert FILE map.png`"});
+    PackedHead head{};
+    if (answer.size() >= sizeof head) std::memcpy(head.data(), answer.data(), sizeof head);
+    const auto [width, height, channels] = head;
+    const bool is_whole = width > 0 && height > 0 &&
+                          (channels == 1 || channels == 3 || channels == 4) &&
+                          (answer.size() - sizeof head) / static_cast<std::size_t>(width) /
+                                  static_cast<std::size_t>(channels) ==
+                              static_cast<std::size_t>(height);
+    if (!is_whole)
+        throw FormatError(Diagnostic{displayName(name), 0, 0,
+                                     "bad " + format + " picture: its reader is broken"});
+    return {width, height, channels, {answer.begin() + sizeof head, answer.end()}};
 }
 
 GreyPicture pictureOf(const DecodedPicture& decoded) {
@@ -241,9 +262,8 @@ DecodedPicture decodeForeign(std::string_view bytes, const std::string& name, st
     if (width > most || height > most || width * height > most)
         fail(extent + ", wanted at most " + std::to_string(most));
     if (kind == "JPEG" && !isWholeJpeg(bytes)) fail("truncated JPEG picture");
-    DecodedPicture decoded;
-    decoder(kind, name)(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), decoded);
-    if (!decoded.error.empty()) fail("bad " + kind + " picture: " + printable(decoded.error));
+    DecodedPicture decoded =
+        decodedApart(bytes, name, kind, static_cast<std::size_t>(width * height));
     if (decoded.width != width || decoded.height != height)
         fail("bad " + kind + " picture: its header says " + extent + ", it holds " +
              std::to_string(decoded.width) + " x " + std::to_string(decoded.height));
@@ -258,8 +278,15 @@ GreyPicture decodePicture(std::string_view bytes, const std::string& name) {
 
 std::string jpegOfRgb(int columns, int rows, std::span<const std::uint8_t> samples, int quality) {
     JpegPicture picture{columns, rows, quality, samples.data(), {}, {}};
-    (*reinterpret_cast<JpegEncoder*>(
-        moduleFunction(kJpegEncoder, "JPEG", "", "; PNG needs nothing else")))(picture);
+    std::string error;
+    // Opened anew each time: the loader counts.
+    void* const encode = moduleSymbol("pictures.so", kJpegEncoder, error);
+    if (encode == nullptr)
+        throw FormatError(Diagnostic{
+            "", 0, 0,
+            "a JPEG picture needs OpenCV (Debian: libopencv-imgcodecs406): " + printable(error) +
+                "; PNG needs nothing else"});
+    (*reinterpret_cast<JpegEncoder*>(encode))(picture);
     if (!picture.error.empty()) throw FormatError(Diagnostic{"", 0, 0, picture.error});
     return {picture.bytes.begin(), picture.bytes.end()};
 }

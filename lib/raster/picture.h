@@ -73,10 +73,10 @@ constexpr std::int64_t kMaxDecodedPixels = 100'000'000;
 /// "" for any other.
 std::string foreignPicture(std::string_view bytes);
 
-/// Decodes such a picture with the module `lib/ispace/pictures.so` beside the program, opened on
-/// demand because OpenCV's imgcodecs loads 140 more libraries. Grey becomes
-/// three equal colours, 16 bits become 8.
-/// \throws FormatError: damaged, too large, or the module cannot be opened (with what to install)
+/// Decodes such a picture with OpenCV, in the separate program `lib/ispace/read-picture`, which has
+/// no rights and bounds on memory and time: a picture that makes it crash, grow or hang is an
+/// ordinary bad file. Grey becomes three equal colours, 16 bits become 8.
+/// \throws FormatError: damaged, too large, or the program cannot be started (with what to install)
 GreyPicture decodePicture(std::string_view bytes, const std::string& name);
 
 /// How pixels map to cells: the keys of map_server's YAML.

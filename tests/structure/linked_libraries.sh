@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Each library costs time at every start: OpenCV's core and imgproc with the 15 they need some 4 ms,
 # its imgcodecs, with GDAL and 140 more, 59 ms; Cairo, with those of X11 and fonts, 1.7 ms. So no tool
-# links them: modules do, which are opened when a picture is read that asks for it, or one is drawn. No
-# tool links assimp, which some files make crash: the program does that is started for each mesh.
+# links them: modules do, which are opened when a picture is drawn, or written as JPEG. No tool links
+# assimp or decodes with OpenCV, which some files make crash: programs do that are started for each file.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 heavy='libopencv|libGL|liblapack|libgdal|libcrypto|libcairo|libX11|libfontconfig|libfreetype'
@@ -13,6 +13,8 @@ ldd "$module" >module.ldd
 grep -q libopencv_imgcodecs module.ldd || fail "the module for pictures does without OpenCV: $(cat module.ldd)"
 ldd "$binary_dir/lib/ispace/drawing.so" >module.ldd
 grep -q libcairo module.ldd || fail "the module for drawing does without Cairo: $(cat module.ldd)"
+ldd "$binary_dir/lib/ispace/read-picture" >module.ldd
+grep -q libopencv_imgcodecs module.ldd || fail "read-picture does without OpenCV"
 ldd "$binary_dir/lib/ispace/read-mesh" >module.ldd
 grep -q libassimp module.ldd || fail "read-mesh does without assimp"
 for tool in $tools; do
@@ -30,7 +32,7 @@ envc=$scratch/moved/bin/envc
 status=0
 "$envc" "$data/pictures/room.jpg" --resolution 0.05 --to env >out 2>err || status=$?
 [ "$status" -eq 1 ] || fail "status $status without the module"
-grep -q 'a JPEG picture needs OpenCV (Debian: libopencv-imgcodecs406): .*pictures.so' err ||
+grep -q 'JPEG pictures are read by .*lib/ispace/read-picture, .*OpenCV is needed (Debian: libopencv-imgcodecs406)' err ||
     fail "no hint: $(cat err)"
 "$envc" "$data/room.env" --to glb -o room.glb
 status=0

@@ -11,25 +11,17 @@
 #include <cstring>
 #include <memory>
 
+#include "base/module/confine.h"
+
 namespace ispace {
 
 namespace {
 
 constexpr std::string_view kFolder = "/mesh/";
 
-void send(const char* bytes, std::size_t size) {
-    while (size > 0) {
-        const ssize_t sent = ::send(STDOUT_FILENO, bytes, size, MSG_NOSIGNAL);
-        if (sent < 0 && errno == EINTR) continue;
-        if (sent < 0) ::_exit(1);
-        bytes += sent;
-        size -= static_cast<std::size_t>(sent);
-    }
-}
-
 /// The file, or null.
 std::unique_ptr<HandedFile> ask(std::string_view name) {
-    tell(MeshAnswer::WantsFile, name);
+    tell(ConfinedAnswer::WantsFile, name);
     std::array<char, 1 + sizeof(std::uint64_t)> bytes{};
     alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
     iovec part{bytes.data(), bytes.size()};
@@ -43,7 +35,8 @@ std::unique_ptr<HandedFile> ask(std::string_view name) {
     while (got < 0 && errno == EINTR);
     if (got != static_cast<ssize_t>(bytes.size())) ::_exit(1);
     const cmsghdr* const head = CMSG_FIRSTHDR(&message);
-    if (static_cast<MeshReply>(bytes[0]) != MeshReply::Handed || head == nullptr) return nullptr;
+    if (static_cast<ConfinedReply>(bytes[0]) != ConfinedReply::Handed || head == nullptr)
+        return nullptr;
     int fd = -1;
     std::memcpy(&fd, CMSG_DATA(head), sizeof fd);
     std::uint64_t size = 0;
@@ -52,15 +45,6 @@ std::unique_ptr<HandedFile> ask(std::string_view name) {
 }
 
 }  // namespace
-
-void tell(MeshAnswer kind, std::string_view bytes) {
-    std::array<char, kMeshAnswerHead> head{};
-    head[0] = static_cast<char>(kind);
-    const std::uint64_t size = bytes.size();
-    std::memcpy(&head[1], &size, sizeof size);
-    send(head.data(), head.size());
-    send(bytes.data(), bytes.size());
-}
 
 HandedFile::~HandedFile() {
     if (owned_) ::close(fd_);

@@ -7,12 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/mesh_parts.h"
-
 namespace ispace {
-
-/// Sends a whole message to the program that started this one; exits if that is gone.
-void tell(MeshAnswer kind, std::string_view bytes);
 
 /// An open file of a size that was told, for assimp.
 class HandedFile : public Assimp::IOStream {

@@ -1,55 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // read-mesh SUFFIX UP mesh PARENT SIZE MEMORY SECONDS: reads the mesh on standard input and answers
-// by the socket that is standard output, see mesh_parts.h; read-mesh SUFFIX CUT building ... reads
-// an IFC building, cut at a height or, with "", above each floor. Started by mesh_reader.cc alone.
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <cstdlib>
-#include <exception>
-#include <new>
+// by the socket that is standard output, see base/confined.h; read-mesh SUFFIX CUT building ...
+// reads an IFC building, cut at a height or, with "", above each floor. Started by mesh_reader.cc
+// alone.
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "base/module/confine.h"
 #include "base/number.h"
 #include "io/ifc/building.h"
 #include "io/ifc/ifc_mesh.h"
 #include "io/mesh_parts.h"
-#include "io/module/handed_files.h"
 #include "io/module/read_mesh.h"
 
 namespace {
 
 using namespace ispace;
-
-/// The bytes on standard input.
-class MappedInput {
-  public:
-    explicit MappedInput(std::size_t size) : size_(size) {
-        if (size > 0) start_ = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, STDIN_FILENO, 0);
-        if (start_ == MAP_FAILED) throw std::bad_alloc();
-    }
-    ~MappedInput() {
-        if (start_ != nullptr) ::munmap(start_, size_);
-    }
-    MappedInput(const MappedInput&) = delete;
-    MappedInput& operator=(const MappedInput&) = delete;
-
-    [[nodiscard]] std::string_view bytes() const {
-        return {static_cast<const char*>(start_), size_};
-    }
-
-  private:
-    void* start_ = nullptr;
-    std::size_t size_;
-};
-
-/// Assimp makes an error of a failed allocation, and other libraries an end of the program.
-[[noreturn]] void outOfMemory() {
-    tell(MeshAnswer::OutOfMemory, {});
-    ::_exit(0);
-}
 
 /// What the bytes tell before assimp has them.
 struct MeshHead {
@@ -64,8 +32,6 @@ MeshHead checkedHead(std::size_t size, const std::string& suffix) {
     if (head.format == MeshFormat::Obj) head.obj_up = objUpComment(input.bytes());
     return head;
 }
-
-std::size_t number(const char* text) { return std::strtoull(text, nullptr, 10); }
 
 bool isStep(std::size_t size) { return MappedInput(size).bytes().starts_with("ISO-10303-21"); }
 
@@ -82,15 +48,7 @@ std::string answer(bool is_building, const std::string& suffix, const std::strin
 
 int main(int argc, char** argv) {
     if (argc != 8) return 2;
-    std::set_new_handler(outOfMemory);
-    confine({number(argv[6]), number(argv[7])}, std::atoi(argv[4]));
-    try {
-        tell(MeshAnswer::Parts,
-             answer(std::string_view(argv[3]) == "building", argv[1], argv[2], number(argv[5])));
-    } catch (const std::bad_alloc&) {
-        outOfMemory();
-    } catch (const std::exception& error) {
-        tell(MeshAnswer::Error, error.what());
-    }
-    ::_exit(0);  // without destructors, which would only take time
+    return runConfined(argc, argv, meshLimits(SIZE_MAX, true), [argv](std::size_t size) {
+        return answer(std::string_view(argv[3]) == "building", argv[1], argv[2], size);
+    });
 }

@@ -11,12 +11,6 @@
 
 namespace ispace {
 
-/// Restricts this process to what reading untrusted bytes needs: no memory or time beyond the
-/// limits, no files but open ones, no programs, network or core dumps; it ends with its parent.
-/// Where the system has no seccomp, or refuses it, the limits hold all the same. Under sanitizers,
-/// which need more, only time is limited.
-void confine(const MeshLimits& limits, int parent);
-
 /// By content, else by suffix (".obj", lower case).
 /// \throws std::runtime_error if neither tells
 MeshFormat meshFormat(std::string_view bytes, const std::string& suffix);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What lib/raster and the module that links OpenCV say to each other.
+// Between lib/raster and what links OpenCV: a program that decodes, and a module that encodes.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -14,12 +15,11 @@ struct DecodedPicture {
     int width = 0, height = 0;
     int channels = 0;                   ///< 1 grey, 3 colours, 4 with opacity behind them
     std::vector<std::uint8_t> samples;  ///< row by row from the top
-    std::string error;                  ///< why there is none; "": there is one
 };
 
-/// The function of the module; never throws, never prints.
-using PictureDecoder = void(const std::uint8_t* bytes, std::size_t size, DecodedPicture& out);
-constexpr const char* kPictureDecoder = "ispaceDecodePicture";
+/// The answer of lib/ispace/read-picture begins with width, height and channels; the samples
+/// follow.
+using PackedHead = std::array<std::int32_t, 3>;
 
 /// Three bytes a pixel as JPEG.
 struct JpegPicture {
@@ -29,7 +29,7 @@ struct JpegPicture {
     std::string error;                      ///< why there are none; "": there are
 };
 
-/// The other function of the module; likewise.
+/// The function of the module; never throws, never prints.
 using JpegEncoder = void(JpegPicture& picture);
 constexpr const char* kJpegEncoder = "ispaceEncodeJpeg";
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/module/read_mesh.h"
+#include "base/module/confine.h"
 
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -15,6 +17,10 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <new>
 #include <vector>
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -26,7 +32,7 @@
 #endif
 
 #ifdef ISPACE_SANITIZED
-// In place of the limit on memory. What assimp leaves behind is nobody's business.
+// In place of the limit on memory. What libraries leave behind does not count.
 extern "C" const char* __asan_default_options() {  // NOLINT
     return "detect_leaks=0:symbolize=0:hard_rss_limit_mb=1200:max_allocation_size_mb=1024";
 }
@@ -46,7 +52,7 @@ constexpr bool kSanitized = false;
 constexpr rlim_t kStack = 64U << 20U;
 constexpr rlim_t kDescriptors = 64;
 
-/// \param most what the limit may be raised to by the parent, where a mesh has side files
+/// \param most what the parent may raise the limit to
 void limit(__rlimit_resource resource, rlim_t now, rlim_t most) {
     rlimit limits{};
     if (::getrlimit(resource, &limits) != 0) return;
@@ -92,22 +98,75 @@ void filterCalls() {
     ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter);
 }
 
-}  // namespace
-
-void confine(const MeshLimits& limits, int parent) {
+void confine(const ConfinedLimits& limits, const ConfinedLimits& most, int parent) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);  // it ended before
     ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
     ::prctl(PR_SET_DUMPABLE, 0, 0, 0, 0);  // a core may also go to a program, whatever its limit
-    const MeshLimits most = meshLimits(SIZE_MAX, true);
     limit(RLIMIT_CORE, 0, 0);
     limit(RLIMIT_FSIZE, 0, 0);
-    limit(RLIMIT_CPU, limits.seconds, most.seconds);
+    // At the second limit the system kills, at the first it says why.
+    limit(RLIMIT_CPU, limits.seconds, std::max(limits.seconds + 1, most.seconds));
     if (kSanitized) return;
     limit(RLIMIT_NOFILE, kDescriptors, kDescriptors);
     limit(RLIMIT_STACK, kStack, kStack);
-    limit(RLIMIT_AS, limits.memory, most.memory);
+    limit(RLIMIT_AS, limits.memory, std::max(limits.memory, most.memory));
     filterCalls();
+}
+
+void send(const char* bytes, std::size_t size) {
+    while (size > 0) {
+        const ssize_t sent = ::send(STDOUT_FILENO, bytes, size, MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent < 0) ::_exit(1);
+        bytes += sent;
+        size -= static_cast<std::size_t>(sent);
+    }
+}
+
+/// Assimp makes an error of a failed allocation, and other libraries an end of the program.
+[[noreturn]] void outOfMemory() {
+    tell(ConfinedAnswer::OutOfMemory, {});
+    ::_exit(0);
+}
+
+std::size_t number(const char* text) { return std::strtoull(text, nullptr, 10); }
+
+}  // namespace
+
+void tell(ConfinedAnswer kind, std::string_view bytes) {
+    std::array<char, kConfinedHead> head{};
+    head[0] = static_cast<char>(kind);
+    const std::uint64_t size = bytes.size();
+    std::memcpy(&head[1], &size, sizeof size);
+    send(head.data(), head.size());
+    send(bytes.data(), bytes.size());
+}
+
+MappedInput::MappedInput(std::size_t size) : size_(size) {
+    if (size > 0) start_ = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, STDIN_FILENO, 0);
+    if (start_ == MAP_FAILED) throw std::bad_alloc();
+}
+
+MappedInput::~MappedInput() {
+    if (start_ != nullptr) ::munmap(start_, size_);
+}
+
+int runConfined(int argc, char** argv, const ConfinedLimits& most,
+                const std::function<std::string(std::size_t size)>& answer) {
+    constexpr int kWords = 4;
+    if (argc <= kWords) return 2;
+    const char* const* const words = argv + argc - kWords;
+    std::set_new_handler(outOfMemory);
+    confine({number(words[2]), number(words[3])}, most, std::atoi(words[0]));
+    try {
+        tell(ConfinedAnswer::Result, answer(number(words[1])));
+    } catch (const std::bad_alloc&) {
+        outOfMemory();
+    } catch (const std::exception& error) {
+        tell(ConfinedAnswer::Error, error.what());
+    }
+    ::_exit(0);  // without destructors, which would only take time
 }
 
 }  // namespace ispace
