@@ -41,7 +41,7 @@ violations() {
         in_test = FILENAME ~ /_test\.cc$/
         # Programs and modules of their own, which no tool links.
         # So is whatever includes the classes of ARIA, which print, exit and read the environment.
-        is_apart = FILENAME ~ /^lib\/(io\/module|client\/sim_aria)\//
+        is_apart = FILENAME ~ /^lib\/((base|io|raster)\/module|client\/sim_aria)\//
         if (in_lib && !(folder in known)) report("folder lib/" folder " has no place in the order")
     }
     /^[ \t]*#[ \t]*include/ {
