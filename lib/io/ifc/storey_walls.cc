@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "geom/overlay.h"
@@ -56,6 +57,20 @@ std::vector<Segment2> edgesOf(std::span<const Piece> pieces, std::vector<std::si
                 owners.push_back(i);
             });
     return edges;
+}
+
+/// Leaves out pieces that an earlier one covers corner by corner, as mapped shapes may by the
+/// thousand: their corners would find all of them.
+void dropCopies(std::vector<Piece>& pieces) {
+    using Corners = std::vector<std::vector<std::pair<double, double>>>;
+    std::set<Corners> known;
+    std::erase_if(pieces, [&](const Piece& piece) {
+        Corners corners;
+        for (const Polygon& curve : piece.curves)
+            for (auto& list = corners.emplace_back(); const Point2 p : curve)
+                list.emplace_back(p.x, p.y);
+        return !known.insert(std::move(corners)).second;
+    });
 }
 
 /// Moves corners onto corners of earlier pieces, else onto edges of others, within kMeet.
@@ -171,6 +186,7 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey) {
                 pieces.push_back({std::move(part)});
     }
     walls.top = heightOfMost(std::move(tops));
+    dropCopies(pieces);
     letMeet(pieces);
     std::vector<Layer> layers;
     layers.reserve(pieces.size());
