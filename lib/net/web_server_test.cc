@@ -151,13 +151,13 @@ TEST(WebSocket, SendsOnlyTheNewestFrame) {
     Browser watcher(server);
     watcher.take("");
     watcher.ask("FRAME");
-    const auto numberOf = [](const std::string& frame) {
+    const auto number_of = [](const std::string& frame) {
         return std::stoi(frame.substr(frame.find("\"frame\":") + 8));
     };
-    const int first = numberOf(watcher.receive());
+    const int first = number_of(watcher.receive());
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     // Nobody asked: none was made.
-    EXPECT_LE(numberOf(watcher.ask("FRAME")), first + 2);
+    EXPECT_LE(number_of(watcher.ask("FRAME")), first + 2);
 }
 
 TEST(WebSocket, ShowsNothingWithoutTheToken) {
