@@ -47,6 +47,7 @@ quick svg_long_ids 89000
 quick svg_css_comments 2000000
 quick svg_css_selectors 400000
 quick sdf_same 12000
+quick ifc_mapped_walls 20000
 quick env_coincident_things 800000
 refused sdf_apart 60000 model.sdf
 
