@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <tbb/task_group.h>
-
+#include <functional>
 #include <optional>
 #include <utility>
 
 namespace ispace {
+
+/// Runs work() apart from the parallel loop around it, whose end by an exception does not reach
+/// loops within work().
+/// \throws what work() throws
+void runUncancelled(const std::function<void()>& work);
 
 /// The value of work(), for values that outlive the parallel loop in which they are first asked
 /// for. Once a task of that loop throws, oneTBB leaves out all loops within its other tasks without
@@ -14,10 +18,8 @@ namespace ispace {
 /// \throws what work() throws
 template <typename Work>
 auto uncancelled(Work work) {
-    tbb::task_group_context context(tbb::task_group_context::isolated);
-    tbb::task_group group(context);
     std::optional<decltype(work())> value;
-    group.run_and_wait([&] { value.emplace(work()); });
+    runUncancelled([&] { value.emplace(work()); });
     return *std::move(value);
 }
 
