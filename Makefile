@@ -28,7 +28,7 @@ help:
 	@echo "make races       deps, build with ThreadSanitizer, tests of what runs in threads"
 	@echo "make bench       deps, build, benchmarks"
 	@echo "make fuzz        deps, build with Clang, fuzz each reader and protocol for FUZZ_SECONDS=$(FUZZ_SECONDS)"
-	@echo "make torture     deps, build, attack the tools for TORTURE_MINUTES=$(TORTURE_MINUTES), always alike with TORTURE_SEED=N"
+	@echo "make torture     deps, build, attack the tools for TORTURE_MINUTES=$(TORTURE_MINUTES) (TORTURE_OPTIONS: see run.py)"
 	@echo "make format      reformat the sources"
 	@echo "make lint        clang-tidy on what changed (all of it with BASE=)"
 	@echo "make install     install under prefix=$(prefix), honours DESTDIR"
@@ -86,7 +86,7 @@ torture:
 	@.ci/deps build check
 	@$(MAKE) --no-print-directory $(BUILD)/configured
 	$(call build,$(BUILD)) --target tools
-	@tests/torture/run.py --build $(BUILD) --minutes $(TORTURE_MINUTES) $(if $(TORTURE_SEED),--seed $(TORTURE_SEED))
+	@tests/torture/run.py --build $(BUILD) --minutes $(TORTURE_MINUTES) $(TORTURE_OPTIONS)
 
 format:
 	@.ci/deps check

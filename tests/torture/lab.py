@@ -141,6 +141,15 @@ def patience(seconds):
     return seconds * min(3, max(1, os.getloadavg()[0] / os.cpu_count()))
 
 
+# How many times as long answers and ends may take: --patience.
+slowness = 1.0
+
+
+def allowed(seconds):
+    """The limit of a time that is judged."""
+    return patience(seconds) * slowness
+
+
 def product(folder, job):
     """A digest of all that the job wrote, without what differs from run to run; "" if it wrote nothing."""
     path = os.path.join(folder, job.product)

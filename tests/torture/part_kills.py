@@ -52,7 +52,7 @@ class Target:
                               f"{shlex.join(self.job.argv[1:])}")
 
     def judge(self, name, status, waited):
-        if waited > labs.patience(2):
+        if waited > labs.allowed(2):
             return f"ended {waited:.1f} s later"
         ends = {0, -SIGNALS[name], 128 + SIGNALS[name]}
         if status not in ends:

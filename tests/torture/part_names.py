@@ -128,7 +128,7 @@ class Field:
             return
         before = os.lstat(path)
         argv = [word.replace("~", " ") for word in command.split()]
-        limit = labs.patience(LIMIT)
+        limit = labs.allowed(LIMIT)
         result = self.lab.run(argv, self.folder, limit)
         self.lab.count("names")
         broken = judge(argv[0], result, limit)

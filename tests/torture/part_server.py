@@ -163,7 +163,7 @@ class Siege:
         return waited, most, took
 
     def judge(self, waited, most, took):
-        limit = MOST_WAIT if labs.patience(1) < 2 else 2 * MOST_WAIT
+        limit = labs.allowed(MOST_WAIT)
         lab, sent, seen = self.lab, 0, 0
         if waited > limit:
             lab.violated(f"{self.name}: TIME waited {waited:.1f} s")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""run.py --build DIR [--minutes N] [--seed N] [--only PART]...: attacks the tools, for so many minutes in all.
+"""run.py --build DIR [--minutes N] [--seed N] [--patience X] [--only PART]...: attacks the tools, for so many minutes in all.
 
 Each part ends with a line of its counts. The status is 1 if an invariant did not hold; the line that says so has a
 command that repeats it, or the seed does. Without --seed each run tries something else."""
@@ -22,9 +22,11 @@ def main():
     parser.add_argument("--build", default="build")
     parser.add_argument("--minutes", type=float, default=10)
     parser.add_argument("--seed", type=int, default=None)
+    parser.add_argument("--patience", type=float, default=1, help="how many times as long all may take, on a slow machine")
     parser.add_argument("--only", action="append", choices=PARTS)
     options = parser.parse_args()
     seed = random.SystemRandom().randrange(1 << 31) if options.seed is None else options.seed
+    labs.slowness = options.patience
     chosen = {name: share for name, share in PARTS.items() if not options.only or name in options.only}
     print(f"torture: {options.minutes:g} minutes, seed {seed}", flush=True)
     violated = []
