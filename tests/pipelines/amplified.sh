@@ -48,6 +48,8 @@ quick svg_css_comments 2000000
 quick svg_css_selectors 400000
 quick sdf_same 12000
 quick ifc_mapped_walls 20000
+quick ifc_mapped_walls 400000
+quick ifc_mappings 400000
 quick env_coincident_things 800000
 refused sdf_apart 60000 model.sdf
 

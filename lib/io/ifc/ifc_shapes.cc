@@ -11,6 +11,8 @@ namespace {
 
 /// Corners of mapped shapes that are kept for the next use.
 constexpr std::size_t kMaxKept = 10'000'000;
+/// Corners that are copied and cut in the time of one unit of Budget.
+constexpr std::size_t kCornersPerUnit = 4;
 /// Beyond any building, in metres: how far limits of half-spaces are drawn out.
 constexpr double kFar = 10'000;
 
@@ -37,21 +39,6 @@ std::size_t cornersOf(const IfcShape& shape) {
     return corners;
 }
 
-void append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame) {
-    if (cornersOf(part) + cornersOf(shape) > IfcShapes::kMaxCorners)
-        throw std::runtime_error("a shape of more than 20 million corners");
-    for (const IfcSolid& solid : part) {
-        IfcSolid& copy = shape.emplace_back(solid);
-        copy.body.move(frame);
-        for (IfcCut& cut : copy.cuts) {
-            if (cut.half_space)
-                cut.half_space = {frame.at(cut.half_space->at),
-                                  unitOf(frame.turned(cut.half_space->normal))};
-            if (cut.limit) cut.limit->move(frame);
-        }
-    }
-}
-
 /// The prism over a boundary in the plane of `position`, without ends.
 IfcFaces prismOver(const Polygon& boundary, const IfcFrame& position) {
     IfcFaces faces;
@@ -71,6 +58,25 @@ IfcFaces prismOver(const Polygon& boundary, const IfcFrame& position) {
 }
 
 }  // namespace
+
+void IfcShapes::append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame) {
+    const std::size_t corners = cornersOf(part);
+    if (!budget_.take(part.size() + corners / kCornersPerUnit))
+        throw std::runtime_error("mapped shapes make more than " + std::to_string(budget_.limit()) +
+                                 " units of work");
+    if (corners + cornersOf(shape) > kMaxCorners)
+        throw std::runtime_error("a shape of more than 20 million corners");
+    for (const IfcSolid& solid : part) {
+        IfcSolid& copy = shape.emplace_back(solid);
+        copy.body.move(frame);
+        for (IfcCut& cut : copy.cuts) {
+            if (cut.half_space)
+                cut.half_space = {frame.at(cut.half_space->at),
+                                  unitOf(frame.turned(cut.half_space->normal))};
+            if (cut.limit) cut.limit->move(frame);
+        }
+    }
+}
 
 IfcShape IfcShapes::shapeOf(StepId definition) {
     std::vector<std::pair<int, StepInstance>> ranked;

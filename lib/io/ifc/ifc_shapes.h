@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/budget.h"
 #include "io/ifc/ifc_curves.h"
 
 namespace ispace {
@@ -47,12 +48,13 @@ using IfcShape = std::vector<IfcSolid>;
 /// cylinders, clipped and mapped. Edges of advanced Breps are straight or arcs.
 class IfcShapes {
   public:
-    explicit IfcShapes(const IfcFrames& frames) : frames_(frames) {}
+    explicit IfcShapes(const IfcFrames& frames) : frames_(frames), budget_(frames.file().bytes()) {}
 
     /// The body of a product in its own frame: of its IfcProductDefinitionShape the representation
     /// `Body`, else another one with solids; where there is none, its footprint, 2.5 m high, or its
     /// box. Parts that are not read are counted.
-    /// \throws std::runtime_error for more than kMaxCorners
+    /// \throws std::runtime_error for more than kMaxCorners, and where mapped shapes come to more
+    /// work than Budget has for a file of this size
     IfcShape shapeOf(StepId definition);
     /// Parts not read, by type.
     [[nodiscard]] const std::map<std::string, std::size_t>& unread() const { return unread_; }
@@ -66,7 +68,10 @@ class IfcShapes {
     void addBoolean(const StepInstance& result, IfcShape& shape, int depth);
     [[nodiscard]] IfcCut cutBy(StepId operand, bool keeps_inside, int depth);
 
+    void append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame);
+
     const IfcFrames& frames_;
+    Budget budget_;
     std::map<std::string, std::size_t> unread_;
     std::unordered_map<StepId, std::shared_ptr<const IfcShape>> mapped_;
     std::size_t kept_ = 0;  // corners in mapped_
