@@ -57,8 +57,8 @@ class YamlTree {
 class YamlIncludes {
   public:
     static constexpr std::size_t kMaxDepth = 32, kMaxFiles = 1000, kMaxBytes = 256'000'000;
-    /// Of files that are included once more.
-    static constexpr std::size_t kMaxAgain = 16'000'000;
+    /// Of files that are included once more: what takes about a second to parse.
+    static constexpr std::size_t kMaxAgain = 6'000'000;
 
     /// \param operand the file read first; "-" lies in the current folder
     /// \param read gives the content of files; without it they are read from the disk, where they
