@@ -112,5 +112,6 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
             for (Client& each : clients) each.stepped();
         });
     }
+    room.state().steps().cut();  // as at the end of a run
     for (Client& client : clients) client.finish();
 }
