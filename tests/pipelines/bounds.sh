@@ -11,7 +11,7 @@ bounded() {
     local status=0 text=${*: -1}
     "${@:1:$#-2}" >out 2>err || status=$?
     { [ "$status" -eq 1 ] || [ "$status" -eq 2 ]; } || fail "status $status of: $*"
-    tail -n 1 err | grep -qF -- "$text" || fail "no \`$text\` of: $*: $(tail -n 1 err)"
+    tail -n 1 err | has -F -- "$text" || fail "no \`$text\` of: $*: $(tail -n 1 err)"
 }
 
 # Things as large as towns: 70 000 corners each, whose product would be minutes.

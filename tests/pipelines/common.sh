@@ -25,6 +25,10 @@ skip() {
     exit 77
 }
 
+# COMMAND | has PATTERN: grep -q ends at the first match, and a command that writes on then dies of
+# SIGPIPE, which pipefail makes the status; this one reads to the end.
+has() { grep "$@" | wc -l >/dev/null; }
+
 # expect_status N COMMAND…: its output goes to ./out and ./err.
 expect_status() {
     local wanted=$1 status=0

@@ -4,7 +4,7 @@
 . "$(dirname "$0")/common.sh"
 
 bash "$source_dir/share/examples/demo.sh" "$scratch/demo" >out 2>err || fail "$(cat err)"
-tail -n 4 out | grep -Eq 'coverage: [0-9.]+%$' || fail "no coverage figure at the end: $(cat out)"
+tail -n 4 out | has -E 'coverage: [0-9.]+%$' || fail "no coverage figure at the end: $(cat out)"
 # Around the barrier, into nothing.
 grep -qx 'robot r1 drove from 0.5, 2 to 0.5, -1.9; 1083 scans in drive/scans.jsonl' out ||
     fail "another drive: $(tail -n 3 out)"

@@ -33,7 +33,7 @@ envc room.env --slice 0.3 -o slice.dxf
 
 # Our own reader knows the layers: the same room.
 # figure KEY FILE: a number of a report
-figure() { grep -o "\"$1\":[0-9.e-]*" "$2" | head -n 1 | cut -d: -f2; }
+figure() { grep -o "\"$1\":[0-9.e-]*" "$2" | sed -n 1p | cut -d: -f2; }
 # same KEY WANTED FOUND: the figure of two reports, to a millionth
 same() {
     echo "$(figure "$1" "$2") $(figure "$1" "$3")" |
@@ -112,7 +112,7 @@ if command -v ogrinfo >/dev/null; then
     for layer in walls doors windows objects sensors views seen-1 unseen; do
         grep -q "Layer (String) = $layer\$" features || fail "GDAL sees no layer $layer"
     done
-    grep -A20 'Layer (String) = seen-1$' features | grep -q '^  \(MULTI\)\?POLYGON' ||
+    grep -A20 'Layer (String) = seen-1$' features | has '^  \(MULTI\)\?POLYGON' ||
         fail "GDAL sees no area on seen-1"
 else
     echo "no ogrinfo here"

@@ -32,7 +32,7 @@ for format in obj stl geojson svg png pdf; do
     [ "$format" = obj ] || expect_same "room.$format" "again.$format" "$format differs"
 done
 [ -e room.mtl ] || fail "no materials beside room.obj"
-head -n 1 room.obj | grep -q 'y up' || fail "room.obj does not name its axes: $(head -n 2 room.obj)"
+head -n 1 room.obj | has 'y up' || fail "room.obj does not name its axes: $(head -n 2 room.obj)"
 
 # Our own reader finds the walls of an OBJ where they were, and in it a mesh that stands upright.
 envc "$scenes/l-room.env" -q -o l.obj
@@ -43,11 +43,11 @@ for key in limits indoor_area perimeter; do
     grep -qF "$part" again.json || fail "another room in l.obj: $(cat again.json), not $part"
 done
 printf '%s\n' '#env 1' 'ispace size=20,20' 'mesh file=l.obj up=y at=0,0' >upright.env
-envc upright.env --info --json | grep -q '"height":2.5,' || fail "l.obj lies: $(envc upright.env --info)"
+envc upright.env --info --json | has '"height":2.5,' || fail "l.obj lies: $(envc upright.env --info)"
 
 # figure FILE LABEL: of `assimp info`
 figure() {
-    assimp info "$1" | sed -n "s/^$2: *//p" | head -n 1
+    assimp info "$1" | sed -n "s/^$2: *//p" | sed -n 1p
 }
 if command -v assimp >/dev/null; then
     for format in obj stl; do
@@ -55,7 +55,7 @@ if command -v assimp >/dev/null; then
         # Limits of the room with its walls, 0.1 m beyond the mid-lines: z is up in STL, y in OBJ.
         corner='(-0.1.* -0.1.* 0'
         [ "$format" = stl ] || corner='(-0.1[0-9]* 0[0-9.]* -6.1'
-        sed -n 's/^Minimum point *//p' facts | grep -q "$corner" ||
+        sed -n 's/^Minimum point *//p' facts | has "$corner" ||
             fail "another corner of room.$format: $(grep '^M.*point' facts)"
     done
     assimp info room.obj >facts 2>/dev/null
@@ -69,7 +69,7 @@ if command -v assimp >/dev/null; then
     # The model has y up, as the OBJ.
     envc room.env -o bare.glb
     assimp info bare.glb >facts 2>&1 || fail "assimp refuses bare.glb: $(tail -n 3 facts)"
-    sed -n 's/^Minimum point *//p' facts | grep -q '(-0.1[0-9]* 0[0-9.]* -6.1' || fail "$(grep '^M.*point' facts)"
+    sed -n 's/^Minimum point *//p' facts | has '(-0.1[0-9]* 0[0-9.]* -6.1' || fail "$(grep '^M.*point' facts)"
     envc room.env room.3dm -o room.glb
     assimp info room.glb >facts 2>&1 || fail "assimp refuses room.glb: $(tail -n 3 facts)"
     for node in $nodes; do
@@ -111,7 +111,7 @@ else
     echo "no rsvg-convert here"
 fi
 # The same drawing as PDF, on a page of the same size (points of 1/72 inch).
-head -c 5 room.pdf | grep -q '^%PDF-' || fail "no PDF"
+head -c 5 room.pdf | has '^%PDF-' || fail "no PDF"
 if command -v pdfinfo >/dev/null && [ -s millimetres ]; then
     paste -d' ' millimetres <(pdfinfo room.pdf | sed -n 's/^Page size: *\([0-9.]*\) x \([0-9.]*\) pts.*/\1 \2/p') |
         awk '{ x = $3 / 72 * 25.4 - $1; y = $4 / 72 * 25.4 - $2; n += NF == 4 && x * x + y * y < 0.1 }
@@ -135,7 +135,7 @@ if command -v ogrinfo >/dev/null; then
     # geometry ID KIND
     geometry() {
         awk -v id="$1" '/^OGRFeature/ { here = 0 } $1 == "id" && $4 == id { here = 1 }
-                        here && /^  [A-Z]+ \(/ { print $1 }' features | grep -qx "$2" ||
+                        here && /^  [A-Z]+ \(/ { print $1 }' features | has -x "$2" ||
             fail "GDAL sees no $2 for $1: $(grep -A30 "= $1$" features | head -n 40)"
     }
     geometry indoor POLYGON

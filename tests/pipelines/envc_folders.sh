@@ -19,7 +19,7 @@ for format in env yaml; do
 done
 (cd b && envc again.env --check)
 envc a/one.glb -o b/moved.glb
-envc b/moved.glb --to env | grep -q 'file=a/meshes/steps.obj' || fail "$(envc b/moved.glb --to env)"
+envc b/moved.glb --to env | has 'file=a/meshes/steps.obj' || fail "$(envc b/moved.glb --to env)"
 
 # A layout alone, in another folder than its room.
 envc "$data/room.env" -o a/room.glb

@@ -56,7 +56,7 @@ if command -v assimp >/dev/null; then
         envc "$format.env" -o "$format.glb"
         envc "$format.glb" --info >"$format.info"
         grep -q 'free area *35.190 m2' "$format.info" || fail "$format: $(cat "$format.info")"
-        envc bare.env "steps.$format" --up $up --to env | grep -q "^mesh .*file=steps.$format" ||
+        envc bare.env "steps.$format" --up $up --to env | has "^mesh .*file=steps.$format" ||
             fail "$format is no operand"
     done
     # The model holds the mesh: the file may go.
@@ -96,7 +96,7 @@ expect_area office 24 1e-6
 envc office.map --to env >office.env
 grep -q '^zone id=forbidden-stairs' office.env || fail "no zone of the forbidden area: $(cat office.env)"
 through office 90 laser,range=6,fov=270:2
-envc office.map --points --info | grep -q 'free area *23.9[0-9]* m2' || fail "points are no obstacles"
+envc office.map --points --info | has 'free area *23.9[0-9]* m2' || fail "points are no obstacles"
 
 data_dir=${ISPACE_TEST_DATA:-}
 if [ -n "$data_dir" ] && [ -d "$data_dir/plans" ]; then
@@ -124,5 +124,5 @@ printf '#env 1\nispace size=4,4\n' >inner.env
 printf '#3dm 1\nranger at=-1,0.3,1 range=3\nlaser at=0,0 range=3\n' >inner.3dm
 envc inner.env inner.3dm -o inner.glb
 printf '#env 1\nispace size=20,20\nmesh file=inner.glb\n' >outer.env
-printf '#3dm 1\nlaser at=1,0.3,2.4 tilt=-90 fov=0\n' | scan outer.env | grep -q '"ranges":\[2.4\]' ||
+printf '#3dm 1\nlaser at=1,0.3,2.4 tilt=-90 fov=0\n' | scan outer.env | has '"ranges":\[2.4\]' ||
     fail "a view of a sensor stops a beam"

@@ -54,5 +54,5 @@ for file in zeros ones shifted flipped byte*.glb; do
 done
 
 # An edited room is what the edit says.
-envc "$data/forged_room.glb" --set ispace1.size=10,6 --info | grep -q '^indoor area  60.000 m2' ||
+envc "$data/forged_room.glb" --set ispace1.size=10,6 --info | has '^indoor area  60.000 m2' ||
     fail "not 10 x 6 m"

@@ -7,14 +7,14 @@ for tool in $tools; do
     [ "$(ispace "$tool" --version)" = "$("$tool" --version)" ] || fail "ispace $tool is another tool"
     # The summary is that of the manual page.
     summary=$(sed -n "s/^$tool \\\\- //p" "$binary_dir/share/man/man1/$tool.1")
-    ispace --help | grep -qx "  $tool *$summary" || fail "ispace --help says otherwise of $tool than: $summary"
+    ispace --help | has -x "  $tool *$summary" || fail "ispace --help says otherwise of $tool than: $summary"
 done
 [ "$(ispace --help | sed -n '/^Tools:/,/^$/p' | grep -c '^  ')" -eq "$(wc -w <<<"$tools")" ] || fail "$(ispace --help)"
-ispace --version | grep -qx "ispace $(sed -n 's/^project(ispace VERSION \([^ ]*\).*/\1/p' "$source_dir/CMakeLists.txt")" ||
+ispace --version | has -x "ispace $(sed -n 's/^project(ispace VERSION \([^ ]*\).*/\1/p' "$source_dir/CMakeLists.txt")" ||
     fail "$(ispace --version)"
 
 # Streams and status are the tool's.
-ispace envc "$data/room.env" --to env | ispace envc --info | grep -q 'indoor area' || fail "no pipe"
+ispace envc "$data/room.env" --to env | ispace envc --info | has 'indoor area' || fail "no pipe"
 expect_status 3 ispace coverage "$scenes/ispace.env" "$scenes/ispace.3dm" --require 100%
 expect_status 2 ispace scan --bogus
 one_error scan "ispace scan --bogus"
@@ -54,7 +54,7 @@ cp "$binary_dir/bin/scan" usr/lib/ispace/bin
 printf '#!/bin/sh\necho another scan\n' >usr/bin/scan
 chmod +x usr/bin/scan
 ln -s "$source_dir/share" usr/share/ispace
-usr/bin/ispace scan --list-models | grep -q urg-04lx || fail "another scan, or no devices"
+usr/bin/ispace scan --list-models | has urg-04lx || fail "another scan, or no devices"
 expect_status 1 usr/bin/ispace envc --version
 grep -q 'ispace: .*usr/bin/envc: error: No such file' err || fail "$(cat err)"
 

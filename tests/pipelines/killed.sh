@@ -53,7 +53,7 @@ for ((i = 0; i < ${ISPACE_KILLS:-40}; ++i)); do
     for job in "${jobs_[@]}"; do wait "$job" 2>/dev/null || true; done
     sums=$(cat maps/map.yaml maps/map.pgm | cksum)
     [ "$sums" = "$sums_a" ] || [ "$sums" = "$sums_b" ] || fail "a torn map after SIG$signal"
-    grep -q '^result ' sets/layout.3dm && tail -c 1 sets/layout.3dm | grep -q '^$' ||
+    grep -q '^result ' sets/layout.3dm && tail -c 1 sets/layout.3dm | has '^$' ||
         fail "half a layout after SIG$signal"
     one_of sets/scan.csv scanA.csv scanB.csv "after SIG$signal"
     one_of sets/coverage.csv coverageA.csv coverageB.csv "after SIG$signal"

@@ -4,7 +4,7 @@
 # it does not crash, and does not do half of it.
 . "$(dirname "$0")/common.sh"
 
-! ldd "$(command -v envc)" | grep -q 'lib[at]san' || skip "sanitizers want all the memory there is"
+! ldd "$(command -v envc)" | has 'lib[at]san' || skip "sanitizers want all the memory there is"
 ulimit -c 0
 
 one_job_of_each_tool

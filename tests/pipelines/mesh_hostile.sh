@@ -160,7 +160,7 @@ done | tee hostile.log
 [ -z "$(find . -name 'core*')" ] || fail "a core is left"
 
 expect_message() { # FILE TEXT
-    grep "^$1: " hostile.log | grep -qF -- "$2" || fail "$1: $(grep "^$1: " hostile.log)"
+    grep "^$1: " hostile.log | has -F -- "$2" || fail "$1: $(grep "^$1: " hostile.log)"
 }
 expect_message bad/itself.dae 'a node that contains itself'
 expect_message bad/itself.gltf 'a node that contains itself'

@@ -95,9 +95,9 @@ done
 envc <(cat room.env) --info >by_pipe
 envc room.env --info | sed 's/room.env/room/' >by_name
 expect_same <(grep ^digest by_pipe) <(grep ^digest by_name) "a room through a pipe"
-envc /dev/stdin --info <room.env | grep -q ^digest || fail "a room through /dev/stdin"
+envc /dev/stdin --info <room.env | has ^digest || fail "a room through /dev/stdin"
 cat room.env >pipe &
-envc pipe --info | grep -q ^digest || fail "a room through a named pipe"
+envc pipe --info | has ^digest || fail "a room through a named pipe"
 wait
 
 # Includes lie in the folder of the file that is read, unless the user allows others.
@@ -110,8 +110,8 @@ for tool in envc "scan --model laser --poses /dev/null" coverage simrun "arrange
     # shellcheck disable=SC2086
     refused $tool job/up.yaml
 done
-envc job/up.yaml --include-files anywhere --info | grep -q ^digest || fail "not allowed"
-envc - --info <<<'include: part.env' | grep -q ^digest || fail "not in the current folder"
+envc job/up.yaml --include-files anywhere --info | has ^digest || fail "not allowed"
+envc - --info <<<'include: part.env' | has ^digest || fail "not in the current folder"
 printf 'include: [../pipe, /dev/zero]\n' >job/up.yaml
 expect_status 1 timeout 10 envc job/up.yaml --include-files anywhere --check
 [ "$(grep -c 'no regular file' err)" -eq 2 ] || fail "$(cat err)"

@@ -89,7 +89,7 @@ if read_mcap run.mcap run.jsonl 1 other >/dev/null 2>&1; then fail "self-test: a
 # Without odometry the robots' poses are all there is.
 rm run/odometry.csv
 scan --run run -o bare.mcap
-read_mcap bare.mcap run.jsonl 1 run | grep -qx "robots, odometry, people 202 0 101" || fail "poses without odometry"
+read_mcap bare.mcap run.jsonl 1 run | has -x "robots, odometry, people 202 0 101" || fail "poses without odometry"
 
 # Nothing was read, one beam, and a folder of files.
 scan square.env --poses /dev/null --model laser -o none.mcap
@@ -98,7 +98,7 @@ read_mcap none.mcap none.jsonl | cmp - <(echo 'compared 0')
 printf '#3dm 1\nlaser id=9 at=0,0 fov=0 beams=1\n' >beam.3dm
 scan square.env beam.3dm -o beam/ --to mcap
 scan square.env beam.3dm | sed 's/"sensor":"9"/"sensor":"s9"/' >beam.jsonl
-read_mcap beam/9-0000.mcap beam.jsonl | grep -qx 'compared 1' || fail "one beam"
+read_mcap beam/9-0000.mcap beam.jsonl | has -x 'compared 1' || fail "one beam"
 
 # Ids that ROS cannot tell apart, times it does not have.
 printf '#3dm 1\nlaser id=a-b at=0,0\nlaser id=a_b at=1,1\n' >twins.3dm

@@ -104,7 +104,7 @@ expect_error 2 scan "$room" --motion
 
 # Without --model the one sensor there is, placed or not.
 printf '#3dm 1\nlaser id=mine fov=2 range=9\n' >one.3dm
-scan "$room" one.3dm --poses few.txt | sed -n 2p | grep -q '"sensor":"mine".*"range_max":9,' ||
+scan "$room" one.3dm --poses few.txt | sed -n 2p | has '"sensor":"mine".*"range_max":9,' ||
     fail "the sensor of the layout does not take the poses"
 
 # It does not see the robot that carries it, is not told its place twice, and -MD names the poses.

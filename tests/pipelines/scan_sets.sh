@@ -80,8 +80,8 @@ expect_status 0 scan "$room" far.3dm --to png --depth-scale 500 -o far.png
 [ ! -s err ] || fail "a warning for nothing: $(cat err)"
 # Each reading in a table of its own may be of any kind.
 expect_status 0 scan "$room" two.3dm --to csv -o tables/
-head -qn 1 tables/k-0000.csv | grep -q '^sensor,frame,t,column,row,' || fail "$(head -n 1 tables/*)"
-head -qn 1 tables/l2-0000.csv | grep -q '^sensor,frame,scan,t,beam,' || fail "$(head -n 1 tables/*)"
+head -qn 1 tables/k-0000.csv | has '^sensor,frame,t,column,row,' || fail "$(head -n 1 tables/*)"
+head -qn 1 tables/l2-0000.csv | has '^sensor,frame,scan,t,beam,' || fail "$(head -n 1 tables/*)"
 
 # A full disk: an error, and no half of a file.
 small_disk

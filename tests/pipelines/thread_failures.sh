@@ -4,7 +4,7 @@
 # first few, a tool does its work with fewer or ends with status 1 and one line.
 . "$(dirname "$0")/common.sh"
 
-! ldd "$(command -v envc)" | grep -q 'lib[at]san' || skip "sanitizers count their own threads"
+! ldd "$(command -v envc)" | has 'lib[at]san' || skip "sanitizers count their own threads"
 command -v cc >/dev/null || skip "no C compiler here"
 ulimit -c 0
 

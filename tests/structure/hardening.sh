@@ -12,12 +12,12 @@ grep -q 'ISPACE_SANITIZE:[A-Z]*=OFF' "$binary_dir/CMakeCache.txt" || skip "sanit
 
 # Each check prints what is wrong with a program, or nothing.
 headers() {
-    readelf -hW "$1" | grep -q 'Type: *DYN' || echo "is not position-independent"
+    readelf -hW "$1" | has 'Type: *DYN' || echo "is not position-independent"
     readelf -lW "$1" >segments
     grep -q GNU_RELRO segments || echo "has no RELRO segment"
     grep -q 'GNU_STACK.* RW ' segments || echo "has an executable stack"
     ! grep -q 'LOAD.* RWE ' segments || echo "has memory that is both writable and executable"
-    readelf -dW "$1" | grep -qE 'BIND_NOW|FLAGS_1.*NOW' || echo "binds functions lazily"
+    readelf -dW "$1" | has -E 'BIND_NOW|FLAGS_1.*NOW' || echo "binds functions lazily"
 }
 calls() {
     nm -D --undefined-only "$1" >imports

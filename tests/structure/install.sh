@@ -38,12 +38,12 @@ envc "$share/scenes/ispace.env" -o room.glb
 # A device model comes from share/devices.
 arrange room.glb --sensor urg-04lx:2 --strategy grid -X 3 -Y 3 -o best.3dm
 grep -q 'model=urg-04lx' best.3dm || fail "no device in the layout"
-scan room.glb best.3dm | tail -n 1 | grep -q '"ranges":' || fail "no scan"
+scan room.glb best.3dm | tail -n 1 | has '"ranges":' || fail "no scan"
 coverage room.glb best.3dm -o map.png
 [ -s map.png ] || fail "no map"
 # The module that decodes pictures lies beside the programs.
-envc "$data/pictures/room.jpg" --resolution 0.05 --info | grep -q 'indoor area' || fail "no JPEG is read"
-envc "$data/ifc/cabin-2x3-mm.ifc" --info | grep -q 'indoor area' || fail "no IFC is read"
+envc "$data/pictures/room.jpg" --resolution 0.05 --info | has 'indoor area' || fail "no JPEG is read"
+envc "$data/ifc/cabin-2x3-mm.ifc" --info | has 'indoor area' || fail "no IFC is read"
 # A scene with a mesh beside it.
 envc "$share/scenes/catalogue.env" -o catalogue.glb
 # ispace-sweep finds its modules, and the drawings of the experiments.

@@ -37,14 +37,14 @@ for page in man1/ispace.1 man1/ispace-sweep.1 man5/ispace-env.5 man5/ispace-3dm.
     [ -s "root/usr/share/man/$page.gz" ] || fail "no page $page"
 done
 if found=$(grep -rlF -e "$source_dir" -e "$binary_dir" root); then fail "the build's path is in $found"; fi
-dpkg-deb -f one/ispace_*.deb Recommends | grep -q 'libopencv-imgcodecs' || fail "OpenCV's pictures are not recommended"
-dpkg-deb -f one/ispace_*.deb Depends | grep -q 'libcairo2' || fail "Cairo, which a module links, is not needed"
+dpkg-deb -f one/ispace_*.deb Recommends | has 'libopencv-imgcodecs' || fail "OpenCV's pictures are not recommended"
+dpkg-deb -f one/ispace_*.deb Depends | has 'libcairo2' || fail "Cairo, which a module links, is not needed"
 if dpkg-deb -f one/ispace_*.deb Depends | grep imgcodecs; then fail "OpenCV's pictures are needed"; fi
 
 export PATH=$scratch/root/usr/bin:/usr/bin:/bin
 ispace envc root/usr/share/ispace/scenes/crowded.env -o room.glb
 ispace arrange -q room.glb --sensor urg-04lx:2 --strategy grid -X 3 -Y 3 -o best.3dm
-ispace coverage -q room.glb best.3dm --json | grep -q ispace-coverage/1 || fail "no report"
+ispace coverage -q room.glb best.3dm --json | has ispace-coverage/1 || fail "no report"
 if command -v man >/dev/null; then
-    ispace help scan | head -n 1 | grep -q '^SCAN(1ispace)' || fail "another page: $(ispace help scan | head -n 1)"
+    ispace help scan | sed -n 1p | has '^SCAN(1ispace)' || fail "another page: $(ispace help scan | sed -n 1p)"
 fi

@@ -148,7 +148,7 @@ expect_single slurm
 
 grep -q ' node2 0 ' begun || fail "node2 did nothing"
 grep -q ' node1 [1-9]' begun || fail "nothing was requeued: $(cut -d' ' -f2,3 begun | sort | uniq -c)"
-sinfo -h -N -n node2 -o %t | grep -q down || fail "node2 is not down: $(sinfo -h -N)"
+sinfo -h -N -n node2 -o %t | has down || fail "node2 is not down: $(sinfo -h -N)"
 ! grep -qv ' 1$' begun || fail "tasks without SLURM_CPUS_PER_TASK: $(grep -v ' 1$' begun)"
 
 # One long scan in a hundred parts, ten for each task.
