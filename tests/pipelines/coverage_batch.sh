@@ -163,6 +163,16 @@ expect_same whole.xml gone_on.xml "its JUnit file does"
 expect_same err.whole err.gone_on "its messages do"
 [ ! -e gone_on.resume ] || fail "the checkpoint is left"
 
+# A list may come through a pipe, and a signal ends the wait for its writer.
+[ "$(coverage --batch <(cat two) | wc -l)" -eq "$(coverage --batch two | wc -l)" ] || fail "not through a pipe"
+mkfifo unwritten
+for signal in INT TERM; do
+    for also in "" "--resume -o pipe.jsonl" "--require 40% --junit pipe.xml"; do
+        # shellcheck disable=SC2086
+        interrupt $signal 0.2 "$binary_dir/bin/coverage" --batch unwritten $also
+    done
+done
+
 # What another run left is refused, and left alone.
 coverage --batch long -j 1 --resume -o other.jsonl 2>/dev/null &
 job=$!
