@@ -25,12 +25,12 @@ help:
 	@echo "make experiments deps, build, and run the thesis' experiments: one report beside its figures"
 	@echo "make check       deps, build, formatting, all tests"
 	@echo "make sanitized   deps, build with AddressSanitizer and UBSan, unit and golden tests"
-	@echo "make races       deps, build with ThreadSanitizer, tests of what runs in threads"
+	@echo "make races       deps, build with ThreadSanitizer, tests of threaded code"
 	@echo "make bench       deps, build, benchmarks"
 	@echo "make fuzz        deps, build with Clang, fuzz each reader and protocol for FUZZ_SECONDS=$(FUZZ_SECONDS)"
 	@echo "make torture     deps, build, attack the tools for TORTURE_MINUTES=$(TORTURE_MINUTES) (TORTURE_OPTIONS: see run.py)"
 	@echo "make format      reformat the sources"
-	@echo "make lint        clang-tidy on what changed (all of it with BASE=)"
+	@echo "make lint        rates of words in comments and pages; clang-tidy on changed sources (all with BASE=)"
 	@echo "make install     install under prefix=$(prefix), honours DESTDIR"
 	@echo "make package     deps, build, Debian packages in $(BUILD)/package, judged by lintian"
 	@echo "make package-check"
@@ -95,6 +95,7 @@ format:
 lint:
 	@.ci/deps build lint
 	@$(MAKE) --no-print-directory $(BUILD)/configured
+	@.ci/prose
 	@.ci/lint $(BUILD) $(JOBS) $(BASE)
 
 install: all
