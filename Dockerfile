@@ -19,6 +19,7 @@ COPY CMakeLists.txt Makefile README.md CHANGELOG.md LICENSE ./
 COPY .ci .ci
 COPY lib lib
 COPY tools tools
+COPY docs docs
 COPY share share
 COPY tests tests
 RUN make package \

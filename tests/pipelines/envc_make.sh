@@ -49,12 +49,12 @@ sed -i '/include: mesh.env/d' building.yaml
 rm mesh.env meshes/steps.obj
 expect_made "building map" "an include is gone"
 
-# README's Makefile, for an office of a file, an include, a mesh and a texture, and a hall of a map's picture:
+# The Makefile of docs/batch.md, for an office of a file, an include, a mesh and a texture, and a hall of a map's picture:
 # each change makes again what it affects, and no more.
 mkdir readme
 cd readme
-sed -n '/^    all: office.jsonl/,/^    -include/s/^    //p' "$source_dir/README.md" >Makefile
-[ "$(wc -l <Makefile)" -eq 13 ] || fail "README has another Makefile: $(cat Makefile)"
+sed -n '/^    all: office.jsonl/,/^    -include/s/^    //p' "$source_dir/docs/batch.md" >Makefile
+[ "$(wc -l <Makefile)" -eq 13 ] || fail "docs/batch.md has another Makefile: $(cat Makefile)"
 sed -i '1s/$/ hall.jsonl hall.svg hall.png/' Makefile
 cp "$scenes"/meshes/steps.obj "$data"/map.pgm .
 cp "$data"/map.yaml hall.yaml

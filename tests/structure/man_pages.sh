@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The manual against the tools: the same options in both, the sections in order, and no complaint of
-# groff; and README against the manual's table of programs. tests/recipes runs the examples.
+# groff; and docs/robots.md against the manual's table of programs. tests/recipes runs the examples.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 pages=$binary_dir/share/man/man1
@@ -95,11 +95,11 @@ promised "$page" | diff schemas - || fail "share/schemas (<) and ispace-stabilit
 sed '/ispace.-scan/d' "$page" >without_scan
 ! promised without_scan | diff -q schemas - >/dev/null || fail "self-test: a schema that is not promised passes"
 
-# README names no program for real devices without a row in ispace-wire's table of programs that were tried.
+# Each program for real devices that docs/robots.md names has a row in ispace-wire's table of programs that were tried.
 plain <(sed -n '/^\.SH PROGRAMS THAT WERE TRIED/,/^\.EE/p' "$source_dir/share/man/ispace-wire.7") >tried
-sed -n '/^## Programs for real devices/,/^## Batch/s/^| `--[^|]*|[^|]*|\(.*\)|$/\1/p' "$source_dir/README.md" |
+sed -n '/^## Programs for real devices/,$s/^| `--[^|]*|[^|]*|\(.*\)|$/\1/p' "$source_dir/docs/robots.md" |
     sed 's/`[^`]*`//g' | grep -oE '[[:alpha:]][[:alnum:]_]*' | grep -vxE 'ROS|s|driver|a|few|lines|of' >named
-[ "$(wc -l <named)" -gt 9 ] || fail "no programs found in README: $(cat named)"
+[ "$(wc -l <named)" -gt 9 ] || fail "no programs found in docs/robots.md: $(cat named)"
 while read -r program; do
-    grep -qw -- "$program" tried || fail "README names $program, and ispace-wire(7) does not say that it was tried"
+    grep -qw -- "$program" tried || fail "docs/robots.md names $program, which ispace-wire(7) does not list as tried"
 done <named
