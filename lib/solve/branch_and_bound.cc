@@ -202,8 +202,6 @@ class Tree {
           open_(max_bytes),
           share_(share) {
         result_.bound = std::min(result_.bound, bound.value);
-        if (result_.best.chosen.size() >= kLeastAreas)
-            areas_ = areasAbout(problem, result_.best.chosen, bound.multipliers);
         if (share_.ledger != nullptr) {
             name_ = share_.ledger->nameFor("tree");
             mark_ = markOf(bound);
@@ -233,17 +231,14 @@ class Tree {
             std::vector<BranchResult> results(batch.size());
             const std::uint64_t cut = this->cut();
             tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
-                results[i] = branch(problem_, batch[i], areas_, cut, trust_, progress);
+                results[i] = branch(problem_, batch[i], cut, progress);
                 batch[i] = BranchNode();
             });
             if (share_.ledger != nullptr && progress.stopped()) {
                 open_.putBack(std::move(before));
                 continue;
             }
-            for (BranchResult& result : results) {
-                trust_.learn(result);
-                add(result);
-            }
+            for (BranchResult& result : results) add(result);
             progress.advance(static_cast<std::int64_t>(batch.size()));
             lowerBound();
             noteProgress(problem_, result_, progress);
@@ -266,7 +261,7 @@ class Tree {
 
     /// Tells searches apart of which a run has several.
     [[nodiscard]] std::uint64_t markOf(const Bound& bound) const {
-        constexpr std::uint64_t kForm = 2;  // version of what keep() writes
+        constexpr std::uint64_t kForm = 3;  // version of what keep() writes
         std::uint64_t mark = mixedBits(fingerprintOf(problem_) ^ mixedBits(enough_) ^ kForm);
         for (const std::uint64_t number : {result_.best.value, result_.bound, bound.cut})
             mark = mixedBits(mark ^ number);
@@ -280,7 +275,6 @@ class Tree {
         pack(to, result_);
         to.add(closed_);
         to.add(is_dealt_ ? 1 : 0);
-        to.add(trust_.most());
         pack(to, open_.byAge());
         share_.ledger->keep(name_, to.bytes());
     }
@@ -293,7 +287,6 @@ class Tree {
         result_.is_complete = true;
         closed_ = from.number();
         is_dealt_ = from.number() != 0;
-        trust_ = OverlapTrust(from.number());
         for (BranchNode& node : unpackNodes(from, problem_)) open_.add(std::move(node));
         return true;
     }
@@ -325,10 +318,8 @@ class Tree {
     double gap_;
     std::uint64_t enough_;
     std::uint64_t closed_ = 0;  // upper bound of what is neither open nor known, fine
-    Areas areas_;               // about the sensors of the best that was known before; empty: none
     OpenNodes open_;
     const SearchShare& share_;
-    OverlapTrust trust_;
     bool is_dealt_ = false;
     std::string name_;        // of the tree in the ledger
     std::uint64_t mark_ = 0;  // of the search that it is of

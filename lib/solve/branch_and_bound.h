@@ -64,17 +64,11 @@ class OpenNodes {
 std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const Bound& bound,
                                                   std::uint64_t value);
 
-/// A tree branches on areas from so many sensors on: with fewer, splits that look at what they do
-/// to the bound need fewer nodes.
-constexpr std::size_t kLeastAreas = 6;
-
 /// Branch and bound over the surviving candidates: improves `known` until its value and bound are
 /// within `gap`, its value reaches `enough`, or progress says stop. Each node has its own
 /// Lagrangian bound, warm-started from its parent's multipliers, and rules out more candidates.
-/// Best first, or depth first while open nodes take more than `max_bytes`. If `known` has six
-/// sensors or more, nodes first branch on how many stand in the area about each of these; once that
-/// is one in each, what sensors both see lowers the bound (see NodeOverlaps).
-/// Deterministic unless stopped.
+/// Best first, or depth first while open nodes take more than `max_bytes`. Deterministic unless
+/// stopped.
 ///
 /// If a budget can be split in more ways than CountChoice lists (20'000) there is no tree: `known`
 /// is returned unchanged. known.best need not be a solution: only better values are searched.

@@ -5,7 +5,6 @@
 #include <memory>
 #include <utility>
 
-#include "solve/node_overlaps.h"
 #include "solve/relaxation.h"
 
 namespace ispace {
@@ -179,76 +178,6 @@ std::uint64_t boundOf(NodeRelaxation& relaxed, MultiplierSearch& search, std::ui
     return bound;
 }
 
-/// The bound of a node by what its sensors both see, and what it takes: trials with working
-/// candidates, more of them each time these alone are not above the cut, then an evaluation of
-/// all, which rules out candidates. It pays where few trials lead nearly to the cut; elsewhere
-/// branching is quicker.
-class OverlapTrials {
-  public:
-    OverlapTrials(NodeRelaxation& relaxed, const std::vector<std::uint32_t>& start,
-                  std::uint64_t cut)
-        : relaxed_(relaxed),
-          start_(start),
-          cut_(cut),
-          overlaps_(relaxed, start),
-          search_(relaxed.problem().weights, start, static_cast<double>(cut)) {}
-
-    /// \return `bound`, or a lower one
-    std::uint64_t lower(std::uint64_t bound, const Progress& progress) {
-        constexpr int kTrials = 45, kLook = 10;
-        constexpr double kFar = 0.15;  // at most this part of the way is left at each look
-        auto last = static_cast<double>(bound);
-        for (int trial = 1; trial <= kTrials && !progress.stopped(); ++trial) {
-            search_.report(static_cast<double>(overlaps_.evaluateWorking(search_.trial())),
-                           overlaps_.cover());
-            if (trial % kLook == 0) {
-                if (above(search_.bound()) > kFar * above(last)) break;
-                last = search_.bound();
-            }
-            if (above(search_.bound()) > 0) continue;
-            overlaps_.addWorthiest(search_.best());
-            restart(overlaps_.evaluateWorking(search_.best()));
-            constexpr double kNear = 2e-4;
-            const bool is_near = above(search_.bound()) <= kNear * static_cast<double>(cut_);
-            if (is_near && !evaluateAll(bound, progress)) return bound;
-            last = std::max(last, search_.bound());
-        }
-        if (!is_evaluated_) return bound;
-        relaxed_.keepOnly(overlaps_.lists(), overlaps_.ruledOut());
-        return std::min(bound, relaxed_.evaluate(start_));
-    }
-
-  private:
-    [[nodiscard]] double above(double bound) const { return bound - static_cast<double>(cut_); }
-    void restart(std::uint64_t bound) {
-        search_.restart(static_cast<double>(bound), overlaps_.cover());
-    }
-    /// \return false if the node is closed
-    bool evaluateAll(std::uint64_t& bound, const Progress& progress) {
-        const std::vector<std::uint32_t> best = search_.best();
-        const std::uint64_t now = overlaps_.evaluate(best, cut_, progress);
-        if (progress.stopped()) return true;
-        bound = std::min(bound, now);
-        is_evaluated_ = true;
-        if (bound > cut_) {
-            restart(now);
-            overlaps_.widen();
-            overlaps_.ruleOut(cut_, best);
-            if (!overlaps_.isClosed()) return true;
-            bound = 0;
-        }
-        bound = std::max(bound, overlaps_.ruledOut());
-        return false;
-    }
-
-    NodeRelaxation& relaxed_;
-    const std::vector<std::uint32_t>& start_;
-    std::uint64_t cut_;
-    NodeOverlaps overlaps_;
-    MultiplierSearch search_;
-    bool is_evaluated_ = false;
-};
-
 /// The solution of the relaxation, if it is feasible and above the cut.
 std::vector<Choice> foundBy(const Problem& problem, const BranchNode& node,
                             const NodeRelaxation& relaxed, std::uint64_t cut) {
@@ -280,8 +209,8 @@ BranchResult unchanged(const BranchNode& node, std::uint64_t bound) {
 
 }  // namespace
 
-BranchResult branch(const Problem& problem, const BranchNode& node, const Areas& areas,
-                    std::uint64_t cut, const OverlapTrust& trust, const Progress& progress) {
+BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut,
+                    const Progress& progress) {
     if (node.bound <= cut) return closedAt(node.bound);
     if (progress.stopped()) return unchanged(node, node.bound);
     NodeRelaxation relaxed(node);
@@ -297,16 +226,6 @@ BranchResult branch(const Problem& problem, const BranchNode& node, const Areas&
     BranchResult result;
     result.found = foundBy(problem, node, relaxed, cut);
     relaxed.ruleOut(cut);
-    if (bound - cut <= trust.most() && NodeOverlaps::isFor(relaxed)) {
-        result.overlaps_tried = bound - cut;
-        bound = OverlapTrials(relaxed, search.best(), cut).lower(bound, progress);
-        if (bound <= cut) {
-            result.closed = std::max(bound, relaxed.ruledOut());
-            return result;
-        }
-        if (progress.stopped()) return unchanged(node, bound);
-        relaxed.ruleOut(cut);
-    }
     const std::vector<Choice> forced = relaxed.takeForced(cut);
     result.closed = relaxed.ruledOut();
     BranchNode now = cutDown(node, relaxed, forced, search.best());
@@ -316,8 +235,6 @@ BranchResult branch(const Problem& problem, const BranchNode& node, const Areas&
         result.children.push_back(std::move(now));
         return result;
     }
-    result.children = splitByAreas(now, relaxed, areas);
-    if (!result.children.empty()) return result;
     SplitNode split = splitNode(now, relaxed, search.best(), cut, progress);
     result.children = std::move(split.children);
     result.closed = std::max(result.closed, split.closed);

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "solve/areas.h"
 #include "solve/relaxation.h"
 
 namespace ispace {
@@ -72,37 +71,12 @@ struct BranchResult {
     std::vector<Choice> found;         ///< a feasible solution above the cut, else empty
     /// Upper bound, fine and at most the cut, of solutions that are neither in a child nor `found`.
     std::uint64_t closed = 0;
-    /// How far above the cut the node was when its bound by overlaps was tried; 0: it was not.
-    std::uint64_t overlaps_tried = 0;
-};
-
-/// How far above the cut a node's bound may be for one by overlaps to be worth its time: as far as
-/// those tried so far have closed their nodes.
-class OverlapTrust {
-  public:
-    explicit OverlapTrust(std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / 2)
-        : most_(most) {}
-
-    [[nodiscard]] std::uint64_t most() const { return most_; }
-    /// What came of a node; the order matters.
-    void learn(const BranchResult& result) {
-        if (result.overlaps_tried == 0) return;
-        if (!result.children.empty())
-            most_ = std::min(most_, result.overlaps_tried / 20 * 17);
-        else if (most_ < result.overlaps_tried / 2 * 3)
-            most_ += most_ / 12;
-    }
-
-  private:
-    std::uint64_t most_;
 };
 
 /// Processes a node: bounds it, fixes variables, and splits the rest. Only solutions better than
 /// `cut` (fine) matter. Deterministic, unless progress says stop: then the node is its only child.
-/// \param areas of the problem's candidates; empty: none
-/// \param trust in a bound by what the sensors of the node both see
-BranchResult branch(const Problem& problem, const BranchNode& node, const Areas& areas,
-                    std::uint64_t cut, const OverlapTrust& trust, const Progress& progress);
+BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut,
+                    const Progress& progress);
 
 /// A node split into children.
 struct SplitNode {
@@ -123,13 +97,6 @@ struct SplitNode {
 SplitNode splitNode(const BranchNode& node, NodeRelaxation& relaxed,
                     const std::vector<std::uint32_t>& multipliers, std::uint64_t cut,
                     const Progress& progress);
-
-/// Branches on how many sensors stand in an area: one child for each number, with the bound of the
-/// node. The area is the one where by the relaxation the number is the least whole.
-/// \param relaxed as for splitNode()
-/// \return no children if no group has candidates in several areas
-std::vector<BranchNode> splitByAreas(const BranchNode& node, const NodeRelaxation& relaxed,
-                                     const Areas& areas);
 
 /// What remains of a group of a node.
 struct OpenGroup {
@@ -167,9 +134,6 @@ class NodeRelaxation {
     /// Candidates that are in every solution better than `cut`, as named in the reduced problem;
     /// their groups have one to choose less.
     std::vector<Choice> takeForced(std::uint64_t cut);
-    /// Drops all but these of each group, ascending; what is dropped is in no solution above
-    /// `closed`.
-    void keepOnly(const std::vector<std::vector<std::uint32_t>>& lists, std::uint64_t closed);
     /// Upper bound of the solutions that the two have excluded, at most their cut.
     [[nodiscard]] std::uint64_t ruledOut() const { return ruled_out_; }
 

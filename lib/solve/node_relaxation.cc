@@ -205,24 +205,6 @@ void NodeRelaxation::ruleOut(std::uint64_t cut) {
     if (is_any) findSites();
 }
 
-void NodeRelaxation::keepOnly(const std::vector<std::vector<std::uint32_t>>& lists,
-                              std::uint64_t closed) {
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-        const std::vector<std::uint32_t>& old = groups_[g].list;
-        std::vector<float> frequencies;
-        frequencies.reserve(lists[g].size());
-        for (std::size_t i = 0, kept = 0; i < old.size() && kept < lists[g].size(); ++i) {
-            if (old[i] != lists[g][kept]) continue;
-            frequencies.push_back(frequencies_[g][i]);
-            ++kept;
-        }
-        groups_[g].list = lists[g];
-        frequencies_[g] = std::move(frequencies);
-    }
-    ruled_out_ = std::max(ruled_out_, closed);
-    findSites();
-}
-
 std::vector<Choice> NodeRelaxation::takeForced(std::uint64_t cut) {
     std::vector<Choice> forced;
     for (std::size_t g = 0; g < groups_.size(); ++g) {

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <functional>
 
-#include "solve/areas.h"
-
 namespace ispace {
 
 namespace {
@@ -15,6 +13,26 @@ std::uint32_t nthOf(std::vector<std::uint32_t> weights, std::size_t n) {
     const auto at = weights.begin() + static_cast<std::ptrdiff_t>(n - 1);
     std::nth_element(weights.begin(), at, weights.end(), std::greater<>());
     return *at;
+}
+
+/// By candidate the sensor of a good solution that sees most of the same by these multipliers, the
+/// first among equals. O(sensors * runs)
+std::vector<std::uint32_t> areasAbout(const CandidateSet& set, const std::vector<Choice>& near,
+                                      const std::vector<std::uint32_t>& multipliers) {
+    std::vector<std::uint32_t> areas(set.size(), 0), most(set.size(), 0), weights(set.size());
+    for (std::uint32_t area = 0; area < near.size(); ++area) {
+        std::vector<std::uint32_t> seen(multipliers.size(), 0);
+        set.forEachRun(near[area].candidate, [&](const CellRun& run) {
+            for (std::uint32_t i = run.first; i < run.end; ++i) seen[i] = multipliers[i];
+        });
+        set.weighAll(WeightSums(seen), weights);
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            if (weights[i] <= most[i]) continue;
+            most[i] = weights[i];
+            areas[i] = area;
+        }
+    }
+    return areas;
 }
 
 }  // namespace
@@ -29,7 +47,7 @@ OverlapRelaxation::OverlapRelaxation(const Problem& problem, const Bound& plain,
       weights_(set_.size()),
       limits_(cells_.weights),
       start_(plain.multipliers),
-      area_of_(areasAbout(problem, near, plain.multipliers)[0]),
+      area_of_(areasAbout(set_, near, plain.multipliers)),
       cover_(problem.cells() + 1) {
     areas_.resize(near.size());
     set_.weighAll(WeightSums(start_), weights_);

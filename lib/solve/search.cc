@@ -20,13 +20,11 @@ constexpr LagrangeLimits kQuick = {.gap = 0.01, .rounds = 8};
 constexpr double kSmallGap = 0.001;
 // A wider gap than this takes a tree too long.
 constexpr double kWideGap = 0.005;
-/// A tree closes more of the gap of so many sensors than bounds and kicks do in the same time.
-constexpr std::size_t kFewSensors = 12;
-/// Before the bound that knows overlaps, which gains from a better solution, too.
+/// From so many sensors on the bound by overlaps and kicks close more of the gap than a tree does
+/// in the same time.
+constexpr std::size_t kManySensors = 6;
+/// Before the bound by overlaps, which gains from a better solution, too.
 constexpr KickOptions kFewKicks = {.rounds = 1};
-/// Before a tree that branches on areas about the best solution; it pays where that will be large.
-constexpr KickOptions kTreeKicks = {.patience = 2};
-constexpr double kTreeGap = 0.01;
 constexpr int kOverlapRounds = 60;
 constexpr double kOverlapStall = 0.04;
 
@@ -170,10 +168,8 @@ class Search {
         result_.bound = std::min(result_.bound, bound.value);
         noteProgress(problem_, result_, progress_);
         if (options_.optimizer != Optimizer::Exact) return;
-        const std::size_t sensors = result_.best.chosen.size();
-        const bool has_areas = sensors >= kLeastAreas && sensors <= kFewSensors;
-        kick(has_areas && isWiderThan(kTreeGap) ? kTreeKicks : kFewKicks);
-        if (sensors > kFewSensors) {
+        kick(kFewKicks);
+        if (result_.best.chosen.size() >= kManySensors) {
             boundByOverlaps(bound);
             kick(KickOptions());
         }
@@ -182,12 +178,11 @@ class Search {
                                      std::numeric_limits<std::uint64_t>::max(), options_.max_bytes,
                                      share_);
     }
-    [[nodiscard]] bool isWiderThan(double gap) const {
-        const auto open = static_cast<double>(result_.bound - result_.best.value);
-        return open > std::max(options_.gap, gap) * static_cast<double>(result_.bound);
-    }
     /// More than a tree closes in a while.
-    [[nodiscard]] bool isWide() const { return isWiderThan(kWideGap); }
+    [[nodiscard]] bool isWide() const {
+        const auto open = static_cast<double>(result_.bound - result_.best.value);
+        return open > std::max(options_.gap, kWideGap) * static_cast<double>(result_.bound);
+    }
     /// Where a wide gap is left the best solution may be what lacks.
     void kick(KickOptions options) {
         if (!isWide() || progress_.stopped()) return;

@@ -74,10 +74,9 @@ struct SearchOptions {
 /// Greedy search; then, as the optimizer asks, swap search and branch and bound. Each comes with a
 /// Lagrangian bound: a quick one before the swaps, in case time runs out (the only one for Greedy),
 /// and a tight one after. Where that leaves more than 0.5 %, Exact kicks the best solution a
-/// little, longer where more than 1 % is left before a tree that branches on areas about it; with
-/// more than 12 sensors it then takes a bound that knows what neighbours both see, and kicks at
-/// length. It drops the candidates that the bound rules out by their reduced costs, merges cells
-/// that the same remaining candidates see, and branches until value and bound are within the gap.
+/// little; with six sensors or more it then computes overlapBound() and kicks at length. It drops
+/// the candidates that the bound rules out by their reduced costs, merges cells that the same
+/// remaining candidates see, and branches until value and bound are within the gap.
 /// If a budget can be split among the kinds in more than 20'000 ways there is no tree, and a gap
 /// may remain. Ends early, with is_complete = false, if progress says stop. The same for any number
 /// of threads unless it is stopped. A shard of starts ends after the swaps, one of the tree with
