@@ -10,6 +10,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -18,8 +19,8 @@
 #include "base/packed.h"
 #include "cover/plane_cells.h"
 #include "cover/sector_cells.h"
+#include "geom/spatial_index.h"
 #include "place/beam_cells.h"
-#include "place/look_ahead.h"
 #include "place/sensor_group.h"
 
 namespace ispace {
@@ -154,9 +155,37 @@ bool CandidateViews::isRound() const { return data_->is_round; }
 
 namespace {
 
-/// Looks from some sites at a time and adds what is seen to the set: first from a few all over the
-/// list, whose cells wait on the shelf, then from all others in order. So whoever stops has
-/// candidates everywhere, and nearly all go to the set at once.
+/// Position of a place along a Morton curve through the box.
+std::uint64_t alongCurve(Point2 place, const Box2& box) {
+    const double scale = 0xffff / std::max({box.width(), box.depth(), kRayEpsilon});
+    const auto x = static_cast<std::uint32_t>((place.x - box.low.x) * scale);
+    const auto y = static_cast<std::uint32_t>((place.y - box.low.y) * scale);
+    return mortonCode(x & 0xffffU, y & 0xffffU);
+}
+
+/// `count` of the sites from `first` on, spread over the plan however they are listed, ascending:
+/// the middle of each of `count` equal stretches of a Morton curve. O(n log n)
+/// \pre count <= sites.size() - first
+std::vector<std::size_t> sitesSpreadOver(std::span<const Site> sites, std::size_t first,
+                                         std::size_t count) {
+    Box2 box;
+    for (const Site& site : sites) box.add(site.place);
+    std::vector<std::pair<std::uint64_t, std::size_t>> curve;
+    curve.reserve(sites.size() - first);
+    for (std::size_t i = first; i < sites.size(); ++i)
+        curve.emplace_back(alongCurve(sites[i].place, box), i);
+    std::sort(curve.begin(), curve.end());
+    std::vector<std::size_t> sample;
+    sample.reserve(count);
+    for (std::size_t k = 0; k < count; ++k)
+        sample.push_back(curve[(2 * k + 1) * curve.size() / (2 * count)].second);
+    std::sort(sample.begin(), sample.end());
+    return sample;
+}
+
+/// Scans some sites at a time and adds what is seen to the set, in the order of the list. Once
+/// progress says stop, only a sample of the other sites follows, so that there are candidates
+/// everywhere.
 class Scanner {
   public:
     Scanner(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
@@ -167,103 +196,71 @@ class Scanner {
           progress_(progress),
           share_(share),
           least_(std::min(least, sites.size())),
-          at_once_(data_.looks_in_slice ? 512 : 32),
-          ahead_(sites, std::max(least_, sites.size() / kStretch)),
-          shelf_(ahead_.size()) {}
+          at_once_(data_.looks_in_slice ? 512 : 32) {}
 
+    /// True if all sites were scanned.
     bool run(std::size_t max_bytes) {
-        lookAhead(max_bytes / kShelfPart);
-        return addAll(max_bytes);
+        std::size_t next = 0;
+        while (next < sites_.size() && !progress_.stopped()) {
+            turns_.clear();
+            for (; next < sites_.size() && turns_.size() < at_once_; ++next) turns_.push_back(next);
+            const int step = share_.ledger != nullptr ? share_.ledger->numberOf("views/") : 0;
+            const std::string name = "views/" + std::to_string(step);
+            prepare();
+            if (!recall(name) && !leaveToOthers(step)) {
+                look(added_ >= least_);
+                if (share_.ledger != nullptr && !progress_.stopped()) keep(name);
+            }
+            addSeen(max_bytes);
+        }
+        if (next < sites_.size()) {
+            turns_ = sitesSpreadOver(sites_, next, std::min(least_, sites_.size() - next));
+            prepare();
+            look(false);
+            addSeen(max_bytes);
+        }
+        return added_ == sites_.size();
     }
 
   private:
-    /// One in so many is looked at ahead: enough to choose well from, and little to copy.
-    static constexpr std::size_t kStretch = 32;
-    /// On the shelf runs take twice the memory of the set.
-    static constexpr std::size_t kShelfPart = kStretch / 2;
-    static constexpr std::size_t kNone = ~std::size_t{0};
-
-    /// A site to look at now.
-    struct Turn {
-        std::size_t site;
-        std::size_t slot;  ///< on the shelf, or kNone
-    };
-
-    /// Puts what is seen from sites all over the list on the shelf, until progress says stop or the
-    /// shelf is full; but from least_ sites always.
-    void lookAhead(std::size_t max_shelved) {
-        for (std::size_t k = 0; k < ahead_.size();) {
-            const std::size_t must = least_ - std::min(k, least_);
-            const bool is_stopped = progress_.stopped() || shelf_.bytes() > max_shelved;
-            const std::size_t end =
-                k + std::min({at_once_, ahead_.size() - k, is_stopped ? must : at_once_});
-            if (k == end) return;
-            turns_.clear();
-            for (; k < end; ++k) turns_.push_back({ahead_.turn(k), ahead_.slotOf(ahead_.turn(k))});
-            look(must);
-            for (std::size_t i = 0; i < turns_.size(); ++i)
-                if (is_done_[i] != 0) shelf_.put(turns_[i].slot, parts_[i]);
-        }
-    }
-
-    /// Adds all sites; once progress says stop, only those of the rest that are on the shelf.
-    /// True if that were all.
-    bool addAll(std::size_t max_bytes) {
-        std::size_t slot = 0, added = 0;
-        for (std::size_t site = 0; site < sites_.size();) {
-            const bool is_stopped = progress_.stopped();
-            turns_.clear();
-            for (; site < sites_.size() && turns_.size() < at_once_; ++site) {
-                const bool is_ahead = slot < ahead_.size() && ahead_.at(slot) == site;
-                const bool is_shelved = is_ahead && shelf_.has(slot);
-                if (is_shelved || !is_stopped) turns_.push_back({site, is_shelved ? slot : kNone});
-                if (is_ahead) ++slot;
-            }
-            look(0);
-            for (std::size_t i = 0; i < turns_.size(); ++i) {
-                if (is_done_[i] == 0) continue;
-                add(i);
-                ++added;
-                if (set_.bytes() > max_bytes) throw UsageError(tooLarge(max_bytes));
-            }
-            shelf_.dropBefore(slot);
-        }
-        return added == sites_.size();
-    }
-
     static std::string tooLarge(std::size_t max_bytes) {
         return "the candidates take more than " + formatBytes(max_bytes) +
                ": use fewer places, headings or cells, or --max-memory";
     }
 
-    /// Fills parts_ and, for slices, sectors_ of the sites at hand, from the shelf where they are
-    /// on it. What is seen of a plane takes a while: one can stop in between, but for the first
-    /// `must` of them.
-    void look(std::size_t must) {
-        const std::size_t count = turns_.size();
-        if (parts_.size() < count) parts_.resize(count);
-        is_done_.assign(count, 1);
-        if (data_.looks_in_slice) findSectors(count);
-        const int step = share_.ledger != nullptr ? share_.ledger->numberOf("views/") : 0;
-        const std::string name = "views/" + std::to_string(step);
-        if (recall(name) || leaveToOthers(step)) return;
+    /// Makes room for what is seen from the sites at hand.
+    void prepare() {
+        if (parts_.size() < turns_.size()) parts_.resize(turns_.size());
+        is_done_.assign(turns_.size(), 1);
+        if (data_.looks_in_slice) findSectors(turns_.size());
+    }
+
+    /// Fills parts_ of the sites at hand. What is seen of a plane takes a while: it may stop in
+    /// between.
+    void look(bool may_stop) {
         std::atomic<std::int64_t> looks = 0;
-        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-            if (isShelved(i)) {
-                shelf_.copy(turns_[i].slot, parts_[i]);
-            } else if (data_.looks_in_slice) {
+        tbb::parallel_for(std::size_t{0}, turns_.size(), [&](std::size_t i) {
+            if (data_.looks_in_slice) {
                 lookFrom(i);
-                ++looks;
-            } else if (i >= must && progress_.stopped()) {
+            } else if (may_stop && progress_.stopped()) {
                 is_done_[i] = 0;
+                return;
             } else {
-                // Whoever waits for rows of cells here does not begin with another site.
+                // A thread that waits for rows of cells here does not begin with another site.
                 tbb::this_task_arena::isolate([&] { lookFrom(i); });
-                ++looks;
             }
+            ++looks;
         });
         progress_.advance(looks);
-        if (share_.ledger != nullptr && looks > 0 && !progress_.stopped()) keep(name);
+    }
+
+    void addSeen(std::size_t max_bytes) {
+        for (std::size_t i = 0; i < turns_.size(); ++i) {
+            if (is_done_[i] == 0) continue;
+            add(i);
+            ++added_;
+            if (set_.bytes() > max_bytes) throw UsageError(tooLarge(max_bytes));
+        }
     }
 
     /// Takes what an earlier run or another shard saw in this step.
@@ -272,10 +269,6 @@ class Scanner {
         if (!bytes) return false;
         Unpacker from(*bytes);
         for (std::size_t i = 0; i < turns_.size(); ++i) {
-            if (isShelved(i)) {
-                shelf_.copy(turns_[i].slot, parts_[i]);
-                continue;
-            }
             parts_[i].runs = from.all<CellRun>();
             parts_[i].first = from.all<std::uint32_t>();
             if (!isWhole(parts_[i], set_.cells()) || parts_[i].size() != directedOf(i) + 1)
@@ -287,7 +280,6 @@ class Scanner {
     void keep(const std::string& name) {
         Packer to;
         for (std::size_t i = 0; i < turns_.size(); ++i) {
-            if (isShelved(i)) continue;
             to.addAll(parts_[i].runs);
             to.addAll(parts_[i].first);
         }
@@ -309,10 +301,6 @@ class Scanner {
         return data_.looks_in_slice ? sectors_[sectors_of_[i]].limits.size() : headingsOf(i).size();
     }
 
-    [[nodiscard]] bool isShelved(std::size_t i) const {
-        return turns_[i].slot != kNone && shelf_.has(turns_[i].slot);
-    }
-
     /// Neighbours mostly have the same headings.
     void findSectors(std::size_t count) {
         if (sectors_.size() > 1) sectors_.erase(sectors_.begin(), sectors_.end() - 1);
@@ -328,12 +316,12 @@ class Scanner {
     }
 
     [[nodiscard]] std::span<const Angle> headingsOf(std::size_t i) const {
-        const Site& site = sites_[turns_[i].site];
+        const Site& site = sites_[turns_[i]];
         return std::span(site.headings).first(data_.headingsOf(site));
     }
 
     void lookFrom(std::size_t i) {
-        const Site& site = sites_[turns_[i].site];
+        const Site& site = sites_[turns_[i]];
         assert(!site.headings.empty());
         if (data_.looks_in_slice)
             cellsBySector(data_.grid, *data_.level, site.place,
@@ -345,7 +333,7 @@ class Scanner {
     }
 
     void add(std::size_t i) {
-        const Site& site = sites_[turns_[i].site];
+        const Site& site = sites_[turns_[i]];
         Pose3 mount = data_.mount;
         mount.position = {site.place.x, site.place.y, mount.position.z};
         const std::span<const Angle> headings = headingsOf(i);
@@ -364,10 +352,9 @@ class Scanner {
     Progress& progress_;
     const SearchShare& share_;
     std::size_t least_, at_once_;
-    Spread ahead_;
-    Shelf shelf_;  // in the order of ahead_.at()
+    std::size_t added_ = 0;
     // Of the sites at hand:
-    std::vector<Turn> turns_;
+    std::vector<std::size_t> turns_;
     std::vector<char> is_done_;
     std::vector<CellParts> parts_;
     std::vector<Sectors> sectors_;

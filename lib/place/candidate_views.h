@@ -88,9 +88,9 @@ constexpr std::size_t kMinPlaces = 64;
 /// Appends the candidates of all sites, in order: each site becomes one site of the set, with a
 /// candidate for each heading (only the first if views.isRound()). Works in parallel on a few sites
 /// at a time, so that memory stays close to that of the set; the result does not depend on the
-/// number of threads. A sample spread over the list comes first. False if progress said stop: then
-/// the set has the sites done so far, in order, at least `least` of them (or all), spread over the
-/// list. \throws UsageError once set.bytes() is more than max_bytes
+/// number of threads. False if progress said stop: then the set has the sites scanned so far and
+/// `least` of the others, or all, spread over the plan; in order. \throws UsageError once
+/// set.bytes() is more than max_bytes
 ///
 /// With a ledger views that it has are taken from there, and others kept. A shard of the candidates
 /// looks from its own sites alone: its candidates elsewhere see nothing.
