@@ -240,7 +240,7 @@ TEST(ArrangeCameras, HangWhereTheyAreUsual) {
     const auto groups = groupsOf(scene, {"camera,fov=90", "laser"});
     const auto poses = [&] {
         std::vector<Pose3> found;
-        for (const ArrangedSensor& sensor : arranged(scene, groups, options).sensors)
+        for (const Placement& sensor : arranged(scene, groups, options).sensors)
             found.push_back(sensor.pose);
         return found;
     };
@@ -278,7 +278,7 @@ TEST(ArrangeCameras, AreRefinedByWhatTheyHaveEnoughPixelsOf) {
     EXPECT_GT(refined.refined_after, refined.refined_before);
     // It is the exact area of cameras that see no farther.
     const auto measured = [&](double pixels_per_metre) {
-        Scene whole = withArranged(scene, groups, refined.sensors);
+        Scene whole = withPlaced(scene, groups, refined.sensors);
         for (Sensor& sensor : whole.sensors)
             sensor.model = withDensity(sensor.as<Camera>(), pixels_per_metre);
         Worlds worlds(whole.environment);

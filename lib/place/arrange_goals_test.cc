@@ -135,7 +135,7 @@ TEST(ArrangeGoals, ABudgetBuysTheGreatestValue) {
     EXPECT_GT(bought.cost, 0);
     EXPECT_GE(bought.bound, bought.coverage);
     std::vector<std::string> ids;
-    for (const ArrangedSensor& sensor : bought.sensors) ids.push_back(sensor.id);
+    for (const Placement& sensor : bought.sensors) ids.push_back(sensor.sensor);
     for (std::size_t i = 0; i < ids.size(); ++i) EXPECT_EQ(ids[i], "laser" + std::to_string(i + 1));
 }
 
@@ -350,11 +350,12 @@ TEST(SceneProblem, ChosenCandidatesBecomeSensorsOfTheSameValue) {
     SceneProblem model(scene, groups, options, silent);
     ASSERT_EQ(model.kinds().size(), 2U);
     const std::vector<Choice> chosen = {{1, 7}, {0, 30}, {0, 5}};
-    const std::vector<ArrangedSensor> sensors = model.sensorsOf(chosen);
+    const std::vector<Placement> sensors = model.placementsOf(chosen);
     ASSERT_EQ(sensors.size(), 3U);
-    EXPECT_EQ(sensors[0].id, "laser1");
+    EXPECT_EQ(sensors[0].sensor, "laser1");
     EXPECT_EQ(sensors[2].group, 1U);
-    EXPECT_EQ(model.valueOf(model.coverageOf(sensors)), valueOf(model.problem(), chosen));
+    const Scene whole = withPlaced(scene, groups, sensors);
+    EXPECT_EQ(model.valueOf(model.viewsOf(whole.sensors)), valueOf(model.problem(), chosen));
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ struct ArrangeOptions {
 };
 
 /// True if each sensor has candidates of its own: Hierarchical Random draws anew for each, unless
-/// the search finds their number. Groups are then of one sensor each.
+/// the search finds their number. Each sensor is then a kind of its own.
 bool drawsForEach(const ArrangeOptions& options);
 
 /// Cells while searching: options.cells if set; with the thesis' strategies its 100 x 100; else

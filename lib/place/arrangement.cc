@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -70,13 +71,13 @@ void takeEachOnce(std::vector<Choice>& chosen) {
 }
 
 /// Bound over all places: for any sensors a budget buys, else for the number of each kind found.
-double boundOfAnyPlace(const SceneProblem& model, const std::vector<ArrangedSensor>& sensors) {
+double boundOfAnyPlace(const SceneProblem& model, const std::vector<Placement>& placements) {
     const bool buys = model.options().budget.has_value();
     std::vector<int> most(model.kinds().size());
     for (std::size_t k = 0; k < most.size(); ++k)
         if (buys) most[k] = model.kinds()[k].most;
     if (!buys)
-        for (const ArrangedSensor& sensor : sensors) ++most[kindOf(model.kinds(), sensor.group)];
+        for (const Placement& placement : placements) ++most[placement.kind];
     return model.share(model.maxFromAnyPlace(most));
 }
 
@@ -86,32 +87,35 @@ double boundOf(const SearchResult& result, const SceneProblem& model) {
 }
 
 void refineIn(Arrangement& result, SceneProblem& model, std::uint64_t before, Progress& progress) {
-    const Refined refined = refineArranged(model, result.sensors, before, progress);
+    const Refined refined = refine(model, result.sensors, before, progress);
     result.is_refined = true;
     result.refined_before = refined.before;
     result.refined_after = refined.after;
     result.is_complete = result.is_complete && !progress.stopped();
     if (!(refined.after > refined.before)) return;  // all stand on candidates
-    result.sensors = movedTo(std::move(result.sensors), refined.poses);
+    for (std::size_t i = 0; i < refined.poses.size(); ++i)
+        result.sensors[i].pose = refined.poses[i];
     result.bound = boundOfAnyPlace(model, result.sensors);
 }
 
 void measure(Arrangement& result, SceneProblem& model) {
     const ArrangeOptions& options = model.options();
     const CoverageOptions usual{.plane = options.plane, .exact = false};
-    const Scene whole = withArranged(model.scene(), model.groups(), result.sensors);
+    const Scene whole = withPlaced(model.scene(), model.groups(), result.sensors);
     const Coverage measured = measureCoverage(whole, model.worlds(), usual);
     const CoverageReport& report = measured.report;
     result.coverage = report.coverage.grid.value_or(0);
     result.area = report.total_effective_area.grid.value_or(0);
     const bool is_coverage = options.weights.isUniform() && options.redundancy == 1 &&
                              options.judges_inside && model.target().grid == measured.target.grid;
-    const Coverage searched = model.coverageOf(result.sensors);
+    const std::vector<CountedView> views =
+        model.viewsOf(std::span(whole.sensors).subspan(model.scene().sensors.size()));
     if (options.beam_step)
         result.value = result.candidate_value;
     else if (!is_coverage)
-        result.value = model.share(model.valueOf(searched));
-    result.idle = idleSensors(model, searched);
+        result.value = model.share(model.valueOf(views));
+    for (const std::size_t i : idleViews(model, views))
+        result.idle.push_back(result.sensors[i].sensor);
 }
 
 /// [n]: value of the best n of these sensors, chosen greedily. If coverage must be connected, a
@@ -197,10 +201,6 @@ std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& m
     return curve;
 }
 
-}  // namespace
-
-namespace {
-
 /// A camera as far as it has enough pixels; any other sensor as it is.
 void limit(SensorModel& model, double pixel_density) {
     if (auto* camera = std::get_if<Camera>(&model)) *camera = withDensity(*camera, pixel_density);
@@ -237,7 +237,7 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     result.candidate_value = model.share(found.best.value);
     result.candidate_bound = boundOf(found, model);
     result.bound = result.candidate_bound;
-    result.sensors = model.sensorsOf(chosen);
+    result.sensors = model.placementsOf(chosen);
     if (options.refine) refineIn(result, model, found.best.value, progress);
     measure(result, model);
     if (options.wants_curve) {
@@ -248,26 +248,17 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     return result;
 }
 
-/// With candidates, bounds and all measures of cameras that see no farther.
-Arrangement arrangeSeen(const Scene& scene, const std::vector<SensorGroup>& groups,
-                        const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
+}  // namespace
+
+Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
+                    const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
     if (!(options.pixel_density > 0)) return arrangeLimited(scene, groups, options, progress, mps);
+    // With candidates, bounds and all measures of cameras that see no farther.
     Scene limited = scene;
     for (Sensor& sensor : limited.sensors) limit(sensor.model, options.pixel_density);
     std::vector<SensorGroup> limited_groups = groups;
     for (SensorGroup& group : limited_groups) limit(group.model, options.pixel_density);
     return arrangeLimited(limited, limited_groups, options, progress, mps);
-}
-
-}  // namespace
-
-Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
-                    const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
-    if (!drawsForEach(options)) return arrangeSeen(scene, groups, options, progress, mps);
-    const SingleSensors singles = singleSensors(groups);
-    Arrangement result = arrangeSeen(scene, singles.groups, options, progress, mps);
-    for (ArrangedSensor& sensor : result.sensors) sensor.group = singles.origins[sensor.group];
-    return result;
 }
 
 namespace {
@@ -298,7 +289,7 @@ Document layoutDocument(const LayoutParts& parts, const Document* before,
     environment.set("digest", Value(parts.environment_digest));
     document.records.push_back(environment);
 
-    const std::vector<ArrangedSensor>& sensors = arrangement.sensors;
+    const std::vector<Placement>& sensors = arrangement.sensors;
     std::vector<bool> is_written(sensors.size());
     const auto write = [&](std::size_t i) {
         document.records.push_back(placedRecord(groups[sensors[i].group], sensors[i]));

@@ -20,9 +20,9 @@ namespace ispace {
 
 /// The sensors at their places, and what they cover.
 struct Arrangement {
-    std::vector<ArrangedSensor> sensors;  ///< by group
-    double coverage = 0;  ///< as `coverage` reports coverage.grid for the whole layout
-    double area = 0;      ///< total effective area by cells, m2, eq. (4.6)
+    std::vector<Placement> sensors;  ///< by group
+    double coverage = 0;             ///< as `coverage` reports coverage.grid for the whole layout
+    double area = 0;                 ///< total effective area by cells, m2, eq. (4.6)
     /// Share of the total weight; not set where it equals the coverage.
     std::optional<double> value;
     /// Upper bound of `value` (or coverage) over all that the search could choose or, if refining

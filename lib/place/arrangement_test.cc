@@ -170,7 +170,7 @@ TEST(Arrangement, SensorsAlreadyPlacedCount) {
     const Scene begun = roomScene(kTestRoom, &layout);
     const auto second = groupsOf(begun, {"laser,range=4"});
     const Arrangement rest = arranged(begun, second, options);
-    EXPECT_EQ(rest.sensors[0].id, "laser2");
+    EXPECT_EQ(rest.sensors[0].sensor, "laser2");
     EXPECT_EQ(rest.coverage, both.coverage);
     EXPECT_EQ(rest.sensors[0].pose, both.sensors[1].pose);
 }

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "cover/sight.h"
 #include "geom/overlay.h"
 #include "place/sensor_group.h"
 #include "sense/ultrasound.h"
@@ -106,43 +105,34 @@ struct View {
 }  // namespace
 
 struct ExactGain::Data {
-    std::span<const Movable> movables;
-    RefineOptions options;
-    Sight sight;
+    std::span<const Sensor> sensors;  // that move
+    int multiplicity;
+    const Sight& sight;
     std::vector<Floor> floors = {};
     Box2 floor_box = {};
     std::vector<View> standing = {}, moving = {};
-    std::vector<std::shared_ptr<const Level>> levels = {};  // of the movables, held while they move
+    std::vector<std::shared_ptr<const Level>> levels =
+        {};  // of these sensors, held while they move
 
     /// The sensor in hand: the floor where it is the one that is still missing, within `near`.
     std::size_t in_hand = 0;
     Box2 near = {};
     std::vector<Layer> missing = {};  // marks 1 << i: of floors[i]
-    /// The floors within a wider box about each movable; made when they are wanted.
+    /// The floors within a wider box about each sensor; made when they are wanted.
     struct Surroundings {
         Box2 box;
         std::vector<Floor> floors;
     };
     std::vector<Surroundings> around = {};
 
-    [[nodiscard]] View viewOf(const std::string& id, const SensorModel& device,
-                              const Pose3& pose) const {
-        auto region = sight.regionOf({{}, device, pose});
-        if (!region) throw UsageError(id + " cannot be refined: its exact region is not known");
-        return {std::move(*region), isPartial(device)};
+    [[nodiscard]] View viewOf(const Sensor& sensor) const {
+        auto region = sight.regionOf(sensor);
+        if (!region)
+            throw UsageError(sensor.id + " cannot be refined: its exact region is not known");
+        return {std::move(*region), isPartial(sensor.model)};
     }
     [[nodiscard]] View viewOf(std::size_t sensor, const Pose3& pose) const {
-        return viewOf(movables[sensor].id, movables[sensor].model, pose);
-    }
-
-    void addStanding(const std::vector<Sensor>& sensors) {
-        for (const Sensor& sensor : sensors) {
-            const auto is_same = [&](const Movable& m) { return m.id == sensor.id; };
-            if (!kindOf(sensor.model).perceives ||
-                std::any_of(movables.begin(), movables.end(), is_same))
-                continue;
-            standing.push_back(viewOf(sensor.id, sensor.model, sensor.pose));
-        }
+        return viewOf({sensors[sensor].id, sensors[sensor].model, pose});
     }
 
     [[nodiscard]] static std::int64_t setsAt(const LayerLabel& label) {
@@ -151,7 +141,7 @@ struct ExactGain::Data {
     }
     /// True where one more sensor of this kind makes the floor count.
     [[nodiscard]] bool lacksOne(const LayerLabel& label, bool is_receiver) const {
-        if (setsAt(label) != options.multiplicity - 1) return false;
+        if (setsAt(label) != multiplicity - 1) return false;
         return !is_receiver ||
                label.numbers / kOneReceiver == static_cast<std::int64_t>(kMinReceivers) - 1;
     }
@@ -198,7 +188,7 @@ struct ExactGain::Data {
         for (std::size_t i = 0; i < moving.size(); ++i)
             if (i != in_hand && meet(moving[i].box, near)) layers.push_back(moving[i].layer);
         const Overlay overlay(layers);
-        const bool is_receiver = isPartial(movables[in_hand].model);
+        const bool is_receiver = isPartial(sensors[in_hand].model);
         for (std::size_t i = 0; i < floors.size(); ++i) {
             const std::uint64_t mark = std::uint64_t{1} << i;
             std::vector<Curve> curves = overlay.curves([&](const LayerLabel& label) {
@@ -224,9 +214,9 @@ struct ExactGain::Data {
     }
 };
 
-ExactGain::ExactGain(const Scene& scene, std::span<const Movable> movables,
-                     const FloorWeights& weights, const RefineOptions& options)
-    : data_(new Data{movables, options, {scene.environment, options.plane}}) {
+ExactGain::ExactGain(const Scene& scene, const Sight& sight, std::span<const Sensor> sensors,
+                     const FloorWeights& weights, int multiplicity)
+    : data_(new Data{sensors, multiplicity, sight}) {
     if (weights.weights.size() > kMaxZones)
         throw UsageError("sensors cannot be refined for " + std::to_string(weights.weights.size()) +
                          " weighted zones, wanted at most " + std::to_string(kMaxZones));
@@ -236,13 +226,14 @@ ExactGain::ExactGain(const Scene& scene, std::span<const Movable> movables,
         data_->floor_box.add(floor.box.low);
         data_->floor_box.add(floor.box.high);
     }
-    data_->addStanding(scene.sensors);
-    data_->moving.reserve(movables.size());
-    for (std::size_t i = 0; i < movables.size(); ++i) {
-        data_->levels.push_back(data_->sight.levelAt(movables[i].pose.position.z));
-        data_->moving.push_back(data_->viewOf(i, movables[i].pose));
+    for (const Sensor& sensor : scene.sensors)
+        if (kindOf(sensor.model).perceives) data_->standing.push_back(data_->viewOf(sensor));
+    data_->moving.reserve(sensors.size());
+    for (const Sensor& sensor : sensors) {
+        data_->levels.push_back(sight.levelAt(sensor.pose.position.z));
+        data_->moving.push_back(data_->viewOf(sensor));
     }
-    data_->around.resize(movables.size());
+    data_->around.resize(sensors.size());
 }
 ExactGain::~ExactGain() = default;
 
@@ -259,7 +250,7 @@ double ExactGain::value() const {
     for (const View& view : data_->moving) layers.push_back(view.layer);
     double value = 0;
     Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
-        if (Data::setsAt(label) >= data_->options.multiplicity)
+        if (Data::setsAt(label) >= data_->multiplicity)
             value += data_->weightOf(label.marks) * area;
     });
     return std::max(0.0, value);
@@ -300,8 +291,8 @@ void ExactGain::put(const Pose3& pose) {
 }
 
 bool ExactGain::turns(std::size_t sensor) const {
-    const Movable& movable = data_->movables[sensor];
-    return !looksAround(movable.model, movable.pose);
+    const Sensor& own = data_->sensors[sensor];
+    return !looksAround(own.model, own.pose);
 }
 
 }  // namespace ispace

@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "place/refine.h"
+#include "cover/sight.h"
+#include "cover/target.h"
+#include "layout/scene.h"
 
 namespace ispace {
 
@@ -15,13 +17,13 @@ namespace ispace {
 /// together as one, where enough of them hear.
 ///
 /// What stands in the scene does not move: its regions, and the floor by its weights, are made
-/// once. Movables take the place of what has their id in the scene.
+/// once.
 class ExactGain {
   public:
-    /// All movables stand at their poses.
+    /// All sensors stand at their poses. Keeps the references.
     /// \throws UsageError for sensors without an exact region and for more than kMaxZones weights
-    ExactGain(const Scene& scene, std::span<const Movable> movables, const FloorWeights& weights,
-              const RefineOptions& options);
+    ExactGain(const Scene& scene, const Sight& sight, std::span<const Sensor> sensors,
+              const FloorWeights& weights, int multiplicity);
     ~ExactGain();
     ExactGain(const ExactGain&) = delete;
     ExactGain& operator=(const ExactGain&) = delete;

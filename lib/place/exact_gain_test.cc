@@ -26,9 +26,9 @@ Laser laserOfRange(double range, double fov = 180) {
     return laser;
 }
 
-Movable at(const std::string& id, const SensorModel& device, double x, double y, double heading,
-           double z = kScanHeight, double tilt = 0) {
-    return {id, device, {{x, y, z}, Angle::degrees(heading), Angle::degrees(tilt), {}}, nullptr};
+Sensor at(const std::string& id, const SensorModel& device, double x, double y, double heading,
+          double z = kScanHeight, double tilt = 0) {
+    return {id, device, {{x, y, z}, Angle::degrees(heading), Angle::degrees(tilt), {}}};
 }
 
 NamedZone zoneOf(const Polygon& outline) { return {"z", outline, interiorPoint({outline, {}})}; }
@@ -37,11 +37,21 @@ NamedZone box(double x, double y, double to_x, double to_y) {
     return zoneOf({{x, y}, {to_x, y}, {to_x, to_y}, {x, to_y}});
 }
 
-/// The same scene with the movables standing in it, as coverage sees it.
-CoverageReport reportOf(Scene scene, const std::vector<Movable>& movables) {
-    for (const Movable& m : movables) scene.sensors.push_back({m.id, m.model, m.pose});
+/// The same scene with the sensors standing in it, as coverage sees it.
+CoverageReport reportOf(Scene scene, const std::vector<Sensor>& sensors) {
+    scene.sensors.insert(scene.sensors.end(), sensors.begin(), sensors.end());
     return coverageOf(scene, 10, 10).report;
 }
+
+/// An ExactGain with its room.
+struct Gain {
+    Sight sight;
+    ExactGain gain;
+
+    Gain(const Scene& scene, const std::vector<Sensor>& sensors, const FloorWeights& weights = {},
+         int multiplicity = 1)
+        : sight(scene.environment, 0), gain(scene, sight, sensors, weights, multiplicity) {}
+};
 
 double seenByAtLeast(const CoverageReport& report, std::size_t times) {
     double share = 0;
@@ -50,65 +60,61 @@ double seenByAtLeast(const CoverageReport& report, std::size_t times) {
     return share * report.indoor_area;
 }
 
-std::vector<Movable> threeLasers() {
+std::vector<Sensor> threeLasers() {
     return {at("a", laserOfRange(4), -3, 2, -40), at("b", laserOfRange(3, 270), 1, -1, 70),
             at("c", laserOfRange(5, 360), 3, 2.5, 0)};
 }
 
 TEST(ExactGain, IsWhatCoverageMeasures) {
     const Scene scene = sceneOf(kRoom);
-    const std::vector<Movable> movables = threeLasers();
-    const CoverageReport report = reportOf(scene, movables);
+    const std::vector<Sensor> sensors = threeLasers();
+    const CoverageReport report = reportOf(scene, sensors);
     for (const int demand : {1, 2, 3}) {
-        const ExactGain gain(scene, movables, {}, {.multiplicity = demand});
+        const Gain made(scene, sensors, {}, demand);
+        const ExactGain& gain = made.gain;
         EXPECT_NEAR(gain.value(), seenByAtLeast(report, static_cast<std::size_t>(demand)), 1e-5);
         EXPECT_NEAR(gain.total(), 48, 1e-9);
     }
     EXPECT_GT(seenByAtLeast(report, 3), 0.5);
 }
 
-TEST(ExactGain, SensorsThatStandCountUnlessTheyMove) {
+TEST(ExactGain, SensorsThatStandCount) {
     const Scene scene = sceneOf(std::string(kRoom) + "laser id=b at=1,-1 heading=70 range=3\n");
-    const std::vector<Movable> one = {at("a", laserOfRange(4), -3, 2, -40)};
-    EXPECT_NEAR(ExactGain(scene, one, {}, {}).value(), seenByAtLeast(reportOf(scene, one), 1),
-                1e-5);
-    std::vector<Movable> both = one;
-    both.push_back(at("b", laserOfRange(3), 1, -1, -70));
-    EXPECT_NEAR(ExactGain(scene, both, {}, {}).value(),
-                seenByAtLeast(reportOf(sceneOf(kRoom), both), 1), 1e-5);
+    const std::vector<Sensor> one = {at("a", laserOfRange(4), -3, 2, -40)};
+    EXPECT_NEAR(Gain(scene, one, {}).gain.value(), seenByAtLeast(reportOf(scene, one), 1), 1e-5);
 }
 
 TEST(ExactGain, TargetsAndWeightsOfWhichTheLastDecides) {
     const Scene scene = sceneOf("ispace size=8,8\n");
-    const std::vector<Movable> whole = {at("a", laserOfRange(20, 360), 0, 0, 0),
-                                        at("b", laserOfRange(20, 360), 1, 0, 180)};
+    const std::vector<Sensor> whole = {at("a", laserOfRange(20, 360), 0, 0, 0),
+                                       at("b", laserOfRange(20, 360), 1, 0, 180)};
     FloorWeights floor;
     floor.weights = {{box(-1, -1, 1, 1), 3}, {box(0, 0, 2, 2), 5}, {box(3, 3, 9, 9), 0}};
     // 64 of which 4 weigh 5, 3 weigh 3, 1 nothing.
-    EXPECT_NEAR(ExactGain(scene, whole, floor, {}).total(), 56 + 20 + 9, 1e-5);
-    EXPECT_NEAR(ExactGain(scene, whole, floor, {}).value(), 56 + 20 + 9, 1e-5);
+    EXPECT_NEAR(Gain(scene, whole, floor).gain.total(), 56 + 20 + 9, 1e-5);
+    EXPECT_NEAR(Gain(scene, whole, floor).gain.value(), 56 + 20 + 9, 1e-5);
     floor.targets = {box(-2, -2, 0, 0), box(-1, -1, 1, 1)};  // 4 + 4 - 1
-    EXPECT_NEAR(ExactGain(scene, whole, floor, {}).value(), 3 + 9 + 5, 1e-5);
+    EXPECT_NEAR(Gain(scene, whole, floor).gain.value(), 3 + 9 + 5, 1e-5);
     floor.weights.clear();
-    EXPECT_NEAR(ExactGain(scene, whole, floor, {}).value(), 7, 1e-5);
+    EXPECT_NEAR(Gain(scene, whole, floor).gain.value(), 7, 1e-5);
     floor.targets = {box(7, 7, 8, 8)};  // outside
-    EXPECT_EQ(ExactGain(scene, whole, floor, {}).value(), 0);
-    EXPECT_EQ(ExactGain(scene, whole, floor, {}).total(), 0);
+    EXPECT_EQ(Gain(scene, whole, floor).gain.value(), 0);
+    EXPECT_EQ(Gain(scene, whole, floor).gain.total(), 0);
 }
 
 TEST(ExactGain, SixtyWeightsAndNoMore) {
     const Scene scene = sceneOf("ispace size=80,8\n");
-    const std::vector<Movable> one = {at("a", laserOfRange(100, 360), 0, 0, 0),
-                                      at("b", laserOfRange(100, 360), 1, 0, 180)};
+    const std::vector<Sensor> one = {at("a", laserOfRange(100, 360), 0, 0, 0),
+                                     at("b", laserOfRange(100, 360), 1, 0, 180)};
     FloorWeights floor;
     double wanted = 640;
     for (int i = 0; i < 60; ++i) {
         floor.weights.emplace_back(box(-39 + i, -1, -38 + i, 1), 2 + i);
         wanted += 2 * (1 + i);
     }
-    EXPECT_NEAR(ExactGain(scene, one, floor, {}).value(), wanted, 1e-3);
+    EXPECT_NEAR(Gain(scene, one, floor).gain.value(), wanted, 1e-3);
     floor.weights.emplace_back(box(-39, -1, -38, 1), 2);
-    EXPECT_THROW(ExactGain(scene, one, floor, {}), UsageError);
+    EXPECT_THROW(Gain(scene, one, floor), UsageError);
 }
 
 TEST(ExactGain, GainsAreDifferencesOfValues) {
@@ -118,20 +124,20 @@ TEST(ExactGain, GainsAreDifferencesOfValues) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> x(-3.9, 3.9), y(-2.9, 2.9), h(-180, 180);
     for (const int demand : {1, 2}) {
-        std::vector<Movable> movables = threeLasers();
+        std::vector<Sensor> sensors = threeLasers();
         for (int i = 0; i < 20; ++i) {
             const auto which = static_cast<std::size_t>(i) % 3;
             std::vector<double> values, gains;
             std::vector<Pose3> poses;
-            ExactGain moving(scene, movables, floor, {.multiplicity = demand});
+            Gain made(scene, sensors, floor, demand);
+            ExactGain& moving = made.gain;
             for (int k = 0; k < 2; ++k) {
-                Movable& own = movables[which];
+                Sensor& own = sensors[which];
                 own.pose.position.x = x(random);
                 own.pose.position.y = y(random);
                 own.pose.heading = Angle::degrees(h(random));
                 poses.push_back(own.pose);
-                values.push_back(
-                    ExactGain(scene, movables, floor, {.multiplicity = demand}).value());
+                values.push_back(Gain(scene, sensors, floor, demand).gain.value());
             }
             moving.take(which);
             gains = moving.gains(poses);
@@ -145,23 +151,24 @@ TEST(ExactGain, GainsAreDifferencesOfValues) {
 TEST(ExactGain, FourReceiversAreOneSensor) {
     const Scene scene = sceneOf("ispace size=8,8 height=3\n");
     Receiver receiver;
-    std::vector<Movable> movables;
+    std::vector<Sensor> sensors;
     for (const double x : {-1.0, 1.0})
         for (const double y : {-1.0, 1.0})
-            movables.push_back(
-                at("u" + std::to_string(movables.size()), receiver, x, y, 0, 2.5, -90));
-    movables.push_back(at("u4", receiver, 0.5, 0.2, 0, 2.5, -90));
-    movables.push_back(at("a", laserOfRange(3), 2, 0, 30));
-    const CoverageReport report = reportOf(scene, movables);
+            sensors.push_back(
+                at("u" + std::to_string(sensors.size()), receiver, x, y, 0, 2.5, -90));
+    sensors.push_back(at("u4", receiver, 0.5, 0.2, 0, 2.5, -90));
+    sensors.push_back(at("a", laserOfRange(3), 2, 0, 30));
+    const CoverageReport report = reportOf(scene, sensors);
     for (const int demand : {1, 2})
-        EXPECT_NEAR(ExactGain(scene, movables, {}, {.multiplicity = demand}).value(),
+        EXPECT_NEAR(Gain(scene, sensors, {}, demand).gain.value(),
                     seenByAtLeast(report, static_cast<std::size_t>(demand)), 1e-5);
-    ExactGain gain(scene, movables, {}, {});
+    Gain made(scene, sensors);
+    ExactGain& gain = made.gain;
     const double before = gain.value();
-    Pose3 moved = movables[1].pose;
+    Pose3 moved = sensors[1].pose;
     moved.position.y = 0.3;
     gain.take(1);
-    const std::vector<double> gains = gain.gains(std::vector<Pose3>{movables[1].pose, moved});
+    const std::vector<double> gains = gain.gains(std::vector<Pose3>{sensors[1].pose, moved});
     gain.put(moved);
     EXPECT_NEAR(gain.value() - before, gains[1] - gains[0], 1e-5);
     EXPECT_GT(std::abs(gains[1] - gains[0]), 0.1);
@@ -171,11 +178,11 @@ TEST(ExactGain, FourReceiversAreOneSensor) {
 
 TEST(ExactGain, RangersAndTiltedLasersCoverThePlane) {
     const Scene scene = sceneOf(kRoom);
-    const std::vector<Movable> movables = {at("r", Ranger(), -3, 0, 10, 1.5, -30),
-                                           at("t", laserOfRange(6), 3, -2, 140, 1.2, -20),
-                                           at("buried", Ranger(), -2, -1, 0, 0.5, -30)};
-    const double value = ExactGain(scene, movables, {}, {}).value();
-    EXPECT_NEAR(value, seenByAtLeast(reportOf(scene, movables), 1), 1e-5);
+    const std::vector<Sensor> sensors = {at("r", Ranger(), -3, 0, 10, 1.5, -30),
+                                         at("t", laserOfRange(6), 3, -2, 140, 1.2, -20),
+                                         at("buried", Ranger(), -2, -1, 0, 0.5, -30)};
+    const double value = Gain(scene, sensors, {}).gain.value();
+    EXPECT_NEAR(value, seenByAtLeast(reportOf(scene, sensors), 1), 1e-5);
     EXPECT_GT(value, 2);
 }
 
@@ -183,9 +190,10 @@ TEST(ExactGain, UnknownRegionsAreRefused) {
     Laser sweeping = laserOfRange(4);
     sweeping.sweep = SweepAxis::Tilt;
     sweeping.sweep_span = Angle::degrees(30);
-    const std::vector<Movable> movables = {at("n", sweeping, 0, 0, 0, 1, -20)};
+    const std::vector<Sensor> sensors = {at("n", sweeping, 0, 0, 0, 1, -20)};
     try {
-        const ExactGain gain(sceneOf(kRoom), movables, {}, {});
+        const Scene scene = sceneOf(kRoom);
+        const Gain gain(scene, sensors);
         FAIL();
     } catch (const UsageError& error) {
         EXPECT_STREQ(error.what(), "n cannot be refined: its exact region is not known");
@@ -197,13 +205,15 @@ TEST(ExactGain, WholeTurnsDoNotTurn) {
     Ranger head;
     head.projection = Projection::Spherical;
     head.fov_x = Angle::degrees(360);
-    const std::vector<Movable> movables = {at("w", whole, 0, 0, 0),
-                                           at("v", whole, 0, 0, 0, 1, -20),
-                                           at("h", laserOfRange(4, 358), 0, 0, 0),
-                                           at("c", laserOfRange(4, 359), 0, 0, 0),
-                                           at("r", head, 1, 1, 0, 1),
-                                           at("p", Ranger(), 1, 1, 0, 2, -90)};
-    const ExactGain gain(sceneOf(kRoom), movables, {}, {});
+    const std::vector<Sensor> sensors = {at("w", whole, 0, 0, 0),
+                                         at("v", whole, 0, 0, 0, 1, -20),
+                                         at("h", laserOfRange(4, 358), 0, 0, 0),
+                                         at("c", laserOfRange(4, 359), 0, 0, 0),
+                                         at("r", head, 1, 1, 0, 1),
+                                         at("p", Ranger(), 1, 1, 0, 2, -90)};
+    const Scene scene = sceneOf(kRoom);
+    const Gain made(scene, sensors);
+    const ExactGain& gain = made.gain;
     const std::vector<bool> turns = {false, true, true, false, false, true};
     for (std::size_t i = 0; i < turns.size(); ++i) EXPECT_EQ(gain.turns(i), turns[i]) << i;
 }

@@ -13,12 +13,6 @@ namespace ispace {
 
 namespace {
 
-/// What one sensor sees, and the multiplicity it adds.
-struct CountedView {
-    CellSet cells;
-    int multiplicity = 1;
-};
-
 /// Multiplicity of each cell.
 using Multiplicities = std::vector<int>;
 
@@ -175,27 +169,13 @@ std::vector<std::size_t> idleChoices(const Problem& problem, std::span<const Cho
     });
 }
 
-std::vector<std::string> idleSensors(const SceneProblem& model, const Coverage& coverage) {
-    std::vector<const SensorView*> own;
-    std::vector<CountedView> views;
-    for (const SensorView& view : coverage.sensors) {
-        if (model.stands(view)) continue;
-        own.push_back(&view);
-        views.push_back({view.cells, model.multiplicityOf(view)});
-    }
-    const auto idle = idleAmong(model.problem(), views, [&](const std::vector<bool>& left) {
-        Coverage rest;
-        for (const SensorView& view : coverage.sensors) {
-            const auto at = std::find(own.begin(), own.end(), &view) - own.begin();
-            if (model.stands(view) || left[static_cast<std::size_t>(at)])
-                rest.sensors.push_back(view);
-        }
+std::vector<std::size_t> idleViews(const SceneProblem& model, std::span<const CountedView> views) {
+    return idleAmong(model.problem(), views, [&](const std::vector<bool>& left) {
+        std::vector<CountedView> rest;
+        for (std::size_t i = 0; i < views.size(); ++i)
+            if (left[i]) rest.push_back(views[i]);
         return model.isConnected(rest);
     });
-    std::vector<std::string> ids;
-    ids.reserve(idle.size());
-    for (const std::size_t i : idle) ids.push_back(own[i]->id);
-    return ids;
 }
 
 void spreadIdle(const Problem& problem, std::span<const Point3> standing,

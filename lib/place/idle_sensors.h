@@ -5,23 +5,22 @@
 #include <cstddef>
 #include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "cover/coverage.h"
 #include "geom/point.h"
 #include "solve/problem.h"
 
 namespace ispace {
 
 class SceneProblem;
+struct CountedView;
 
 /// Choices that can all be left out without loss of value or of connection, ascending; later ones
 /// are preferred. O(choices * cells / 64 + runs)
 std::vector<std::size_t> idleChoices(const Problem& problem, std::span<const Choice> chosen);
 
-/// Ids of such sensors among those placed in a scene that the model measured.
-std::vector<std::string> idleSensors(const SceneProblem& model, const Coverage& coverage);
+/// The same for the views of placed sensors, by their indices.
+std::vector<std::size_t> idleViews(const SceneProblem& model, std::span<const CountedView> views);
 
 /// Spreads idle choices: moves each in turn to the site farthest from all other sensors, among
 /// those that see anything of weight, with the heading that sees most of what few others see.

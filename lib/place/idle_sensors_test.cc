@@ -13,7 +13,7 @@ namespace {
 double leastDistance(const Arrangement& arrangement, std::initializer_list<Point3> others = {}) {
     std::vector<Point3> places = others;
     double least = 1e9;
-    for (const ArrangedSensor& sensor : arrangement.sensors) {
+    for (const Placement& sensor : arrangement.sensors) {
         for (const Point3& place : places)
             least = std::min(least, length(sensor.pose.position - place));
         places.push_back(sensor.pose.position);

@@ -10,7 +10,6 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "cover/sight.h"
 #include "place/exact_gain.h"
 #include "place/scene_problem.h"
 
@@ -76,17 +75,15 @@ Pose3 stepped(const Pose3& pose, const Way& way, const Stride& stride) {
 
 class Search {
   public:
-    Search(const Scene& scene, std::span<const Movable> sensors, const FloorWeights& weights,
-           const RefineOptions& options,
-           const std::function<bool(const std::vector<Pose3>&)>& accept, Progress& progress)
-        : sensors_(sensors),
-          accept_(accept),
+    Search(const Scene& scene, const Sight& sight, std::span<const Sensor> sensors,
+           const FloorWeights& weights, const RefineOptions& options, Progress& progress)
+        : options_(options),
           progress_(progress),
           strides_(stridesOf(options)),
-          gain_(scene, sensors, weights, options),
+          gain_(scene, sight, sensors, weights, options.multiplicity),
           total_(gain_.total()) {
         poses_.reserve(sensors.size());
-        for (const Movable& sensor : sensors) poses_.push_back(sensor.pose);
+        for (const Sensor& sensor : sensors) poses_.push_back(sensor.pose);
     }
 
     Refined run() {
@@ -110,7 +107,7 @@ class Search {
   private:
     /// Steps of this length, sensor after sensor, until none helps any more.
     void settle(const Stride& stride) {
-        const std::size_t count = sensors_.size();
+        const std::size_t count = poses_.size();
         std::size_t idle = 0;  // sensors in a row that stay where they are
         for (std::size_t turn = 0; idle < count && turn < kMaxRounds * count; ++turn)
             idle = improve(turn % count, stride) ? 1 : idle + 1;
@@ -152,7 +149,6 @@ class Search {
     std::optional<Way> bestOf(std::size_t sensor, std::span<const Way> ways, const Stride& stride,
                               double& gain) {
         if (progress_.stopped()) return std::nullopt;
-        const SiteValidity* const validity = sensors_[sensor].validity;
         std::vector<Pose3> trials;
         std::vector<Way> taken;
         trials.reserve(ways.size());
@@ -160,7 +156,7 @@ class Search {
         for (const Way& way : ways) {
             const Pose3 trial = stepped(poses_[sensor], way, stride);
             const bool moves = trial.position != poses_[sensor].position;
-            if (moves && validity != nullptr && !validity->isValid(trial.position.onFloor()))
+            if (moves && options_.is_valid && !options_.is_valid(sensor, trial.position.onFloor()))
                 continue;
             trials.push_back(trial);
             taken.push_back(way);
@@ -182,14 +178,13 @@ class Search {
     }
 
     bool isAccepted(std::size_t sensor, const Pose3& trial) {
-        if (!accept_) return true;
+        if (!options_.accepts) return true;
         std::vector<Pose3> poses = poses_;
         poses[sensor] = trial;
-        return accept_(poses);
+        return options_.accepts(poses);
     }
 
-    std::span<const Movable> sensors_;
-    const std::function<bool(const std::vector<Pose3>&)>& accept_;
+    const RefineOptions& options_;
     Progress& progress_;
     std::vector<Stride> strides_;
     ExactGain gain_;
@@ -220,17 +215,16 @@ void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
                 refuse(laser->model.empty() ? "a laser" : laser->model);
 }
 
-Refined refine(const Scene& scene, std::span<const Movable> sensors, const FloorWeights& weights,
-               const RefineOptions& options,
-               const std::function<bool(const std::vector<Pose3>&)>& accept, Progress& progress) {
-    return Search(scene, sensors, weights, options, accept, progress).run();
+Refined refine(const Scene& scene, const Sight& sight, std::span<const Sensor> sensors,
+               const FloorWeights& weights, const RefineOptions& options, Progress& progress) {
+    return Search(scene, sight, sensors, weights, options, progress).run();
 }
 
 namespace {
 
 constexpr double kApart = 0.05;  // metres
 
-bool areApart(const std::vector<ArrangedSensor>& before, const std::vector<Pose3>& poses) {
+bool areApart(const std::vector<Sensor>& before, const std::vector<Pose3>& poses) {
     for (std::size_t i = 0; i < poses.size(); ++i)
         for (std::size_t k = 0; k < i; ++k) {
             const double least =
@@ -242,37 +236,36 @@ bool areApart(const std::vector<ArrangedSensor>& before, const std::vector<Pose3
 
 }  // namespace
 
-std::vector<ArrangedSensor> movedTo(std::vector<ArrangedSensor> sensors,
-                                    const std::vector<Pose3>& poses) {
-    for (std::size_t i = 0; i < poses.size(); ++i) sensors[i].pose = poses[i];
-    return sensors;
-}
-
-Refined refineArranged(SceneProblem& model, const std::vector<ArrangedSensor>& sensors,
-                       std::uint64_t least, Progress& progress) {
-    std::vector<Movable> movables;
-    movables.reserve(sensors.size());
-    for (const ArrangedSensor& sensor : sensors)
-        movables.push_back({sensor.id, model.groups()[sensor.group].model, sensor.pose,
-                            &model.validityAt(sensor.pose.position.z)});
-    const auto refined = [&](const std::function<bool(const std::vector<Pose3>&)>& accept) {
-        const RefineOptions refining{.multiplicity = model.options().redundancy,
-                                     .plane = model.options().plane};
-        return refine(model.scene(), movables, model.options().weights, refining, accept, progress);
+Refined refine(SceneProblem& model, const std::vector<Placement>& placements, std::uint64_t least,
+               Progress& progress) {
+    std::vector<Sensor> sensors;
+    std::vector<const SiteValidity*> validities;
+    for (const Placement& placement : placements) {
+        sensors.push_back(sensorOf(model.groups(), placement));
+        validities.push_back(&model.validityAt(placement.pose.position.z));
+    }
+    RefineOptions refining{.multiplicity = model.options().redundancy};
+    refining.is_valid = [&](std::size_t i, Point2 place) { return validities[i]->isValid(place); };
+    refining.accepts = [&](const std::vector<Pose3>& poses) { return areApart(sensors, poses); };
+    const auto refined = [&] {
+        return refine(model.scene(), model.sight(), sensors, model.options().weights, refining,
+                      progress);
     };
     const auto is_kept = [&](const std::vector<Pose3>& poses) {
-        const Coverage coverage = model.coverageOf(movedTo(sensors, poses));
-        return model.valueOf(coverage) >= least &&
-               (!model.options().is_connected || model.isConnected(coverage));
+        std::vector<Sensor> moved = sensors;
+        for (std::size_t i = 0; i < poses.size(); ++i) moved[i].pose = poses[i];
+        const std::vector<CountedView> views = model.viewsOf(moved);
+        return model.valueOf(views) >= least &&
+               (!model.options().is_connected || model.isConnected(views));
     };
-    const auto is_apart = [&](const std::vector<Pose3>& poses) { return areApart(sensors, poses); };
-    Refined best = refined(is_apart);
+    Refined best = refined();
+    if (is_kept(best.poses)) return best;
     // The exact optimum may lose a cell on the grid by which results are compared, or break the
     // connection: then each step is tested for that.
-    if (!is_kept(best.poses))
-        best = refined(
-            [&](const std::vector<Pose3>& poses) { return is_apart(poses) && is_kept(poses); });
-    return best;
+    refining.accepts = [&](const std::vector<Pose3>& poses) {
+        return areApart(sensors, poses) && is_kept(poses);
+    };
+    return refined();
 }
 
 }  // namespace ispace

@@ -2,6 +2,7 @@
 #include "place/scene_problem.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -59,10 +60,11 @@ SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& g
       groups_(groups),
       options_(options),
       worlds_(scene.environment),
+      sight_(scene.environment, options.plane, &worlds_),
       kinds_(kindsOf(groups, drawsForEach(options))) {
     mustBeAffordable();
     if (options.refine) mustBeRefinable(scene, devicesOf(kinds_), options.weights);
-    const Coverage standing = coverageOf({});
+    const Coverage standing = measureCoverage(scene, worlds_, searching(options));
     target_ = standing.target;
     if (!options.judges_inside)
         for (std::size_t i = 0; i < target_.indoor.size(); ++i) target_.indoor.set(i);
@@ -95,7 +97,7 @@ void SceneProblem::setMultiplicities(const Coverage& standing) {
     problem_.achieved.assign(target_.grid.size(), 0);
     problem_.standing = CellSet(target_.grid.size());
     for (const SensorView& view : standing.sensors) {
-        const int part = multiplicityOf(view);
+        const int part = view.isPartial() ? 1 : unit_;
         view.cells.forEach([&](std::size_t cell) {
             problem_.achieved[cell] =
                 static_cast<std::uint16_t>(std::min(problem_.achieved[cell] + part, 0xffff));
@@ -117,8 +119,8 @@ void SceneProblem::addKinds() {
             {sets_.back().get(), kind.most, kind.cost, isPartial(kind.model) ? 1 : unit_});
     }
     if (options_.budget || options_.target) return;
-    for (std::size_t g = 0; g < groups_.size(); ++g)
-        for (int i = 0; i < groups_[g].most; ++i) problem_.order.push_back(kindOf(kinds_, g));
+    for (const Placement& sensor : sensorsToPlace(groups_, kinds_))
+        problem_.order.push_back(sensor.kind);
 }
 
 std::size_t SceneProblem::candidates() const {
@@ -155,39 +157,43 @@ std::vector<std::uint32_t> SceneProblem::weightsLeft() const {
     return left;
 }
 
-std::vector<ArrangedSensor> SceneProblem::sensorsOf(const std::vector<Choice>& chosen) const {
-    std::vector<std::vector<Pose3>> places(kinds_.size());
-    for (const Choice& choice : chosen) places[choice.kind].push_back(poseOf(choice));
-    return arrangedSensors(scene_, groups_, kinds_, places);
+std::vector<Placement> SceneProblem::placementsOf(const std::vector<Choice>& chosen) const {
+    std::vector<std::vector<Pose3>> poses(kinds_.size());
+    for (const Choice& choice : chosen) poses[choice.kind].push_back(poseOf(choice));
+    return ispace::placementsOf(scene_, groups_, kinds_, poses);
 }
 
-Coverage SceneProblem::coverageOf(const std::vector<ArrangedSensor>& sensors) {
-    return measureCoverage(withArranged(scene_, groups_, sensors), worlds_, searching(options_));
+std::vector<CountedView> SceneProblem::viewsOf(std::span<const Sensor> sensors) const {
+    std::vector<CountedView> views(sensors.size());
+    for (const Sensor& sensor : sensors) sight_.prepare(sensor);
+    tbb::parallel_for(std::size_t{0}, sensors.size(), [&](std::size_t i) {
+        // A thread that waits for a level in here does not begin with another sensor.
+        tbb::this_task_arena::isolate([&] {
+            views[i] = {sight_.cellsOf(target_.grid, sensors[i]),
+                        isPartial(sensors[i].model) ? 1 : unit_};
+        });
+    });
+    return views;
 }
 
-std::uint64_t SceneProblem::valueOf(const Coverage& coverage) const {
-    std::vector<int> met(problem_.cells());
-    for (const SensorView& view : coverage.sensors) {
-        const int part = multiplicityOf(view);
-        view.cells.forEach([&](std::size_t cell) { met[cell] += part; });
-    }
+std::uint64_t SceneProblem::valueOf(std::span<const CountedView> views) const {
+    std::vector<int> met(problem_.achieved.begin(), problem_.achieved.end());
+    for (const CountedView& view : views)
+        view.cells.forEach([&](std::size_t cell) { met[cell] += view.multiplicity; });
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < met.size(); ++i)
         if (met[i] >= problem_.required) value += problem_.weights[i];
     return value;
 }
 
-bool SceneProblem::isConnected(const Coverage& coverage) const {
+bool SceneProblem::isConnected(std::span<const CountedView> views) const {
     const CellSet counted = countedCells(problem_);
     std::vector<CellSet> waiting;
-    CellSet reached(problem_.cells());
-    for (const SensorView& view : coverage.sensors) {
-        CellSet cells = view.cells;
-        cells &= counted;
-        if (stands(view))
-            reached |= cells;
-        else
-            waiting.push_back(std::move(cells));
+    CellSet reached = problem_.standing;
+    reached &= counted;
+    for (const CountedView& view : views) {
+        waiting.push_back(view.cells);
+        waiting.back() &= counted;
     }
     if (reached.empty() && !waiting.empty()) {
         reached = waiting.back();

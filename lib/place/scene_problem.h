@@ -5,11 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "base/cell_set.h"
 #include "base/progress.h"
 #include "cover/coverage.h"
+#include "cover/sight.h"
 #include "cover/trace_file.h"
 #include "place/arrange_options.h"
 #include "place/candidate_pool.h"
@@ -18,6 +21,12 @@
 #include "trace/worlds.h"
 
 namespace ispace {
+
+/// What one sensor sees of the grid of the search, and the multiplicity that it adds there.
+struct CountedView {
+    CellSet cells;
+    int multiplicity = 1;
+};
 
 /// A scene with sensors to place as a weighted coverage problem, and the way back from its
 /// solutions.
@@ -40,6 +49,8 @@ class SceneProblem {
     [[nodiscard]] const std::vector<SensorClass>& kinds() const { return kinds_; }
     [[nodiscard]] const Target& target() const { return target_; }
     Worlds& worlds() { return worlds_; }
+    /// What sensors see of the room.
+    [[nodiscard]] const Sight& sight() const { return sight_; }
     /// False if progress said to stop before all candidates were made.
     [[nodiscard]] bool isComplete() const { return is_complete_; }
     /// Of all kinds.
@@ -61,22 +72,14 @@ class SceneProblem {
         return sets_[choice.kind]->pose(choice.candidate);
     }
     /// The sensors at the places that were chosen.
-    [[nodiscard]] std::vector<ArrangedSensor> sensorsOf(const std::vector<Choice>& chosen) const;
-    /// On the grid of the search.
-    [[nodiscard]] Coverage coverageOf(const std::vector<ArrangedSensor>& sensors);
-    /// True for a sensor of such a coverage that stands already.
-    [[nodiscard]] bool stands(const SensorView& view) const {
-        return view.index < scene_.sensors.size();
-    }
-    /// What a sensor adds to the multiplicity of a cell it sees, see Kind.
-    [[nodiscard]] int multiplicityOf(const SensorView& view) const {
-        return view.isPartial() ? 1 : unit_;
-    }
-    /// As valueOf() of the sensors.
-    [[nodiscard]] std::uint64_t valueOf(const Coverage& coverage) const;
-    /// True if the views of all sensors hang together, those that stand being one part, see
-    /// Problem::is_connected. O(sensors^2 * cells / 64)
-    [[nodiscard]] bool isConnected(const Coverage& coverage) const;
+    [[nodiscard]] std::vector<Placement> placementsOf(const std::vector<Choice>& chosen) const;
+    /// What these sensors see of the grid of the search. The same for any number of threads.
+    [[nodiscard]] std::vector<CountedView> viewsOf(std::span<const Sensor> sensors) const;
+    /// As valueOf() of the sensors with these views.
+    [[nodiscard]] std::uint64_t valueOf(std::span<const CountedView> views) const;
+    /// True if these views hang together with what stands, which is one part, see
+    /// Problem::is_connected. O(views^2 * cells / 64)
+    [[nodiscard]] bool isConnected(std::span<const CountedView> views) const;
     /// Spreads choices that add nothing. \pre the choices have a value: else they may be some of
     /// the many that the required multiplicity takes
     void spreadIdle(std::vector<Choice>& chosen) const;
@@ -95,6 +98,7 @@ class SceneProblem {
     const std::vector<SensorGroup>& groups_;
     const ArrangeOptions& options_;
     Worlds worlds_;
+    Sight sight_;
     std::vector<SensorClass> kinds_;
     int unit_ = 1;  ///< multiplicity of sensors other than receivers
     Target target_;

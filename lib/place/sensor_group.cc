@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "base/error.h"
 #include "base/glob.h"
@@ -87,16 +88,21 @@ Document withoutPlaces(const Document& layout, std::span<const std::string> fixe
     return freed;
 }
 
-SingleSensors singleSensors(const std::vector<SensorGroup>& groups) {
-    SingleSensors singles;
-    for (std::size_t i = 0; i < groups.size(); ++i)
-        for (int k = 0; k < groups[i].most; ++k) {
-            singles.groups.push_back(groups[i]);
-            singles.groups.back().most = 1;
-            singles.origins.push_back(i);
-        }
-    return singles;
+namespace {
+
+/// Of the first sensor of a new kind. Kinds of the same name differ in parameters: a number tells
+/// them apart.
+std::string kindName(const SensorGroup& group, const std::vector<SensorClass>& kinds) {
+    if (!group.id.empty()) return group.id;
+    const std::string name =
+        group.record.has("model") ? group.record.text("model") : group.record.keyword();
+    const auto alike = std::count_if(kinds.begin(), kinds.end(), [&name](const SensorClass& kind) {
+        return kind.id == name || kind.id.starts_with(name + '.');
+    });
+    return alike > 0 ? name + '.' + std::to_string(alike + 1) : name;
 }
+
+}  // namespace
 
 std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups, bool apart) {
     std::vector<SensorClass> kinds;
@@ -113,67 +119,72 @@ std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups, bool ap
             same->groups.push_back(i);
             continue;
         }
-        std::string id = group.id;
-        if (id.empty()) {
-            id = group.record.has("model") ? group.record.text("model") : group.record.keyword();
-            // Kinds of the same name differ in parameters: a number tells them apart.
-            const auto alike =
-                std::count_if(kinds.begin(), kinds.end(), [&id](const SensorClass& kind) {
-                    return kind.id == id || kind.id.starts_with(id + '.');
-                });
-            if (alike > 0) id.append(".").append(std::to_string(alike + 1));
-        }
-        kinds.push_back({group.model, group.record, std::move(id), cost, group.most, {i}});
+        for (int n = 0; n < (apart ? group.most : 1); ++n)
+            kinds.push_back({group.model,
+                             group.record,
+                             kindName(group, kinds),
+                             cost,
+                             apart ? 1 : group.most,
+                             {i}});
     }
     return kinds;
 }
 
-std::size_t kindOf(const std::vector<SensorClass>& kinds, std::size_t group) {
-    const auto kind = std::find_if(kinds.begin(), kinds.end(), [group](const SensorClass& one) {
-        return std::find(one.groups.begin(), one.groups.end(), group) != one.groups.end();
-    });
-    return static_cast<std::size_t>(kind - kinds.begin());
-}
-
-std::vector<ArrangedSensor> arrangedSensors(const Scene& scene,
-                                            const std::vector<SensorGroup>& groups,
-                                            const std::vector<SensorClass>& kinds,
-                                            const std::vector<std::vector<Pose3>>& places) {
-    std::vector<std::size_t> used(kinds.size());
-    std::vector<ArrangedSensor> sensors;
-    std::vector<Record> records = scene.records;
-    std::vector<std::size_t> added;  // sensors without an id
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        const std::size_t kind = kindOf(kinds, g);
-        for (int i = 0; i < groups[g].most && used[kind] < places[kind].size(); ++i) {
-            sensors.push_back({g, groups[g].id, places[kind][used[kind]++]});
-            if (groups[g].is_pending) continue;
-            records.push_back(groups[g].record);
-            added.push_back(sensors.size() - 1);
-        }
-    }
-    const std::vector<std::string> ids = assignIds(records);
-    for (std::size_t i = 0; i < added.size(); ++i)
-        sensors[added[i]].id = ids[scene.records.size() + i];
+std::vector<Placement> sensorsToPlace(const std::vector<SensorGroup>& groups,
+                                      const std::vector<SensorClass>& kinds) {
+    std::vector<Placement> sensors;
+    for (std::size_t g = 0; g < groups.size(); ++g)
+        for (std::size_t k = 0; k < kinds.size(); ++k)
+            if (std::binary_search(kinds[k].groups.begin(), kinds[k].groups.end(), g))
+                for (int n = 0; n < std::min(kinds[k].most, groups[g].most); ++n)
+                    sensors.push_back({g, k});
     return sensors;
 }
 
-Record placedRecord(const SensorGroup& group, const ArrangedSensor& sensor) {
+std::vector<Placement> placementsOf(const Scene& scene, const std::vector<SensorGroup>& groups,
+                                    const std::vector<SensorClass>& kinds,
+                                    const std::vector<std::vector<Pose3>>& poses) {
+    std::vector<std::size_t> used(kinds.size());
+    std::vector<Placement> placements;
+    std::vector<Record> records = scene.records;
+    std::vector<std::size_t> added;  // sensors without an id
+    for (Placement& sensor : sensorsToPlace(groups, kinds)) {
+        const SensorGroup& group = groups[sensor.group];
+        if (used[sensor.kind] == poses[sensor.kind].size()) continue;
+        sensor.sensor = group.id;
+        sensor.pose = poses[sensor.kind][used[sensor.kind]++];
+        if (!group.is_pending) {
+            records.push_back(group.record);
+            added.push_back(placements.size());
+        }
+        placements.push_back(std::move(sensor));
+    }
+    const std::vector<std::string> ids = assignIds(records);
+    for (std::size_t i = 0; i < added.size(); ++i)
+        placements[added[i]].sensor = ids[scene.records.size() + i];
+    return placements;
+}
+
+Sensor sensorOf(const std::vector<SensorGroup>& groups, const Placement& placement) {
+    return {placement.sensor, groups[placement.group].model, placement.pose};
+}
+
+Record placedRecord(const SensorGroup& group, const Placement& placement) {
     Record record = group.record;
-    const Point3& p = sensor.pose.position;
-    record.set("id", Value(sensor.id));
+    const Point3& p = placement.pose.position;
+    record.set("id", Value(placement.sensor));
     record.set("at", Value(Tuple{p.x, p.y, p.z}));
-    record.set("heading", Value(sensor.pose.heading.degrees()));
-    if (!(record.angle("tilt") == sensor.pose.tilt))
-        record.set("tilt", Value(sensor.pose.tilt.degrees()));
+    record.set("heading", Value(placement.pose.heading.degrees()));
+    if (!(record.angle("tilt") == placement.pose.tilt))
+        record.set("tilt", Value(placement.pose.tilt.degrees()));
     return record;
 }
 
-Scene withArranged(const Scene& scene, const std::vector<SensorGroup>& groups,
-                   const std::vector<ArrangedSensor>& sensors) {
+Scene withPlaced(const Scene& scene, const std::vector<SensorGroup>& groups,
+                 const std::vector<Placement>& placements) {
     Scene whole = scene;
-    for (const auto& [group, id, pose] : sensors)
-        whole.sensors.push_back({id, groups[group].model, pose});
+    for (const Placement& placement : placements)
+        whole.sensors.push_back(sensorOf(groups, placement));
     return whole;
 }
 

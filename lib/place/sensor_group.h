@@ -46,42 +46,38 @@ struct SensorClass {
     std::vector<std::size_t> groups = {};  ///< in their order
 };
 
-/// The kinds of these groups, in order of first appearance; `apart`: one for each group.
+/// The kinds of these groups, in order of first appearance; `apart`: one for each sensor.
 std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups, bool apart = false);
 
-/// Each sensor as a group of its own.
-struct SingleSensors {
-    std::vector<SensorGroup> groups;
-    std::vector<std::size_t> origins;  ///< the group that each was of
+/// A sensor at the pose found for it, or still without one.
+struct Placement {
+    std::size_t group = 0, kind = 0;
+    std::string sensor = {};  ///< id
+    Pose3 pose = {};
 };
-SingleSensors singleSensors(const std::vector<SensorGroup>& groups);
 
-/// The kind that a group is of. \pre it is of one
-std::size_t kindOf(const std::vector<SensorClass>& kinds, std::size_t group);
+/// Every sensor to be placed, group after group; id and pose are left out.
+std::vector<Placement> sensorsToPlace(const std::vector<SensorGroup>& groups,
+                                      const std::vector<SensorClass>& kinds);
 
 /// True for sensors that cover floor only together with others: receivers.
 inline bool isPartial(const SensorModel& model) { return kindOf(model).together > 1; }
 
-/// A sensor at the place found for it.
-struct ArrangedSensor {
-    std::size_t group = 0;
-    std::string id;
-    Pose3 pose;
-};
+/// Assigns the poses of each kind to the sensors of its groups, in order; sensors for which none is
+/// left are dropped. New sensors get the next free ids.
+std::vector<Placement> placementsOf(const Scene& scene, const std::vector<SensorGroup>& groups,
+                                    const std::vector<SensorClass>& kinds,
+                                    const std::vector<std::vector<Pose3>>& poses);
 
-/// Assigns the places of each kind to the sensors of its groups, in order; sensors for which none
-/// is left are dropped. New sensors get the next free ids.
-std::vector<ArrangedSensor> arrangedSensors(const Scene& scene,
-                                            const std::vector<SensorGroup>& groups,
-                                            const std::vector<SensorClass>& kinds,
-                                            const std::vector<std::vector<Pose3>>& places);
+/// The sensor of a placement.
+Sensor sensorOf(const std::vector<SensorGroup>& groups, const Placement& placement);
 
-/// The record of a sensor at its place: `id`, `at` with z, `heading` and, if the search chose it,
-/// `tilt` are set.
-Record placedRecord(const SensorGroup& group, const ArrangedSensor& sensor);
+/// The record of a placed sensor: `id`, `at` with z, `heading` and, if the search chose it, `tilt`
+/// are set.
+Record placedRecord(const SensorGroup& group, const Placement& placement);
 
-/// The scene with the arranged sensors placed.
-Scene withArranged(const Scene& scene, const std::vector<SensorGroup>& groups,
-                   const std::vector<ArrangedSensor>& sensors);
+/// The scene with these sensors placed.
+Scene withPlaced(const Scene& scene, const std::vector<SensorGroup>& groups,
+                 const std::vector<Placement>& placements);
 
 }  // namespace ispace

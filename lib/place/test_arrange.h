@@ -70,7 +70,7 @@ inline LayoutParts partsOf(const Scene& scene) {
 /// What `coverage` reports of the arranged scene.
 inline CoverageReport reportOf(const Scene& scene, const std::vector<SensorGroup>& groups,
                                const Arrangement& arrangement) {
-    const Scene whole = withArranged(scene, groups, arrangement.sensors);
+    const Scene whole = withPlaced(scene, groups, arrangement.sensors);
     Worlds worlds(whole.environment);
     return measureCoverage(whole, worlds, {.exact = false}).report;
 }

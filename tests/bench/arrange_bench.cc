@@ -98,7 +98,7 @@ Result run(const Job& job) {
 
 /// What is reported is what coverage measures, and no more than the bound.
 void verify(const Job& job, const Arrangement& found) {
-    const Scene placed = withArranged(*job.scene, groupsOf(job), found.sensors);
+    const Scene placed = withPlaced(*job.scene, groupsOf(job), found.sensors);
     Worlds worlds(placed.environment);
     const double measured =
         measureCoverage(placed, worlds, {.density = job.how.pixel_density, .exact = false})

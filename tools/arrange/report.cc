@@ -107,12 +107,12 @@ std::string idleText(const Arrangement& arrangement) {
 }
 
 std::string doubledText(const Arrangement& arrangement) {
-    const std::vector<ArrangedSensor>& sensors = arrangement.sensors;
+    const std::vector<Placement>& sensors = arrangement.sensors;
     for (std::size_t i = 0; i < sensors.size(); ++i)
         for (std::size_t k = i + 1; k < sensors.size(); ++k) {
             const Point3 p = sensors[i].pose.position;
             if (!(p == sensors[k].pose.position)) continue;
-            return printable(sensors[i].id) + " and " + printable(sensors[k].id) +
+            return printable(sensors[i].sensor) + " and " + printable(sensors[k].sensor) +
                    " are at one place (" + formatDouble(p.x) + ", " + formatDouble(p.y) + ", " +
                    formatDouble(p.z) + "): mount them side by side";
         }
