@@ -10,9 +10,9 @@
 #include "cover/coverage.h"
 #include "layout/schemas.h"
 #include "place/idle_sensors.h"
+#include "place/objective.h"
 #include "place/refine.h"
 #include "place/scene_problem.h"
-#include "sensor/camera.h"
 #include "solve/mps_file.h"
 #include "solve/search_state.h"
 
@@ -106,14 +106,13 @@ void measure(Arrangement& result, SceneProblem& model) {
     const CoverageReport& report = measured.report;
     result.coverage = report.coverage.grid.value_or(0);
     result.area = report.total_effective_area.grid.value_or(0);
-    const bool is_coverage = options.weights.isUniform() && options.redundancy == 1 &&
-                             options.judges_inside && model.target().grid == measured.target.grid;
     const std::vector<CountedView> views =
         model.viewsOf(std::span(whole.sensors).subspan(model.scene().sensors.size()));
-    if (options.beam_step)
-        result.value = result.candidate_value;
-    else if (!is_coverage)
+    if (!options.judges_inside || !(model.target().grid == measured.target.grid))
         result.value = model.share(model.valueOf(views));
+    for (const Objective& row : objectives())
+        if (row.report != nullptr && row.is_asked(options)) row.report(model, views, result);
+    if (options.beam_step) result.value = result.candidate_value;
     for (const std::size_t i : idleViews(model, views))
         result.idle.push_back(result.sensors[i].sensor);
 }
@@ -201,11 +200,6 @@ std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& m
     return curve;
 }
 
-/// A camera as far as it has enough pixels; any other sensor as it is.
-void limit(SensorModel& model, double pixel_density) {
-    if (auto* camera = std::get_if<Camera>(&model)) *camera = withDensity(*camera, pixel_density);
-}
-
 Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& groups,
                            const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
     SceneProblem model(scene, groups, options, progress);
@@ -230,9 +224,6 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     result.candidates = model.candidates();
     result.bytes = model.bytes();
     result.grid = model.target().grid;
-    result.cost = normaliseCost(costOf(problem, chosen));
-    result.has_costs = std::any_of(problem.kinds.begin(), problem.kinds.end(),
-                                   [](const Kind& kind) { return kind.cost != 1; });
     if (!options.target && !options.budget) result.unplaced = problem.order.size() - chosen.size();
     result.candidate_value = model.share(found.best.value);
     result.candidate_bound = boundOf(found, model);
@@ -252,12 +243,11 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
 
 Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
                     const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
-    if (!(options.pixel_density > 0)) return arrangeLimited(scene, groups, options, progress, mps);
-    // With candidates, bounds and all measures of cameras that see no farther.
+    // Candidates, bounds and all measures are those of sensors that cover no more.
     Scene limited = scene;
-    for (Sensor& sensor : limited.sensors) limit(sensor.model, options.pixel_density);
+    for (Sensor& sensor : limited.sensors) limitCovered(sensor.model, options);
     std::vector<SensorGroup> limited_groups = groups;
-    for (SensorGroup& group : limited_groups) limit(group.model, options.pixel_density);
+    for (SensorGroup& group : limited_groups) limitCovered(group.model, options);
     return arrangeLimited(limited, limited_groups, options, progress, mps);
 }
 

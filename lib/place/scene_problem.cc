@@ -14,6 +14,7 @@
 #include "place/any_place.h"
 #include "place/beam_cells.h"
 #include "place/idle_sensors.h"
+#include "place/objective.h"
 #include "place/refine.h"
 #include "sense/scan.h"
 #include "sense/ultrasound.h"
@@ -68,7 +69,7 @@ SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& g
     target_ = standing.target;
     if (!options.judges_inside)
         for (std::size_t i = 0; i < target_.indoor.size(); ++i) target_.indoor.set(i);
-    problem_.weights = integerWeights(weightsOfCells(target_, options.weights));
+    problem_.weights = integerWeights(cellWeights(target_, options));
     total_ = problem_.totalWeight();
     if (total_ == 0) throw UnmetError(nothingText(target_, options.weights));
     setMultiplicities(standing);
