@@ -45,8 +45,10 @@ std::string pathOf(const std::string& program) {
     return (std::filesystem::path(programPrefix()) / "lib" / "ispace" / program).string();
 }
 
+}  // namespace
+
 /// The running program and the socket to it. The destructor kills it if it still runs.
-class Child {
+class ConfinedReader::Child {
   public:
     Child(const std::string& program, std::vector<std::string> arguments, int file) : socket_(-1) {
         std::array<int, 2> ends{};
@@ -67,6 +69,14 @@ class Child {
     [[nodiscard]] int startError() const { return error_; }
     [[nodiscard]] int socket() const { return socket_; }
     [[nodiscard]] pid_t process() const { return process_; }
+    /// Processor time that it has taken, in whole seconds.
+    [[nodiscard]] std::size_t seconds() const {
+        clockid_t clock{};
+        timespec time{};
+        if (::clock_getcpuclockid(process_, &clock) != 0 || ::clock_gettime(clock, &time) != 0)
+            return 0;
+        return static_cast<std::size_t>(time.tv_sec) + 1;
+    }
 
     /// Kills it if it runs; the status of wait(2), or nothing if somebody else took that.
     int end() {
@@ -120,18 +130,23 @@ class Child {
     int error_ = 0;
 };
 
-/// One file, one child.
-class Reading {
+/// One file.
+class ConfinedReader::Reading {
   public:
-    explicit Reading(const ConfinedTask& task)
+    Reading(const ConfinedTask& task, ConfinedReader& reader)
         : task_(task),
           bytes_(task.bytes),
           limits_(task.limits(bytes_)),
-          child_(pathOf(task.program), arguments(), task.file) {
+          is_next_(reader.child_ != nullptr),
+          child_(is_next_ ? *reader.child_ : start(reader)) {
         if (child_.startError() != 0)
             fail(task_.subject + " read by " + printable(pathOf(task_.program)) +
                  ", which cannot be started: " + ::strerror(child_.startError()) + task_.hint);
         give_up_ = Clock::now() + std::chrono::seconds(kPatience * limits_.seconds);
+        if (!is_next_) return;
+        spent_ = child_.seconds();
+        setLimits();
+        send(task_.file, bytes_);
     }
 
     /// The bytes of the answer.
@@ -148,7 +163,7 @@ class Reading {
                 case ConfinedAnswer::Result:
                     return text(size, limits_.memory);  // what it sends it had to hold
                 case ConfinedAnswer::Error:
-                    fail(printable(text(size, kMaxMessage)));
+                    fail(task_.problem + printable(text(size, kMaxMessage)));
                 case ConfinedAnswer::OutOfMemory:
                     tooMuchMemory();
                 default:
@@ -158,6 +173,12 @@ class Reading {
     }
 
   private:
+    Child& start(ConfinedReader& reader) {
+        ++reader.starts_;
+        reader.child_ = std::make_unique<Child>(pathOf(task_.program), arguments(), task_.file);
+        return *reader.child_;
+    }
+
     [[nodiscard]] std::vector<std::string> arguments() const {
         std::vector<std::string> words{pathOf(task_.program)};
         words.insert(words.end(), task_.arguments.begin(), task_.arguments.end());
@@ -210,52 +231,51 @@ class Reading {
     void reply(const std::string& name) {
         if (++names_ > kMaxNames)
             fail("it names more than " + std::to_string(kMaxNames) + " files");
-        if (!task_.open || name.empty() || name.find('\0') != std::string::npos)
-            return send(nullptr);
+        if (!task_.open || name.empty() || name.find('\0') != std::string::npos) return send(-1, 0);
         const auto file = task_.open(name);
-        if (!file) return send(nullptr);
+        if (!file) return send(-1, 0);
         if (handed_.insert(name).second) allow(file->size);
-        send(&*file);
+        send(file->file.fd(), file->size);
     }
 
     /// Larger limits, for another file.
     void allow(std::size_t bytes) {
         bytes_ += bytes;
         limits_ = task_.limits(bytes_);
-        const auto raise = [this](auto resource, std::size_t limit) {
+        setLimits();
+        give_up_ =
+            std::max(give_up_, Clock::now() + std::chrono::seconds(kPatience * limits_.seconds));
+    }
+
+    void setLimits() const {
+        const auto set = [this](auto resource, std::size_t limit) {
             rlimit limits{};
             if (::prlimit(child_.process(), resource, nullptr, &limits) != 0) return;
             if (limits.rlim_cur == RLIM_INFINITY) return;
             limits.rlim_cur = std::min<rlim_t>(limits.rlim_max, limit);
             ::prlimit(child_.process(), resource, &limits, nullptr);
         };
-        raise(RLIMIT_AS, limits_.memory);
-        raise(RLIMIT_CPU, limits_.seconds);
-        give_up_ =
-            std::max(give_up_, Clock::now() + std::chrono::seconds(kPatience * limits_.seconds));
+        set(RLIMIT_AS, limits_.memory);
+        set(RLIMIT_CPU, spent_ + limits_.seconds);
     }
 
-    void send(const RegularFile* file) {
-        std::array<char, 1 + sizeof(std::uint64_t)> bytes{};
-        bytes[0] =
-            static_cast<char>(file == nullptr ? ConfinedReply::Missing : ConfinedReply::Handed);
-        if (file != nullptr) {
-            const std::uint64_t size = file->size;
-            std::memcpy(&bytes[1], &size, sizeof size);
-        }
+    /// \param fd of the file; -1: there is none
+    void send(int fd, std::uint64_t size) {
+        std::array<char, 1 + sizeof size> bytes{};
+        bytes[0] = static_cast<char>(fd < 0 ? ConfinedReply::Missing : ConfinedReply::Handed);
+        std::memcpy(&bytes[1], &size, sizeof size);
         iovec part{bytes.data(), bytes.size()};
         msghdr message{};
         message.msg_iov = &part;
         message.msg_iovlen = 1;
         alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
-        if (file != nullptr) {
+        if (fd >= 0) {
             message.msg_control = control.data();
             message.msg_controllen = control.size();
             cmsghdr* const head = CMSG_FIRSTHDR(&message);
             head->cmsg_level = SOL_SOCKET;
             head->cmsg_type = SCM_RIGHTS;
             head->cmsg_len = CMSG_LEN(sizeof(int));
-            const int fd = file->file.fd();
             std::memcpy(CMSG_DATA(head), &fd, sizeof fd);
         }
         for (;;) {
@@ -303,15 +323,25 @@ class Reading {
     const ConfinedTask& task_;
     std::size_t bytes_;  ///< of all files handed over
     ConfinedLimits limits_;
-    Child child_;
+    bool is_next_;  ///< the program runs already
+    Child& child_;
+    std::size_t spent_ = 0;  ///< seconds that files before this one took
     Clock::time_point give_up_;
     std::size_t names_ = 0;
     std::set<std::string> handed_;
 };
 
-}  // namespace
+ConfinedReader::ConfinedReader() = default;
+ConfinedReader::~ConfinedReader() = default;
 
-std::string readConfined(const ConfinedTask& task) { return Reading(task).read(); }
+std::string ConfinedReader::read(const ConfinedTask& task) {
+    try {
+        return Reading(task, *this).read();
+    } catch (...) {
+        child_ = nullptr;
+        throw;
+    }
+}
 
 OpenFile fileInMemory(std::string_view bytes) {
     OpenFile file(::memfd_create("input", MFD_CLOEXEC));

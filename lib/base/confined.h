@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,38 +23,62 @@ struct ConfinedLimits {
 /// native bytes, and the rest.
 enum class ConfinedAnswer : char {
     WantsFile = 'F',    ///< the name of a file that the one read names; see ConfinedReply
-    Result = 'P',       ///< the last
+    Result = 'P',       ///< the last for this file
     Error = 'E',        ///< the error in the file; the last
     OutOfMemory = 'M',  ///< nothing follows; the last
 };
 
 /// The reply to WantsFile, one byte. `Handed` carries a descriptor, and the size as eight bytes.
+/// After a result, `Handed` is the next file to read.
 enum class ConfinedReply : char { Handed = 'Y', Missing = 'N' };
 
 constexpr std::size_t kConfinedHead = 1 + sizeof(std::uint64_t);
 
 /// A file that a program in lib/ispace reads for this one, without rights (base/module/confine.h).
 struct ConfinedTask {
-    const std::string& name;             ///< of the file, for messages
-    std::string program;                 ///< "read-mesh"
-    std::vector<std::string> arguments;  ///< of the program; its parent's number, the size of the
-                                         ///< file and the limits follow
-    int file = -1;                       ///< open for reading: standard input of the program
-    std::size_t bytes = 0;               ///< of the file
+    const std::string& name;                  ///< of the file, for messages
+    std::string program;                      ///< "read-mesh"
+    std::vector<std::string> arguments = {};  ///< of the program; its parent's number, the size of
+                                              ///< the file and the limits follow
+    int file = -1;                            ///< open for reading: standard input of the program
+    std::size_t bytes = 0;                    ///< of the file
     /// For files of so many bytes in all, \pre grows with it.
     std::function<ConfinedLimits(std::size_t bytes)> limits;
     /// Opens a file that the one read names; nothing if there is none. Empty: it names none.
     std::function<std::optional<RegularFile>(const std::string& name)> open = {};
     // For messages.
-    std::string kind;     ///< "mesh file"
-    std::string reader;   ///< "assimp"
-    std::string subject;  ///< "meshes are"
-    std::string hint;     ///< where the program cannot be started for want of a library
+    std::string kind;          ///< "mesh file"
+    std::string reader;        ///< "assimp"
+    std::string subject;       ///< "meshes are"
+    std::string hint;          ///< where the program cannot be started for want of a library
+    std::string problem = {};  ///< begins the errors that the program finds
 };
 
-/// The result of the program. \throws FormatError for the file: the error that the program found,
-/// too much memory or time, a crash, or a program that cannot be started
-std::string readConfined(const ConfinedTask& task);
+/// Reads files with one program, which is started for the first and again after an error: to start
+/// one takes some 50 ms, mostly for its libraries. Each file has limits of its own.
+class ConfinedReader {
+  public:
+    ConfinedReader();
+    ~ConfinedReader();
+    ConfinedReader(const ConfinedReader&) = delete;
+    ConfinedReader& operator=(const ConfinedReader&) = delete;
+
+    /// The result of the program. \pre the program and its arguments are those of the first task
+    /// \throws FormatError for the file: the error that the program found, too much memory or time,
+    /// a crash, or a program that cannot be started
+    std::string read(const ConfinedTask& task);
+    /// Processes started so far.
+    [[nodiscard]] int starts() const { return starts_; }
+
+  private:
+    class Child;
+    class Reading;
+    std::unique_ptr<Child> child_;  // null until the first file, and after an error
+    int starts_ = 0;
+};
+
+/// The same for one file.
+inline std::string readConfined(const ConfinedTask& task) { return ConfinedReader().read(task); }
 
 /// A file in memory with these bytes, for tasks. \throws std::system_error
 OpenFile fileInMemory(std::string_view bytes);

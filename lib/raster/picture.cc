@@ -182,29 +182,22 @@ const PictureFormat* formatOf(std::string_view bytes) {
     return found == std::end(kFormats) ? nullptr : found;
 }
 
-/// For pictures of so many pixels, of 16 bits a sample at most: OpenCV and its libraries take some
-/// 600 MB of addresses.
-ConfinedLimits limitsOf(std::size_t pixels) {
-    constexpr std::size_t kBase = std::size_t{2} << 30U, kBytes = 40, kPixelsASecond = 2'000'000;
-    return {kBase + kBytes * pixels, 20 + pixels / kPixelsASecond};
-}
-
 /// Decoded by lib/ispace/read-picture. \throws FormatError
 DecodedPicture decodedApart(std::string_view bytes, const std::string& name,
-                            const std::string& format, std::size_t pixels) {
+                            const std::string& format, std::size_t pixels, ConfinedReader& reader) {
     const OpenFile file = fileInMemory(bytes);
-    const std::string answer = readConfined(
+    const std::string answer = reader.read(
         {.name = name,
          .program = "read-picture",
-         .arguments = {format},
          .file = file.fd(),
          .bytes = bytes.size(),
-         .limits = [pixels](std::size_t /*bytes*/) { return limitsOf(pixels); },
+         .limits = [pixels](std::size_t /*bytes*/) { return pictureLimits(pixels); },
          .kind = format + " picture",
          .reader = "OpenCV",
          .subject = format + " pictures are",
          .hint = "; OpenCV is needed (Debian: libopencv-imgcodecs406), or convert it, for example "
-                 "with `convert FILE map.png`"});
+                 "with `convert FILE map.png`",
+         .problem = "bad " + format + " picture: "});
     PackedHead head{};
     if (answer.size() >= sizeof head) std::memcpy(head.data(), answer.data(), sizeof head);
     const auto [width, height, channels] = head;
@@ -247,7 +240,8 @@ std::string foreignPicture(std::string_view bytes) {
 namespace {
 
 /// Blue first.
-DecodedPicture decodeForeign(std::string_view bytes, const std::string& name, std::int64_t most) {
+DecodedPicture decodeForeign(std::string_view bytes, const std::string& name, std::int64_t most,
+                             ConfinedReader& reader) {
     const auto fail = [&name](const std::string& message) {
         throw FormatError(Diagnostic{displayName(name), 0, 0, message});
     };
@@ -263,7 +257,7 @@ DecodedPicture decodeForeign(std::string_view bytes, const std::string& name, st
         fail(extent + ", wanted at most " + std::to_string(most));
     if (kind == "JPEG" && !isWholeJpeg(bytes)) fail("truncated JPEG picture");
     DecodedPicture decoded =
-        decodedApart(bytes, name, kind, static_cast<std::size_t>(width * height));
+        decodedApart(bytes, name, kind, static_cast<std::size_t>(width * height), reader);
     if (decoded.width != width || decoded.height != height)
         fail("bad " + kind + " picture: its header says " + extent + ", it holds " +
              std::to_string(decoded.width) + " x " + std::to_string(decoded.height));
@@ -273,7 +267,8 @@ DecodedPicture decodeForeign(std::string_view bytes, const std::string& name, st
 }  // namespace
 
 GreyPicture decodePicture(std::string_view bytes, const std::string& name) {
-    return pictureOf(decodeForeign(bytes, name, kMaxDecodedPixels));
+    ConfinedReader reader;
+    return pictureOf(decodeForeign(bytes, name, kMaxDecodedPixels, reader));
 }
 
 std::string jpegOfRgb(int columns, int rows, std::span<const std::uint8_t> samples, int quality) {
@@ -337,10 +332,11 @@ ColorPicture coloured(const GreyPicture& grey) {
 
 }  // namespace
 
-ColorPicture parseColorPicture(std::string_view bytes, const std::string& name) {
+ColorPicture parseColorPicture(std::string_view bytes, const std::string& name,
+                               ConfinedReader& reader) {
     if (isPng(bytes)) return coloured(decodePng(bytes, name, kMaxColorPixels), false);
     if (!foreignPicture(bytes).empty())
-        return coloured(decodeForeign(bytes, name, kMaxColorPixels), true);
+        return coloured(decodeForeign(bytes, name, kMaxColorPixels, reader), true);
     if (!isPicture(bytes)) throw FormatError(Diagnostic{displayName(name), 0, 0, "not a picture"});
     return coloured(parsePgm(bytes, name));
 }

@@ -29,6 +29,8 @@ bool isPicture(std::string_view bytes);
 /// \throws FormatError
 GreyPicture parsePicture(std::string_view bytes, const std::string& name);
 
+class ConfinedReader;
+
 /// A coloured picture, row 0 on top: red, green, blue and opacity of each pixel.
 struct ColorPicture {
     int width = 0, height = 0;
@@ -38,8 +40,10 @@ struct ColorPicture {
 /// Larger coloured pictures are refused before they are decoded.
 constexpr std::int64_t kMaxColorPixels = 40'000'000;
 
-/// Reads the same formats with their colours. \throws FormatError
-ColorPicture parseColorPicture(std::string_view bytes, const std::string& name);
+/// Reads the same formats with their colours. \param reader decodes all pictures that OpenCV reads
+/// \throws FormatError
+ColorPicture parseColorPicture(std::string_view bytes, const std::string& name,
+                               ConfinedReader& reader);
 
 /// Pictures with more pixels are refused before anything is allocated.
 constexpr std::int64_t kMaxPgmPixels = 400'000'000;

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "base/confined.h"
 #include "base/error.h"
 #include "raster/encode.h"
 #include "raster/test_png.h"
@@ -132,19 +133,44 @@ TEST(PngPicture, OpacityInMaps) {
 
 TEST(ColorPicture, HasTheColoursOfTheFile) {
     const std::string png = pngFile(2, 8, 6, {std::string("\x10\x20\x30\xff\x01\x02\x03\x00", 8)});
-    EXPECT_EQ(parseColorPicture(png, "a.png").rgba,
+    ConfinedReader reader;
+    EXPECT_EQ(parseColorPicture(png, "a.png", reader).rgba,
               (std::vector<std::uint8_t>{0x10, 0x20, 0x30, 0xff, 1, 2, 3, 0}));
-    EXPECT_EQ(parseColorPicture("P2\n1 2\n10\n10 0\n", "a.pgm").rgba,
+    EXPECT_EQ(parseColorPicture("P2\n1 2\n10\n10 0\n", "a.pgm", reader).rgba,
               (std::vector<std::uint8_t>{255, 255, 255, 255, 0, 0, 0, 255}));
     // Through OpenCV, which has blue first.
-    const ColorPicture ppm = parseColorPicture("P6\n1 1\n255\n\x01\x02\x03", "a.ppm");
+    const ColorPicture ppm = parseColorPicture("P6\n1 1\n255\n\x01\x02\x03", "a.ppm", reader);
     EXPECT_EQ(ppm.rgba, (std::vector<std::uint8_t>{1, 2, 3, 255}));
-    EXPECT_THROW(parseColorPicture("no picture", "a.png"), FormatError);
+    EXPECT_THROW(parseColorPicture("no picture", "a.png", reader), FormatError);
+}
+
+TEST(ColorPicture, OneProgramDecodesManyUntilOneIsDamaged) {
+    ConfinedReader reader;
+    const auto red = [&](const std::string& head) {
+        const std::string bytes = head + std::string("\x09\x02\x03\x09\x02\x03", 6);
+        return parseColorPicture(bytes, "a.ppm", reader).rgba;
+    };
+    const std::vector<std::uint8_t> pixels{9, 2, 3, 255, 9, 2, 3, 255};
+    EXPECT_EQ(reader.starts(), 0);
+    for (int i = 0; i < 20; ++i)
+        EXPECT_EQ(red(i % 2 == 0 ? "P6\n2 1\n255\n" : "P6 1 2 255 "), pixels);
+    EXPECT_EQ(reader.starts(), 1);
+    try {
+        parseColorPicture(
+            "BM" + std::string(12, '\0') + std::string("\x28\0\0\0\x01\0\0\0\x01\0\0\0", 12),
+            "cut.bmp", reader);
+        ADD_FAILURE() << "decoded";
+    } catch (const FormatError& error) {
+        EXPECT_STREQ(error.what(), "cut.bmp: error: bad BMP picture: OpenCV cannot decode it");
+    }
+    EXPECT_EQ(red("P6\n2 1\n255\n"), pixels);
+    EXPECT_EQ(reader.starts(), 2);
 }
 
 /// Red, green and blue of each pixel of a PNG.
 std::vector<std::uint32_t> pixelsOf(const std::string& png) {
-    const std::vector<std::uint8_t> rgba = parseColorPicture(png, "a.png").rgba;
+    ConfinedReader reader;
+    const std::vector<std::uint8_t> rgba = parseColorPicture(png, "a.png", reader).rgba;
     std::vector<std::uint32_t> pixels;
     for (std::size_t i = 0; i < rgba.size(); i += 4)
         pixels.push_back(std::uint32_t{rgba[i]} << 16U | std::uint32_t{rgba[i + 1]} << 8U |

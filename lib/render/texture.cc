@@ -159,7 +159,7 @@ ColorPicture TextureReader::load(const std::string& file) {
         if (error) throw std::system_error(error);
         throw FormatError(Diagnostic{displayName(file), 0, 0, "not a regular file"});
     }
-    ColorPicture picture = parseColorPicture(readAll(file), file);
+    ColorPicture picture = parseColorPicture(readAll(file), file, pictures_);
     pixels_ += std::int64_t{picture.width} * picture.height;
     if (pixels_ > kMostPixels)
         throw FormatError(Diagnostic{

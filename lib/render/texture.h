@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/confined.h"
 #include "env/environment.h"
 #include "raster/picture.h"
 #include "render/render.h"
@@ -57,6 +58,7 @@ class TextureReader {
 
     std::map<std::string, std::uint32_t> known_;
     std::int64_t pixels_ = 0;
+    ConfinedReader pictures_;
 };
 
 }  // namespace ispace

@@ -3,6 +3,7 @@
 // colour. Colours are written as PNG and read again unchanged.
 #include <algorithm>
 
+#include "base/confined.h"
 #include "fuzz.h"
 #include "raster/encode.h"
 #include "raster/picture.h"
@@ -28,15 +29,16 @@ void tryGrey(std::string_view bytes) {
 }
 
 void tryColors(std::string_view bytes) {
-    const ColorPicture picture = parseColorPicture(bytes, "picture");
+    ConfinedReader reader;
+    const ColorPicture picture = parseColorPicture(bytes, "picture", reader);
     const std::size_t pixels = pixelsOf(picture.width, picture.height);
     fuzz::require(picture.rgba.size() == 4 * pixels, "bytes and pixels differ in number");
     std::vector<std::uint32_t> shades(pixels);
     for (std::size_t i = 0; i < pixels; ++i)
         for (std::size_t channel = 0; channel < 3; ++channel)
             shades[i] = shades[i] << 8U | picture.rgba[4 * i + channel];
-    const ColorPicture again =
-        parseColorPicture(pngOfShades(picture.width, picture.height, shades), "again.png");
+    const std::string png = pngOfShades(picture.width, picture.height, shades);
+    const ColorPicture again = parseColorPicture(png, "again.png", reader);
     for (std::size_t i = 0; i < pixels; ++i)
         fuzz::require(std::equal(&again.rgba[4 * i], &again.rgba[4 * i] + 3, &picture.rgba[4 * i]),
                       "another colour after writing and reading");

@@ -46,7 +46,7 @@ python3 - "$reader" <<'PY'
 import os, signal, socket, subprocess, sys
 ours, theirs = socket.socketpair()
 with open('slow.jpg') as picture:
-    reader = subprocess.Popen([sys.argv[1], 'JPEG', str(os.getpid()),
+    reader = subprocess.Popen([sys.argv[1], str(os.getpid()),
                                str(os.path.getsize('slow.jpg')), str(4 << 30), '1'],
                               stdin=picture, stdout=theirs)
 status = reader.wait(timeout=100)
@@ -66,6 +66,10 @@ for command in "envc slow.jpg --resolution 0.01 --check" "scan room.env --view b
         sleep 0.05
     done
     [ -n "$child" ] || fail "nothing decodes for: $command: $(cat err)"
+    for _ in $(seq 200); do  # until it is confined, which it is before it reads
+        { [ $sanitized = yes ] || grep -q '^Seccomp:[[:space:]]*2' "/proc/$child/status"; } && break
+        sleep 0.05
+    done
     sleep 0.5
     kill -0 "$child" || fail "not slow: $command: $(cat err)"
     if [ $sanitized = no ]; then

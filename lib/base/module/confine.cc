@@ -143,6 +143,29 @@ void tell(ConfinedAnswer kind, std::string_view bytes) {
     send(bytes.data(), bytes.size());
 }
 
+HandedOver receiveFile() {
+    std::array<char, 1 + sizeof(std::uint64_t)> bytes{};
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
+    iovec part{bytes.data(), bytes.size()};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = control.size();
+    ssize_t got = 0;
+    do got = ::recvmsg(STDOUT_FILENO, &message, MSG_WAITALL | MSG_CMSG_CLOEXEC);
+    while (got < 0 && errno == EINTR);
+    if (got != static_cast<ssize_t>(bytes.size())) ::_exit(1);
+    const cmsghdr* const head = CMSG_FIRSTHDR(&message);
+    if (static_cast<ConfinedReply>(bytes[0]) != ConfinedReply::Handed || head == nullptr) return {};
+    HandedOver file;
+    std::memcpy(&file.fd, CMSG_DATA(head), sizeof file.fd);
+    std::uint64_t size = 0;
+    std::memcpy(&size, &bytes[1], sizeof size);
+    file.size = size;
+    return file;
+}
+
 MappedInput::MappedInput(std::size_t size) : size_(size) {
     if (size > 0) start_ = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, STDIN_FILENO, 0);
     if (start_ == MAP_FAILED) throw std::bad_alloc();
@@ -159,8 +182,13 @@ int runConfined(int argc, char** argv, const ConfinedLimits& most,
     const char* const* const words = argv + argc - kWords;
     std::set_new_handler(outOfMemory);
     confine({number(words[2]), number(words[3])}, most, std::atoi(words[0]));
+    HandedOver file{STDIN_FILENO, number(words[1])};
     try {
-        tell(ConfinedAnswer::Result, answer(number(words[1])));
+        while (file.fd == STDIN_FILENO) {
+            tell(ConfinedAnswer::Result, answer(file.size));
+            ::close(STDIN_FILENO);  // the number of the next one
+            file = receiveFile();
+        }
     } catch (const std::bad_alloc&) {
         outOfMemory();
     } catch (const std::exception& error) {

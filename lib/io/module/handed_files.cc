@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/module/handed_files.h"
 
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -22,26 +20,9 @@ constexpr std::string_view kFolder = "/mesh/";
 /// The file, or null.
 std::unique_ptr<HandedFile> ask(std::string_view name) {
     tell(ConfinedAnswer::WantsFile, name);
-    std::array<char, 1 + sizeof(std::uint64_t)> bytes{};
-    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
-    iovec part{bytes.data(), bytes.size()};
-    msghdr message{};
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    message.msg_control = control.data();
-    message.msg_controllen = control.size();
-    ssize_t got = 0;
-    do got = ::recvmsg(STDOUT_FILENO, &message, MSG_WAITALL | MSG_CMSG_CLOEXEC);
-    while (got < 0 && errno == EINTR);
-    if (got != static_cast<ssize_t>(bytes.size())) ::_exit(1);
-    const cmsghdr* const head = CMSG_FIRSTHDR(&message);
-    if (static_cast<ConfinedReply>(bytes[0]) != ConfinedReply::Handed || head == nullptr)
-        return nullptr;
-    int fd = -1;
-    std::memcpy(&fd, CMSG_DATA(head), sizeof fd);
-    std::uint64_t size = 0;
-    std::memcpy(&size, &bytes[1], sizeof size);
-    return std::make_unique<HandedFile>(fd, size, true);
+    const HandedOver file = receiveFile();
+    if (file.fd < 0) return nullptr;
+    return std::make_unique<HandedFile>(file.fd, file.size, true);
 }
 
 }  // namespace

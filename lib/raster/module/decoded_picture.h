@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/confined.h"
+
 namespace ispace {
 
 /// A picture as OpenCV decodes it.
@@ -20,6 +22,13 @@ struct DecodedPicture {
 /// The answer of lib/ispace/read-picture begins with width, height and channels; the samples
 /// follow.
 using PackedHead = std::array<std::int32_t, 3>;
+
+/// Limits of that program for pictures of so many pixels, of 16 bits a sample at most: OpenCV and
+/// its libraries take some 600 MB of addresses.
+inline ConfinedLimits pictureLimits(std::size_t pixels) {
+    constexpr std::size_t kBase = std::size_t{2} << 30U, kBytes = 40, kPixelsASecond = 2'000'000;
+    return {kBase + kBytes * pixels, 20 + pixels / kPixelsASecond};
+}
 
 /// Three bytes a pixel as JPEG.
 struct JpegPicture {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// read-picture FORMAT PARENT SIZE MEMORY SECONDS: decodes the picture on standard input with OpenCV
+// read-picture PARENT SIZE MEMORY SECONDS: decodes the picture on standard input with OpenCV
 // and answers by the socket that is standard output, see base/confined.h and
 // raster/module/decoded_picture.h. Started by raster/picture.cc alone.
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <opencv2/core/utility.hpp>
@@ -13,6 +14,7 @@
 
 #include "base/module/confine.h"
 #include "raster/module/decoded_picture.h"
+#include "raster/picture.h"
 
 namespace {
 
@@ -49,17 +51,10 @@ std::string packed(const cv::Mat& image) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 6) return 2;
+    if (argc != 5) return 2;
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     cv::setNumThreads(1);
-    const std::string format = argv[1];
-    return runConfined(argc, argv, {}, [&format](std::size_t size) {
-        try {
-            return packed(decoded(size));
-        } catch (const std::bad_alloc&) {
-            throw;
-        } catch (const std::exception& error) {  // cv::Exception is one
-            throw std::runtime_error("bad " + format + " picture: " + error.what());
-        }
-    });
+    // Many pictures may follow each other.
+    const ConfinedLimits most{pictureLimits(kMaxDecodedPixels).memory, SIZE_MAX};
+    return runConfined(argc, argv, most, [](std::size_t size) { return packed(decoded(size)); });
 }
