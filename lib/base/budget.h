@@ -47,9 +47,9 @@ class Budget {
     /// Units for text that is copied or read once more.
     static constexpr std::uint64_t unitsOf(std::size_t bytes) { return bytes / 64; }
 
-    /// Ends a message: "more than 1000000 units of work (`envc --max-work 2000000` allows more)".
+    /// Ends a message: "more than 1000000 units of work (`--max-work 2000000` allows more)".
     [[nodiscard]] std::string excess() const {
-        return "more than " + std::to_string(limit_) + " units of work (`envc --max-work " +
+        return "more than " + std::to_string(limit_) + " units of work (`--max-work " +
                std::to_string(2 * limit_) + "` allows more)";
     }
 

@@ -36,8 +36,7 @@ TEST(Budget, TakesAllOrNothing) {
 }
 
 TEST(Budget, SaysHowToAllowMore) {
-    EXPECT_EQ(Budget(0, 10).excess(),
-              "more than 10 units of work (`envc --max-work 20` allows more)");
+    EXPECT_EQ(Budget(0, 10).excess(), "more than 10 units of work (`--max-work 20` allows more)");
 }
 
 }  // namespace

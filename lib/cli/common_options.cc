@@ -10,6 +10,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -273,6 +274,16 @@ void addSceneRules(CommandLine& line, SceneRules& rules) {
     line.parsed("--include-files", "folder|anywhere", read,
                 "where files that YAML includes may lie: in the folder of the file that is read or "
                 "below (default), or anywhere",
+                Enters::Nothing);
+    const auto read_work = [&rules](const std::string& text) {
+        const auto units = parseInteger(text);
+        if (text != "none" && (!units || *units < 1))
+            throw UsageError(excerpt(text) + " is neither a whole number from 1 on nor none");
+        rules.max_work = text == "none" ? std::numeric_limits<std::int64_t>::max() : *units;
+    };
+    line.parsed("--max-work", "N|none", read_work,
+                "units of work that reading an input may take (default by its size, 1 to 20 "
+                "million; see envc(1), Work)",
                 Enters::Nothing);
 }
 

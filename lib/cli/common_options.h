@@ -112,7 +112,7 @@ void addCellOptions(CommandLine& line, CellWords& words, const std::string& purp
 /// `--density N|NAME`: pixels a metre that a camera needs; left alone without it.
 void addDensityOption(CommandLine& line, double& pixels_per_metre);
 
-/// `--same-environment`, `--any-environment` and `--include-files`.
+/// `--same-environment`, `--any-environment`, `--include-files` and `--max-work`.
 void addSceneRules(CommandLine& line, SceneRules& rules);
 
 /// `500M`, `2G`, `1.5GB`: powers of 1024, any case. \throws UsageError

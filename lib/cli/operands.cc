@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 ImportOptions defaultImport(const SceneRules& rules, ImportReport* report) {
     ImportOptions options;
     options.includes = rules.includes;
+    options.max_work = rules.max_work;
     addModelFolders(options);
     options.report = report;
     return options;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "record/yaml.h"
@@ -14,6 +15,7 @@ struct SceneRules {
     /// names it.
     std::optional<bool> same_environment = {};
     IncludeFiles includes = IncludeFiles::InFolder;
+    std::optional<std::uint64_t> max_work = {};  ///< of each input, see Budget; unset: by its size
 };
 
 }  // namespace ispace

@@ -196,8 +196,7 @@ TEST(Dxf, BlocksInBlocksEnd) {
     EXPECT_EQ(
         errorOf(two, few),
         "plan.dxf:40:1: error: blocks and curves of the drawing make more than 9 units of work "
-        "(`envc "
-        "--max-work 18` allows more); is a block inserted by mistake, or in too large a grid? "
+        "(`--max-work 18` allows more); is a block inserted by mistake, or in too large a grid? "
         "--wall-layer 'A-WALL*' leaves layers out\n");
     few.wall_layers = {"W"};
     EXPECT_DOUBLE_EQ(areaOf(two, few), 12);

@@ -20,7 +20,7 @@ refused() {
     quick "$1" "$2"
     [ "$status" -eq 1 ] || fail "$1 with $2 bytes is not refused"
     [ "$(wc -l <err)" -eq 1 ] || fail "not one error for $1: $(cat err)"
-    grep -q "$3:[0-9:]* error: .* make.* more than [0-9]* units of work (\`envc --max-work [0-9]*\` allows more)" err ||
+    grep -q "$3:[0-9:]* error: .* make.* more than [0-9]* units of work (\`--max-work [0-9]*\` allows more)" err ||
         fail "another error for $1: $(cat err)"
 }
 
@@ -59,7 +59,15 @@ expect_status 0 envc room.env --max-work none
 amplify write dxf_coincident 4000 drawing >operand
 expect_status 0 envc --info "$(cat operand)"
 expect_error 1 envc --info --max-work 10 "$(cat operand)"
-grep -q 'more than 10 units of work (`envc --max-work 20` allows more)' err || fail "another error: $(cat err)"
+grep -q 'more than 10 units of work (`--max-work 20` allows more)' err || fail "another error: $(cat err)"
+# Each tool that reads rooms takes the option.
+room=$(amplify write yaml_repeats 2000 room)
+for command in "arrange $room --sensor laser:1 --strategy grid -X 2 -Y 2" "scan $room --model laser --poses /dev/null" "coverage $room $data/robots.3dm" \
+    "simrun $room --until 0" "envc $room --info"; do
+    # shellcheck disable=SC2086
+    expect_error 1 $command --max-work 500
+    grep -q 'more than 500 units of work (`--max-work 1000` allows more)' err || fail "another error of $command: $(cat err)"
+done
 for value in 0 -1 1.5 many 99999999999999999999; do
     expect_error 2 envc room.env --max-work "$value"
 done

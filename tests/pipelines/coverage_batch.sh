@@ -106,7 +106,7 @@ expect_error 2 coverage --batch two -o map.png
 # Each option either works with it, as those do in this file or for any number of scenes, or is refused by name.
 works="--help --version --json --batch --shard --resume --grid --cell --grid-of --height --plane --density --parallax
     --require --junit --same-environment --any-environment --output --quiet --verbose --threads --seed --progress
-    --no-progress --zone --include-files"
+    --no-progress --zone --include-files --max-work"
 refused="--report=r.json --compare=half.3dm --run=r -MD --to=png --width=300 --color=sensor --fans=beams
     --trace=two --speeds=30%"
 for option in $refused; do
@@ -117,7 +117,7 @@ coverage --help | grep -oE '^  (-., )?--?[A-Za-z-]+' | sed 's/.* //' | sort >opt
 # shellcheck disable=SC2086
 printf '%s\n' $works $refused -MF | sed 's/=.*//' | sort | diff - options || fail "an option that --batch does not know"
 for option in "--cell 0.5" "--grid-of beams" "--height 1" "--plane 1" "--parallax 30" "--density 50" \
-    "--include-files anywhere"; do
+    "--include-files anywhere" "--max-work none"; do
     # shellcheck disable=SC2086
     coverage -q --batch two $option >of_two
     # shellcheck disable=SC2086

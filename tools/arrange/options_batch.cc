@@ -71,6 +71,7 @@ void ArrangeCommand::becomeMerge(const ArrangeToolOptions& merge, Shared what, i
     options_.common = merge.common;
     options_.common.seed = seed;
     options_.rules.includes = merge.rules.includes;
+    options_.rules.max_work = merge.rules.max_work;
     options_.trace_file = merge.trace_file;
     options_.curve_file = merge.curve_file;
     options_.mps_file = merge.mps_file;

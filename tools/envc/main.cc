@@ -58,6 +58,7 @@ Document readModel(const EnvcOptions& options, FoundRooms* found, ImportReport& 
     request.import.load_files = request.compiles;
     request.added = addedRecords(options.edits, sceneSchemas());
     request.import.includes = options.rules.includes;
+    request.import.max_work = options.rules.max_work;
     request.same_environment = options.rules.same_environment;
     request.may_be_empty = !options.edits.empty();
     std::vector<Diagnostic> other_rooms;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "base/error.h"
 #include "base/message.h"
@@ -175,16 +174,6 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
                "folder with models that an SDF world names (besides its own, ../models, and those "
                "of GAZEBO_MODEL_PATH, GZ_SIM_RESOURCE_PATH and SDF_PATH)",
                Enters::Nothing);
-    const auto take_work = [&import](const std::string& text) {
-        const auto units = parseInteger(text);
-        if (text != "none" && (!units || *units < 1))
-            throw UsageError(excerpt(text) + " is neither a whole number from 1 on nor none");
-        import.max_work = text == "none" ? std::numeric_limits<std::int64_t>::max() : *units;
-    };
-    line.parsed("--max-work", "N|none", take_work,
-                "units of work that reading an input may take (default by its size, 1 to 20 "
-                "million; see Limits in the manual)",
-                Enters::Nothing);
     line.flag("--points", import.points, "turn points of an ARIA map into obstacles",
               Enters::History);
 }
