@@ -387,36 +387,62 @@ def run(command, seconds):
     return child.returncode, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, (lines or [""])[-1]
 
 
-# Below these an exponent is that of noise, and of what every input costs.
-LEAST_SECONDS, LEAST_BYTES, STEEPEST = 0.3, 64e6, 1.2
+# What an input takes beyond one of START_BYTES counts as this much at least: less is noise. Families whose largest file
+# takes less are tried at larger sizes, up to MOST_BYTES.
+START_BYTES, LEAST_SECONDS, LEAST_BYTES, MOST_BYTES = 400, 0.02, 4e6, 16_000_000
+STEEPEST = 1.2
+
+
+def slope(points):
+    """The exponent b of y = a x^b by least squares of the logarithms."""
+    x, y = [math.log(p[0]) for p in points], [math.log(p[1]) for p in points]
+    middle_x, middle_y = sum(x) / len(x), sum(y) / len(y)
+    return (sum((u - middle_x) * (v - middle_y) for u, v in zip(x, y)) / sum((u - middle_x) ** 2 for u in x))
 
 
 class Growth:
-    """Of a family between two sizes: time and memory as exponents of the size."""
+    """Time and memory of a family over files of some sizes, beyond those of a small one, as exponents of the size."""
 
     def __init__(self, envc, family, sizes, seconds):
-        rows = []
-        for size in sizes:
-            with tempfile.TemporaryDirectory() as folder:
-                operand, total = write(family, size, folder)
-                self.status, spent, memory, self.said = run([envc, "--info", operand], seconds)
-            rows.append((total, spent, memory))
-        (self.small, self.large), (n1, t1, m1), (n2, t2, m2) = rows, rows[0], rows[1]
-        by_size = math.log(n2 / n1)
-        self.time = math.log(max(t2, LEAST_SECONDS) / max(t1, LEAST_SECONDS)) / by_size
-        self.space = math.log(max(m2, LEAST_BYTES) / max(m1, LEAST_BYTES)) / by_size
+        self.rows, self.status, self.said = [], 0, ""
+        _, *start = self.measure(envc, family, START_BYTES, seconds)
+        while True:
+            self.rows = [self.measure(envc, family, size, seconds) for size in sizes]
+            slowest = max(row[1] for row in self.rows)
+            if slowest - start[0] > 25 * LEAST_SECONDS or 4 * sizes[-1] > MOST_BYTES or self.status not in (0, 1):
+                break
+            sizes = [4 * size for size in sizes]
+        self.time = slope([(n, max(spent - start[0], LEAST_SECONDS)) for n, spent, _ in self.rows])
+        self.space = slope([(n, max(memory - start[1], LEAST_BYTES)) for n, _, memory in self.rows])
+
+    def measure(self, envc, family, size, seconds):
+        with tempfile.TemporaryDirectory() as folder:
+            operand, total = write(family, size, folder)
+            status, spent, memory, said = run([envc, "--info", operand], seconds)
+        if self.status in (0, 1):
+            self.status, self.said = status, said
+        return total, spent, memory
 
     def is_steep(self):
         return self.time > STEEPEST or self.space > STEEPEST or self.status not in (0, 1)
 
     def text(self, family):
-        def row(n, spent, memory):
-            return f"{n:10}{spent:8.2f}{memory / 1e6:8.0f}"
-        return (f"{family:26}{row(*self.small)}{row(*self.large)}  {self.time:.2f} {self.space:.2f}" +
+        rows = "".join(f"{n / 1000:7.0f}{spent:7.2f}{memory / 1e6:6.0f}" for n, spent, memory in self.rows)
+        return (f"{family:24}{rows}  {self.time:5.2f} {self.space:5.2f}" +
                 (f"  TOO STEEP, status {self.status}" if self.is_steep() else ""))
 
 
-HEAD = f"{'family':26}{'bytes':>10}{'s':>8}{'MB':>8}{'bytes':>10}{'s':>8}{'MB':>8}  exponents of time and memory"
+def growth_of(envc, family, smallest, seconds):
+    """Measured again where it is too steep: a busy machine takes time from some sizes and not from others."""
+    sizes = [smallest * 2 ** i for i in range(SIZES)]
+    growth = Growth(envc, family, sizes, seconds)
+    if not growth.is_steep():
+        return growth
+    return min(growth, Growth(envc, family, sizes, seconds), key=lambda one: (one.is_steep(), one.time))
+
+
+SIZES = 4
+HEAD = f"{'family':24}{'     kB      s    MB' * SIZES}  exponents of time and memory"
 
 
 def measure(options):
@@ -424,7 +450,7 @@ def measure(options):
     steep = 0
     print(HEAD)
     for family in options.family:
-        growth = Growth(options.envc, family, (options.bytes, options.bytes * options.factor), options.seconds)
+        growth = growth_of(options.envc, family, options.bytes, options.seconds)
         print(growth.text(family), flush=True)
         steep += growth.is_steep()
     return steep
@@ -441,8 +467,7 @@ def main():
     all_ = commands.add_parser("measure", help="print time and memory against size as exponents; over 1.2 fails")
     all_.add_argument("envc")
     all_.add_argument("family", nargs="*", default=list(FAMILIES))
-    all_.add_argument("--bytes", type=int, default=250_000, help="the smaller size")
-    all_.add_argument("--factor", type=int, default=8, help="how many times as large the other is")
+    all_.add_argument("--bytes", type=int, default=60_000, help="the smallest of four sizes, each twice the one before")
     all_.add_argument("--seconds", type=int, default=60, help="of processor time, at most, for each")
     options = parser.parse_args()
     if options.command == "list":

@@ -2,7 +2,7 @@
 """Time and memory of every reader that repeats, against the size of files that ask for more work than it explains."""
 import amplify
 
-SMALL, FACTOR, SECONDS = 60_000, 8, 60
+SMALL, SECONDS = 60_000, 60
 
 
 def run(lab):
@@ -12,7 +12,7 @@ def run(lab):
     for family in families:
         if lab.left() <= 0:
             break
-        growth = amplify.Growth(lab.tool("envc"), family, (SMALL, SMALL * FACTOR), SECONDS)
+        growth = amplify.growth_of(lab.tool("envc"), family, SMALL, SECONDS)
         lab.say(growth.text(family))
         lab.count("families")
         if growth.is_steep():

@@ -13,8 +13,8 @@ import time
 import lab as labs
 
 # The share of the minutes that each part has, in the order in which they run.
-PARTS = {"same_bytes": 0.05, "names": 0.1, "kills": 0.07, "disk": 0.04, "faults": 0.2, "server": 0.2,
-         "soak": 0.12, "fuzz": 0.17, "amplify": 0.05}
+PARTS = {"same_bytes": 0.05, "names": 0.1, "kills": 0.07, "disk": 0.04, "faults": 0.15, "server": 0.2,
+         "soak": 0.12, "fuzz": 0.17, "amplify": 0.1}
 
 
 def main():
