@@ -5,10 +5,10 @@
 
 # Prints the items of $1 that name no test, and the names of tests that do not exist.
 wrong() {
-    awk '/^## What/ { inside = 1 } /^## Reporting/ { exit }
+    awk '/^## / { inside = 1 } /^## Reporting/ { exit }
          inside && /^(- |##)/ { printf "\n" } inside { printf "%s ", $0 }' "$1" | grep '^- ' |
         grep -vE '`([a-z]+\.[a-z_.]+|[A-Z][A-Za-z]+\.[A-Z*][A-Za-z]*)`' || true
-    sed -n '/^## What/,/^## Reporting/p' "$1" |
+    sed -n '/^## /,/^## Reporting/p' "$1" |
         grep -oE '`([a-z]+\.[a-z_.]+|[A-Z][A-Za-z]+\.[A-Z*][A-Za-z]*)`' | tr -d '`' | sort -u |
         while IFS=. read -r suite name; do
             case $suite in
@@ -24,6 +24,6 @@ found=$(wrong "$source_dir/SECURITY.md")
 [ -z "$found" ] || fail "SECURITY.md: no test, or none of that name: $found"
 
 # The test can fail.
-printf '## What\n- An item (`pipeline.bounds`)\n  and `pipeline.boundless`.\n- Another, without.\n## Reporting\n' >small
+printf '## Bounds\n- An item (`pipeline.bounds`)\n  and `pipeline.boundless`.\n- Another, without.\n## Reporting\n' >small
 [ "$(wrong small)" = "- Another, without. 
 pipeline.boundless" ] || fail "self-test: $(wrong small)"
