@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# cameras.sh [FOLDER]: what four dome cameras on the ceiling of an office see of its floor, how many see
-# 90 % of it, and how many it takes to recognise people there; each answer with its proof. Needs
-# the tools in PATH; leaves its files in FOLDER (default: ispace-cameras).
+# cameras.sh [FOLDER]: computes the floor that four dome cameras on the ceiling of an office see, the number that sees
+# 90 % of it, and the number that recognises people there; each answer with its proof. Requires the tools in PATH;
+# writes its files to FOLDER (default: ispace-cameras).
 set -eu
 office=$(cd "$(dirname "$0")/../scenes" && pwd)/open-office.env
 mkdir -p "${1:-ispace-cameras}"
@@ -21,7 +21,7 @@ run arrange office.glb --sensor $dome $exactly --target 90% -o most.3dm
 run arrange office.glb --sensor $dome $exactly --target 90% --density recognise -o recognise.3dm
 coverage office.glb recognise.3dm --density recognise -o recognise.png >recognise.txt
 
-# What a layout covers, and how many cameras it has.
+# Coverage of a layout, and its number of cameras.
 share() { LC_ALL=C printf '%.2f %%' "$(sed -n 's/^result coverage=\([^%]*\)%.*/\1/p' "$1")"; }
 count() { grep -c '^camera' "$1"; }
 echo

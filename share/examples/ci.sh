@@ -1,9 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# ci.sh [FOLDER]: a test as a CI server runs it. A robot drives through the Intelligent Space; the
-# run must do what is expected of it, and the layout must have seen enough of it. Leaves for the
-# server: junit.xml (what was met), ways.png and seen.png (what it looked like), and the record.
-# Ends with 3 if something is not as expected. Needs the tools in PATH.
+# ci.sh [FOLDER]: a test for a CI server. A robot drives through the Intelligent Space; the run must meet its
+# expectations, and the layout must have seen enough of it. Writes for the server: junit.xml (the verdicts), ways.png
+# and seen.png (pictures), and the record. Exit status 3: an expectation failed. Requires the tools in PATH.
 set -eu
 share=$(cd "$(dirname "$0")/.." && pwd)
 mkdir -p "${1:-ispace-ci}"
@@ -19,7 +18,7 @@ simrun "$room" "$layout" --clock fast --until 36 --script "$share/examples/drive
     --expect 'r* unseen at most 8' \
     --junit junit.xml >/dev/null || status=$?
 
-# Whatever came of it: a picture of where it went, and what the lasers saw of it.
+# After success and failure: a picture of the way, and of its coverage by the lasers.
 simrun --replay run "$room" "$layout" -o ways.png
 coverage "$room" "$layout" --run run -o seen.png --report seen.json >seen.txt
 sed -n '/^run/,$p' seen.txt

@@ -1,8 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# demo.sh [FOLDER]: a room, three lasers placed in it, what they read and what they see, for two
-# rooms of the thesis, and a robot in one of them. Needs the tools in PATH; leaves its files in FOLDER
-# (default: ispace-demo).
+# demo.sh [FOLDER]: for two rooms of the thesis: the room, poses of three lasers, their readings and coverage, and a
+# robot in one of them. Requires the tools in PATH; writes its files to FOLDER (default: ispace-demo).
 set -eu
 scenes=$(cd "$(dirname "$0")/../scenes" && pwd)
 mkdir -p "${1:-ispace-demo}"

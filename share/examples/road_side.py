@@ -22,7 +22,7 @@ import sys
 
 import ispace
 
-STEP = 0.05  # m: what rises by less is road
+STEP = 0.05  # m: lower rises are road
 LEAST = 8  # beams that must stay up there
 WIDEST = 40  # beams in which a kerb has risen
 MIDDLE = 15.0  # degrees to each side in which all is road
@@ -154,7 +154,7 @@ def report(found, count):
             continue
         (x, y), direction = fit([kerb[1:3] for kerb in mine])
         if max(kerb[1] for kerb in mine) - min(kerb[1] for kerb in mine) < 0.5:
-            direction = 0.0  # seen at one place alone
+            direction = 0.0  # seen at a single point
         beside = y - math.tan(direction) * x
         print(f"{side}: {abs(beside):.4f} m beside the start, direction {math.degrees(direction):.2f} degrees, "
               f"{statistics.median(kerb[3] for kerb in mine):.4f} m high, in {len(mine)} of {count} scans")

@@ -42,7 +42,7 @@ class Lab:
         self.commands = []  # as typed
         self.cited, self.assumed, self.fits = [], [], []
         self.failures = []
-        self.timings = []   # (what, seconds of wall time), for timings.csv
+        self.timings = []   # (task, seconds of wall time), for timings.csv
         shutil.rmtree(folder, ignore_errors=True)
         os.makedirs(folder)
 

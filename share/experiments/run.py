@@ -9,7 +9,7 @@ experiment is a file of this folder with
     TITLE = "What runs"
     SOURCE = "section 3.4.8, fig. 3.23 to 3.25"  # of the thesis; the report is in this order
     SECONDS = 10                                 # about so long it takes; long ones start first
-    def run(lab): ...                            # lab.py says what a lab has
+    def run(lab): ...                            # lab.py documents the lab
 """
 
 import argparse
@@ -21,7 +21,7 @@ import re
 import sys
 import time
 
-sys.dont_write_bytecode = True  # nothing is left beside the sources
+sys.dont_write_bytecode = True  # no compiled files beside the sources
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 

@@ -63,7 +63,7 @@ class Surfaces:
     """Triangles in boxes of space, for points that are near them."""
 
     BOX = 0.25   # metres
-    REACH = 0.1  # what is farther from all of them is as far as this
+    REACH = 0.1  # farther points count as this far
 
     def __init__(self, triangles):
         self.boxes = {}

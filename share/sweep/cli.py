@@ -16,7 +16,7 @@ from .errors import DataError, UsageError, did_you_mean
 from .model import CommandWriter, Job, Sweep
 
 TOOL = "ispace-sweep"
-# What each action does, and the options it has besides the common ones.
+# The function of each action, and its options besides the common ones.
 ACTIONS = {
     "commands": ("a line of the shell for each job", {"only", "shard", "missing", "threads", "json"}),
     "names": ("the files that the jobs make", {"only", "shard", "missing", "suffix"}),
@@ -141,7 +141,7 @@ def _check(options: argparse.Namespace) -> None:
 
 
 def _run(options: argparse.Namespace, version: str) -> None:
-    from .reader import read_sweep  # what takes time to load is loaded when it is needed
+    from .reader import read_sweep  # slow imports wait until an action requires them
 
     if options.output != "-" and options.sweep != "-" and _same_file(options.output, options.sweep):
         raise UsageError(f"{options.output} is the sweep itself")

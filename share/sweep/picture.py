@@ -11,7 +11,7 @@ from .model import Axis, Sweep
 from .results import Row, Value
 
 FORMATS = ("svg", "png", "pdf")
-USUAL = ("coverage.exact", "result.coverage", "coverage.grid")  # what is drawn if nobody says
+USUAL = ("coverage.exact", "result.coverage", "coverage.grid")  # columns drawn by default, the first that exists
 
 
 def draw(sweep: Sweep, rows: Sequence[Row], table: dict[str, list[Value]], x: str, y: str | None,

@@ -25,7 +25,7 @@ def columns(sweep: Sweep, rows: Sequence[Row]) -> dict[str, list[Value]]:
                                      "name": [row.job.name for row in rows]}
     table.update({name: [row.values[name] for row in rows] for name in axes})
     for key in results:
-        # An axis has the word; what a report calls the same is kept beside it.
+        # The axis has the name; the report's value of the same name gets a prefix.
         table[f"results.{key}" if key in table else key] = [row.results.get(key) for row in rows]
     table["digest"] = [row.digest for row in rows]
     if "seed" not in axes:

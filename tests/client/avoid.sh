@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The program that avoids obstacles drives through the thesis' scene (section 5.2.2) and touches nothing: as
-# it is, and with odometry that errs, wheels that slip, a slippery floor and a start that is off. By steps it
-# does the same twice.
+# The program that avoids obstacles drives through the thesis' scene (section 5.2.2) without contact: without noise, and
+# with errors of odometry, slipping wheels, a slippery floor and a wrong start. By steps it does the same twice.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 avoid=$binary_dir/examples/avoid

@@ -15,7 +15,7 @@ import ispace
 
 SCENES = Path(os.environ["ISPACE_SOURCE_DIR"]) / "share" / "scenes"
 CELL = 0.1  # m
-HALF_WIDTH, HALF_HEIGHT = 5.5, 4.5  # m: what is planned in
+HALF_WIDTH, HALF_HEIGHT = 5.5, 4.5  # m: cell of the planner
 
 
 def cell_of(x, y):
@@ -102,7 +102,7 @@ class Barriers(unittest.TestCase):
                     break
                 start = cell_of(pose.x, pose.y)
                 way = plan(self.blocked_cells(robot) - {start}, start, cell_of(*target))
-                # One leg at a time, as the next may show what was hidden.
+                # One leg at a time, as the next scan may show hidden parts.
                 x, y = (c * CELL for c in next(corners(way)))
                 x, y = target if (x, y) == tuple(c * CELL for c in cell_of(*target)) else (x, y)
                 turn = math.degrees(math.atan2(y - pose.y, x - pose.x)) - pose.heading

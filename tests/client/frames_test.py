@@ -157,7 +157,7 @@ class Frames(unittest.TestCase):
                 self.assertEqual(fields["stream"], "1")
                 depths = np.frombuffer(data, "<u2").reshape(shape(fields))
                 first = depths if first is None else first
-                np.testing.assert_array_equal(depths, first)  # nobody moves
+                np.testing.assert_array_equal(depths, first)  # all movers stand
 
 
 if __name__ == "__main__":

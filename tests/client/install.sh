@@ -33,7 +33,7 @@ if command -v pkg-config >/dev/null; then
         -o by_pkg_config $(pkg-config --libs ispace-aria) || fail "wander.cpp is not compiled by pkg-config"
 fi
 
-# The examples are copied from there and built with what is installed.
+# Copies the examples from there and builds them with the installed files.
 cp -r prefix/share/ispace/examples .
 cmake -S examples -B examples/build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_PREFIX_PATH="$scratch/prefix" >cmake.log 2>&1 ||
     fail "the examples are not configured: $(cat cmake.log)"

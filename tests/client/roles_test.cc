@@ -178,7 +178,7 @@ TEST_F(Roles, AWorldCanBeEnded) {
 }
 
 TEST(RolesConnecting, SomebodyElsesServerIsNoSimrun) {
-    // A port that says nothing: the timeout holds.
+    // A silent port: the timeout holds.
     const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in at = {};
     at.sin_family = AF_INET;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ARIA's classes over a running simrun: units, rounding, and what each call does to the robot. The
-// world goes by steps, that is while the program sleeps.
+// ARIA's classes over a running simrun: units, rounding, and the effect of each call on the robot.
+// The world advances by steps, that is while the program sleeps.
 #include <Sim_Aria.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Two people cross each other's way (thesis, section 5.3.2): the tracker that shares their legs out among all
-# tracks mixes up nobody, the simple one does; judged against the record. By steps it does the same twice. Streams
-# of a world in real time are followed, too.
+# Two people cross each other's way (thesis, section 5.3.2): the tracker that assigns their legs to all tracks at once
+# keeps their identities, the simple one does not; judged against the record. By steps it does the same twice. It also
+# follows streams of a world in real time.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 tracker=$binary_dir/examples/tracker
@@ -62,7 +62,7 @@ one_error tracker "simrun ends before --until"
 kill "$server" 2>/dev/null || true
 wait "$server" || true
 
-# Who has no track is not followed.
+# A person without a track is not followed.
 cat >truth.py <<'END'
 import sys
 sys.path.insert(0, sys.argv[1])

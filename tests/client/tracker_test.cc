@@ -20,7 +20,7 @@ std::vector<Cluster> legsAt(const std::vector<double>& xs) {
     return clusters;
 }
 
-// One stands where no laser sees them any more, and another one walks over the place.
+// One person stands out of sight of all lasers, and another one walks over that point.
 TEST(JointTracker, WhoWalksOverALostTrackKeepsTheirOwn) {
     JointTracker joint;
     double time = 0;
@@ -38,7 +38,7 @@ TEST(JointTracker, WhoWalksOverALostTrackKeepsTheirOwn) {
     EXPECT_EQ(joint.tracks().size(), 1U);
 }
 
-// A tentative track does not take the place of one that is sure.
+// A tentative track does not replace a confirmed one.
 TEST(JointTracker, OfDoublesTheSureOneStays) {
     Tracks tracks;
     tracks.emplace_back(1, 0.0, Vector2d(0.1, 0));

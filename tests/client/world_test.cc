@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The C++ client changes a running world, follows what happens in it, and drives people and paths.
+// The C++ client changes a running world, reads its events, and drives people and paths.
 #include <gtest/gtest.h>
 #include <ispace_client.h>
 #include <sys/stat.h>

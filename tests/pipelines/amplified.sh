@@ -15,7 +15,7 @@ quick() {
     [ "$status" -le 1 ] || fail "status $status of $1 with $2 bytes: $(tail -n 1 err)"
 }
 
-# refused FAMILY BYTES PLACE: it is one error with that place, which names the option that allows more.
+# refused FAMILY BYTES POSITION: one error with that position, which names the option that allows more.
 refused() {
     quick "$1" "$2"
     [ "$status" -eq 1 ] || fail "$1 with $2 bytes is not refused"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The question of those who buy cameras, answered with its proof; and arrange and coverage agree on
-# what cameras see with enough pixels.
+# The question of a buyer of cameras, answered with its proof; and arrange and coverage agree on the area that cameras
+# see with enough pixels.
 . "$(dirname "$0")/common.sh"
 
 sh "$source_dir/share/examples/cameras.sh" "$scratch/cameras" >out || fail "$(cat out)"
@@ -14,7 +14,7 @@ grep -qx 'four domes of 110 degrees see 94.38 % of the floor; 3 see 91.65 %' ../
 grep -qx 'to recognise people on 90 % of it takes 5: 92.43 %' ../out ||
     fail "other figures: $(tail -n 1 ../out)"
 
-# agree LAYOUT OPTION…: its result says what coverage measures, but for its 12 digits.
+# agree LAYOUT OPTION…: its result is coverage's measurement, up to its 12 digits.
 agree() {
     coverage office.glb "$1" --json "${@:2}" >measured.json
     sed -n 's/^result coverage=\([^%]*\)%.*/\1/p' "$1" >placed

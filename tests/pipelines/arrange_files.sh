@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The files beside a layout: places that are given, curve, trace, rule for make; and nothing that is
-# read is written over.
+# The files beside a layout: given sites, curve, trace, rule for make; and no output replaces an input.
 . "$(dirname "$0")/common.sh"
 
 envc "$scenes/crowded.env" -o room.glb
@@ -41,7 +40,7 @@ expect_error 2 arrange - --sensor laser --places - </dev/null
 expect_error 1 arrange room.glb --sensor laser -o missing/out.3dm
 cmp room.glb kept.glb || fail "the room was written over"
 
-# Placing one's own layout anew: only what is named stays.
+# Arranging an existing layout again: only named sensors stay.
 arrange room.glb five.3dm --fixed laser1 --candidates 1,1,8 -q -o again.3dm
 [ "$(grep '^laser id=laser1 ' five.3dm)" = "$(grep '^laser id=laser1 ' again.3dm)" ] ||
     fail "the fixed one has moved"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# arrange --shard and --merge: what shards share (candidates, starts, the tree of a proof) comes
-# together as one run would have it.
+# arrange --shard and --merge: the work that shards divide (candidates, starts, the tree of a proof) merges to the
+# result of one run.
 . "$(dirname "$0")/common.sh"
 
 envc "$scenes/crowded.env" -o room.glb
@@ -65,7 +65,7 @@ value, bound = (float(word.rstrip("%")) for word in sys.argv[1:])
 assert 0 < value <= bound < 100
 END
 
-# The merge can have what needs all of the search.
+# The merge writes the files that require the whole search.
 for i in 1 2; do "${laser[@]}" "${coarse[@]}" --shard $i/2 -o s$i.part; done
 arrange -q --merge s1.part s2.part --trace merged.jsonl --curve merged.csv -o whole.3dm -MD
 "${laser[@]}" "${coarse[@]}" --trace single.jsonl --curve single.csv -o single.3dm
@@ -81,7 +81,7 @@ expect_same whole.3dm single.3dm "a target out of reach"
 expect_same err.single <(sed 's/^arrange: //' err) "what is said of it"
 for i in 1 2; do "${laser[@]}" "${coarse[@]}" --shard $i/2 -o s$i.part; done
 
-# A part whose command lacks its NUL, or is empty, takes no memory without end.
+# A part with an empty command, or one that lacks its NUL, takes bounded memory.
 python3 - <<'PY'
 data = open('s1.part', 'rb').read()
 at = data.index(b'\n=command ') + 1
@@ -100,7 +100,7 @@ for name in cut none one; do
     grep -q 'does not say which command made it' err || fail "$name.part: $(cat err)"
 done
 
-# What does not belong together, and what makes no sense.
+# Parts of different jobs, and contradictory options.
 expect_error 1 arrange --merge s2.part -o none.3dm
 grep -q 'missing shard 1 of 2' err || fail "$(cat err)"
 "${laser[@]}" "${coarse[@]}" --seed 4 --shard 2/2 -o other.part

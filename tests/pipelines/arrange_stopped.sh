@@ -7,7 +7,7 @@ envc "$scenes/crowded.env" -o room.glb
 # No machine proves the best of this in the time given.
 long=(room.glb --sensor laser,range=4,fov=180:9 --candidates 0.15,0.15,32 --optimize exact --no-progress)
 
-# is_whole FILE: nine lasers, a result that is what coverage measures and no more than its bound.
+# is_whole FILE: nine lasers, a result that agrees with coverage and does not exceed its bound.
 is_whole() {
     [ "$(grep -c '^laser ' "$1")" -eq 9 ] || fail "$1 has not nine lasers: $(cat "$1")"
     grep -q '^result .*complete=no' "$1" || fail "$1 is not marked: $(tail -n 1 "$1")"
@@ -39,7 +39,7 @@ for signal in INT TERM; do
     is_whole best.3dm
 done
 
-# At once: what there is is written, or nothing.
+# At once: writes the layout so far, or no file.
 for delay in 0.02 0.1 0.2; do
     echo old >best.3dm
     interrupt TERM "$delay" arrange "${long[@]}" -o best.3dm

@@ -14,14 +14,14 @@ bounded() {
     tail -n 1 err | has -F -- "$text" || fail "no \`$text\` of: $*: $(tail -n 1 err)"
 }
 
-# Things as large as towns: 70 000 corners each, whose product would be minutes.
+# Objects as large as towns: 70 000 corners each; their product would take minutes.
 printf '#env 1\n%s\n' "$room" >towns.env
 for x in 0 5e4 1e5; do echo "table at=$x,0 size=1e5" >>towns.env; done
 expect_status 1 envc --check towns.env
 grep -q "table1 overlaps table2" err || fail "no overlap found: $(cat err)"
 expect_status 0 envc --info towns.env
 
-# Beyond 1000 km nothing is built, in whatever tool.
+# All tools reject bodies beyond 1000 km.
 for tool in $tools; do
     for value in 1e7 1e300; do
         printf '#env 1\n%s\ncube at=1,1 size=%s\nlaser at=0,0\n' "$room" "$value" >far.env
@@ -72,7 +72,7 @@ bounded envc --check parts.yaml -- "parts and repetitions make more than 10"
 head -c 100000 /dev/zero | tr '\0' '[' >deep.yaml
 bounded envc --check deep.yaml -- "nested too deep"
 
-# What a map of maps is bounded by.
+# Bounds of a map of maps.
 printf 'P5\n30000 30000\n255\n' >huge.pgm
 bounded envc --resolution 0.05 huge.pgm -- "wanted at most 400000000"
 

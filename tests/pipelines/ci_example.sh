@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# share/examples/ci.sh passes, leaves what it says, and fails with what goes wrong.
+# share/examples/ci.sh passes, writes its files, and fails with a failing run.
 . "$(dirname "$0")/common.sh"
 
 example=$source_dir/share/examples/ci.sh

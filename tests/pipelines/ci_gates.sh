@@ -31,7 +31,7 @@ open("report.sh", "w").write("\n".join(report) + "\n")
 PY
 }
 
-# expect_gate STATUS JUNIT WHAT: the gate in ./$server ends so, and its JUnit file has these counts.
+# expect_gate STATUS JUNIT MESSAGE: the gate in ./$server returns this status, and its JUnit file holds these counts.
 expect_gate() {
     local status=0
     rm -f "$server/coverage.xml"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # shellcheck shell=bash
-# Read by the other scripts here: a scratch folder to be in, and ways to say what is expected.
+# Read by the other scripts here: enters a scratch folder, and defines functions that state expectations.
 set -euo pipefail
 
 source_dir=${ISPACE_SOURCE_DIR:?run by ctest}
@@ -38,7 +38,7 @@ expect_status() {
         fail "status $status, expected $wanted, of: $* ($(head -n 5 err))"
 }
 
-# expect_error N TOOL ARGUMENT…: status N, one line `TOOL: …` on stderr, nothing on stdout.
+# expect_error N TOOL ARGUMENT…: status N, one line `TOOL: …` on stderr, empty stdout.
 expect_error() {
     local wanted=$1 tool=$2
     shift
@@ -47,7 +47,7 @@ expect_error() {
     one_error "$tool" "$*"
 }
 
-# one_error TOOL WHAT: ./err holds one line, which begins with the tool's name.
+# one_error TOOL MESSAGE: ./err holds one line, which begins with the tool's name.
 one_error() {
     [ "$(wc -l <err)" -eq 1 ] || fail "not one line of error: $2: $(cat err)"
     grep -q "^$1: " err || fail "an error without the tool's name: $2: $(cat err)"
@@ -78,8 +78,8 @@ small_disk() {
     trap 'umount disk; cleanup' EXIT
 }
 
-# one_job_of_each_tool: the jobs of scripts that make life hard for a tool are in ${jobs[@]}, words to
-# be split; product writes what the last one made (./out, ./map.png), without what differs between runs.
+# one_job_of_each_tool: stores in ${jobs[@]}, as words to be split, the jobs of scripts that disturb a tool; product
+# writes the output of the last one (./out, ./map.png), without the parts that differ between runs.
 one_job_of_each_tool() {
     envc "$scenes/crowded.env" -o room.glb
     arrange -q room.glb --sensor laser,range=4,fov=180:3 --strategy grid -X 6 -Y 6 --deg 8 -o best.3dm
@@ -97,7 +97,7 @@ product() {
     { sed 's/"listen":"[^"]*"/"listen":""/' out; [ ! -e map.png ] || cat map.png; } | cksum
 }
 
-# expect_same A B WHAT
+# expect_same A B MESSAGE
 expect_same() {
     cmp "$1" "$2" || fail "$3"
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# coverage --batch: many scenes in one process give what as many processes do, whatever becomes of single ones.
+# coverage --batch: many scenes in one process give the output of many processes, even if single ones fail.
 . "$(dirname "$0")/common.sh"
 
 cp "$scenes"/* . 2>/dev/null || true
@@ -34,7 +34,7 @@ done
 coverage -q $options --batch - -o reports.jsonl <list
 expect_same single reports.jsonl "a list on stdin, reports in a file"
 
-# What is wrong with one scene is said with its place, leaves `null`, and stops no other.
+# A defect of one scene is reported with its position, writes `null`, and stops no other scene.
 cat >bad <<'LIST'
 square.env half.3dm
 missing.env half.3dm
@@ -81,7 +81,7 @@ grep -q 'tests="8" failures="1" errors="6"' bad.xml || fail "$(cat bad.xml)"
 expect_status 1 coverage --batch two --require zone:door=1%
 grep -q '^coverage: two:2: error: the room has no zone `door`' err || fail "$(cat err)"
 
-# What is held does not grow with their number.
+# Memory does not grow with their number.
 peak() {
     python3 -c 'import resource, subprocess, sys
 subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, check=True)
@@ -93,7 +93,7 @@ few=$(peak some)
 all=$(peak many)
 [ "$all" -lt $((few + 8192)) ] || fail "$few kB for 50 scenes, $all kB for 2000"
 
-# A list that is none, a full disk, and what does not go with it.
+# A file that is no list, a full disk, and excluded options.
 expect_error 1 coverage --batch "$data/random.bin"
 expect_error 1 coverage --batch /dev/null
 expect_error 1 coverage --batch missing
@@ -138,8 +138,8 @@ for count in 2 3 9; do
     expect_same single joined "$count shares joined differ from the whole"
 done
 
-# Killed again and again, a run ends with the same bytes, messages and status. Until there is something to go
-# on with nothing is killed; the list is so long that what comes after that cannot be missed.
+# Killed again and again, a run ends with the same bytes, messages and status. The test kills only after the first
+# stored report; the list is so long that it cannot miss the time after that.
 for _ in $(seq 400); do cat bad; done >long
 coverage --batch long -j 2 --require 40% --junit whole.xml >whole 2>err.whole || [ $? -eq 1 ]
 lines() { if [ -e "$1" ]; then wc -l <"$1"; else echo 0; fi; }
@@ -173,7 +173,7 @@ for signal in INT TERM; do
     done
 done
 
-# What another run left is refused, and left alone.
+# coverage rejects the reports of another run, and keeps them.
 coverage --batch long -j 1 --resume -o other.jsonl 2>/dev/null &
 job=$!
 for _ in $(seq 500); do [ -s other.jsonl.resume ] || sleep 0.01; done

@@ -7,7 +7,7 @@
 [ -n "${ISPACE_TEST_DATA:-}" ] || skip "ISPACE_TEST_DATA names no folder of real maps"
 [ -d "$ISPACE_TEST_DATA/plans" ] || skip "no $ISPACE_TEST_DATA/plans"
 
-# What a place sees, whole and within ranges, beside CGAL's exact answer.
+# Visibility from points, whole and within ranges, beside CGAL's exact answer.
 "$ISPACE_BINARY_DIR/tests/visibility_bench" --check "$ISPACE_TEST_DATA" >looks.txt
 cat looks.txt
 [ "$(grep -c '10000 looks' looks.txt)" -ge 7 ] || fail "less than seven plans were looked at"

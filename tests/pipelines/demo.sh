@@ -5,7 +5,7 @@
 
 bash "$source_dir/share/examples/demo.sh" "$scratch/demo" >out 2>err || fail "$(cat err)"
 tail -n 4 out | has -E 'coverage: [0-9.]+%$' || fail "no coverage figure at the end: $(cat out)"
-# Around the barrier, into nothing.
+# Around the barrier, without collision.
 grep -qx 'robot r1 drove from 0.5, 2 to 0.5, -1.9; 1083 scans in drive/scans.jsonl' out ||
     fail "another drive: $(tail -n 3 out)"
 ! grep -q warning err || fail "a collision: $(cat err)"

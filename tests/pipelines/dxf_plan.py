@@ -58,7 +58,7 @@ def draw(doc, s):
     msp.add_blockref("DOOR", (5.9 * s, 3 * s), dxfattribs={**door, "xscale": -1})
     msp.add_circle((2 * s, 3 * s), 0.25 * s, dxfattribs=wall)
 
-    # What is no plan, and what is elsewhere.
+    # Files that are no plan, and parts outside of it.
     msp.add_text("flat", dxfattribs={"layer": "A-ANNO", "height": 0.2 * s}).set_pos((s, s))
     msp.add_linear_dim(base=(0, -s), p1=(0, 0), p2=(8 * s, 0), dxfattribs={"layer": "A-ANNO"}).render()
     hatch = msp.add_hatch(dxfattribs={"layer": "A-ANNO"})

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Plans that others draw or convert: areas of an SVG against what librsvg paints, and of a map whose
-# picture ImageMagick writes anew.
+# Plans that other programs draw or convert: areas of an SVG against librsvg's pixels, and of a map with a picture that
+# ImageMagick writes again.
 . "$(dirname "$0")/common.sh"
 
 area() { envc "$@" --info --json | sed -n 's/.*"indoor_area":\([0-9.e+-]*\).*/\1/p'; }
 
-# expect_near FOUND WANTED SHARE WHAT
+# expect_near FOUND WANTED SHARE MESSAGE
 expect_near() {
     awk -v f="$1" -v w="$2" -v s="$3" 'BEGIN { d = f - w; if (d < 0) d = -d; exit !(w > 0 && d <= s * w) }' ||
         fail "$4: $1 m2 instead of $2"

@@ -24,7 +24,7 @@ END
 # Of elements, without the known inside point and the zone, which have no body; floor, l1, r1.
 nodes="outer thin carpet d1 t1 box in view floor l1 r1"
 
-# envc writes what the suffix says; the same as a stream.
+# The suffix chooses the format; the same as a stream.
 for format in obj stl geojson svg png pdf; do
     expect_status 0 envc room.env room.3dm -o "room.$format"
     [ ! -s err ] || fail "talk without being asked: $(cat err)"
@@ -75,7 +75,7 @@ if command -v assimp >/dev/null; then
     for node in $nodes; do
         grep -q "╴$node " facts || fail "assimp sees no $node in room.glb: $(tail -n 20 facts)"
     done
-    # What a laser looks at is in no other format: without it they have as many faces.
+    # Only glTF holds the views of lasers: without them the formats have as many faces.
     [ "$(figure room.glb Faces)" -gt "$(figure room.stl Faces)" ] || fail "GLB without the fan of l1"
     sed '/^laser/d' room.3dm >robot.3dm
     for format in glb stl; do envc room.env robot.3dm -o "robot.$format"; done

@@ -38,7 +38,7 @@ coverage a/room.glb b/whole.3dm --json >whole.json
 coverage a/room.glb b/best.3dm --json >best.json
 expect_same whole.json best.json "the joined layout sees something else"
 
-# Two files of a product are there together, or none is.
+# Two files of a product exist together, or not at all.
 small_disk
 expect_status 1 envc a/catalogue.env --to obj -o disk/room.obj
 [ -z "$(ls disk)" ] || fail "left behind on a full disk: $(ls disk)"

@@ -52,7 +52,7 @@ root Link: world has 6 child(ren)
     child(6):  u1
 END
     diff wanted tree || fail "another tree of links"
-    # Places and angles as urdfdom has them; dot, which would draw them, is not needed.
+    # Positions and angles as urdfdom reads them; dot, which would draw them, is not needed.
     urdf_to_graphviz room.urdf graph >/dev/null 2>&1 || [ -s graph.gv ] || fail "no graph of room.urdf"
     # joint PARENT NAME X Y Z ROLL PITCH YAW
     joint() {
@@ -75,9 +75,9 @@ fi
 read_sdf=$binary_dir/tests/read_sdf
 [ -x "$read_sdf" ] || skip "no libsdformat here"
 
-# sdf_facts WORLD [FOLDER...]: its lines to ./facts; nothing may be complained about.
+# sdf_facts WORLD [FOLDER...]: writes its lines to ./facts; the reader must not complain.
 sdf_facts() {
-    # With its folder: the reader knows a road.sdf of its own.
+    # With its folder: the reader has another road.sdf.
     "$read_sdf" "$PWD/$1" "${@:2}" >facts 2>err || fail "libsdformat refuses $1: $(cat err)"
     [ ! -s err ] || fail "libsdformat complains about $1: $(cat err)"
 }
@@ -122,7 +122,7 @@ grep -q '^visual u1 u1_body' facts || fail "no body of u1"
 
 envc room.env room.3dm --add 'mat at=1,2 size=1,1' --add 'gate at=2,2' --to sdf 2>err >more.sdf
 grep -q 'in the world: gate (1), mat (1), ultrasound (1)$' err || fail "not all counted: $(cat err)"
-# Ids that the world or a link has names of its own for.
+# Ids that are reserved names of a world or a link.
 envc room.env --add 'cube id=default at=1,2' --add 'robot id=r2 at=5,4' --add 'laser id=part1_visual on=r2 at=0,0,0.3' \
     --add 'laser id=part1 on=r2 at=0,0,0.4' -o names.sdf
 sdf_facts names.sdf
@@ -140,7 +140,7 @@ for name in crowded ispace facilities; do
         fail "another floor of $name: $(indoor "$scenes/$name.env"), $(indoor "$name.sdf")"
 done
 
-# A mesh stands beside its world; a stream has nowhere to put it.
+# A mesh is a file beside its world; a stream has no folder for it.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n' >wedge.obj
 envc room.env --add 'mesh id=wedge at=5,3 heading=90 file=wedge.obj' -o mesh.sdf
 sdf_facts mesh.sdf

@@ -40,7 +40,7 @@ if /usr/bin/python3 -c 'import ezdxf' 2>/dev/null; then
     done_parts+=" dxf"
 fi
 
-# Meshes: what we export is read by assimp, written anew in its other formats, and put into a room.
+# Meshes: assimp reads our exports, writes them in its other formats, and envc puts these into a room.
 if command -v assimp >/dev/null; then
     printf '%s\n' '#env 1' 'ispace size=6,6' 'mesh id=steps at=1,1 heading=90 file=steps.obj' >room.env
     printf '%s\n' '#env 1' 'ispace size=6,6' >bare.env
@@ -50,7 +50,7 @@ if command -v assimp >/dev/null; then
     for format in stl ply dae glb; do
         assimp export steps.obj "steps.$format" >assimp.log || fail "assimp writes no $format"
         up=auto
-        # assimp copies the axes of an OBJ as they are into formats whose y points up.
+        # assimp copies the axes of an OBJ unchanged into formats whose y points up.
         case $format in glb | dae) up=z ;; esac
         sed "s/steps.obj/steps.$format up=$up/" room.env >"$format.env"
         envc "$format.env" -o "$format.glb"
@@ -119,7 +119,7 @@ if [ -n "$data_dir" ] && command -v gdal_translate >/dev/null; then
 fi
 echo "imported: aria$done_parts"
 
-# A model of ours is what stands there, not what its sensors look at.
+# A model of ours holds the bodies of sensors, not their views.
 printf '#env 1\nispace size=4,4\n' >inner.env
 printf '#3dm 1\nranger at=-1,0.3,1 range=3\nlaser at=0,0 range=3\n' >inner.3dm
 envc inner.env inner.3dm -o inner.glb

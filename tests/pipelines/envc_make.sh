@@ -25,7 +25,7 @@ map.png: building.glb
 -include building.glb.d rules/map.d
 END
 
-# expect_made WORDS WHY: what make says it does.
+# expect_made WORDS REASON: the targets that make reports.
 expect_made() {
     local said
     said=$(make 2>&1 | tr '\n' ' ')
@@ -49,8 +49,8 @@ sed -i '/include: mesh.env/d' building.yaml
 rm mesh.env meshes/steps.obj
 expect_made "building map" "an include is gone"
 
-# The Makefile of docs/batch.md, for an office of a file, an include, a mesh and a texture, and a hall of a map's picture:
-# each change makes again what it affects, and no more.
+# The Makefile of docs/batch.md, for an office of a file, an include, a mesh and a texture, and a hall of a map's
+# picture: make updates exactly the products that a change affects.
 mkdir readme
 cd readme
 sed -n '/^    all: office.jsonl/,/^    -include/s/^    //p' "$source_dir/docs/batch.md" >Makefile
@@ -95,7 +95,7 @@ printf 'lamp.glb: lamp.yaml\n\t@echo lamp\n\t@envc $< -o $@ -MD\n-include lamp.g
 touch_later "a folder/my lamp.env"
 [ "$(make -f lamp.mk)" = lamp ] || fail "a name with blanks: not rebuilt"
 
-# Names with all that has a meaning to make. Beside a wildcard stands what it would match.
+# Names with all characters that make interprets, beside files that a wildcard would match.
 mkdir names
 cd names
 touch axb

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A compiled room is what its records say. tests/data/forged_room.glb is a room of 8 x 6 m that an
-# older envc compiled, with what it derived of the walls; that part says 5 x 6 m since, under its
-# right checksum. Whatever it holds, results are those of the records.
+# A compiled room is that of its records. tests/data/forged_room.glb is a room of 8 x 6 m that an older envc compiled,
+# with derived data of the walls; these were changed to 5 x 6 m, with a correct checksum. Results are those of the
+# records.
 . "$(dirname "$0")/common.sh"
 
 printf '#env 1\nispace size=8,6\n' >room.env
 envc room.env -o true.glb
 printf '#3dm 1\nlaser id=l1 at=0,0 range=5 fov=360\n' >laser.3dm
 
-# results FOLDER ROOM: what the tools make of it, in the folder.
+# results FOLDER ROOM: writes the results of the tools to the folder.
 results() {
     mkdir -p "$1"
     cp "$2" "$1/room.glb"
@@ -53,6 +53,6 @@ for file in zeros ones shifted flipped byte*.glb; do
         fail "$file: other results"
 done
 
-# An edited room is what the edit says.
+# An edited room has the edited size.
 envc "$data/forged_room.glb" --set ispace1.size=10,6 --info | has '^indoor area  60.000 m2' ||
     fail "not 10 x 6 m"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A full disk is an error, whatever the output is; on a real file system nothing is left behind.
+# A full disk is an error for each output; on a real file system no file remains.
 . "$(dirname "$0")/common.sh"
 
 placing=(--sensor laser --strategy grid -X 2 -Y 2 --deg 4)
@@ -38,7 +38,7 @@ for command in "envc $room --to glb" "arrange $room ${placing[*]}" "scan $room $
 done
 
 small_disk
-# What waits for the end of a scan waits in TMPDIR, which may be full, too.
+# Readings that wait for the end of a scan wait in TMPDIR, which may be full, too.
 for format in npz las ply; do
     expect_status 1 env TMPDIR=disk scan "$room" "$layout" --frames 20000 --to $format -o whole
     grep -q "^scan: temporary file in disk: error: No space left on device" err || fail "scan: $(cat err)"

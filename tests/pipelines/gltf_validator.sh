@@ -16,7 +16,7 @@ envc "$data/room.env" "$data/room.3dm" -o sensors.glb
 [ "$(ls ./*.glb | wc -l)" -ge 5 ] || fail "too few models: $(ls)"
 node "$source_dir/tests/npm/validate_gltf.js" ./*.glb
 
-# The check can fail: a model whose mesh is damaged is not valid.
+# The check can fail: a damaged mesh makes a model invalid.
 sed 's/"POSITION"/"POSITIOM"/' sensors.glb >damaged.glb
 if node "$source_dir/tests/npm/validate_gltf.js" damaged.glb >/dev/null; then
     fail "self-test: a damaged model passes"

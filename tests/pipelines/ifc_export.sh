@@ -25,7 +25,7 @@ robot id=r1 at=4,2 heading=30
 laser id=l2 on=r1 at=0.1,0,0.3
 END
 
-# The bytes depend on the records alone; what moves is told.
+# The bytes depend on the records alone; a note reports movers.
 expect_status 0 envc büro.env room.3dm -o room.ifc
 grep -q 'laser.*robot\|robot.*laser' err || fail "robots are left out silently: $(cat err)"
 envc büro.env room.3dm --to ifc 2>/dev/null | cmp - room.ifc || fail "another export of the same room"
@@ -39,7 +39,7 @@ same_area() {
     awk -v a="$1" -v b="$2" -v share="$3" 'BEGIN { exit !(a > 0 && b > 0 && (a - b) ^ 2 <= (share * a) ^ 2) }' ||
         fail "an area of $1 m2 comes back as $2 m2"
 }
-# What envc writes it reads back: the walls have lost the half of their thickness, doors and names stay.
+# envc reads its IFC back: the walls have lost the half of their thickness, doors and names stay.
 same_area "$(awk 'BEGIN { print 7.8 * 5.8 + 0.9 * 0.2 - 0.005 * 2.9 }')" "$(indoor room.ifc)" 0.0005
 envc room.ifc --to env >back.env 2>/dev/null
 [ "$(grep -c '^door' back.env) $(grep -c '^window' back.env) $(grep -c '^pillar' back.env)" = '2 1 1' ] ||
@@ -106,7 +106,7 @@ near([post["shape"]["low"][0], post["shape"]["high"][1]], [4.8, 4.2], 0.02)
 assert table["kind"] == "TABLE" and cube["object_type"] == "cube"
 near([cube["shape"]["volume"]], [0.5 * 0.4 * 0.3])
 
-# Sensors, as a planner reads them; what moves is left out.
+# Sensors, as a planner reads them; without movers.
 laser, camera, ears = product("l1", "sensor"), product("c1", "audiovisualappliance"), product("u1", "sensor")
 assert camera["kind"] == "CAMERA" and "r1" not in found["products"] and "l2" not in found["products"]
 def check(row, **wanted):
@@ -120,7 +120,7 @@ check(laser, Kind="laser", Model="urg-04lx", Height=1.2, Heading=45, Tilt=-10, R
 check(camera, Kind="camera", Height=2.3, Heading=-135, Tilt=-25, Roll=5, FieldOfView=60, FieldOfViewVertical=45,
       Range=12)
 check(ears, Kind="ultrasound", Height=2.4, Heading=0, Tilt=-90, Roll=0, FieldOfView=90, FieldOfViewVertical=90, Range=6)
-# It stands, facing where it looks: the camera's body lies about its place.
+# It faces along its axis: the camera's body lies about its position.
 assert all(low <= at <= high for low, at, high in zip(camera["shape"]["low"], (7.5, 5.5, 2.3), camera["shape"]["high"]))
 END
 read_ifc room.ifc >found.json || fail "web-ifc refuses the room"

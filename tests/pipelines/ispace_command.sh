@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# `ispace TOOL` is the tool of its own installation, with its streams and status; its help and its manual agree.
+# `ispace TOOL` runs the tool of its installation, with its streams and status; its help and its manual agree.
 . "$(dirname "$0")/common.sh"
 
 for tool in $tools; do
@@ -21,7 +21,7 @@ one_error scan "ispace scan --bogus"
 expect_status 1 ispace envc /nonexistent/room.env
 one_error envc "ispace envc /nonexistent/room.env"
 
-# What is wrong is said with a hint.
+# Errors come with a hint.
 expect_error 2 ispace
 expect_error 2 ispace scna
 grep -q 'unknown tool `scna`, did you mean `scan`?' err || fail "$(cat err)"
@@ -47,7 +47,7 @@ status=0
 PATH=$PWD/empty "$binary_dir/bin/ispace" help scan 2>err || status=$?
 [ "$status" -eq 1 ] && grep -q 'man is not installed (Debian: man-db)' err || fail "status $status: $(cat err)"
 
-# Tools that a package keeps apart are run from there, and find what is theirs.
+# ispace runs tools in a package's separate folder, and they find their files.
 mkdir -p usr/bin usr/lib/ispace/bin usr/share
 cp "$binary_dir/bin/ispace" usr/bin
 cp "$binary_dir/bin/scan" usr/lib/ispace/bin

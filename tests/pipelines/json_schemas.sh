@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# All JSON that the tools write, over all scenes and in all golden cases, is what share/schemas says:
-# no key that is not described there, none missing.
+# All JSON of the tools, over all scenes and in all golden cases, matches share/schemas: no undescribed key, and none
+# missing.
 . "$(dirname "$0")/common.sh"
 
 python3 -c 'from jsonschema import Draft202012Validator' 2>/dev/null || skip "no python3-jsonschema"
@@ -33,7 +33,7 @@ coverage "$data/square.env" "$data/half.3dm" --compare "$data/whole.3dm" --json 
 arrange "$data/square.env" --sensor laser,range=2:2 --sensor ranger:1 --strategy grid -X 3 -Y 3 -q \
     --trace tried.jsonl -o best.3dm
 simrun "$data/square.env" "$data/session.3dm" -q --clock fast --until 0.5 --record run >simrun.json
-# What a browser gets.
+# The JSON for a browser.
 sed '$a mat id=under at=0,1\ngate id=way at=1,1\nhuman id=her at=1,-1' "$data/session.3dm" >web.3dm
 simrun "$data/square.env" web.3dm --any-environment -q --web 127.0.0.1:0 >web_begin.json &
 server=$!
@@ -52,7 +52,7 @@ exec 2>&3
 
 python3 "$validate" "$schemas" ./*.json ./*.jsonl ./*.geojson run/scans.jsonl \
     "$source_dir"/tests/*/*.out >log || fail "$(head -n 40 log)"
-# What the figures are held to is not nothing.
+# The schemas restrict the values.
 [ "$(ls ./*.json ./*.jsonl ./*.geojson | wc -l)" -gt 30 ] || fail "few outputs: $(ls)"
 
 # The test can fail: a key more, and a report without its version.

@@ -56,7 +56,7 @@ write('bad/itself.dae', collada('<node id="a">' + leaf + '<instance_node url="#a
 write('bad/circle.dae', collada('<node id="a"><instance_node url="#b"/></node>'
                                 '<node id="b"><instance_node url="#a"/></node>',
                                 '<node><instance_node url="#a"/></node>'))
-# Instances that look like circles and are none: in comments, and of a name.
+# Instances that look like circles: in comments, and in a name.
 write('good/comment.dae', collada('<!-- <node id="a"> --><node id="b"><!-- <instance_node url="#b"/>'
                                   '--></node><node id="a">' + leaf + '</node>',
                                   '<node name=\'a > b\' id = "c"><instance_node url="#a"/>'
@@ -97,7 +97,7 @@ write('bad/kaydara.fbx', b'Kaydara FBX Binary  \0\x1a\0' + b'\0' * 100)
 write('bad/bin.assbin', b'ASSIMP.binary-dump.' + b'\0' * 600)
 write('bad/magic.obj', 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n')
 write('bad/empty.stl', '')
-# A comb, whose corners are tried against each other for a minute.
+# A comb with corners that take a minute to compare with each other.
 n = 15000
 comb = [(i, i % 2 * 5) for i in range(n)] + [(n - 1 - i, (i + 1) % 2 * 5 - 10) for i in range(n)]
 write('slow.obj', ''.join(f'v {x} {y} 0\n' for x, y in comb) +
@@ -199,7 +199,7 @@ grep -q 'good/uri.gltf good/deep/points.bin' <(tr -d '\\\n' <uri.gltf.d | tr -s 
 grep -q 'good/chair.mtl' chair.obj.d || fail "no materials in: $(cat chair.obj.d)"
 if grep 'else.mtl' no_materials.obj.d; then fail "materials that are not there"; fi
 
-# The room allows what lies elsewhere, but for that its digest stays.
+# The room allows files elsewhere, but its digest stays the same.
 envc - --info >in_folder <<<$'#env 1\nispace size=4,3\nmesh at=1,1 file=good/uri.gltf'
 printf '#env 1\nispace size=4,3\nmesh at=1,1 file=bad/uri_up.gltf side_files=anywhere\n' >room.env
 expect_status 0 envc room.env -o room.glb -MD
@@ -226,7 +226,7 @@ status = reader.wait(timeout=100)
 assert status == -signal.SIGXCPU, status
 PY
 
-# What reads a mesh does not outlive who wants it.
+# The mesh reader ends with its parent.
 "$binary_dir/bin/envc" slow.obj --check >out 2>err &
 envc=$!
 for _ in $(seq 100); do

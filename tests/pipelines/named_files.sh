@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Files that other files name: pipes and devices are refused unopened, records name files of their own
-# folder, and no line of a file from elsewhere is quoted. Pipes that the user names are read.
+# Files that other files name: the tools reject pipes and devices unopened, records name files of their folder, and no
+# message quotes a line of a file elsewhere. Pipes as operands are read.
 . "$(dirname "$0")/common.sh"
 
 mkfifo pipe
@@ -40,7 +40,7 @@ for file in own.yaml ../bad.env; do
     grep -q 'geheim\|ispase' err || fail "not quoted: $(cat err)"
 done
 
-# What rooms name.
+# Files that rooms name.
 for record in "mesh file=pipe at=1,1" "mesh file=/dev/zero at=1,1" "mesh file=elsewhere.yaml at=1,1" \
     "camera at=1,1,1 calibration=pipe" "camera at=1,1,1 calibration=elsewhere.yaml"; do
     printf '#env 1\nispace size=4,3\n%s\n' "$record" >named.env
@@ -74,7 +74,7 @@ grep -q 'no regular file in the folder of the record' err || fail "$(cat err)"
 rm run/scene.env
 cp walk.env run/scene.env
 
-# What its events name. The change cannot be made; the replay goes on.
+# Files that its events name. The change fails; the replay continues.
 for file in ../pipe pipe /dev/zero /etc/passwd ../elsewhere.yaml; do
     mkfifo -m 600 run/pipe 2>/dev/null || true
     printf 't,kind,id,other,x,y,value,text\n0.5,change,,%s,,,,LOAD x\n' "$file" >run/events.csv
@@ -91,7 +91,7 @@ for tool in arrange scan; do
         grep -q 'a part is a regular file' err || fail "$(cat err)"
     done
 done
-# Operands are what the user says.
+# Operands may be any file.
 envc <(cat room.env) --info >by_pipe
 envc room.env --info | sed 's/room.env/room/' >by_name
 expect_same <(grep ^digest by_pipe) <(grep ^digest by_name) "a room through a pipe"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A picture is the same on every machine, or there is none: not another one because a font is missing
-# or memory ran out half-way.
+# A picture has the same pixels on every machine, or the tool fails: no other picture without a font or after the end of
+# memory.
 . "$(dirname "$0")/common.sh"
 
 cat >scene.3dm <<'EOF'
@@ -16,7 +16,7 @@ draw() {  # draw FOLDER
 }
 draw wanted 2>err || fail "cannot draw: $(cat err)"
 
-# Fonts and their configuration are none of its business.
+# Installed fonts and their configuration have no effect.
 echo '<fontconfig/>' >no-fonts.conf
 FONTCONFIG_FILE=$scratch/no-fonts.conf draw without 2>err || fail "cannot draw without fonts: $(cat err)"
 FONTCONFIG_FILE=/nonexistent FONTCONFIG_PATH=/nonexistent HOME=/nonexistent draw broken 2>err ||
@@ -25,7 +25,7 @@ for other in without broken; do
     diff -r wanted $other || fail "pictures depend on the machine's fonts ($other)"
 done
 
-# Sanitizers reserve address space of their own.
+# Sanitizers reserve address space.
 grep -q 'ISPACE_SANITIZE:[A-Z]*=OFF' "$binary_dir/CMakeCache.txt" || exit 0
 drawn=0 refused=0
 for megabytes in $(seq 40 12 400); do

@@ -8,8 +8,8 @@ reader=$binary_dir/lib/ispace/read-picture
 sanitized=no
 grep -q '^ISPACE_SANITIZE:[A-Z]*=ON' "$binary_dir/CMakeCache.txt" && sanitized=yes
 
-# A progressive JPEG of 4000 x 4000 pixels: one scan of grey, then so many that add nothing, 26 bytes
-# and some milliseconds each.
+# A progressive JPEG of 4000 x 4000 pixels: one scan of grey, then so many empty ones, 26 bytes and some milliseconds
+# each.
 cat >slow.py <<'PY'
 import struct, sys
 size, scans = 4000, int(sys.argv[1])

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# kill -9 at random moments, again and again, then --resume: the bytes are those of a run that nobody
-# disturbed. ISPACE_KILLS=100 for all of them; a tenth by default.
+# kill -9 at random moments, again and again, then --resume: the bytes are those of an undisturbed run. ISPACE_KILLS=100
+# for all of them; a tenth by default.
 . "$(dirname "$0")/common.sh"
 
 RANDOM=20261122
@@ -42,7 +42,7 @@ killed_often scans.jsonl 60 "${scanned[@]}"
 "${scanned[@]}" --to csv --shard 2/3 -o single
 killed_often scans.part 40 "${scanned[@]}" --to csv --shard 2/3
 
-# A proof, whose tree is kept every 0.05 s here; starts and candidates, as they come.
+# A proof with a tree stored every 0.05 s; starts and candidates, one by one.
 proof=(arrange room.glb --sensor laser,range=4,fov=180:4 --candidates 0.3,0.3,16 --optimize exact -q --no-progress)
 "${proof[@]}" -o single
 killed_often best.3dm 90 "${proof[@]}" --checkpoint-interval 0.05

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Foxglove's readers find in an MCAP file what the same scan has as JSON lines: every kind of sensor, bit
-# by bit where both are float32, CRCs, index and statistics.
+# Foxglove's readers find in an MCAP file the data of the same scan as JSON lines: every kind of sensor, bit by bit if
+# both are float32, CRCs, index and statistics.
 . "$(dirname "$0")/common.sh"
 
 command -v node >/dev/null || skip "no node here"
@@ -55,7 +55,7 @@ scan square.env --poses way.txt --model laser,spin=10 --motion -o way.jsonl
 read_mcap way.mcap way.jsonl >read
 grep -qx '/laser1/scan 10' read && grep -qx '/tf 20' read || fail "$(cat read)"
 
-# Chunks that zstd packed hold the same, and less of it; none has them, and no other format.
+# Chunks packed by zstd hold the same in fewer bytes; `none` has no packed chunk, and other formats reject the option.
 scan square.env all.3dm --frames 3 -o packed.mcap --compression zstd
 read_mcap packed.mcap all.jsonl 3 | cmp - <(read_mcap all.mcap all.jsonl 3) || fail "packed chunks hold something else"
 [ "$(stat -c %s packed.mcap)" -lt $(($(stat -c %s all.mcap) / 2)) ] || fail "nothing is packed: $(stat -c '%n %s' ./*.mcap)"
@@ -67,7 +67,7 @@ expect_error 2 scan square.env all.3dm --to jsonl --compression zstd
 printf 'damaged' | dd of=packed.mcap bs=1 seek=20000 conv=notrunc 2>dd.err
 if read_mcap packed.mcap all.jsonl 3 >/dev/null 2>&1; then fail "self-test: a damaged chunk passes"; fi
 
-# A recorded run: its scans, and where robots, who may be wrong about it, and people were.
+# A recorded run: its scans, and the poses of people and of robots, with their odometry.
 cp "$scenes"/ispace.env .
 printf '#3dm 1\nrobot id=r1 model=pioneer-2dx at=0,-1 heading=90 path=0,1 odometry_noise=0.05,0.1,0.1,0.05
 robot id=r2 model=pioneer-2dx at=1.5,-1\nlaser id=l1 on=r1 range=8\nhuman id=h1 at=1,1 walk=wander\n' >run.3dm
@@ -91,7 +91,7 @@ rm run/odometry.csv
 scan --run run -o bare.mcap
 read_mcap bare.mcap run.jsonl 1 run | has -x "robots, odometry, people 202 0 101" || fail "poses without odometry"
 
-# Nothing was read, one beam, and a folder of files.
+# No reading, one beam, and a folder of files.
 scan square.env --poses /dev/null --model laser -o none.mcap
 echo '{}' >none.jsonl
 read_mcap none.mcap none.jsonl | cmp - <(echo 'compared 0')

@@ -11,7 +11,7 @@ poses() {
         printf "%.2f %.4f %.4f 0.15 0 0 %.6f %.6f\n", i / 10, cos(i) / 2, sin(i) / 2, sin(i / 7), cos(i / 7) }'
 }
 
-# Whoever writes one pose and waits gets its scan, with one thread as with many.
+# A program that writes one pose and waits gets its scan, with any number of threads.
 for threads in 1 2; do
     mkfifo to from
     scan "$room" --poses - --model laser,fov=2 -j "$threads" <to >from &
@@ -70,7 +70,7 @@ scan "$room" --poses heights.txt --model laser,fov=2 --to raw -j 1 >one
 scan "$room" --poses heights.txt --model laser,fov=2 --to raw -j 3 >three
 expect_same one three "-j changes the result for many heights"
 
-# Bad lines: status 1, the place, and what a pose is; what was written before stays valid.
+# Bad lines: status 1, the position, and the format of a pose; earlier readings stay valid.
 bad() {
     printf '%b' "$1" >bad.txt
     expect_status 1 scan "$room" --poses bad.txt --model laser,fov=2
@@ -107,7 +107,7 @@ printf '#3dm 1\nlaser id=mine fov=2 range=9\n' >one.3dm
 scan "$room" one.3dm --poses few.txt | sed -n 2p | has '"sensor":"mine".*"range_max":9,' ||
     fail "the sensor of the layout does not take the poses"
 
-# It does not see the robot that carries it, is not told its place twice, and -MD names the poses.
+# It does not see the robot that carries it, rejects a second pose, and -MD names the poses.
 printf '#3dm 1\nrobot id=r at=0,0 size=0.5,0.5,0.5\nlaser on=r fov=2 range=9\n' >on.3dm
 echo '0 0 0 0.15 0 0 0 1' >one.txt
 scan "$room" on.3dm --poses one.txt -o on.jsonl -MD
@@ -115,7 +115,7 @@ grep -q '"ranges":\[2.0003047,2,2.0003047\]' on.jsonl || fail "its own robot: $(
 grep -q 'one.txt' on.jsonl.d || fail "rule: $(cat on.jsonl.d)"
 expect_error 2 scan "$room" --poses one.txt --model laser,tilt=40
 expect_error 2 scan "$room" --poses one.txt --model laser,at=1,1
-# What stands before a bad pose is written, always; inside a desk is worth a word.
+# scan always writes the readings before a bad pose; a pose inside a desk gets a warning.
 { cat few.txt; echo bad; } >broken.txt
 for threads in 1 2 3; do
     expect_status 1 scan "$room" --poses broken.txt --model laser --to raw -j "$threads"

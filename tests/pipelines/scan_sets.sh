@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# scan writing many files: folders, patterns, what stands beside a picture, and full disks.
+# scan writing many files: folders, patterns, files beside a picture, and full disks.
 . "$(dirname "$0")/common.sh"
 
 room=$data/square.env
@@ -42,7 +42,7 @@ expect_status 0 scan "$room" two.3dm --frames 2 --select l2 --to raw -o 'r%d.f32
 expect_error 2 scan "$room" two.3dm --frames 3 --select l2 --to csv -o 'q.%d'
 expect_error 2 scan "$room" two.3dm --frames 12 --to raw -o 'q%s%d.raw'
 expect_error 2 scan "$room" two.3dm --select k --to png -o k.yaml
-# Nothing stands beside what is no file.
+# A stream has no files beside it.
 mkdir links
 ln -s /dev/null links/nothing
 expect_status 0 scan "$room" two.3dm --select k --to png -o links/nothing
@@ -78,7 +78,7 @@ expect_status 0 scan "$room" far.3dm --to png -o far.png
 grep -q 'warning: ranger1 sees as far as 100 m, and 16 bits end at 65.535 m' err || fail "$(cat err)"
 expect_status 0 scan "$room" far.3dm --to png --depth-scale 500 -o far.png
 [ ! -s err ] || fail "a warning for nothing: $(cat err)"
-# Each reading in a table of its own may be of any kind.
+# Separate tables may hold readings of any kind.
 expect_status 0 scan "$room" two.3dm --to csv -o tables/
 head -qn 1 tables/k-0000.csv | has '^sensor,frame,t,column,row,' || fail "$(head -n 1 tables/*)"
 head -qn 1 tables/l2-0000.csv | has '^sensor,frame,scan,t,beam,' || fail "$(head -n 1 tables/*)"
@@ -94,7 +94,7 @@ for format in raw pcd png jsonl; do
     [ ! -e disk/all ] || fail "$format: half a file"
     [ -z "$(find disk -name '.ispace*')" ] || fail "left behind: $(ls -A disk)"
 done
-# Nobody goes on with half of a reading that another thread was about to take.
+# After a failure no thread writes a half-computed reading.
 for _ in 1 2 3 4 5; do
     rm -rf disk/*
     expect_status 1 scan "$room" two.3dm --frames 500 --select '[k]' --to png -j 4 -o disk/

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# scan --shard, --merge and --resume: the shards of a job are the job, byte for byte, for any number of
-# them; what does not belong together is refused; a killed run and a full disk lose nothing whole.
+# scan --shard, --merge and --resume: the shards of a job merge to it, byte for byte, for any number of them; a merge
+# rejects parts of different jobs; a kill or a full disk loses no complete reading.
 . "$(dirname "$0")/common.sh"
 
 room=$data/room.env
@@ -17,7 +17,7 @@ in_shards() {
     for ((i = 1; i <= n; ++i)); do "$@" --shard "$i/$n" -o "s$i.part"; done
     scan --merge s*.part -o whole
 }
-# joins WHAT COUNTS COMMAND…: for each number of shards.
+# joins MESSAGE COUNTS COMMAND…: for each number of shards.
 joins() {
     local what=$1 counts=$2 n
     shift 2
@@ -48,12 +48,12 @@ done
 scan --merge p3.part p1.part p2.part >whole
 expect_same whole single "poses of a pipe"
 
-# Files of one reading each have nothing to be merged: shards write their own.
+# Formats of one file a reading need no merge: shards write these files.
 scan "$room" "$layout" --frames 5 --to png -o all/
 mkdir shared
 for i in 1 2 3; do scan "$room" "$layout" --frames 5 --to png --shard $i/3 -o shared; done
 diff -r all shared || fail "files of shards are others"
-# Each of them may go on; what a killed one left is its own.
+# Each shard may resume, from its own file.
 mkdir resumed
 files=(scan "$room" "$layout" --frames 5 --to png --resume -o resumed/)
 "${files[@]}" --shard 1/3 & job=$!
@@ -63,7 +63,7 @@ wait $job
 diff -r all resumed || fail "files of shards that may go on are others"
 [ "$(ls all | wc -l)" -eq 10 ] || fail "ten readings, and $(ls all | wc -l) files"
 
-# What does not belong together.
+# Parts of different jobs.
 for i in 1 2 3; do "${still[@]}" --shard $i/3 -o s$i.part; done
 expect_error 1 scan --merge s1.part s3.part
 grep -q 'missing shard 2 of 3' err || fail "$(cat err)"
@@ -101,7 +101,7 @@ grep -q 'not a part of a job' err || fail "$(cat err)"
 expect_error 1 arrange --merge s1.part
 grep -q 'a part of a job of scan: merge it with scan --merge' err || fail "$(cat err)"
 
-# What makes no sense.
+# Contradictory options.
 for words in "--shard 0/3" "--shard 4/3" "--shard 1" "--shard 1/2 -o s.jsonl" "--shard 1/2 --to png" \
     "--shard 1/2 --view bird -o v.png" "--resume" "--resume -o /dev/stdout" \
     "--shard 1/2 --to pcd --coordinates sensor"; do
@@ -130,7 +130,7 @@ expect_same whole.jsonl single "--resume changes the result"
 # Another command's checkpoint is left alone.
 expect_error 1 "${many[@]}" --resume -o big.jsonl
 grep -q 'what a job left, and not this one: the command' err || fail "$(cat err)"
-# A shard that is done is not done again; one that is not what it says is.
+# scan skips a complete shard, and writes a damaged one again.
 scan "$room" "$layout" --frames 7 --shard 1/2 --resume -o r.part
 before=$(stat -c %i r.part)
 scan "$room" "$layout" --frames 7 --shard 1/2 --resume -v -o r.part 2>err

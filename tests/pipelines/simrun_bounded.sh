@@ -23,7 +23,7 @@ start long.env bounded.3dm --clock real
 heavy globs
 ended 0
 
-# The record is whole: what was recorded stays, and no line names a picture that is not there.
+# The record is whole: recorded lines stay, and no line names a missing picture.
 start "$data/square.env" bounded.3dm --clock real --record run
 heavy pictures
 ended 0
@@ -42,7 +42,7 @@ for line in lines:
 END
 simrun --replay run --clock fast >/dev/null 2>err || fail "no replay: $(cat err)"
 
-# Places at every port.
+# Connections at every port.
 { cat bounded.3dm; echo "camera id=c1 at=0,-1.5,1 pixels=32,24"; } >places.3dm
 rm -f port
 simrun "$data/square.env" places.3dm --web 127.0.0.1:0 --scip l1=0 --cola l1=0 --mjpeg c1=0 --port-file port \

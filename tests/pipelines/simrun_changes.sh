@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The world is changed while it runs: who holds what is told, the record stays whole, the token and
-# the watchdog do what they are for.
+# Clients change the running world: the server tells clients that hold a changed robot, the record stays whole, and
+# token and watchdog work.
 . "$(dirname "$0")/common.sh"
 . "$source_dir/tests/simrun/server.sh"
 
@@ -24,7 +24,7 @@ expect world 'ADD robot id=r2 at=-3,1.5' 'OK ADD id=r2 .*'
 expect world 'STEP 100' 'OK STEP n=100 t=0.500'
 expect world 'EVENTS collision,change,mark' 'OK EVENTS .*'
 expect driver 'FORWARD 3' 'OK FORWARD id=1 .*'
-# The watchdog stops a robot whose client says nothing: it has hardly moved.
+# The watchdog stops a robot with a silent client: it has hardly moved.
 expect world 'STEP 20' 'OK STEP .*'
 eventually "the watchdog" grep -qx 'FAIL id=1 reason=stopped t=0.600' driver.out
 expect driver 'FORWARD 0.1' 'OK FORWARD id=2 .*'

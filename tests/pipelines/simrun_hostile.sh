@@ -68,7 +68,7 @@ kill -0 "$server" || fail "simrun died: $(cat simrun.err)"
 
 # More than are allowed.
 for i in $(seq 4 240); do
-    # nothing but a connection that stays
+    # only a lasting connection
     exec {fd}<>"/dev/tcp/127.0.0.1/$port" && open+=("$fd")
 done
 refused=0

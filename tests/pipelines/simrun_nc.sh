@@ -59,7 +59,7 @@ expect driver STATUS "$status"
 near "$(value heading)" 90 0.1 "LEFT 90"
 near "$(value y)" 0 0.00101 "turning on the spot"
 
-# Garbage, and what is out of range.
+# Garbage, and values out of range.
 expect driver "GO WEST" 'ERR 400 .*HELP.*'
 expect driver "FORWARD much" 'ERR 400 .*'
 expect driver "FORWARD -1" 'ERR 416 .*BACKWARD.*'
@@ -87,7 +87,7 @@ send driver 'LEFT 3600\nSTOP\n'
 stopped() { grep -qE '^FAIL id=7 reason=stopped t=' driver.out; }
 eventually "FAIL id=7" stopped
 
-# Who leaves frees the robot.
+# A client that leaves frees the robot.
 expect driver QUIT 'OK QUIT'
 freed() {
     ask other "ROBOT r1"

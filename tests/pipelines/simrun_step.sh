@@ -144,7 +144,7 @@ expect_status 1 simrun "${scene[@]}" --record one --until 1 --port-file missing/
 expect_same before.csv one/robots.csv "a run that could not begin replaced the records"
 simrun "${scene[@]}" --record one --clock fast --until 1 >/dev/null || fail "the folder is still taken"
 
-# Nobody reads the warnings: clients are served all the same.
+# A full pipe of warnings: the server still answers clients.
 : >status
 {
     printf '0 r1 SPEED 1\n' | simrun "${scene[@]}" --clock fast --until 8 --script - 2>&1 >first || true

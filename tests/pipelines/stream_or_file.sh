@@ -16,7 +16,7 @@ arrange room.glb "${placing[@]}" | tee copy.3dm | coverage room.glb - -o dash.pn
 expect_same file.png dash.png "another picture with -"
 expect_same best.3dm copy.3dm "another layout on stdout than with -o"
 
-# Talk goes to stderr: what was found, in a line; progress only if it is wanted; nothing with -q.
+# Messages go to stderr: a summary in a line; progress only on request; with -q no line.
 arrange room.glb "${placing[@]}" --progress 2>talk | cmp - best.3dm || fail "progress on stdout"
 grep -q '100 %' talk || fail "--progress shows nothing"
 arrange room.glb "${placing[@]}" 2>talk | cmp - best.3dm || fail "another layout"

@@ -7,7 +7,7 @@
 command -v script >/dev/null || skip "no script(1) here"
 script -qec true /dev/null >/dev/null 2>&1 </dev/null || skip "no pseudo-terminals here"
 
-# on_terminal STATUS COMMAND: all three streams are the terminal; what is said goes to ./said.
+# on_terminal STATUS COMMAND: all three streams are the terminal; its text goes to ./said.
 on_terminal() {
     local status=0
     # The terminal is closed at once for a tool that reads it in spite of everything.

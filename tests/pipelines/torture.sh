@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Torture notices tools whose bytes differ from run to run, and tools that leave half a file when they are
-# killed.
+# Torture finds tools with bytes that differ from run to run, and tools that leave half a file after a kill.
 . "$(dirname "$0")/common.sh"
 command -v python3 >/dev/null || skip "no python3 here"
 
@@ -18,7 +17,7 @@ bad_envc() {
     chmod +x bad/bin/envc
 }
 
-# expect_violation PART WHAT: that part fails, and says what of.
+# expect_violation PART MESSAGE: that part fails, and reports this violation.
 expect_violation() {
     expect_status 1 python3 "$torture" --build bad --minutes 0.1 --seed 1 --only "$1"
     grep -q "^torture: $1: VIOLATED: .*$2" out || fail "$1 has not noticed: $(cat out)"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Outputs that cannot be made: one line naming the target, status 1, nothing half-written; what -o
-# does to files that are there already; and that no output of any tool replaces what the run reads.
+# Outputs that cannot be written: one line naming the target, status 1, no half-written file; the effect of -o on
+# existing files; and that no output of any tool replaces an input of the run.
 . "$(dirname "$0")/common.sh"
 
 room=$data/room.env
@@ -51,7 +51,7 @@ for tool in "${!product[@]}"; do
     [ -L a ] && [ -L b ] || fail "$tool: a link was replaced"
 done
 
-# What `ulimit -f` refuses is an error, not the end by a signal; the old file stays.
+# A limit by `ulimit -f` is an error, not the end by a signal; the old file stays.
 for tool in "${!product[@]}"; do
     echo old >small
     status=0
@@ -82,7 +82,7 @@ mkdir inputs kept
     printf '0 r1 SPEED 1\n' >script.txt
 )
 placing="--sensor laser,range=1 --candidates 1,1,4"
-# A line: the input, and what would write over it; OUT stands for its name.
+# A line: the input, and an option that would overwrite it; OUT stands for its name.
 refused='
 room.env    envc room.env --to env -o OUT
 room.env    envc room.env --to svg -o OUT
@@ -132,7 +132,7 @@ while read -r input command; do
     done
 done <<<"$refused"
 
-# Members of a set, files of a record, and what stands beside a product.
+# Members of a set, files of a record, and files beside a product.
 cd kept
 mkdir set run
 mv poses.csv set/laser1-0000.csv

@@ -48,7 +48,7 @@ agree("mirror, remap", cv2.remap(mirror, *maps, cv2.INTER_CUBIC), straight)
 for name in ["bent", "omni", "mirror"]:
     again = "again-" + name
     photos("room.env", f"camera,calibration={name}-0.yaml", [pose], *more, name=again)
-    if name == "omni":  # whose circle ends where the record says so, which no calibration does
+    if name == "omni":  # the record limits the circle, which no calibration does
         continue
     with open(name + "-0.png", "rb") as a, open(again + "-0.png", "rb") as b:
         if a.read() != b.read():

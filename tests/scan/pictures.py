@@ -31,7 +31,7 @@ def project(points, bent=BENT):
     return cv2.projectPoints(np.array(points, float), *extrinsics(pose), K, bent)[0].reshape(-1, 2)
 
 
-# The crate: what its corners and edges enclose, but for a pixel at the rim.
+# The crate: the pixels within its corners and edges, up to a pixel at the rim.
 c, s = np.cos(np.radians(25)), np.sin(np.radians(25))
 box = np.array([[1 + c * x - s * y, 0.3 + s * x + c * y, z]
                 for x in (-0.4, 0.4) for y in (-0.3, 0.3) for z in (0, 0.7)])
@@ -67,7 +67,7 @@ for corner in [[3, 2, 0], [3, -2, 0]]:
         expect(f"depth of the corner {corner}, metres",
                abs(depths[int(round(y)), int(round(x))] - np.dot(corner - pose[0], forward)), 0.05)
 
-# A ranger in the camera's place measures the same depths.
+# A ranger at the camera's pose measures the same depths.
 write_poses("one.tum", [pose])
 field = "fov=70,55 pixels=160,120 range=0,20".replace(" ", ",")
 run("scan", "-q", "room.env", "--model", "ranger," + field, "--poses", "one.tum", "-o", "r-%d.png",

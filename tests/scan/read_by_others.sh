@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What scan writes, read back by programs that others wrote: clouds by PCL, CARMEN logs by MRPT, depth
-# pictures by OpenCV. Wanted is what scan says of the same readings as CSV and JSON.
+# Other programs read scan's output back: clouds by PCL, CARMEN logs by MRPT, depth pictures by OpenCV. They must find
+# the values of scan's CSV and JSON of the same readings.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/../pipelines/common.sh"
 
@@ -18,7 +18,7 @@ done_parts=""
 # list NAME FILE: the numbers of a list of the readings in FILE, one a line.
 list() { sed -n "s/.*\"$1\":\[\([^]]*\)\].*/\1/p" "$2" | tr , '\n'; }
 
-# close_columns WHAT TOLERANCE A B: files of numbers that differ by at most that; nan is nan.
+# close_columns MESSAGE TOLERANCE A B: files of numbers that differ by at most that; nan is nan.
 close_columns() {
     paste "$3" "$4" | awk -v t="$2" '
         NF % 2 { bad = 1; exit }
@@ -43,7 +43,7 @@ points() {
     sed '1,/^DATA/d' ascii.pcd
 }
 
-# expect_head LINE WHAT
+# expect_head LINE MESSAGE
 expect_head() { grep -qx "$1" pcd_head || fail "$2: no '$1' in $(cat pcd_head)"; }
 
 # turned: points of a sensor's frame, by the viewpoint in ./pcd_head, in the world.

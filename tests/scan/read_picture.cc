@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests: says what others' libraries read from pictures and camera files.
+// For tests: prints pictures and camera files as other libraries read them.
 //
 //     read_picture depth FILE.png     COLUMNS ROWS BITS CHANNELS, then the samples, one a line
 //     (OpenCV) read_picture camera FILE.yaml   KEY VALUE… for each key (yaml-cpp)

@@ -26,7 +26,7 @@ def stall():
         check(reader.line().startswith("SCAN big "), "an honest reader misses a scan")
     grown = (memory("VmHWM") - before) / MIB
     print(f"200 readers that stall: {grown:.0f} MiB")
-    # What they may hold, the newest scans, and what is on its way.
+    # Allowed unread data, the newest scans, and data on the way.
     check(grown < 128 + 64, f"memory grew by {grown:.0f} MiB")
     check(reader.ask("STOP") == "OK STOP", "an honest reader was cut off")
 

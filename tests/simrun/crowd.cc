@@ -47,7 +47,7 @@ struct Wanted {
     double height, radius, gap;
 };
 
-/// Free places drawn from a seed, also free of those taken.
+/// Free points drawn from a seed, at a distance from earlier ones.
 std::vector<Pose2> places(const Wanted& wanted, std::vector<Disc> taken, std::size_t count,
                           std::uint64_t seed) {
     std::mt19937_64 random(seed);

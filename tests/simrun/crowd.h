@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests and benchmarks: many robots in a room, and what they do with their time.
+// For tests and benchmarks: creates many robots in a room, and drives them.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace ispace::testing {
 
-/// `count` robots of one model at places drawn from a seed: on the indoor floor, clear of what
-/// stands there and of each other by `gap`. Fewer if the room is full.
+/// Creates `count` robots of one model at points drawn from a seed: on the indoor floor, `gap` away
+/// from bodies and from each other. Fewer if the room is full.
 std::vector<PlacedRobot> crowd(const Environment& environment, const RobotModel& model,
                                std::size_t count, double gap, std::uint64_t seed);
 
-/// Adds `count` people 1.7 m tall at such places, clear of the scene's robots as well. Fewer if the
-/// room is full.
+/// Inserts `count` people 1.7 m tall at such points, clear of the scene's robots as well. Fewer if
+/// the room is full.
 void addPeople(Scene& scene, std::size_t count, double gap, std::uint64_t seed);
 
 /// Gives each robot of the scene a laser of this kind at its centre of rotation, in the scene's
@@ -28,8 +28,8 @@ void mountLasers(Scene& scene, const Laser& laser);
 /// sees room, else turning to the side with more of it. To be called after every step.
 void wander(World& world);
 
-/// The same without looking: robots and people who have no course of their own move blindly, with
-/// a new random speed and turn now and then.
+/// The same without looking: robots and people without a motion plan move blindly, with a new
+/// random speed and turn now and then.
 void stumble(World& world, std::uint64_t seed);
 
 }  // namespace ispace::testing

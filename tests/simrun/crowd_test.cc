@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Robots driven at random, people and those who go by themselves: at no step does one overlap a
-// wall or another. Judged by brute force over buckets, which shares nothing with what it tests.
-// ISPACE_CROWD=10000 in the environment takes so many, for ten simulated minutes.
+// Robots driven at random, people and autonomous movers: at no step does one overlap a wall or
+// another. Judged by brute force over buckets, independent of the tested code. ISPACE_CROWD=10000
+// in the environment sets their number, for ten simulated minutes.
 #include "crowd.h"
 #include "base/test_paths.h"
 
@@ -67,7 +67,7 @@ class Lines {
     std::map<Bucket, std::vector<Segment2>> buckets_;
 };
 
-/// How far the two who are nearest to each other are apart, by sweeping all in the order of x.
+/// Distance of the nearest two movers, by sweeping all in the order of x.
 double leastGap(const World& world) {
     struct Disc {
         Point2 place;
@@ -139,13 +139,13 @@ void driveIn(const std::string& file, double radius) {
     ASSERT_EQ(scene.robots.size(), kRobots);
     const std::size_t collisions =
         drive(scene, std::chrono::milliseconds(5), std::chrono::minutes(1));
-    EXPECT_GT(collisions, kRobots);  // else there was nothing to avoid
+    EXPECT_GT(collisions, kRobots);  // otherwise the test avoids no collision
 }
 
 TEST(Crowd, RobotsAndPeopleNeverOverlap) {
     const char* const wanted = std::getenv("ISPACE_CROWD");
     const std::size_t count = wanted == nullptr ? 200 : std::stoul(wanted);
-    // Half a place more for each: a hall with pillars.
+    // Half as much floor again for each: a hall with pillars.
     const double side = std::sqrt(static_cast<double>(count)) * 1.1;
     std::string text = "#env 1\nispace size=" + std::to_string(side) + "," + std::to_string(side);
     for (double x = 5 - side / 2; x < side / 2 - 2; x += 5)

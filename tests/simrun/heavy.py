@@ -10,7 +10,7 @@ import time
 
 from clients import KIND, PID, Client, check
 
-# Where nothing else keeps the machine busy, 20 ms are the aim; before, it was half a minute.
+# The aim on an idle machine is 20 ms; it once was half a minute.
 PATIENCE = float(os.environ.get("ISPACE_PATIENCE", "3"))
 
 

@@ -7,8 +7,8 @@ server=
 clients=()
 trap 'for process in $server "${clients[@]}"; do kill -9 "$process" 2>/dev/null || true; done; cleanup' EXIT
 
-# eventually WHAT COMMAND…: waits until the command succeeds, for a minute at most; for a few seconds
-# once the server is gone, as what it said last may be on its way.
+# eventually MESSAGE COMMAND…: waits until the command succeeds, for a minute at most; for a few seconds after the
+# server has ended, as its last output may be on its way.
 eventually() {
     local what=$1 i
     shift
@@ -27,7 +27,7 @@ write_hall() {
         'laser id=l1 at=0,-1.9 heading=90 range=8' "$@" >hall.3dm
 }
 
-# start ARGUMENT…: simrun in the background; sets server and port. What it says is in simrun.err.
+# start ARGUMENT…: runs simrun in the background; sets server and port. simrun.err holds its messages.
 start() {
     rm -f port
     simrun "$@" --port-file port >announced 2>simrun.err &
@@ -95,7 +95,7 @@ expect() {
 # value KEY: of $reply
 value() { sed -n "s/.* $1=\([^ ]*\).*/\1/p" <<<"$reply"; }
 
-# near A B TOLERANCE WHAT
+# near A B TOLERANCE MESSAGE
 near() {
     awk -v a="$1" -v b="$2" -v e="$3" 'BEGIN { d = a - b; exit !(a != "" && d <= e && d >= -e) }' ||
         fail "$4: $1, expected $2 within $3"

@@ -7,7 +7,7 @@
 folder=$binary_dir/share/completions
 [ -d "$folder" ] || skip "a build with sanitizers has no completions"
 
-# try WORD…: what bash proposes for the last word.
+# try WORD…: writes bash's proposals for the last word.
 cat >try.bash <<'END'
 . "$1/bash/scan"
 shift

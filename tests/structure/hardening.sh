@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The programs have what compiler and linker add against overruns: position-independent, relocations
-# read-only from the start, no executable stack, stack canaries, checked calls of libc, checked
-# subscripts of the standard library, and landing pads for indirect jumps.
+# The hardening of compiler and linker against overruns is in the programs: position-independent, relocations read-only
+# from the start, no executable stack, stack canaries, checked calls of libc, checked subscripts of the standard
+# library, and landing pads for indirect jumps.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 for program in readelf nm objdump; do
@@ -10,7 +10,7 @@ for program in readelf nm objdump; do
 done
 grep -q 'ISPACE_SANITIZE:[A-Z]*=OFF' "$binary_dir/CMakeCache.txt" || skip "sanitizers come without it"
 
-# Each check prints what is wrong with a program, or nothing.
+# Each check reports the defects of a program.
 headers() {
     readelf -hW "$1" | has 'Type: *DYN' || echo "is not position-independent"
     readelf -lW "$1" >segments
@@ -36,7 +36,7 @@ for program in "$binary_dir"/bin/* "$binary_dir"/lib/ispace/*; do
     [ -f "$program" ] || continue
     [ "$(head -c 2 "$program")" != '#!' ] || continue  # a script
     { headers "$program"; landing_pads "$program"; } >wrong
-    # The small modules have no buffers of their own to guard.
+    # The small modules have no buffers to guard.
     case $program in *.so | */read-picture) ;; *) calls "$program" >>wrong ;; esac
     while read -r line; do
         echo "$(basename "$program") $line" >&2
@@ -45,7 +45,7 @@ for program in "$binary_dir"/bin/* "$binary_dir"/lib/ispace/*; do
 done
 [ "$found" -eq 0 ] || fail "programs without hardening, see above"
 
-# The checks see what is missing.
+# The checks find missing hardening.
 if command -v cc >/dev/null; then
     echo 'int main(void) { return 0; }' >plain.c
     cc -no-pie -Wl,-z,lazy,-z,norelro,-z,execstack -fcf-protection=none plain.c -o plain 2>/dev/null ||

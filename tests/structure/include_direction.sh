@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# include_direction.sh [ROOT]: dependencies between the folders of lib/ point one way, heavy
-# libraries stay out of headers, and below lib/cli nothing prints, exits or reads the environment.
-# Before it checks ROOT it shows on a made-up tree that it can fail.
+# include_direction.sh [ROOT]: dependencies between the folders of lib/ point one way, heavy libraries stay out of
+# headers, and only lib/cli prints, exits or reads the environment. It first shows on a made-up tree that it can fail.
 set -euo pipefail
 root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}
 
@@ -39,8 +38,8 @@ violations() {
         in_lib = path[1] == "lib"
         folder = path[2]
         in_test = FILENAME ~ /_test\.cc$/
-        # Programs and modules of their own, which no tool links.
-        # So is whatever includes the classes of ARIA, which print, exit and read the environment.
+        # Separate programs and modules, which no tool links. So are sources that include the classes of ARIA, which
+        # print, exit and read the environment.
         is_apart = FILENAME ~ /^lib\/((base|io|raster)\/module|client\/sim_aria)\//
         if (in_lib && !(folder in known)) report("folder lib/" folder " has no place in the order")
     }

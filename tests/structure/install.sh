@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs into a staged folder and works from there: the tools find devices and scenes, the manual
-# lies where man looks, and nothing points back into the build.
+# Installs into a staged folder and works from there: the tools find devices and scenes, man finds the manual, and no
+# file points back into the build.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 DESTDIR=$scratch/stage cmake --install "$binary_dir" --prefix /opt/ispace >log
-mv stage/opt/ispace moved # an installed tree may be moved: nothing is compiled in
+mv stage/opt/ispace moved # an installed tree may be moved: no path is compiled in
 [ "$(ls stage/opt)" = "" ] || fail "installed elsewhere: $(find stage)"
 for tool in $tools ispace ispace-sweep golden-diff; do
     [ -x "moved/bin/$tool" ] || fail "no bin/$tool"
@@ -56,7 +56,7 @@ if /usr/bin/python3 -c 'import yaml, matplotlib' 2>/dev/null; then
 fi
 if find "$share" -name '*.pyc' | grep .; then fail "compiled files are installed or left"; fi
 
-# Without its share/ a tool says what is missing.
+# Without its share/ a tool reports the missing folder.
 rm -rf "$share/devices"
 expect_error 1 scan room.glb best.3dm
 grep -q devices err || fail "$(cat err)"

@@ -24,7 +24,7 @@ for tool in $tools; do
         fail "$tool links $(wc -l <tool.ldd) libraries, at most $max_libraries are meant: $(cat tool.ldd)"
 done
 
-# Where the module is missing, only pictures that need it are refused, with what to install.
+# Without the module the tools reject only pictures that require it, and name the package to install.
 mkdir -p moved/bin
 cp "$binary_dir/bin/envc" moved/bin
 envc=$scratch/moved/bin/envc

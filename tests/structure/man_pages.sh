@@ -69,7 +69,7 @@ for keyword in $keywords; do
 done
 grep -q '^\.BR sill= ' "$formats/ispace-env.5" || fail "the manual lacks keys"
 
-# Section 7: every request that the server knows has a paragraph of its own.
+# Section 7: every request of the server has a paragraph.
 page=$binary_dir/share/man/man7/ispace-protocol.7
 if command -v groff >/dev/null; then
     groff -man -ww -z -Tutf8 "$page" 2>groff.err
@@ -82,7 +82,7 @@ for verb in $verbs; do
     grep -qw -- "$verb" heads || fail "the manual lacks the request $verb"
 done
 
-# What is promised between versions: every schema there is, and no other.
+# ispace-stability(7) lists every schema, and no other.
 page=$binary_dir/share/man/man7/ispace-stability.7
 if command -v groff >/dev/null; then
     groff -man -ww -z -Tutf8 "$page" 2>groff.err

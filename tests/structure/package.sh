@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The Debian packages of what is built: lintian finds nothing, a second run gives the same bytes, no package
-# takes a name that others have, and what is unpacked works. `make package-check` installs them for real.
+# The Debian packages of the build: lintian reports no findings, a second run gives the same bytes, no package takes a
+# name of another one, and the unpacked tools work. `make package-check` installs them for real.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 for program in dpkg-buildpackage dh dh_python3 lintian; do

@@ -6,7 +6,7 @@
 command -v git >/dev/null || skip "no git here"
 prose=$source_dir/.ci/prose
 
-# tree TEXT…: a repository whose only comment is TEXT.
+# tree TEXT…: creates a repository with TEXT as its only comment.
 tree() {
     rm -rf tree
     mkdir -p tree/.ci

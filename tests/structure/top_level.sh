@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The top of the repository holds what the README tells of and what the world looks for there, and nothing
-# that a test or an editor left behind, committed or not.
+# The top of the repository holds only the entries of README and of common tools, and no file that a test or an editor
+# left behind, committed or not.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 git -C "$source_dir" rev-parse --git-dir >/dev/null 2>&1 || skip "no git, or no repository"
@@ -9,7 +9,7 @@ printf '%s\n' .ci .clang-format .clang-tidy .gitignore .reuse CHANGELOG.md CITAT
     CONTRIBUTING.md Dockerfile LICENSE LICENSES Makefile README.md SECURITY.md docs lib packages.txt \
     share tests tools >expected
 
-# What does not belong there in the repository $1; what git ignores is not looked at.
+# Prints the other entries of the repository $1; skips files that git ignores.
 strangers() {
     git -C "$1" ls-files --cached --others --exclude-standard | cut -d/ -f1 | LC_ALL=C sort -u | grep -vxFf expected || true
 }

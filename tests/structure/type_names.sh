@@ -6,9 +6,8 @@
 set -euo pipefail
 root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}
 
-# Prints one line per name that two files of lib/ define. $1: a tree with lib/. Types in unnamed
-# namespaces and in other types are nobody else's; in a named namespace inside of ispace they count
-# with its name. Modules are programs of their own.
+# Prints one line per name that two files of lib/ define. $1: a tree with lib/. Skips types in unnamed namespaces and in
+# other types; in a named namespace inside of ispace they count with its name. Modules are separate programs.
 doubled() {
     (cd "$1" && find lib \( -name '*.h' -o -name '*.cc' \) ! -path 'lib/io/module/*' |
         LC_ALL=C sort | xargs awk '

@@ -9,7 +9,7 @@ batch=$source_dir/share/examples/batch
 picture=yes
 /usr/bin/python3 -c 'import matplotlib' 2>/dev/null || picture=
 
-# set_up FOLDER: the example with its rooms; without matplotlib nothing is drawn.
+# set_up FOLDER: copies the example with its rooms; without matplotlib it draws no picture.
 set_up() {
     cp -r "$batch" "$1"
     cp "$scenes/crowded.env" "$scenes/l-room.env" "$1"
@@ -22,8 +22,7 @@ set_up() {
 
 single=$binary_dir/tests/scratch/sweep.single
 
-# expect_single FOLDER: results and table are those of one job after the other, nothing else is among them, and
-# there is a picture.
+# expect_single FOLDER: results and table are those of serial jobs, without other files, and a picture exists.
 expect_single() {
     (cd "$1" && [ -z "$(ispace-sweep commands sweep.yaml --missing)" ]) || fail "$1: jobs left"
     diff -r "$single/results" "$1/results" || fail "$1: results differ from the single run's"

@@ -40,7 +40,7 @@ def order_and_names(folder):
     same("all names differ", 28, len(set(folder.sweep("names").splitlines())))
     only = folder.sweep("names", "--only", "room=b.env", "--only", "count=2", "--suffix", ".3dm").splitlines()
     same("--only", 3, len(only))
-    # What is added to an axis changes no name.
+    # A new choice on an axis changes no name.
     more = folder.sweep("names", text=SMALL.replace("1..2", "[1..2, 30]")).splitlines()
     check(set(folder.sweep("names", text=SMALL).splitlines()) < set(more), "names change when jobs are added")
 
@@ -59,7 +59,7 @@ def missing(folder):
     folder.write("results/a_urg-04lx_count1_quick.3dm", "#3dm 1\n")
     folder.write("results/a_urg-04lx_count1_proven.3dm", "#3dm 1\n")
     folder.write("results/a_urg-04lx_count1_proven.json", "{}\n")
-    folder.write("results/a_urg-04lx_count2_proven.json", "")  # empty: nobody wrote it to its end
+    folder.write("results/a_urg-04lx_count2_proven.json", "")  # empty: never written to its end
     lines = folder.sweep("commands", "--missing").splitlines()
     same("jobs left", 13, len(lines))
     same("a job of which half is done", "mkdir -p results && coverage a.env results/a_urg-04lx_count1_quick.3dm "
@@ -141,7 +141,7 @@ folder: .
         os.remove(folder / name)
     folder.run("bash", "-euo", "pipefail", "-c", "ispace-sweep makefile sweep.yaml | make -s -f -")
     same("by make", b"1\n", folder.read("n1.txt"))
-    # A step that fails leaves nothing that counts as done.
+    # A failing step leaves no file that counts as complete.
     for name in ("n1.txt", "n1.b.txt"):
         os.remove(folder / name)
     folder.sweep("commands", text=text.replace("accept: 3", ""))
@@ -224,7 +224,7 @@ ERRORS = [
     ("#" * (5 << 20), "sweep.yaml: error: more than 4 MB"),
 ]
 
-# Words, and what is said of them.
+# Words, and the messages about them.
 USAGE = [
     ([], "an action is needed: commands, names"),
     (["comands", "sweep.yaml"], "unknown action `comands`, did you mean `commands`?"),

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# share/examples/batch with make: the single run's bytes; nothing is done twice, a job is done again when its
-# room changes, and after some of the results are gone those alone are made.
+# share/examples/batch with make: the single run's bytes; a second run skips all jobs, a job runs again when its room
+# changes, and after the loss of some results only those are made.
 . "$(dirname "$0")/batch.sh"
 
 [[ $(make --version) =~ ^GNU\ Make\ (4\.([3-9]|[1-9][0-9])|[5-9]) ]] || skip "no GNU make 4.3"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# share/examples/batch with Nextflow, which Debian has not: skipped where nobody installed it.
+# share/examples/batch with Nextflow, which Debian does not have: skipped unless installed.
 . "$(dirname "$0")/batch.sh"
 
 nextflow -version >/dev/null 2>&1 || skip "no nextflow"

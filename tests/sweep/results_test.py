@@ -129,7 +129,7 @@ def gaps(folder):
         folder.write(FIRST + ".json", text)
         folder.sweep("join", status=1)
         check(folder.talk.startswith(f"ispace-sweep: {FIRST}.json: error: {wanted}"), f"of {text[:20]}: {folder.talk}")
-    # What its keys are called is up to the file; a word of the table's own is not lost.
+    # The file chooses its keys; a reserved column name is not lost.
     folder.write(FIRST + ".json", '{"count":7,"nested":{"deep":[1,null,"x"]},"many":[[1]],"flag":true,"text":"a,\\"b"}')
     (row,) = csv.DictReader(io.StringIO(folder.sweep("join", "--only", "room=ispace.env", "--only", "device=urg-04lx",
                                                      "--only", "count=1", "--only", "seed=3")))

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# share/examples/batch on a cluster of this machine's own: munge, a controller and two nodes on loopback, with
-# keys, ports and state that nobody else has. An array of 100 tasks loses one node in the middle; Slurm
-# requeues what ran there, and the results are the single run's.
+# share/examples/batch on a private cluster of this machine: munge, a controller and two nodes on loopback, with
+# separate keys, ports and state. An array of 100 tasks loses one node in the middle; Slurm requeues its tasks, and the
+# results are the single run's.
 . "$(dirname "$0")/batch.sh"
 
 PATH=$PATH:/usr/sbin
@@ -24,7 +24,7 @@ processes_of() {
     done || true
 }
 
-# kill_tasks NODE: all that runs there at once, with those who watch over it.
+# kill_tasks NODE: ends all processes there at once, with their supervisors.
 kill_tasks() {
     local tasks
     tasks=$(processes_of "SLURMD_NODENAME=$1" | paste -sd ' ')
@@ -104,7 +104,7 @@ END
     eventually "two idle nodes" sh -c '[ "$(sinfo -h -N -o %t | grep -cx idle)" -eq 2 ]'
 }
 
-# eventually WHAT COMMAND…: within a minute the command succeeds.
+# eventually MESSAGE COMMAND…: within a minute the command succeeds.
 eventually() {
     for _ in $(seq 600); do
         if "${@:2}" 2>/dev/null; then return; fi

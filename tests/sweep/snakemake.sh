@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# share/examples/batch with Snakemake: the single run's bytes, and nothing twice.
+# share/examples/batch with Snakemake: the single run's bytes, and no job twice.
 . "$(dirname "$0")/batch.sh"
 
 snakemake --version >/dev/null 2>&1 || skip "no snakemake (Debian's has 670 MB of dependencies)"

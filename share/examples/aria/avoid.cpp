@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drives a Pioneer to a goal around what stands in the way: a global plan on the map of the room,
-// the dynamic window approach for the next moment, and an extended Kalman filter that finds the
-// robot's pose from its odometry and its sonars. It stops when it believes to be within 0.4 m of
-// the goal.
+// Drives a Pioneer to a goal around obstacles: a global plan on the map of the room, the dynamic
+// window approach for the next moment, and an extended Kalman filter that computes the robot's pose
+// from its odometry and its sonars. It stops when its estimate is within 0.4 m of the goal.
 //
 //   cd share/scenes
 //   envc ispace.env --slice 0.1 --resolution 0.02 -o map.yaml
@@ -60,7 +59,7 @@ bool asksHelp(int argc, char** argv) {
     });
 }
 
-/// Numbers with commas between, and nothing else.
+/// Parses numbers with commas between, and rejects other text.
 bool readNumbers(const std::string& word, const std::vector<double*>& numbers) {
     const char* at = word.c_str();
     for (double* const number : numbers) {
@@ -96,14 +95,14 @@ ArPose millimetres(const avoid::Pose& pose) {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// \return none if no file is wanted
+/// \return null for an empty path
 File create(const std::string& path) {
     File file(path.empty() ? nullptr : std::fopen(path.c_str(), "w"), &std::fclose);
     if (!path.empty() && !file) throw std::runtime_error("cannot write " + path);
     return file;
 }
 
-/// What the robot knows of itself.
+/// Drives the robot to the goal by its map, odometry and sonars.
 class Navigator {
   public:
     Navigator(ArRobot& robot, const avoid::GridMap& map, const Task& task, std::FILE* trajectory)
@@ -123,8 +122,7 @@ class Navigator {
     double left() const { return (pose().head<2>() - task_.goal).norm(); }
     double driven() const { return driven_; }
 
-    /// Takes in what the robot has measured since the last cycle. The caller holds the robot's
-    /// lock.
+    /// Reads the robot's measurements since the last cycle. The caller holds the robot's lock.
     void sense(double time) {
         const avoid::Pose odometry = metres(robot_.getPose());
         const avoid::Pose step = avoid::difference(odometry_, odometry);
@@ -199,7 +197,7 @@ class Navigator {
     avoid::DynamicWindow window_;
     avoid::PoseFilter filter_;
     avoid::Pose odometry_;
-    std::FILE* file_;  // or none
+    std::FILE* file_;  // may be null
     double driven_ = 0;
     int backing_ = 0;  // cycles
 };

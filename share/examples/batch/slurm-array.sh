@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# slurm-array.sh TASKS [SWEEP]: one task of an array of TASKS, started by slurm.sh. It does its part of the sweep's
-# jobs, less what is done already: after a node failed and Slurm requeued the task, or if the array is
-# submitted again. The tools take their number of threads from --cpus-per-task.
+# slurm-array.sh TASKS [SWEEP]: one task of an array of TASKS, started by slurm.sh. Runs its share of the sweep's jobs
+# and skips completed ones: after a node failed and Slurm requeued the task, or if the array is submitted again. The
+# tools read their number of threads from --cpus-per-task.
 #SBATCH --job-name=ispace-sweep
 #SBATCH --cpus-per-task=1
 #SBATCH --requeue

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# slurm.sh [TASKS]: submits the sweep as an array of TASKS (100) tasks, and a job that joins what they
-# leave; ends when that does, with its status. The folder is shared by the nodes.
+# slurm.sh [TASKS]: submits the sweep as an array of TASKS (100) tasks, and a job that joins their results; ends with
+# it, with its status. The nodes share the folder.
 set -euo pipefail
 tasks=${1:-100}
 array=$(sbatch --parsable --array="1-$tasks" slurm-array.sh "$tasks")

@@ -10,9 +10,11 @@
 
 namespace tracker {
 
-/// Gives each row a column of its own so that the sum of the costs is least: the Hungarian method,
+/// Assigns each row a different column so that the sum of the costs is least: the Hungarian method,
 /// as the shortest augmenting paths of Jonker and Volgenant (Computing 38, 1987), in O(rows²
-/// columns). \param cost with no fewer columns than rows \return the column of each row
+/// columns).
+/// \param cost with at least as many columns as rows
+/// \return the column of each row
 inline std::vector<int> assign(const Eigen::MatrixXd& cost) {
     const auto rows = static_cast<int>(cost.rows()), columns = static_cast<int>(cost.cols());
     constexpr double kInfinity = std::numeric_limits<double>::infinity();

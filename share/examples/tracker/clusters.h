@@ -16,16 +16,16 @@ namespace tracker {
 
 enum class Kind { Leg, Robot };
 
-/// What a laser sees of one leg or one robot.
+/// The visible part of one leg or one robot.
 struct Cluster {
-    Vector2d surface = Vector2d::Zero();  ///< the middle of what is seen
+    Vector2d surface = Vector2d::Zero();  ///< the middle of the visible part
     Vector2d centre = Vector2d::Zero();   ///< of the whole thing, which reaches farther back
     double width = 0;                     ///< m, across
     Kind kind = Kind::Leg;
 };
 
-/// What a laser sees when nobody is there, beam by beam: learned while it runs. A beam that goes
-/// farther than ever, several times, has found out what somebody hid until then.
+/// Range of each beam in the empty room, learned while the program runs. A beam that reaches
+/// farther than before, several times, updates its background.
 class Background {
   public:
     /// \return for each beam whether something stands before the background

@@ -16,7 +16,7 @@
 namespace tracker {
 
 using Eigen::Vector2d;
-/// Vectors of Eigen's types need their alignment before C++17 alone; Places is short for the rest.
+/// Before C++17 vectors of Eigen's types require their allocator.
 using Places = std::vector<Vector2d, Eigen::aligned_allocator<Vector2d>>;
 
 /// A laser of the room: where it stands, m, and where it looks, rad.

@@ -13,9 +13,9 @@
 
 namespace tracker {
 
-/// One set of tracks for all lasers. The legs that a laser sees are shared out among all tracks at
-/// once, at most two to each, so that the whole fits best (global nearest neighbour): a track whose
-/// person is hidden from one laser takes nobody else's legs there and lives on what the others see.
+/// One set of tracks for all lasers. Assigns the legs that a laser sees to all tracks at once, at
+/// most two to each, with the best total (global nearest neighbour): a track whose person is hidden
+/// from one laser does not take other legs there, and the other lasers update it.
 class JointTracker {
   public:
     /// \param seen the clusters of each laser, of the same moment
@@ -40,15 +40,16 @@ class JointTracker {
     static constexpr double kRobotSigma = 0.06;
     static constexpr double kGate = 9;        // standard deviations, squared
     static constexpr double kNobody = 30;     // more than any within the gate
-    static constexpr double kApart = 0.45;    // m: nobody stands nearer to anybody else
+    static constexpr double kApart = 0.45;    // m: least distance of two people
     static constexpr double kSame = 0.2;      // m: two tracks so near are of the same person
     static constexpr double kPatience = 1.5;  // s
     static constexpr int kSure = 4;           // scans
 
     static double sigmaOf(Kind kind) { return kind == Kind::Leg ? kLegSigma : kRobotSigma; }
 
-    /// Each cluster to a place of a track, or to none, which costs most. The likeliest
-    /// whole is the cheapest, so that a track that has lost its person takes nobody else's legs.
+    /// Assigns each cluster to a leg of a track, or to no track, which costs most. The likeliest
+    /// assignment is the cheapest, so that a track that has lost its person does not take other
+    /// legs.
     void share(const std::vector<Cluster>& clusters, std::vector<Cluster>& strangers) {
         const auto rows = static_cast<Eigen::Index>(clusters.size());
         const auto places = static_cast<Eigen::Index>(kLegs * tracks_.size());
@@ -60,7 +61,7 @@ class JointTracker {
                 const Track& track = tracks_[static_cast<std::size_t>(place / kLegs)];
                 const double sigma = sigmaOf(cluster.kind);
                 const double far = track.distance(cluster.centre, sigma);
-                // What is beyond the gate must never pay.
+                // A cluster beyond the gate must never be cheaper.
                 cost(row, place) = far < kGate ? far + track.vagueness(sigma) : 1000 * kNobody;
             }
         }
@@ -85,7 +86,7 @@ class JointTracker {
         track.update(place, clusters.size() == 2 ? kBothSigma : sigmaOf(kind), kind);
     }
 
-    /// Begins tracks where something belongs to none: one for all that stands together.
+    /// Creates a track for each group of unassigned clusters.
     void greet(double time, const std::vector<Cluster>& strangers) {
         std::vector<bool> used(strangers.size(), false);
         for (std::size_t i = 0; i < strangers.size(); ++i) {

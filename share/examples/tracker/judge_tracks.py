@@ -14,7 +14,7 @@ import math
 import os
 import sys
 
-NEAR = 0.5  # m: what is farther away is not followed
+NEAR = 0.5  # m: farther tracks do not follow a person
 
 
 @dataclasses.dataclass
@@ -22,9 +22,9 @@ class Verdict:
     """What became of the tracks of one source."""
 
     errors: list = dataclasses.field(default_factory=list)  # m
-    present: int = 0  # times somebody was there
+    present: int = 0  # times with a person present
     switches: int = 0
-    false: int = 0  # tracks of nobody, times
+    false: int = 0  # times of tracks without a person
     handovers: int = 0  # times a track that was of one is of another
 
     @property

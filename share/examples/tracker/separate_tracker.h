@@ -10,9 +10,9 @@
 
 namespace tracker {
 
-/// One laser on its own, as simply as can be: legs that stand together are a person, and each track
-/// goes on with the person nearest to where it expects its own. Where one hides another, two tracks
-/// go on with the same one, and who is who is lost: what fig. 5.15 of the thesis shows.
+/// One laser alone, as simply as can be: legs that stand together are a person, and each track
+/// follows the person nearest to its prediction. If one hides another, two tracks follow the same
+/// person, and identities are lost, as fig. 5.15 of the thesis shows.
 class SeparateTracker {
   public:
     void update(double time, const std::vector<Cluster>& clusters) {

@@ -16,8 +16,8 @@
 
 namespace tracker {
 
-/// Somebody who is followed: a Kalman filter of place and velocity, m and m/s, which takes it that
-/// they go on as they do, give or take an acceleration.
+/// A followed person: a Kalman filter of position and velocity, m and m/s, of constant velocity up
+/// to a random acceleration.
 class Track {
   public:
     Track(int id, double time, const Vector2d& place) : id_(id), seen_(time), now_(time) {
@@ -36,7 +36,8 @@ class Track {
         now_ = time;
         Eigen::Matrix4d step = Eigen::Matrix4d::Identity();
         step.topRightCorner<2, 2>() = dt * Eigen::Matrix2d::Identity();
-        // Nobody goes on for ever unseen. The damping is that of a scan, for ten or so a second.
+        // The velocity of an unseen track decays. The damping is that of a scan, for ten or so a
+        // second.
         if (unseen() > 0.5) step.bottomRightCorner<2, 2>() *= 0.8;
         Eigen::Matrix<double, 4, 2> push;
         push << dt * dt / 2 * Eigen::Matrix2d::Identity(), dt * Eigen::Matrix2d::Identity();
@@ -45,15 +46,15 @@ class Track {
                       kAcceleration * kAcceleration * push * push.transpose();
     }
 
-    /// How far a place is from the predicted one, squared, in standard deviations.
+    /// Distance of a point from the predicted one, squared, in standard deviations.
     /// \param sigma of a measurement there, m
     double distance(const Vector2d& place, double sigma) const {
         const Vector2d off = place - state_.head<2>();
         return off.dot(spread(sigma).inverse() * off);
     }
 
-    /// How much less likely any one place is for being spread wide: the logarithm of how many times
-    /// the spread is that of the measurement alone, squared, as distance() is.
+    /// Logarithm of the spread of the prediction in spreads of the measurement alone, squared, as
+    /// distance() is: any single point is less likely by that.
     double vagueness(double sigma) const {
         return std::log(spread(sigma).determinant()) - 4 * std::log(sigma);
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tracks people and robots by the lasers of a room: background subtraction, legs and robots as
-// clusters, Kalman filters, and two ways to say which cluster is whose. Each laser on its own with
-// the nearest neighbour, as in the thesis, mixes people up who meet; all lasers together with
-// global nearest neighbour does not.
+// clusters, Kalman filters, and two ways to assign clusters to tracks. Each laser on its own with
+// the nearest neighbour, as in the thesis, confuses people that meet; all lasers together with
+// global nearest neighbour do not.
 //
 //   cd share/scenes
 //   simrun tracking.env walkers.3dm --clock step --listen 127.0.0.1:7001 --record run &
@@ -11,11 +11,11 @@
 //   kill $!; wait
 //   python3 ../examples/tracker/judge_tracks.py tracks.csv run
 //
-// The layout tells where the lasers stand. tracks.csv has a row for each track and scan:
+// The layout holds the poses of the lasers. tracks.csv holds a row for each track and scan:
 // t,source,track,kind,x,y, where the source is the laser's id or `joint`. With `--clock step` the
-// tracker advances the world, and each run is the same; with `--clock real` it follows the lasers'
-// streams, of which it takes one scan each in turn: lasers of different rates drift apart. Exit
-// status: 0, 1 no server or layout, 2 usage, 3 if simrun ends before the time of --until.
+// tracker advances the world, and each run is the same; with `--clock real` it reads the lasers'
+// streams, one scan each in turn: lasers of different rates drift apart. Exit status: 0, 1 no
+// server or layout, 2 usage, 3 if simrun ends before the time of --until.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -72,7 +72,7 @@ bool parse(int argc, char** argv, Task& task) {
     return true;
 }
 
-/// A laser, what it sees, and who follows it alone.
+/// A laser, its clusters, and its tracker alone.
 struct Eye {
     Eye(const std::string& server, const tracker::Mount& mount)
         : laser(server, mount.id), finder(mount, laser.rangeMax()) {}

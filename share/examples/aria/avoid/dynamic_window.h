@@ -20,8 +20,8 @@ struct Speeds {
     double ahead = 0, turn = 0;
 };
 
-/// What the robot can do. Accelerations are those to reckon with: less than the motors have, as
-/// floors may be slippery.
+/// Limits of the robot. Accelerations are those for planning: less than the motors have, as floors
+/// may be slippery.
 struct Limits {
     double radius = 0.25;            ///< m
     double ahead = 0.4, turn = 1.0;  ///< m/s, rad/s
@@ -31,17 +31,17 @@ struct Limits {
 };
 
 /// The dynamic window approach (Fox, Burgard and Thrun, IEEE Robotics & Automation Magazine, 1997):
-/// of the speeds that the robot can have a moment from now, the pair whose arc is the best of those
-/// on which it can still brake before anything that it would touch. An arc is good that leaves the
-/// least way to go by the global plan (Brock and Khatib, ICRA 1999), with room beside it.
+/// of the speeds that the robot can reach in a moment, finds the pair with the best of all arcs on
+/// which it can still brake before a collision. A good arc leaves little of the way by the global
+/// plan (Brock and Khatib, ICRA 1999) and keeps clear of obstacles.
 class DynamicWindow {
   public:
     DynamicWindow(const GridMap& map, const GlobalPlan& plan, const Limits& limits)
         : map_(map), plan_(plan), limits_(limits) {}
 
-    /// \param now what the robot does
-    /// \param echoes what its sonars hear, in the room as the robot knows it: things beside those
-    /// of the map
+    /// \param now motion of the robot
+    /// \param echoes points that its sonars hear, in the robot's frame of the room: obstacles
+    /// besides those of the map
     Speeds choose(const Pose& pose, const Speeds& now,
                   const std::vector<Eigen::Vector2d>& echoes) const {
         const Eigen::Vector2d ahead = aimOf(pose);
@@ -82,7 +82,7 @@ class DynamicWindow {
         return low + (high - low) * k / (n - 1);
     }
 
-    /// A place on the way, a little ahead.
+    /// A point of the way, a little ahead.
     Eigen::Vector2d aimOf(const Pose& pose) const {
         const std::vector<Eigen::Vector2d> way = plan_.way(pose.head<2>());
         for (const Eigen::Vector2d& place : way)
@@ -111,7 +111,7 @@ class DynamicWindow {
             at += Pose(std::cos(middle), std::sin(middle), 0) * (speeds.ahead * dt);
             at.z() += speeds.turn * dt;
             const double free = room(at.head<2>(), echoes);
-            // Who stands too near already may go where there is more room.
+            // A robot that is too near already may move to more clearance.
             if (free < kMargin && free <= here) {
                 if (speeds.ahead * dt * piece <= braking) return kNever;
                 break;

@@ -15,9 +15,9 @@
 
 namespace avoid {
 
-/// The way to a goal from everywhere in a room: what is left to go from each cell, by Dijkstra's
-/// algorithm, begun at the goal. Ways near to things count as longer than they are, so that the
-/// shortest keeps off them where there is room.
+/// Computes the remaining way to a goal from each cell of a room, by Dijkstra's algorithm from the
+/// goal. Ways near obstacles count as longer than they are, so that the shortest way keeps clear of
+/// them if it can.
 class GlobalPlan {
   public:
     /// \param radius of the robot, m: where its middle is nearer to things no way leads
@@ -35,7 +35,7 @@ class GlobalPlan {
         spread(price);
     }
 
-    /// What is left to go from here; infinite where no way leads to the goal.
+    /// Remaining way from here; infinite if no way leads to the goal.
     double left(const Eigen::Vector2d& from) const {
         double least = std::numeric_limits<double>::infinity();
         const Eigen::Vector2d cells = (from - origin_) / kCell;
@@ -48,7 +48,7 @@ class GlobalPlan {
         return least;
     }
 
-    /// The way from here to the goal; empty if there is none.
+    /// Returns the way from here to the goal; empty without one.
     std::vector<Eigen::Vector2d> way(const Eigen::Vector2d& from) const {
         std::vector<Eigen::Vector2d> places;
         std::pair<int, int> at = nearestOpen(from);
@@ -70,8 +70,8 @@ class GlobalPlan {
 
   private:
     static constexpr double kCell = 0.05;     // m
-    static constexpr double kComfort = 0.25;  // m beyond the robot's radius that cost nothing
-    static constexpr double kCost = 4;        // times as long, with none of it
+    static constexpr double kComfort = 0.25;  // m beyond the robot's radius without cost
+    static constexpr double kCost = 4;        // times as long, without clearance
 
     static double priceOf(double room) {
         if (room <= 0) return std::numeric_limits<double>::infinity();

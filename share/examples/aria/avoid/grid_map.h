@@ -58,7 +58,7 @@ class GridMap {
     /// How far a ray goes; at most `longest`.
     double rayLength(const Eigen::Vector2d& from, double angle, double longest) const {
         const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
-        // Nothing is nearer than the clearance, so the ray may go on by as much at once.
+        // All obstacles are farther than the clearance, so the ray skips that length at once.
         for (double length = 0; length < longest;) {
             const double free = clearance(from + length * direction);
             if (free < cell_ / 2) return length;

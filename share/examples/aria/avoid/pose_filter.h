@@ -25,22 +25,22 @@ inline Pose compose(const Pose& from, const Pose& step) {
                 wrapped(from.z() + step.z()));
 }
 
-/// The inverse: what `to` is in the frame of `from`.
+/// The inverse: returns `to` in the frame of `from`.
 inline Pose difference(const Pose& from, const Pose& to) {
     const double c = std::cos(from.z()), s = std::sin(from.z());
     const double dx = to.x() - from.x(), dy = to.y() - from.y();
     return Pose(c * dx + s * dy, -s * dx + c * dy, wrapped(to.z() - from.z()));
 }
 
-/// A sonar of the robot: its place in the robot's frame, and the cone that it listens to.
+/// A sonar of the robot: its pose in the robot's frame, and its cone.
 struct SonarMount {
     Pose place;
     double fov;  ///< rad
 };
 
-/// Where the robot is: an extended Kalman filter (Thrun, Burgard and Fox, Probabilistic Robotics,
-/// 2005, chapter 7) that goes on with the odometry and is put right by the sonars, of which the
-/// plan of the room tells what they should hear.
+/// Pose of the robot: an extended Kalman filter (Thrun, Burgard and Fox, Probabilistic Robotics,
+/// 2005, chapter 7) that predicts by the odometry and updates by the sonars, from the ranges that
+/// the plan of the room predicts for them.
 class PoseFilter {
   public:
     PoseFilter(const GridMap& map, const Pose& start) : map_(map), pose_(start) {
@@ -66,9 +66,9 @@ class PoseFilter {
         pose_ = compose(pose_, step);
     }
 
-    /// A sonar has heard something.
+    /// Updates the pose by a sonar reading.
     /// \param range m
-    /// \return false if that is not what the plan makes expect: an unknown thing, or a wrong echo
+    /// \return false if it contradicts the plan: an unknown obstacle, or a wrong echo
     bool correct(const SonarMount& sonar, double range) {
         const double expected = echo(pose_, sonar);
         if (expected >= kFarthest || range >= kFarthest) return false;
@@ -80,7 +80,7 @@ class PoseFilter {
             more[axis] += kDelta;
             by_pose[axis] = (echo(more, sonar) - echo(less, sonar)) / (2 * kDelta);
         }
-        // Where an edge comes in sight or goes out of it, a line says nothing of what to expect.
+        // Where an edge comes in sight or leaves it, a linear prediction fails.
         if (by_pose.head<2>().norm() > 2) return false;
         const double sigma = 0.03 + 0.02 * range;
         const double innovation = range - expected;
@@ -102,7 +102,7 @@ class PoseFilter {
     static constexpr double kFarthest = 3.5;  // m; echoes from beyond tell little
     static constexpr double kDelta = 0.04;    // m and rad
 
-    /// What the sonar would hear: the nearest thing in its cone.
+    /// Computes the sonar's expected range: the nearest obstacle in its cone.
     double echo(const Pose& pose, const SonarMount& sonar) const {
         constexpr int kRays = 7;
         const Pose from = compose(pose, sonar.place);
