@@ -96,7 +96,7 @@ Result run(const Job& job) {
     return result;
 }
 
-/// What is reported is what coverage measures, and no more than the bound.
+/// The reported value is coverage's measurement, and at most the bound.
 void verify(const Job& job, const Arrangement& found) {
     const Scene placed = withPlaced(*job.scene, groupsOf(job), found.sensors);
     Worlds worlds(placed.environment);

@@ -27,7 +27,7 @@ std::string wall(double x0, double y0, double x1, double y1) {
     return "wall from=" + tuple(x0, y0) + " to=" + tuple(x1, y1) + '\n';
 }
 
-/// A room whose door opens at its upper side.
+/// A room with a door in its upper side.
 std::string room(double x, double y, bool last) {
     std::string text = wall(x, y + kRoomDepth, x + 1, y + kRoomDepth) +
                        wall(x + 1 + kDoor, y + kRoomDepth, x + kRoomWidth, y + kRoomDepth);
@@ -38,7 +38,7 @@ std::string room(double x, double y, bool last) {
     return text;
 }
 
-/// A room on a corridor, whose walls have a door and perhaps a window.
+/// A room on a corridor, with a door in its walls and perhaps a window.
 std::string roomWithDoor(double x, double y, int number, Building& out) {
     const std::string id = "front" + std::to_string(number);
     const double top = y + kRoomDepth, right = x + kRoomWidth;

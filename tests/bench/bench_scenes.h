@@ -48,7 +48,7 @@ std::shared_ptr<const TriangleMesh> bumpyGlobe(std::uint32_t rings, std::uint32_
 /// it.
 std::string willowMap();
 
-/// Places in the free floor, drawn from a fixed seed: `count` lasers with 1081 beams over 270
+/// Points of the free floor, drawn from a fixed seed: `count` lasers with 1081 beams over 270
 /// degrees and 30 m, level at 0.15 m, or at 1.55 m and tilted down by 20 degrees.
 std::vector<Sensor> fans(const Scene& scene, std::size_t count, bool level);
 

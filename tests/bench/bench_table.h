@@ -32,8 +32,8 @@ class Contest {
     std::vector<double> quickest_, last_;
 };
 
-/// How many cores other processes kept busy since it was made: what two threads reach says nothing
-/// of the program where that is not near 0.
+/// Number of cores that other processes kept busy since construction: unless it is near 0, the gain
+/// of two threads is that of the machine.
 class Others {
   public:
     Others();
@@ -45,8 +45,8 @@ class Others {
     std::chrono::steady_clock::time_point start_;
 };
 
-/// Shares `count` pieces of work out over so many threads: run(i), in order on one thread. What
-/// they share out in turn has no more threads either.
+/// Distributes `count` tasks over this many threads: run(i), in order on one thread. Nested loops
+/// use no more threads either.
 template <typename Run>
 void shareOut(int threads, std::size_t count, Run run) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The coverage tool as a process, on compiled rooms of three sizes with few sensors and many, and
-// what of that is measuring; and with very many, by how many edges part what they see.
+// the share of its measurement; and with very many, by the number of edges between their regions.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -81,7 +81,7 @@ std::vector<std::string> words(const Case& test, const std::vector<std::string>&
 
 void measure(benchmark::State& state, const Case& test, const std::string& folder) {
     bench::Spent one, two, drawn, fine;
-    bench::Contest contest;  // of what is measured within the program, on one thread
+    bench::Contest contest;  // of the measurement within the program, on one thread
     const auto inside = [&test](const CoverageOptions& options) {
         bench::shareOut(1, 1, [&](std::size_t) {
             Worlds worlds(test.scene.environment);

@@ -30,15 +30,15 @@ Vertex vertex(double x, double y, double z) {
     return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
 }
 
-/// Rays of one packet as compact as they get, and what they meet. Whole RTCRayHit16s that are kept
-/// from call to call would stream a kilobyte each through the memory.
+/// Rays of one packet, as compact as possible, and their hits. Whole RTCRayHit16s stored from call
+/// to call would stream a kilobyte each through the memory.
 struct alignas(64) Packet {
     float x[kWidth], y[kWidth], z[kWidth], range[kWidth];
     Vertex origin;
     float reach;
 };
 
-/// What stops rays.
+/// Meshes of all surfaces that stop rays.
 std::vector<Mesh> meshesThatStop(const Environment& environment) {
     std::vector<Mesh> meshes{environment.floor()};
     for (const Element& element : environment.elements())
@@ -53,7 +53,7 @@ struct RawEmbree::Data {
     RTCDevice device = rtcNewDevice(nullptr);
     RTCScene scene = rtcNewScene(device);
     std::vector<Packet> packets;
-    std::vector<std::array<std::uint32_t, kWidth>> lanes;  // their beams; none at the end
+    std::vector<std::array<std::uint32_t, kWidth>> lanes;  // their beams; at the end beyond all
     std::size_t beams = 0;                                 // of one sensor
 
     Data() = default;

@@ -17,9 +17,8 @@
 
 namespace ispace::bench {
 
-/// What Embree alone does with the surfaces that a RayWorld holds: the same ROBUST scene, rays in
-/// 16-wide coherent packets whose directions are all prepared beforehand, no contact rule, no exact
-/// distance.
+/// Embree alone on the surfaces of a RayWorld: the same ROBUST scene, rays in 16-wide coherent
+/// packets with prepared directions, no contact rule, no exact distance.
 class RawEmbree {
   public:
     static RawEmbree ofSlice(const Slice& slice);
@@ -27,7 +26,7 @@ class RawEmbree {
     RawEmbree(RawEmbree&&) noexcept;
     ~RawEmbree();
 
-    /// Packs every beam of these sensors, each sensor in packets of its own.
+    /// Packs every beam of these sensors, in separate packets for each sensor.
     void prepare(std::span<const Sensor> sensors);
     /// Packs pictures of one size in tiles of 4 x 4; a picture counts as a sensor.
     /// \pre columns and rows are multiples of 4

@@ -10,11 +10,11 @@
 
 namespace ispace::bench {
 
-/// The throw-away kernel that level fans were first measured with, a yardstick for FlatWorld: all
-/// in float32, no cosines, no rule for lines in contact or seen from their edge, whose beams may be
-/// wrong. A hierarchy over the lines is traversed front to back; the beams a line spans follow from
-/// the angles of its ends, its range along each of them is clamped to its nearest and farthest, and
-/// what lies behind the maximum of a block of beams is skipped.
+/// Prototype of level fans, a yardstick for FlatWorld: computes in float32, without cosines and
+/// without rules for lines in contact or seen from their edge, whose beams may be wrong. It
+/// traverses a hierarchy over the lines front to back, maps the angles of a line's ends to its
+/// beams, clips its range along each of them to its nearest and farthest point, and skips lines
+/// behind the maximum of a block of beams.
 class FanPrototype {
   public:
     explicit FanPrototype(std::span<const Segment2> lines);

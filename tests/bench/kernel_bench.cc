@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small things that much time goes into: PNG, beside libpng's own choice of filters and level,
-// which is Cairo's, too; random numbers of noise, beside plain C++ for any processor; places of
-// mesh files that are equal, beside sorting; and level fans in small plans, beside a kernel in
-// float32.
+// Small kernels with a large share of the time: PNG, beside libpng's own choice of filters and
+// level, which is Cairo's, too; random numbers of noise, beside plain C++ for any processor;
+// welding equal corners of mesh files, beside sorting; and level fans in small plans, beside a
+// kernel in float32.
 #include <png.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ void measure(benchmark::State& state, bench::Contest& contest, const std::string
                    bench::cell(other / unit, 2, 9) + bench::cell(other / ours, 2, 8) + more);
 }
 
-/// As libpng writes a picture that nobody tells it anything about.
+/// A picture with libpng's defaults.
 std::string pngByDefault(const Image& image) {
     std::string bytes;
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
@@ -190,7 +190,7 @@ void measureWelding(benchmark::State& state) {
     measure(state, contest, std::to_string(corners.size()) + " corners of triangles", 1e-3, "");
 }
 
-/// A room of 20 m x 15 m with so many boxes, and fans of one heading at places all over it: their
+/// A room of 20 m x 15 m with this many boxes, and fans of one heading at points all over it: their
 /// directions are the same and stay in the caches.
 class FansInARoom {
   public:

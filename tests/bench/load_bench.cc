@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long a tool waits for a compiled environment until it can cast rays, beside what nobody can
-// avoid, a plain read of the file and Embree's build of the same triangles, and beside the records
-// as text.
+// Time that a tool waits for a compiled environment until it can cast rays, beside the unavoidable:
+// a plain read of the file and Embree's build of the same triangles, and beside the records as
+// text.
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
@@ -43,7 +43,7 @@ RayWorld worldOf(const Environment& environment, bool level) {
                  : RayWorld::ofEnvironment(environment);
 }
 
-/// What tools do before their first ray: a level one, or one of any direction.
+/// The work of tools before their first ray: a level one, or one of any direction.
 void load(const std::string& file, bool level) {
     const Scene scene = makeScene(reading(file), nullptr, DeviceCatalogue());
     const RayWorld world = worldOf(scene.environment, level);
@@ -61,7 +61,7 @@ Compiled compile(const std::string& name, const std::string& folder, const Docum
     const Scene scene = makeScene(document, nullptr, DeviceCatalogue());
     writeAll(compiled.file, writeGlb(scene, document));
     writeAll(compiled.text, writeRecordText(document));
-    // What is loaded is what was compiled.
+    // The loaded room equals the compiled one.
     const Scene again = makeScene(reading(compiled.file), nullptr, DeviceCatalogue());
     if (again.ids == scene.ids && again.digest() == scene.digest() &&
         again.environment.indoor().area() == scene.environment.indoor().area())
@@ -70,7 +70,7 @@ Compiled compile(const std::string& name, const std::string& folder, const Docum
     std::exit(1);
 }
 
-/// A line of what the kernel says about this process, in MB; 0 if it does not.
+/// Reads a line of the kernel about this process, in MB; returns 0 without it.
 double statusOf(const std::string& name) {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)
@@ -155,7 +155,7 @@ int main(int argc, char** argv) {
     if (mkdtemp(folder.data()) == nullptr) return 1;
     for (const Compiled& compiled : scenes(folder))
         for (const bool level : {true, false}) {
-            // The cut of a mesh needs all of it, Embree's build of that next to nothing.
+            // The cut of a mesh reads all of it, Embree's build of that takes little.
             if (level && compiled.name.starts_with("mesh")) continue;
             benchmark::RegisterBenchmark(
                 ("load/" + compiled.name + (level ? "/level" : "/tilted")).c_str(),

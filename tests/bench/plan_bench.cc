@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What envc does to compile a plan, from the bytes of its file to those of the model: buildings of
-// 1 000, 10 000 and 100 000 walls, the map of Willow Garage, and a mesh of a million triangles.
+// envc compiling a plan, from the bytes of its file to those of the model: buildings of 1 000, 10
+// 000 and 100 000 walls, the map of Willow Garage, and a mesh of a million triangles.
 #include <benchmark/benchmark.h>
 
 #include <array>

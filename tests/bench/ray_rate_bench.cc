@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How near our loops come to what the ray tracer alone can do: the same fans through Embree's
-// coherent 16-wide call, through RayWorld::cast, and through the whole of a scan in memory.
+// Compares our loops with the ray tracer alone: the same fans through Embree's coherent 16-wide
+// call, through RayWorld::cast, and through the whole of a scan in memory.
 #include <tbb/enumerable_thread_specific.h>
 
 #include <memory>

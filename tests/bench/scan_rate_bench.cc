@@ -95,7 +95,7 @@ struct Use {
     }
 };
 
-/// What the tool writes is, to the bit, what a caster reads at the poses of the file.
+/// The tool writes, bit by bit, the readings of a caster at the poses of the file.
 void verify(const Case& test, const std::string& folder) {
     for (const bool noisy : {false, true}) {
         const Use use{"raw", noisy, kChecked};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clients of a running world, each of whom asks for a scan of 181 beams as soon as it has the one
-// before: scans a second in all, and how long one takes. And how long a client waits for its STATUS
-// while the server is at work for others.
+// Clients of a running world, each of which requests a scan of 181 beams as soon as it has the one
+// before: scans a second in all, and the time of one. Also the wait of a client for its STATUS
+// while the server works for others.
 #include <benchmark/benchmark.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -162,7 +162,7 @@ class Asker {
     std::string answer_;
 };
 
-/// Milliseconds of what is so far from the least. \pre sorted
+/// Returns the milliseconds at this share of the sorted values. \pre sorted
 double shareOf(const std::vector<double>& seconds, double share) {
     return seconds[static_cast<std::size_t>(share * static_cast<double>(seconds.size() - 1))] * 1e3;
 }
@@ -263,8 +263,8 @@ class Listener {
     std::thread thread_;
 };
 
-/// How long STATUS takes while `others` keep the server at work, and how much of that its thread
-/// was at work itself: what it takes where no other program has the processor.
+/// Time of STATUS while `others` keep the server at work, and the part in which its thread itself
+/// worked: the time on an idle machine.
 void askStatus(benchmark::State& state, const Scene& scene, std::string_view others) {
     Running running(scene);
     const Listener listener(running.port(), others);

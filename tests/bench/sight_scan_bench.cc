@@ -24,7 +24,7 @@ using namespace ispace;
 
 constexpr int kRounds = 30;
 constexpr std::size_t kPoses = 400, kFixed = 8;
-/// What is written beyond the last beam, so that loops need no rest.
+/// Padding beyond the last beam, so that loops need no remainder.
 constexpr std::size_t kLanes = 8;
 
 /// Beams from that of (ahead) to where each edge begins, counter-clockwise.
@@ -38,7 +38,7 @@ void measureTurns(const SightEdge* edges, std::size_t count, Point2 viewpoint, V
     }
 }
 
-/// Inverse ranges to a line in whole vectors: what is written too far is written again.
+/// Writes inverse ranges to a line in whole vectors: later lines overwrite the padding.
 ISPACE_SIMD_CLONES
 void drawLine(double* out, const double* x, const double* y, std::size_t count, double ux,
               double uy) {
@@ -165,7 +165,7 @@ struct Plan {
     }
 };
 
-/// A laser at the places of a plan, read in every way.
+/// A laser at points of a plan, read in every way.
 class Reader {
   public:
     Reader(const Plan& plan, const Beamed& laser)

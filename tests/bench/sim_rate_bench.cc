@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Simulated seconds in a second of wall time: robots that wander about an office floor as big as
 // the map of Willow Garage, each with a laser of 181 beams and 8 m at 10 Hz, in steps of 5 ms; and
-// people who walk about a hall. With one thread and two, and in seconds of processor time, which
-// other work on the machine does not change much.
+// people that walk about a hall. With one thread and two, and in seconds of processor time, which
+// other work on the machine changes little.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
@@ -55,7 +55,7 @@ Scene withRobots(const Scene& plan, std::size_t count, bool by_scans) {
     return scene;
 }
 
-/// A hall of 50 m x 50 m with people who wander about, and lasers on its walls.
+/// A hall of 50 m x 50 m with wandering people, and lasers on its walls.
 Scene hallOfPeople(std::size_t count) {
     std::string lines = "#3dm 1\n";
     for (const char* place : {"-24.9,0,0.15 heading=0", "24.9,0,0.15 heading=180",
@@ -69,7 +69,7 @@ Scene hallOfPeople(std::size_t count) {
     return scene;
 }
 
-/// Robots and people who wander about that hall; each robot has a laser whose beam spins.
+/// Robots and people that wander about that hall; each robot has a spinning laser.
 Scene spinningLasers(std::size_t count) {
     Scene scene = bench::sceneOfText("#env 1\nispace size=50,50\n");
     const DeviceCatalogue devices = bench::devices();
@@ -95,7 +95,7 @@ void simulateASecond(World& world, bool by_scans) {
     }
 }
 
-/// Robots that stand still or that see nothing would be fast.
+/// Robots that stand still or see no body would be fast.
 void verify(const Scene& scene, const World& world) {
     double way = 0;
     std::size_t returns = 0;
@@ -135,7 +135,7 @@ void run(benchmark::State& state, const Scene& scene, const Case& of) {
     state.counters["cpu_s_per_sim_s"] = (processorSeconds() - before) / seconds;
 }
 
-/// What it costs that the beams of a scan follow one another, in turn with scans of one moment.
+/// Cost of beams that follow one another, in turn with scans of one moment.
 void runSpinning(benchmark::State& state) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
     const Scene spinning = spinningLasers(static_cast<std::size_t>(state.range(0)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// spent WORDS…: runs a program and tells on file descriptor 3 what that took: seconds, seconds of
-// processor time, kilobytes of memory at most. A process of its own, as a program counts what the
-// one that started it had in memory as its own most.
+// spent WORDS…: runs a program and writes its use to file descriptor 3: seconds, seconds of
+// processor time, maximum kilobytes of memory. A separate process, because a program's maximum
+// includes the memory of the process that started it.
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long the tools take to start: to say their version, and to do the work of a small room, as
-// processes on one core, beside one that does nothing; and what one process saves over many.
+// Time to start the tools: to report their version, and to do the work of a small room, as
+// processes on one core, beside an empty one; and the saving of one process over many.
 #include <sched.h>
 
 #include <algorithm>

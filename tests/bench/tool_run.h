@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs a tool as a process and tells what that took.
+// Runs a tool as a process and returns its time and memory.
 #pragma once
 
 #include <cstdlib>
@@ -11,7 +11,7 @@
 
 namespace ispace::bench {
 
-/// What one run took, or the least of several: seconds, and megabytes that were in memory at most.
+/// Use of one run, or the least of several: seconds, and maximum megabytes in memory.
 struct Spent {
     double wall = std::numeric_limits<double>::infinity(), processor = wall, memory = wall;
 

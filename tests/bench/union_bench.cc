@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much of a floor k views cover together: the area of their union and the area seen by each
-// number of them at once, by forEachArea as for `coverage`, beside the bare union by CGAL (exact
-// kernel) and by Clipper 6 where that is installed (libpolyclipping-dev; on a lattice of 2^-30 m).
-// Views of lasers (4 m, 180 degrees) at free places of offices: some 26 vertices each and arcs.
+// Floor that k views cover together: computes the area of their union and the area seen by each
+// number of them at once, by forEachArea as `coverage` does, beside the bare union by CGAL (exact
+// kernel) and by Clipper 6 if installed (libpolyclipping-dev; on a lattice of 2^-30 m). Views of
+// lasers (4 m, 180 degrees) at free points of offices: some 26 vertices each and arcs.
 //
 // union_bench --write FOLDER instead writes the outlines as JSON, for clipper2_union.js, and the
-// times that all depths and an Overlay that keeps its edges take, in milliseconds of processor
-// time.
+// times of all depths and of an Overlay that stores its edges, in milliseconds of processor time.
 #include <CGAL/Boolean_set_operations_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <benchmark/benchmark.h>
@@ -42,7 +41,7 @@ constexpr std::size_t kViews[] = {3, 10, 30, 100, 300, 1000};
 /// CGAL takes seconds for more.
 constexpr std::size_t kMostForCgal = 300;
 
-/// What k views see, with arcs and with chords for them.
+/// The outlines of k views, with arcs and with chords for them.
 struct Case {
     std::string scene;
     std::vector<Layer> layers, chord_layers;
@@ -148,7 +147,7 @@ void verify(const Case& test) {
     const ByClipper clipper(test);
     const double exact = test.isForCgal() ? areaOfJoin(test.polygons) : clipper.area();
     const double chords = depthsOf(test.chord_layers)[0], arcs = depthsOf(test.layers)[0];
-    if (exact == 0) return;  // nobody to compare with
+    if (exact == 0) return;  // no peer installed
     const double slack = 1e-8 * exact;
     if (ByClipper::kIsThere && std::abs(clipper.area() - exact) > slack) {
         std::fprintf(stderr, "union: %s of %zu is %.12g m2 by Clipper, wanted %.12g\n",
@@ -197,7 +196,7 @@ void measure(benchmark::State& state, const Case& test) {
     state.SetLabel(row + bench::cell(share / share_before, 2, 9));
 }
 
-/// Processor time of what takes it, milliseconds: the least of some.
+/// Processor time of a call, milliseconds: the least of some.
 template <typename F>
 double millisecondsOf(F f) {
     double least = std::numeric_limits<double>::infinity();

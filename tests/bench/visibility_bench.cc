@@ -34,7 +34,7 @@ constexpr double kShortRange = 4, kMiddleRange = 8, kLongRange = 30;  // metres
 constexpr std::size_t kViewpoints = 2000;
 constexpr int kRounds = 8;
 
-/// One plan and the places to look from, the same for all ways.
+/// One plan and the viewpoints, the same for all ways.
 struct Case {
     std::string name;
     std::vector<Segment2> lines;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# talk.sh SIMRUN-ARGUMENT… <REQUESTS: what one client is answered by a world that waits for steps.
+# talk.sh SIMRUN-ARGUMENT… <REQUESTS: writes the replies to one client of a world that waits for steps.
 simrun "$@" --clock step --port-file port >announced &
 server=$!
 tries=0

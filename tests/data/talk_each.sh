@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# talk_each.sh SIMRUN-ARGUMENT… <SESSIONS: what clients are answered one after another by a world that
-# waits for steps; a blank line ends a session. Pictures are left out.
+# talk_each.sh SIMRUN-ARGUMENT… <SESSIONS: writes the replies to clients one after another of a world that waits for
+# steps; a blank line ends a session. Skips pictures.
 simrun "$@" --clock step --port-file port >announced &
 server=$!
 tries=0

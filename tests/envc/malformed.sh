@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Every file of tests/data/malformed: status 1, one message that names a file and what to do, and no
-# product. The messages are those of malformed.err; UPDATE_GOLDEN=1 writes them anew.
+# Every file of tests/data/malformed: status 1, one message that names a file and the remedy, and no product.
+# malformed.err holds the messages; UPDATE_GOLDEN=1 writes them again.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 expected=$source_dir/tests/envc/malformed.err

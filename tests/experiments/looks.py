@@ -17,7 +17,7 @@ WIDTH = "return document.documentElement.scrollWidth"
 TALL = "return document.documentElement.scrollHeight"
 BROKEN = """return [...document.querySelectorAll('a[href^="#"]')]
     .filter(link => !document.querySelector(link.getAttribute('href'))).map(link => link.href)"""
-# Text that sticks out of its own box, other than where it can be scrolled.
+# Text that exceeds its box, unless the box scrolls.
 CUT = """return [...document.querySelectorAll('p, h1, h2, h3, td, th, li, figcaption')]
     .filter(one => one.scrollWidth > one.clientWidth + 1).map(one => one.textContent.slice(0, 60))"""
 

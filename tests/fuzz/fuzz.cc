@@ -28,14 +28,14 @@ double largest(const Value& value) {
     return tuple == nullptr || tuple->empty() ? 0 : *std::max_element(tuple->begin(), tuple->end());
 }
 
-/// Numbers of all lists: what makes vertices and repetitions.
+/// Numbers of all lists, which create vertices and repetitions.
 std::size_t numbersOf(const Record& record) {
     std::size_t count = 0;
     for (const KeySpec& key : record.schema().keys) {
         if (!record.has(key.name)) continue;
         const Value* const value = record.find(key.name);
         if (const auto* list = std::get_if<TupleList>(value)) count += list->size();
-        // Counts and sizes up to a hundred: ten thousand boxes show nothing that fifty do not.
+        // Counts and sizes up to a hundred: ten thousand boxes find no more defects than fifty.
         if (key.whole && largest(*value) > 100) count += kMaxNumbers + 1;
     }
     return count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lists: jobs of `coverage --batch` and places of `arrange --places`.
+// Lists: jobs of `coverage --batch` and sites of `arrange --places`.
 #include "cli/batch_list.h"
 #include "fuzz.h"
 #include "place/sites.h"
@@ -29,7 +29,7 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     try {
         tryJobs(bytes);
     } catch (const FormatError&) {
-        // It may be a list of places.
+        // It may be a list of sites.
     }
     tryPlaces(std::string(bytes));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files of meshes, read by the program for them: whatever becomes of that, here it is a mesh or
-// FormatError, and nothing of it is left. The suffix is what the bytes seem to be.
+// Files of meshes, read by their separate program: for any of its ends the library returns a mesh
+// or throws FormatError, and leaves no file. The bytes determine the suffix.
 #include <sys/wait.h>
 
 #include <array>

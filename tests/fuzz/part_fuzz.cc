@@ -47,7 +47,7 @@ void tryMerge(const std::string& path) {
     try {
         (void)commandOf(parts, {});
     } catch (const UsageError&) {
-        // The command is none of arrange.
+        // The command is not one of arrange.
     } catch (const TextRequested&) {
         // It asks for help.
     }

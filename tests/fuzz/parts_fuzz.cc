@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the program that reads meshes answers, which may be anything: a bad file can make it say
-// what it wants.
+// The answer of the program that reads meshes, which may be any bytes: a bad file can control that
+// program.
 #include <algorithm>
 #include <cmath>
 

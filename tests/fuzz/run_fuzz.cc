@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Records of runs: robots.csv, people.csv, events.csv, odometry.csv, bumpers.csv and info.csv, with
-// lines `---` between; an empty file is a missing one. What can be read is replayed.
+// lines `---` between; an empty file is a missing one. Replays those that it can read.
 #include <array>
 #include <filesystem>
 
@@ -38,7 +38,7 @@ void checkMoment(const RunReader& reader, double before) {
         fuzz::require(!bumpers.hit.empty(), "bumpers without one");
 }
 
-/// The first steps of a replay, in a room of its own.
+/// The first steps of a replay, in a separate room.
 void replay() {
     static const Document room = readRecordText(
         "#env 1\nispace size=8,6\nrobot id=r1 at=0,0\nrobot id=r2 at=1,0\nhuman id=h1 at=2,2\n",

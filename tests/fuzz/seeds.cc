@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fuzz_seeds FOLDER ENV...: makes what the fuzzers begin with and what would go stale in a file:
-// FOLDER/words.dict, the keywords and keys of the schemas, and FOLDER/glb/*.glb, rooms compiled.
+// fuzz_seeds FOLDER ENV...: writes the fuzzers' seeds that would go stale in a file:
+// FOLDER/words.dict, the keywords and keys of the schemas, and FOLDER/glb/*.glb, compiled rooms.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

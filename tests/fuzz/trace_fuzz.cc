@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Traces of arrange: what is read is written and read again the same, but for last bits of angles.
+// Traces of arrange: writes a trace that it has read, and reads the same back, up to last bits of
+// angles.
 #include "cover/trace_file.h"
 #include "fuzz.h"
 

@@ -15,7 +15,7 @@
 
 namespace ispace::fuzz {
 
-/// A world of its own with a room of 8 m by 6 m, in which everybody may hold everything.
+/// A separate world with a room of 8 m by 6 m, in which each client may hold each device.
 class RoomHost : public WireHost {
   public:
     /// \param layout records
@@ -48,7 +48,7 @@ class RoomHost : public WireHost {
     World world_;
 };
 
-/// What a session answers to bytes that arrive in pieces of this size; it is read from meanwhile.
+/// Returns the answer of a session to bytes in pieces of this size, read meanwhile.
 inline std::string answered(WireSession& session, std::string_view bytes, std::size_t piece) {
     std::string out;
     while (!bytes.empty() && !session.closing()) {

@@ -19,7 +19,7 @@ const std::string& operand() {
     return name;
 }
 
-/// Files of the machine are none of its business: paths out of the folder need one of these.
+/// It must not read files of the machine: paths out of the folder need one of these.
 bool mayLeaveFolder(std::string_view bytes) {
     return bytes.find("clude") != std::string_view::npos &&
            bytes.find_first_of("/\\") != std::string_view::npos;

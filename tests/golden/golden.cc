@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // golden [OPTION VALUE]… COMMAND: runs a shell command in a scratch folder and compares exit
-// status, standard output, standard error and the files it makes with what is expected of it.
+// status, standard output, standard error and its files with the expected ones.
 //
 //   --expect TOOL/CASE  TOOL/CASE.out and .err are the expected texts, TOOL/CASE.FILE those of
-//                     files made; without .out or .err nothing may be written there
-//   --err LINE        standard error is `TOOL: LINE`; with an empty LINE it is what .err has
-//   --scratch FOLDER  made anew for every run, removed after success
+//                     its files; without .out or .err that stream must be empty
+//   --err LINE        standard error is `TOOL: LINE`; with an empty LINE it is that of .err
+//   --scratch FOLDER  created for every run, removed after success
 //   --inputs FOLDER   its files are copied into the scratch folder (repeatable)
-//   --status N        expected exit status, 0 without
-//   --creates A;B     the files made, no more and no less
+//   --status N        expected exit status, 0 by default
+//   --creates A;B     the created files, no more and no less
 //   --pictures A;B    PNGs among them that are compared with PREFIX.FILE by their pixels
 //   --abs X --rel Y   tolerance of numbers
 //   --exact yes       history is compared, too
 //   --needs FILE      skipped, with status 77, without this file in $ISPACE_TEST_DATA
 //
-// With UPDATE_GOLDEN=1 in the environment the expectations are written anew instead; one line of
-// standard error that begins with `TOOL: ` goes to the row of the case in TOOL/CMakeLists.txt.
+// With UPDATE_GOLDEN=1 in the environment it writes the expectations instead; one line of standard
+// error that begins with `TOOL: ` goes to the row of the case in TOOL/CMakeLists.txt.
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/wait.h>
@@ -101,7 +101,7 @@ std::string read(const fs::path& file) {
     return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// An expectation of nothing is no file.
+/// An empty expectation has no file.
 void update(const fs::path& file, const std::string& text) {
     if (text.empty()) {
         fs::remove(file);

@@ -34,7 +34,7 @@ std::optional<std::string> withErrorLine(std::string_view source, std::string_vi
         row = source.find(head, row + 1);
     }
     if (row == std::string_view::npos) return std::nullopt;
-    std::size_t end = row + head.size();  // of what stays of the row
+    std::size_t end = row + head.size();  // of the kept part of the row
     std::size_t at = end;
     bool stays = true;
     while (at < source.size() && source[at] != ')') {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tests/golden: runs a case and holds what it writes to what is expected of it. The comparison
-// itself is that of golden-diff, base/golden.h.
+// tests/golden: runs a case and compares its output with the expected one, by the comparison of
+// golden-diff, base/golden.h.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace golden {
 
-/// The CMake source with `ERR "line"` as the end of the row `ispace_golden(name …)`; without any
-/// ERR for an empty line. Nothing if there is no such row.
+/// Returns the CMake source with `ERR "line"` as the end of the row `ispace_golden(name …)`;
+/// without any ERR for an empty line. Returns no value without such a row.
 std::optional<std::string> withErrorLine(std::string_view source, std::string_view name,
                                          std::string_view line);
 

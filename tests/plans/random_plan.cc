@@ -16,7 +16,7 @@ namespace ispace::testing {
 
 namespace {
 
-constexpr double kDoor = 0.9, kDoorDepth = 0.7;  // what stays free on both sides of it
+constexpr double kDoor = 0.9, kDoorDepth = 0.7;  // free width on both sides of it
 constexpr double kFromDoor = 0.35;               // other walls end at least this far from a door
 constexpr double kFromWall = 0.06, kApart = 0.08;
 constexpr double kNarrowest = 2.2;  // of a room
@@ -154,8 +154,8 @@ class PlanMaker {
         rooms_.push_back(std::move(room));
     }
 
-    /// A cut across the longer extent of the room somewhere about its middle, or nothing if it
-    /// would end at a door or make a narrow room.
+    /// Returns a cut across the longer extent of the room near its middle, unless it would end at a
+    /// door or make a narrow room.
     std::optional<std::pair<Room, Room>> tryCut(const Room& room) {
         const Box2 box = bounds(room);
         const bool is_wide = box.width() >= box.depth();
@@ -218,7 +218,8 @@ class PlanMaker {
         }
     }
 
-    /// A place for a thing of this size in the room: along one of its walls, or anywhere.
+    /// Finds a position for an object of this size in the room: along one of its walls, or
+    /// anywhere.
     std::optional<Pose2> findPlace(const Room& room, double length, double width, bool at_wall) {
         constexpr int kTries = 30;
         for (int i = 0; i < kTries; ++i) {
@@ -309,7 +310,7 @@ class PlanMaker {
     int walls_ = 0;
     std::vector<Room> rooms_;
     std::vector<Segment2> gaps_;           // doors
-    std::vector<Polygon> doors_, pieces_;  // what nothing may stand in
+    std::vector<Polygon> doors_, pieces_;  // areas without objects
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 namespace ispace::testing {
 
-/// What a plan is to be like.
+/// Properties of a plan.
 struct PlanOptions {
     std::uint64_t seed = 1;
     double area = 100;       ///< indoor, in square metres; kept to within some per cent

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What holds of candidates in any plan.
+// Properties of candidates in any plan.
 #include "place/sites.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ PlanOptions optionsOf(std::uint64_t seed) {
     return options;
 }
 
-/// All places there are for a plan.
+/// All sites of a plan.
 std::vector<Site> allSites(const Environment& plan) {
     const std::vector<Region> floor = plan.level(kScanHeight)->freeFloor();
     std::vector<Site> sites = wallSites(plan, kScanHeight, 0.05, 7);
@@ -105,7 +105,7 @@ TEST(Sites, KeepTheirClearance) {
                                            nearest(walls, p) <= 0.6007);
 }
 
-/// A plan whose records are moved by a displacement.
+/// Returns the plan moved by a displacement.
 Environment movedPlan(const std::string& text, Vec2 way) {
     static const Schemas kSchemas(environmentSchemas());
     Document document = readRecordText(text, "plan.env", kSchemas);

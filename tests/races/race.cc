@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// race KIND: a data race on purpose, which ThreadSanitizer must report; `none` has none. It shows
-// that what is built with it and runs without a report was watched: our threads, tasks and
-// pipelines within TBB, lib/sim.
+// race KIND: a data race on purpose, which ThreadSanitizer must report; `none` has no race. It
+// shows that an instrumented run without a report was watched: our threads, tasks and pipelines
+// within TBB, lib/sim.
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 using ispace::testing::TestWorld;
 
-/// Where two parties wait for each other, as long as it is worth it; orders nothing.
+/// Two parties wait for each other, for a bounded time, without ordering their accesses.
 class Meeting {
   public:
     void meet() {
@@ -76,7 +76,7 @@ void raceOfWorld(Look look) {
     other.join();
 }
 
-/// What a parallel loop has from before it, and what is had from it.
+/// Data that a parallel loop reads from before it, and writes for after it.
 bool orderedTasks() {
     constexpr int kRounds = 300, kCount = 1000;
     bool good = true;
@@ -91,7 +91,7 @@ bool orderedTasks() {
     return good;
 }
 
-/// What stages of a pipeline have from before it and from each other, and what is had from it.
+/// Data that stages of a pipeline read from before it and from each other, and write for after it.
 bool orderedPipelines() {
     constexpr std::size_t kRounds = 100, kBlocks = 100;
     bool good = true;
@@ -107,7 +107,7 @@ bool orderedPipelines() {
     return good;
 }
 
-/// What stops a pipeline in one of its stages is behind all others.
+/// An exception that stops a pipeline in one of its stages comes after all other stages.
 bool stoppedPipelines() {
     int stopped = 0;
     for (int round = 0; round < 50; ++round) {

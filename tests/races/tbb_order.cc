@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tells ThreadSanitizer what TBB's scheduler orders.
+// Reports the order of TBB's scheduler to ThreadSanitizer.
 //
-// Debian's libtbb.so is not instrumented: that a thread takes a task after another one has spawned
-// it, and that memory of tasks is used again, cannot be seen, and would be taken for races. (The
-// join of a loop can: it counts in TBB's headers.) Here the library's entry points are wrapped:
-// they take part in the order of events exactly as far as the scheduler does, so that tasks are not
-// ordered among each other, and a race between them is found. Loops and task groups are known here,
-// pipelines in tbb_pipelines.cc, arenas' queues are not: what uses them would seem to race.
+// Debian's libtbb.so is not instrumented: ThreadSanitizer cannot see that a thread takes a task
+// after another one has spawned it, and that the scheduler reuses memory of tasks, and would report
+// races. (It sees the join of a loop, which counts in TBB's headers.) This source wraps the
+// library's entry points: they order events exactly as far as the scheduler does, so that tasks are
+// not ordered among each other, and a race between them is found. It handles loops and task groups,
+// tbb_pipelines.cc pipelines; code that uses the queues of arenas would seem to race.
 #include <oneapi/tbb/detail/_task.h>
 #include <sanitizer/tsan_interface.h>
 
@@ -35,7 +35,7 @@ class Envelope final : public d1::task {
     d1::task* task_;
 };
 
-/// Tasks count down as they end, in the headers; the library has seen the count come to nothing.
+/// Tasks count down as they end, in the headers; the library reads a count of zero.
 void acquireEnd(d1::wait_context& wait) {
     constexpr std::size_t kVersion = sizeof(std::uint64_t);
     __tsan_acquire(reinterpret_cast<char*>(&wait) + kVersion);

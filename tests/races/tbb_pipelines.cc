@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tells ThreadSanitizer what TBB's pipelines order, as tbb_order.cc does for loops and task groups:
-// an item's stages follow each other, a serial stage takes one item after the other, the first
-// stage begins an item when others have ended, and the pipeline begins before and ends after all of
-// them. Parallel stages of different items are not ordered, so that a race between them is found.
+// Reports the order of TBB's pipelines to ThreadSanitizer, as tbb_order.cc does for loops and task
+// groups: an item's stages follow each other, a serial stage takes one item after the other, the
+// first stage begins an item when others have ended, and the pipeline begins before and ends after
+// all of them. Parallel stages of different items are not ordered, so that a race between them is
+// found.
 #include <oneapi/tbb/parallel_pipeline.h>
 #include <sanitizer/tsan_interface.h>
 
@@ -30,7 +31,7 @@ struct EndOfAll {
     ~EndOfAll() { __tsan_acquire(&events->end); }
 };
 
-/// What a stage hands on to the next.
+/// Value that a stage returns to the next.
 struct Item {
     void* content;
 };
@@ -73,7 +74,7 @@ class Stage final : public d1::base_filter {
         return next;
     }
 
-    /// Of what is left behind when something was thrown; by any thread.
+    /// Destroys remaining values after an exception; by any thread.
     void finalize(void* item) override {
         const EndOfStage end{events_};
         __tsan_acquire(&events_->begin);

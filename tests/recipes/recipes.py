@@ -32,7 +32,7 @@ import time
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
 PATIENCE = 300  # seconds for one block, on a busy machine
-TYPING = 0.5  # seconds for a line of a session: scans that are taken ten times a second are of what was answered before
+TYPING = 0.5  # seconds for a line of a session: scans ten times a second then hold the answered state
 MARKS = ("not run", "file", "printed by", "serves", "session")
 INPUTS = {"map.yaml": "map.yaml", "map.pgm": "map.pgm", "scan.jpg": "pictures/room.jpg",
           "house.ifc": "ifc/cabin-2x3-mm.ifc"}  # from tests/data

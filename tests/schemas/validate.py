@@ -37,7 +37,7 @@ def things_of(path):
     name = None
     for number, line in enumerate(text.splitlines(), 1):
         if not line.startswith("{"):
-            name = None  # readings follow their header, nothing between
+            name = None  # readings follow their header at once
             continue
         try:
             thing = json.loads(line)

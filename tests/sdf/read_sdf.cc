@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks a world as `ign sdf -k` does, reads it through libsdformat and prints what it found, a
-// line each, with all poses in the world's frame: read_sdf FILE [FOLDER...]. Models that it
-// includes are in the folders. Exit status: 0 no errors, 1 errors, 2 usage.
+// Checks a world as `ign sdf -k` does, reads it through libsdformat and prints its content, a line
+// each, with all poses in the world's frame: read_sdf FILE [FOLDER...]. The folders hold included
+// models. Exit status: 0 no errors, 1 errors, 2 usage.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace {
 
 using ignition::math::Pose3d;
 
-/// Minus zero, and what rounding leaves of zero, are zero.
+/// Maps minus zero, and rounding errors of zero, to zero.
 double plain(double value) { return std::abs(value) < 5e-7 ? 0 : value; }
 
 void print(const Pose3d& pose) {

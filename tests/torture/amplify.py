@@ -387,8 +387,8 @@ def run(command, seconds):
     return child.returncode, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, (lines or [""])[-1]
 
 
-# What an input takes beyond one of START_BYTES counts as this much at least: less is noise. Families whose largest file
-# takes less are tried at larger sizes, up to MOST_BYTES.
+# The cost of an input beyond one of START_BYTES counts as this much at least: less is noise. Families with a cheaper
+# largest file continue with larger sizes, up to MOST_BYTES.
 START_BYTES, LEAST_SECONDS, LEAST_BYTES, MOST_BYTES = 400, 0.02, 4e6, 16_000_000
 STEEPEST = 1.2
 

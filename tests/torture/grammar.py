@@ -48,7 +48,7 @@ def of_world(r):
     kind = r.random()
     if kind < 0.4:
         return "ADD " + record(r)
-    if kind < 0.41:  # what begins anew, seldom: a world is to become large
+    if kind < 0.41:  # requests that start again, seldom: a world is to become large
         return r.choice(("RESET", "DELETE x*", "LOAD other.env layout.3dm", "LOAD hall.env layout.3dm"))
     return r.choice((
         lambda: f"SET {r.choice((name(r), pattern(r)))}.{r.choice(KEYS)}={r.choice((number(r), place(r), ''))}",

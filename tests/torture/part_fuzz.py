@@ -18,7 +18,7 @@ def run(lab):
     script = os.path.join(labs.SOURCE, ".ci", "fuzz")
     targets = [os.path.basename(path)[:-8] for path in glob.glob(os.path.join(labs.SOURCE, "tests/fuzz/*_fuzz.cc"))]
     seconds = max(1, int(lab.seconds * AT_ONCE / len(targets)))
-    # Building them takes time of its own.
+    # Building them takes extra time.
     process = subprocess.run([script, str(seconds), "-1", *sorted(targets)], env={**os.environ, "FUZZ_JOBS": str(AT_ONCE)},
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     for line, executions in re.findall(r"^(fuzz: \w+ (\d+) executions.*)$", process.stdout, re.M):

@@ -18,7 +18,7 @@ LIMIT = 5        # seconds
 MEMORY = 1 << 30
 ENDLESS = ("fifo", "link to a fifo", "random")
 
-# What the user names; @ stands for it, and the suffix behind it may decide how it is read.
+# Operands; @ stands for the name, and the suffix behind it may decide the format.
 IMPORTS = ("", ".env", ".yaml", ".glb", ".png", ".jpg", ".tiff", ".dxf", ".svg", ".ifc", ".obj", ".stl", ".ply", ".dae",
            ".world", ".sdf", ".pcd", ".las", ".map", ".json", ".3dm")
 NAMED = [f"envc @{suffix} --to env -o new.env" for suffix in IMPORTS] + [
@@ -42,7 +42,7 @@ NAMED = [f"envc @{suffix} --to env -o new.env" for suffix in IMPORTS] + [
 ]
 SHORT = {"PLACING": "--sensor laser,range=1 --candidates 1,1,4 -q", "SERVED": "--clock fast --until 0.01"}
 
-# What a file names: the file, its text, and the commands that read it.
+# Names in files: the file, its text, and the commands that read it.
 SDF = '<sdf version="1.7"><world name="w"><include><uri>{}</uri></include></world></sdf>\n'
 MESH = ('<sdf version="1.7"><model name="m"><link name="l"><collision name="c"><geometry><mesh><uri>{}</uri></mesh>'
         "</geometry></collision></link></model></sdf>\n")

@@ -80,7 +80,7 @@ def child(work, report):
     try:
         with open(report, "w", encoding="utf-8") as file:
             work(file)
-    except BaseException as error:  # nothing of this process must go on as if it were the first one
+    except BaseException as error:  # no thread of this process may continue as if it were the first one
         sys.stderr.write(f"torture: {error!r}\n")
     finally:
         os._exit(0)

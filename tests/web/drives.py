@@ -15,7 +15,7 @@ except ImportError:
 
 def drives_by_keys(run, page):
     page.select("r1")
-    page.part("map").click()  # on the floor: nothing is selected any more
+    page.part("map").click()  # on the floor: this ends the selection
     page.select("r1")
     start = pose(run, "r1")
     actions = ActionChains(page.browser)

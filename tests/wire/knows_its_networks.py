@@ -13,7 +13,7 @@ def own_address():
     """Of a network, not the loopback one."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
-            probe.connect(("192.0.2.1", 9))  # sends nothing
+            probe.connect(("192.0.2.1", 9))  # sends no byte
             return probe.getsockname()[0]
         except OSError:
             skip("this machine has no network")

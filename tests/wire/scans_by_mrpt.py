@@ -57,7 +57,7 @@ def recorded(name):
     (log,) = pathlib.Path().glob(name + "_*.rawlog")
     subprocess.run(["rawlog-edit", "-q", "--export-2d-scans-txt", "-i", log], check=True,
                    stdout=subprocess.DEVNULL)
-    tables = list(pathlib.Path().glob(name + "_*.txt"))  # one, or none without scans
+    tables = list(pathlib.Path().glob(name + "_*.txt"))  # one file, or no file without scans
     lines = [line for table in tables for line in table.read_text().splitlines()]
     rows = [line.split() for line in lines if not line.startswith("%")]
     return [(float(row[0]), row[1:]) for row in rows]

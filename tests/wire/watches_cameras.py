@@ -47,7 +47,7 @@ def watch(where):
         ok, picture = capture.read()
         check(ok, f"VideoCapture ends after {k} pictures")
         check(picture.shape == single.shape, f"a picture of {picture.shape}")
-    # Nothing moves in sight of it.
+    # No mover moves in its view.
     check(numpy.abs(picture.astype(int) - single).max() <= 24, "the stream shows something else")
     capture.release()
     print("30 pictures by VideoCapture")
