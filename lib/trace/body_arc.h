@@ -14,8 +14,8 @@
 namespace ispace {
 
 /// A level scan of equal steps whose ranges bodies shorten. Bodies are collected in growing
-/// squares about it, eight at a time, and met from the nearest on. Those hidden behind what their
-/// beams meet already, walls or other bodies, are passed over: in rooms and crowds nearly all.
+/// squares about it and met from the nearest on. Bodies whose beams all end nearer, at walls or
+/// other bodies, are passed over: in rooms and crowds nearly all.
 class BodyArc {
   public:
     /// \pre directions.arc, with a step above 0
@@ -24,8 +24,8 @@ class BodyArc {
             const ShortenedRanges& ranges);
 
     /// Meets all bodies but those of `own`, cells near to the scan before those that are farther
-    /// away. \pre the table is in the order of the grid
-    void meetFrom(const FloorGrid& grid, const BodyTable& table, std::uint32_t own);
+    /// away.
+    void meetFrom(const FloorGrid& grid, std::uint32_t own);
 
   private:
     static constexpr std::size_t kBlock = 8, kMost = 256;
@@ -39,8 +39,8 @@ class BodyArc {
     };
     /// The part of the floor where bodies still matter.
     [[nodiscard]] Box2 view() const;
-    /// Collects bodies of the table that may shorten a beam.
-    void look(const BodyTable& table, std::size_t begin, std::size_t end, std::uint32_t own);
+    /// Collects those of these bodies that may shorten a beam.
+    void look(std::span<const std::uint32_t> bodies, std::uint32_t own);
     void meetCollected();
     [[nodiscard]] bool isSeen(const Waiting& waiting) const;
     [[nodiscard]] bool isSeen(std::int32_t first, std::int32_t last, double nearest) const;

@@ -52,25 +52,65 @@ std::array<Vec3, 8> cornersOf(const MovingBody& body, const BodyExtent& extent, 
 
 }  // namespace
 
-Box2 BodyScan::box() const {
-    const Point2 middle = origin_.onFloor();
-    const Vec2 corner{far_ * (1 + kFarSlack), far_ * (1 + kFarSlack)};
-    return {middle - corner, middle + corner};
+BodyScan::BodyScan(std::span<const Point3> origins, const Directions& directions, std::size_t begin,
+                   std::size_t end, double max_range, const ShortenedRanges& ranges)
+    : origins_(origins),
+      is_one_(origins.size() == 1),
+      directions_(directions),
+      begin_(begin),
+      end_(end),
+      ranges_(ranges),
+      low_(std::numeric_limits<double>::infinity()),
+      high_(-low_) {
+    const double most = max_range * (1 + kFarSlack);
+    Box2 origin_box;
+    for (std::size_t k = begin; k < end; k += is_one_ ? end - begin : 1)
+        origin_box.add(origin(k).onFloor());
+    middle_ = origin_box.center();
+    spread_ =
+        0.5 * std::sqrt(dot(origin_box.high - origin_box.low, origin_box.high - origin_box.low));
+    box_ = origin_box;
+    Vec2 ahead;
+    for (std::size_t k = begin; k < end; ++k) {
+        const double far =
+            std::min(static_cast<double>(ranges_[k]) * (1 + kFarSlack) + kFarSlack, most);
+        const Point3 from = origin(k);
+        const double rise = from.z + far * directions.z[k];
+        const Vec2 flat{directions.x[k], directions.y[k]};
+        reach_ = std::max(reach_, far);
+        low_ = std::min({low_, from.z, rise});
+        high_ = std::max({high_, from.z, rise});
+        box_.add(from.onFloor() + far * flat);
+        ahead = ahead + flat;
+    }
+    Vec2 right = ahead, left = ahead;
+    for (std::size_t k = begin; k < end; ++k) {
+        const Vec2 flat{directions.x[k], directions.y[k]};
+        // Within some 84 degrees: upright rays point nowhere.
+        if (!(dot(ahead, flat) > 0.1 * std::fabs(cross(ahead, flat)))) return;
+        if (cross(right, flat) < 0) right = flat;
+        if (cross(left, flat) > 0) left = flat;
+    }
+    right_ = 1 / std::sqrt(dot(right, right)) * right;
+    left_ = 1 / std::sqrt(dot(left, left)) * left;
 }
 
-/// Those rays that pass its middle on the floor near enough.
 void BodyScan::meet(const MovingBody& body, const BodyExtent& extent) {
-    const Vec2 way = body.pose.position - origin_.onFloor();
-    const double nearest = std::sqrt(dot(way, way)) - extent.whole;
-    if (!(nearest <= far_ * (1 + kFarSlack))) return;
-    const BodyFrom from(body, extent.axes, origin_);
-    const double wide = extent.whole * (1 + kFarSlack) * extent.whole * (1 + kFarSlack);
-    for (std::size_t k = 0; k < directions_.size(); ++k) {
-        const double x = directions_.x[k], y = directions_.y[k];
-        const double aside = way.x * y - way.y * x;
-        if (aside * aside <= wide * (x * x + y * y) + 1e-12 &&
-            static_cast<double>(ranges_[k]) > nearest)
-            ranges_.shorten(k, from.meet(directions_[k]), 1);
+    const double radius = extent.whole * (1 + kFarSlack) + kFarSlack;
+    const Vec2 there = body.pose.position - middle_;
+    const double around = radius + spread_, far = around + reach_;
+    if (body.bottom > high_ || body.top < low_ || cross(right_, there) < -around ||
+        cross(left_, there) > around || dot(there, there) > far * far)
+        return;
+    for (std::size_t k = begin_; k < end_; ++k) {
+        // Most rays pass by the circle about it, or end before.
+        const Point3 from = origin(k);
+        const Vec2 way = body.pose.position - from.onFloor();
+        const Vec2 flat{directions_.x[k], directions_.y[k]};
+        const double size = dot(flat, flat), aside = cross(way, flat);
+        const double end = static_cast<double>(ranges_[k]) + radius;
+        if (aside * aside > radius * radius * size + 1e-12 || dot(way, way) > end * end) continue;
+        ranges_.shorten(k, BodyFrom(body, extent.axes, from).meet(directions_[k]), 1);
     }
 }
 

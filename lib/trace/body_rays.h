@@ -134,9 +134,6 @@ class ShortenedRanges {
         : far_(static_cast<float>(most)), ranges_(ranges), cosines_(cosines) {}
 
     [[nodiscard]] float operator[](std::size_t i) const { return ranges_[i]; }
-    [[nodiscard]] std::span<float> all() const { return ranges_; }
-    [[nodiscard]] bool hasCosines() const { return !cosines_.empty(); }
-    [[nodiscard]] float farthest() const { return far_; }
     /// `size`: the direction's length.
     void shorten(std::size_t i, const BodyMeeting& met, double size) {
         // As float32: what begins exactly at the limit is met.
@@ -151,22 +148,34 @@ class ShortenedRanges {
     std::span<float> ranges_, cosines_;
 };
 
-/// Rays of any directions from one place whose ranges bodies shorten.
+/// Neighbouring rays of a scan whose ranges bodies shorten. They leave from one origin, or from one
+/// each.
 class BodyScan {
   public:
-    BodyScan(Point3 origin, const Directions& directions, double max_range,
-             const ShortenedRanges& ranges)
-        : origin_(origin), directions_(directions), far_(max_range), ranges_(ranges) {}
+    static constexpr std::size_t kBlock = 32;  ///< rays whose box is searched for bodies
+
+    /// Rays `begin` to before `end`. \pre origins.size() is 1 or directions.size(); begin < end
+    BodyScan(std::span<const Point3> origins, const Directions& directions, std::size_t begin,
+             std::size_t end, double max_range, const ShortenedRanges& ranges);
 
     /// Bodies outside this part of the floor are not met.
-    [[nodiscard]] Box2 box() const;
+    [[nodiscard]] const Box2& box() const { return box_; }
     void meet(const MovingBody& body, const BodyExtent& extent);
 
   private:
-    Point3 origin_;
+    [[nodiscard]] Point3 origin(std::size_t k) const { return origins_[is_one_ ? 0 : k]; }
+
+    std::span<const Point3> origins_;
+    bool is_one_;
     const Directions& directions_;
-    double far_;
+    std::size_t begin_, end_;
     ShortenedRanges ranges_;
+    Box2 box_;
+    // A cone on the floor about all rays, of less than half a turn if it has sides: unit vectors.
+    Vec2 right_, left_;
+    Point2 middle_;                  // of the origins
+    double spread_ = 0, reach_ = 0;  // radius about it that holds them, and how far rays go
+    double low_, high_;              // heights of the rays
 };
 
 /// The pixels [left, right) x [top, bottom) of a picture.

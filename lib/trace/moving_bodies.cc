@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "trace/body_arc.h"
-#include "trace/body_pencil.h"
 #include "trace/body_rays.h"
 #include "trace/rays.h"
 
@@ -120,31 +119,6 @@ std::size_t FloorGrid::cellOf(double offset, std::size_t count) const {
     return cell < static_cast<double>(count) ? static_cast<std::size_t>(cell) : count - 1;
 }
 
-void BodyTable::fill(std::span<const std::uint32_t> order, std::span<const MovingBody> bodies,
-                     std::span<const BodyExtent> extents) {
-    for (auto* const figures : {&x, &y, &reach, &bottom, &top})
-        figures->resize(order.size() + kLanes);
-    const bool leans = std::any_of(bodies.begin(), bodies.end(),
-                                   [](const MovingBody& body) { return body.lean != 0; });
-    for (auto* const figures : {&lean_x, &lean_y}) figures->resize(leans ? x.size() : 0);
-    index.assign(order.begin(), order.end());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const MovingBody& body = bodies[order[i]];
-        const BodyExtent& extent = extents[order[i]];
-        x[i] = body.pose.position.x;
-        y[i] = body.pose.position.y;
-        if (leans) {
-            lean_x[i] = body.lean * extent.axes.cos;
-            lean_y[i] = body.lean * extent.axes.sin;
-            x[i] -= lean_x[i] * body.middle();
-            y[i] -= lean_y[i] * body.middle();
-        }
-        reach[i] = extent.reach;
-        bottom[i] = body.bottom;
-        top[i] = body.top;
-    }
-}
-
 MovingBodies::MovingBodies(std::vector<MovingBody> bodies) : bodies_(std::move(bodies)) { index(); }
 
 void MovingBodies::rebuild(std::span<const MovingBody> bodies) {
@@ -169,23 +143,17 @@ void MovingBodies::index() {
         reach = std::max(reach, extents_.back().whole);
     }
     grid_.rebuild(places_, reach);
-    table_.fill(grid_.order(), bodies_, extents_);
 }
 
 void MovingBodies::shorten(Point3 origin, const Directions& directions, double max_range,
                            std::uint32_t own, std::span<float> ranges,
                            std::span<float> cosines) const {
     assert(directions.size() == ranges.size());
-    if (ranges.empty() || grid_.empty()) return;
-    const ShortenedRanges shortened(max_range, ranges, cosines);
-    if (directions.arc && directions.arc->step > Angle()) {
-        BodyArc arc(origin, directions, max_range, bodies_, extents_, shortened);
-        return arc.meetFrom(grid_, table_, own);
+    if (directions.arc && directions.arc->step > Angle() && !ranges.empty() && !grid_.empty()) {
+        BodyArc arc(origin, directions, max_range, bodies_, extents_, {max_range, ranges, cosines});
+        return arc.meetFrom(grid_, own);
     }
-    BodyScan scan(origin, directions, max_range, shortened);
-    grid_.forEachNear(scan.box(), [&](std::size_t i) {
-        if (bodies_[i].owner != own) scan.meet(bodies_[i], extents_[i]);
-    });
+    shortenInBlocks({&origin, 1}, directions, 0, ranges.size(), max_range, own, ranges, cosines);
 }
 
 void MovingBodies::shorten(std::span<const Point3> origins, const Directions& directions,
@@ -193,13 +161,20 @@ void MovingBodies::shorten(std::span<const Point3> origins, const Directions& di
                            std::span<float> ranges, std::span<float> cosines) const {
     assert(directions.size() == ranges.size() && origins.size() == ranges.size());
     assert(begin <= end && end <= ranges.size());
+    shortenInBlocks(origins, directions, begin, end, max_range, own, ranges, cosines);
+}
+
+void MovingBodies::shortenInBlocks(std::span<const Point3> origins, const Directions& directions,
+                                   std::size_t begin, std::size_t end, double max_range,
+                                   std::uint32_t own, std::span<float> ranges,
+                                   std::span<float> cosines) const {
     if (grid_.empty()) return;
     const ShortenedRanges shortened(max_range, ranges, cosines);
-    for (; begin < end; begin += BodyPencil::kMost) {
-        BodyPencil pencil(origins, directions, begin, std::min(begin + BodyPencil::kMost, end),
-                          max_range, shortened);
-        grid_.forEachRun(pencil.box(), {}, [&](std::size_t first, std::size_t last) {
-            pencil.meet(table_, first, last, own, bodies_, extents_);
+    for (; begin < end; begin += BodyScan::kBlock) {
+        BodyScan scan(origins, directions, begin, std::min(begin + BodyScan::kBlock, end),
+                      max_range, shortened);
+        grid_.forEachNear(scan.box(), [&](std::size_t i) {
+            if (bodies_[i].owner != own) scan.meet(bodies_[i], extents_[i]);
         });
     }
 }

@@ -83,18 +83,6 @@ class FloorGrid {
     std::vector<std::uint32_t> first_ = {0, 0}, indices_;
 };
 
-/// Bodies in the order of their grid, a figure an array, for loops over several at a time. Behind
-/// the last there is room to read on for kLanes.
-struct BodyTable {
-    static constexpr std::size_t kLanes = 8;
-    std::vector<double> x, y, reach, bottom, top;  ///< x, y of level cuts, extrapolated to height 0
-    std::vector<double> lean_x, lean_y;  ///< how these move per metre of height; none leans: empty
-    std::vector<std::uint32_t> index;    ///< of MovingBodies::bodies()
-
-    void fill(std::span<const std::uint32_t> order, std::span<const MovingBody> bodies,
-              std::span<const BodyExtent> extents);
-};
-
 /// The moving bodies at one moment. Moving them leaves the ray worlds of the environment alone.
 class MovingBodies {
   public:
@@ -126,12 +114,14 @@ class MovingBodies {
 
   private:
     void index();
+    void shortenInBlocks(std::span<const Point3> origins, const Directions& directions,
+                         std::size_t begin, std::size_t end, double max_range, std::uint32_t own,
+                         std::span<float> ranges, std::span<float> cosines) const;
 
     std::vector<MovingBody> bodies_;
     std::vector<BodyExtent> extents_;
     std::vector<Point2> places_;  // of the bodies; kept for its memory
     FloorGrid grid_;
-    BodyTable table_;
 };
 
 template <typename Visit>
