@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -111,7 +110,6 @@ class StillBuilder {
     StillBuilder(const Scene& scene, const RenderSceneOptions& options)
         : scene_(scene), options_(options), sheets_(scene.environment, options) {
         still_.device = makeEmbreeDevice();
-        if (!still_.device) throw std::runtime_error("Embree cannot be started");
         still_.packet_width = nativeWidthOf(still_.device.get());
         still_.paints = paintsOfMaterials();
         const Box2 plan = scene.environment.limits();

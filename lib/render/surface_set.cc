@@ -2,25 +2,11 @@
 #include "render/surface_set.h"
 
 #include <algorithm>
-#include <new>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "trace/embree_query.h"
 
 namespace ispace {
-
-namespace {
-
-void throwIfFailed(RTCDevice device) {
-    const RTCError code = rtcGetDeviceError(device);
-    if (code == RTC_ERROR_NONE) return;
-    if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-    throw std::runtime_error("Embree failed with error " + std::to_string(static_cast<int>(code)));
-}
-
-}  // namespace
 
 void FinishedSoup::add(const Mesh& mesh, Finish finish, Vec3 shift) {
     const auto first = static_cast<std::uint32_t>(triangles.vertices.size());
@@ -37,13 +23,13 @@ SurfaceSet::SurfaceSet(RTCDeviceTy* device, const FinishedSoup& soup, unsigned g
     for (std::size_t i = 0; i < triangles_.size(); ++i)
         finishes_.push_back(soup.finishes[triangles_.source(i)]);
     addLabels();
-    scene_ = buildTriangles(device, triangles_, geometry_id, [device] { throwIfFailed(device); });
+    scene_ = buildTriangles(device, triangles_, geometry_id);
 }
 
 SurfaceSet::SurfaceSet(RTCDeviceTy* device, FinishedBodies bodies, unsigned geometry_id)
     : triangles_({}), bodies_(std::move(bodies.bodies)), finishes_(std::move(bodies.finishes)) {
     addLabels();
-    scene_ = buildBodies(device, bodies_, geometry_id, [device] { throwIfFailed(device); });
+    scene_ = buildBodies(device, bodies_, geometry_id);
 }
 
 void SurfaceSet::addLabels() {

@@ -69,10 +69,9 @@ void occlude(const RTCOccludedFunctionNArguments* args) {
 }  // namespace
 
 EmbreeSceneHandle buildBodies(RTCDeviceTy* device, std::span<const TracedBody> bodies,
-                              unsigned geometry_id, const std::function<void()>& throw_if_failed) {
+                              unsigned geometry_id) {
     return buildScene(
-        device, RTC_GEOMETRY_TYPE_USER, bodies.size(), geometry_id, throw_if_failed,
-        [&](RTCGeometry geometry) {
+        device, RTC_GEOMETRY_TYPE_USER, bodies.size(), geometry_id, [&](RTCGeometry geometry) {
             rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(bodies.size()));
             // Read only; Embree has no word for that.
             rtcSetGeometryUserData(geometry, const_cast<TracedBody*>(bodies.data()));  // NOLINT

@@ -2,7 +2,6 @@
 // Private to lib/trace and lib/render: moving bodies in Embree.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -33,9 +32,10 @@ struct BodyQuery : EmbreeQuery {
 };
 
 /// A scene of bodies, hits of which have this geometry id and the body's index. Embree has their
-/// boxes; rays are met in doubles. Queries must be a BodyQuery. `throw_if_failed` is asked after
-/// each step that may fail. \pre the bodies stay where they are as long as the scene lives
+/// boxes; rays are met in doubles. Queries must be a BodyQuery.
+/// \pre the bodies stay where they are as long as the scene lives
+/// \throws as throwIfEmbreeFailed()
 EmbreeSceneHandle buildBodies(RTCDeviceTy* device, std::span<const TracedBody> bodies,
-                              unsigned geometry_id, const std::function<void()>& throw_if_failed);
+                              unsigned geometry_id);
 
 }  // namespace ispace

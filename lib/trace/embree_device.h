@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 
 #include "trace/triangle_set.h"
@@ -20,17 +19,21 @@ struct EmbreeRelease {
 using EmbreeDevice = std::unique_ptr<RTCDeviceTy, EmbreeRelease>;
 using EmbreeSceneHandle = std::unique_ptr<RTCSceneTy, EmbreeRelease>;
 
-/// Nothing but the program decides how Embree works: no file in the user's home does. Null if it
-/// fails.
+/// A device that reads no configuration file in the user's home.
+/// \throws as throwIfEmbreeFailed()
 EmbreeDevice makeEmbreeDevice();
+
+/// Reports the first error of this thread's calls since the last report.
+/// \throws std::runtime_error with Embree's own text, std::bad_alloc if it has no memory
+void throwIfEmbreeFailed(RTCDeviceTy* device);
 
 /// Rays that the processor traces together: 4, 8 or 16.
 std::size_t nativeWidthOf(RTCDeviceTy* device);
 
 /// A scene of the enlarged triangles, ROBUST and of high quality, hits of which have this geometry
-/// id. `throw_if_failed` is asked after each step that may fail. O(n log n)
+/// id. O(n log n)
+/// \throws as throwIfEmbreeFailed()
 EmbreeSceneHandle buildTriangles(RTCDeviceTy* device, const TriangleSet& triangles,
-                                 unsigned geometry_id,
-                                 const std::function<void()>& throw_if_failed);
+                                 unsigned geometry_id);
 
 }  // namespace ispace

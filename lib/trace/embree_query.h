@@ -12,7 +12,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <functional>
 #include <vector>
 
 #include "trace/embree_device.h"
@@ -69,25 +68,25 @@ struct EmbreeQuery {
 #endif
 
 /// A scene of one geometry, ROBUST and of high quality, with primitives that fill(geometry) sets;
-/// empty for a count of 0. `throw_if_failed` is asked after each step that may fail.
+/// empty for a count of 0.
+/// \throws as throwIfEmbreeFailed()
 template <typename Fill>
 EmbreeSceneHandle buildScene(RTCDevice device, RTCGeometryType type, std::size_t count,
-                             unsigned geometry_id, const std::function<void()>& throw_if_failed,
-                             Fill fill) {
+                             unsigned geometry_id, Fill fill) {
     EmbreeSceneHandle scene(rtcNewScene(device));
-    throw_if_failed();
+    throwIfEmbreeFailed(device);
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | kFilterFlag);
     rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
     if (count > 0) {
         const RTCGeometry geometry = rtcNewGeometry(device, type);
-        throw_if_failed();
+        throwIfEmbreeFailed(device);
         rtcAttachGeometryByID(scene.get(), geometry, geometry_id);
         rtcReleaseGeometry(geometry);  // the scene holds it
         fill(geometry);
         rtcCommitGeometry(geometry);
     }
     rtcCommitScene(scene.get());
-    throw_if_failed();
+    throwIfEmbreeFailed(device);
     return scene;
 }
 

@@ -9,11 +9,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <new>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-#include <utility>
 
 #include "trace/embree_query.h"
 #include "trace/rays.h"
@@ -22,39 +17,6 @@
 namespace ispace {
 
 namespace {
-
-/// Hears why Embree fails, while a scene is made.
-class EmbreeErrors {
-  public:
-    explicit EmbreeErrors(RTCDevice device) : device_(device) {
-        if (device != nullptr) rtcSetDeviceErrorFunction(device, hear, this);
-        throwIfAny();
-    }
-    ~EmbreeErrors() {
-        if (device_ != nullptr) rtcSetDeviceErrorFunction(device_, nullptr, nullptr);
-    }
-    EmbreeErrors(const EmbreeErrors&) = delete;
-    EmbreeErrors& operator=(const EmbreeErrors&) = delete;
-
-    void throwIfAny() const {
-        const RTCError code = rtcGetDeviceError(device_);
-        if (code == RTC_ERROR_NONE && device_ != nullptr) return;
-        if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-        throw std::runtime_error(text_[0] != 0 ? "Embree: " + std::string(text_.data())
-                                               : "Embree failed with error " +
-                                                     std::to_string(static_cast<int>(code)));
-    }
-
-  private:
-    static void hear(void* errors, RTCError /*code*/, const char* text) {
-        auto& buffer = static_cast<EmbreeErrors*>(errors)->text_;
-        if (buffer[0] == 0 && text != nullptr)
-            std::string_view(text).copy(buffer.data(), buffer.size() - 1);
-    }
-
-    RTCDevice device_;
-    std::array<char, 200> text_{};
-};
 
 /// The shortest that a ray of the plane through a picture is, at most.
 double shortestRay(const RayGrid& grid) {
@@ -277,8 +239,7 @@ struct EmbreeScene::Caster {
 EmbreeScene::EmbreeScene(const TriangleSoup& soup, double ray_epsilon, int packet_width)
     : set_(soup), ray_epsilon_(ray_epsilon) {
     device_ = makeEmbreeDevice();
-    const EmbreeErrors errors(device_.get());
-    scene_ = buildTriangles(device_.get(), set_, 0, [&errors] { errors.throwIfAny(); });
+    scene_ = buildTriangles(device_.get(), set_, 0);
     width_ =
         packet_width > 0 ? static_cast<std::size_t>(packet_width) : nativeWidthOf(device_.get());
 }
