@@ -13,10 +13,16 @@
 #include "cover/trace_file.h"
 #include "layout/scene.h"
 #include "place/arrange_options.h"
-#include "place/curve.h"
 #include "place/sensor_group.h"
 
 namespace ispace {
+
+/// The coverage of a number of sensors.
+struct CurvePoint {
+    int sensors = 0;
+    double value = 0;  ///< share covered by the best layout found
+    double bound = 1;  ///< no layout of these candidates covers more
+};
 
 /// The sensors at their places, and what they cover.
 struct Arrangement {

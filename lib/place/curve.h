@@ -5,15 +5,9 @@
 #include <vector>
 
 #include "draw/picture.h"
+#include "place/arrangement.h"
 
 namespace ispace {
-
-/// What this number of sensors covers.
-struct CurvePoint {
-    int sensors = 0;
-    double value = 0;  ///< share covered by the best layout found
-    double bound = 1;  ///< no layout of these candidates covers more
-};
 
 /// CSV: a header `sensors,value,bound`, then a line per point, as fractions.
 std::string curveCsv(const std::vector<CurvePoint>& points);

@@ -5,6 +5,7 @@
 
 #include "base/message.h"
 #include "base/number.h"
+#include "place/curve.h"
 
 namespace ispace {
 
