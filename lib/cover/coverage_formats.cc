@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "base/json_writer.h"
 #include "base/number.h"
 #include "cover/seen_regions.h"
 #include "draw/feature_writer.h"
@@ -11,6 +10,7 @@
 #include "geom/boolean.h"
 #include "geom/overlay_regions.h"
 #include "raster/contour.h"
+#include "raster/nav2_mask.h"
 #include "sensor/camera.h"
 
 namespace ispace {
@@ -66,12 +66,7 @@ CoverageFiles coverageRosMap(const Coverage& coverage, double cell, const std::s
     const Grid& grid = target.grid;
     const CellSet covered = coveredCells(coverage);
     CoverageFiles map;
-    JsonWriter name;  // JSON's strings are YAML's
-    name.value(image_name);
-    map.product = "image: " + name.take() + "\nmode: trinary\nresolution: " + formatDouble(cell) +
-                  "\norigin: [" + formatDouble(grid.limits.low.x) + ", " +
-                  formatDouble(grid.limits.low.y) +
-                  ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    map.product = rosMapYaml({.image = image_name, .resolution = cell, .origin = grid.limits.low});
     map.beside =
         "P5\n" + std::to_string(grid.columns) + " " + std::to_string(grid.rows) + "\n255\n";
     map.beside.reserve(map.beside.size() + grid.size());

@@ -138,7 +138,7 @@ TEST(CoverageRosMap, TellsSeenUnseenAndOccupiedApart) {
     const Coverage coverage = measureCoverage(scene, worlds, {.cells = CellSize{0.05}});
     const CoverageFiles map = coverageRosMap(coverage, 0.05, "plan.pgm");
     EXPECT_EQ(map.product,
-              "image: \"plan.pgm\"\nmode: trinary\nresolution: 0.05\norigin: [-2, -2, 0]\n"
+              "image: plan.pgm\nmode: trinary\nresolution: 0.05\norigin: [-2, -2, 0]\n"
               "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
     const std::string header = "P5\n80 80\n255\n";
     ASSERT_EQ(map.beside.substr(0, header.size()), header);

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/json_writer.h"
 #include "base/number.h"
 #include "plan/elements.h"
 #include "raster/grid.h"
+#include "raster/nav2_mask.h"
 
 namespace ispace {
 
@@ -153,23 +153,6 @@ class MapPainter {
     std::vector<CellPair> crossings_;
 };
 
-/// Quotes names that YAML would not read as text; JSON strings are YAML strings.
-std::string yamlText(const std::string& text) {
-    const auto is_plain = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-               c == '_' || c == '.' || c == '/' || c == '-';
-    };
-    const bool begins_as_word =
-        !text.empty() && text.front() != '-' &&
-        (is_plain(text.front()) && !(text.front() >= '0' && text.front() <= '9'));
-    if (begins_as_word && text.find('.') != std::string::npos &&
-        std::all_of(text.begin(), text.end(), is_plain))
-        return text;
-    JsonWriter json;
-    json.value(text);
-    return json.take();
-}
-
 }  // namespace
 
 ExportedFiles writeRosMap(const Scene& scene, double height, double resolution,
@@ -190,10 +173,8 @@ ExportedFiles writeRosMap(const Scene& scene, double height, double resolution,
     painter.closeRim();
 
     ExportedFiles files;
-    files.product = "image: " + yamlText(image_name) +
-                    "\nmode: trinary\nresolution: " + formatDouble(resolution) + "\norigin: [" +
-                    formatDouble(grid.limits.low.x) + ", " + formatDouble(grid.limits.low.y) +
-                    ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    files.product =
+        rosMapYaml({.image = image_name, .resolution = resolution, .origin = grid.limits.low});
     files.beside = painter.take();
     return files;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "raster/nav2_mask.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/json_writer.h"
@@ -40,16 +41,40 @@ std::string mapText(const Nav2Mask& mask, const std::string& picture_name) {
                        "_costmap_filter_info\n# filter_mask_server:\n#   ros__parameters:\n" +
                        "#     topic_name: /" + name +
                        "_filter_mask\n#     frame_id: map\n#     yaml_filename: this file\n";
-    JsonWriter json;  // JSON's strings are YAML's
-    json.value(picture_name);
-    const Point2 origin = mask.grid.limits.low;
-    return text + "image: " + json.take() +
-           "\nmode: scale\nresolution: " + formatDouble(mask.cell) + "\norigin: [" +
-           formatDouble(origin.x) + ", " + formatDouble(origin.y) +
-           ", 0]\nnegate: 0\noccupied_thresh: 1.0\nfree_thresh: 0.0\n";
+    return text + rosMapYaml({.image = picture_name,
+                              .mode = "scale",
+                              .resolution = mask.cell,
+                              .origin = mask.grid.limits.low,
+                              .occupied = 1,
+                              .free = 0});
+}
+
+/// Quotes names that YAML would not read as text; JSON strings are YAML strings.
+std::string yamlText(const std::string& text) {
+    const auto is_plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_' || c == '.' || c == '/' || c == '-';
+    };
+    const bool begins_as_word =
+        !text.empty() && text.front() != '-' &&
+        (is_plain(text.front()) && !(text.front() >= '0' && text.front() <= '9'));
+    if (begins_as_word && text.find('.') != std::string::npos &&
+        std::all_of(text.begin(), text.end(), is_plain))
+        return text;
+    JsonWriter json;
+    json.value(text);
+    return json.take();
 }
 
 }  // namespace
+
+std::string rosMapYaml(const RosMap& map) {
+    return "image: " + yamlText(map.image) + "\nmode: " + std::string(map.mode) +
+           "\nresolution: " + formatDouble(map.resolution) + "\norigin: [" +
+           formatDouble(map.origin.x) + ", " + formatDouble(map.origin.y) +
+           ", 0]\nnegate: 0\noccupied_thresh: " + yamlDouble(map.occupied) +
+           "\nfree_thresh: " + yamlDouble(map.free) + '\n';
+}
 
 Nav2MaskFiles nav2MaskFiles(const Nav2Mask& mask, const std::string& picture_name) {
     constexpr double kWhite = 255, kMost = 100;
