@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/glob.h"
 #include "base/number.h"
 #include "env/info.h"
 
@@ -131,6 +132,18 @@ void checkScale(double extent, const DrawingSource& drawing, const std::string& 
     failFile(name, "the plan is " + metres + " m wide: is its unit right?" +
                        (hint.empty() ? " Else " + std::string(kScaleHint)
                                      : hint + "; or say how wide it is, with --width-is 8.3m"));
+}
+
+bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer) {
+    const auto folded = [](std::string_view text) {
+        std::string lower(text);
+        for (char& c : lower)
+            if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        return lower;
+    };
+    const std::string name = folded(layer);
+    return std::any_of(globs.begin(), globs.end(),
+                       [&](const std::string& glob) { return Glob(folded(glob)).matches(name); });
 }
 
 bool isWallName(std::string_view name) {

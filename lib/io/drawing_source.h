@@ -46,6 +46,9 @@ std::string otherUnitHint(double extent, const DrawingSource& drawing,
 void checkScale(double extent, const DrawingSource& drawing, const std::string& name,
                 const ImportOptions& options);
 
+/// True if one of the globs matches the name of a layer; ASCII letters match in either case.
+bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer);
+
 /// True if a word of the name of a layer, block or group says wall in one of a dozen languages
 /// (A-WALL, Außenwände, murs_ext, PAREDES), and none says that it holds hatching, text, doors or
 /// windows of them.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/line_plan.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <array>
 #include <map>
@@ -227,12 +225,6 @@ class LinePlan {
     PlanRooms rooms_;
 };
 
-bool matches(const std::vector<std::string>& globs, const std::string& layer) {
-    return std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
-        return ::fnmatch(glob.c_str(), layer.c_str(), FNM_CASEFOLD) == 0;
-    });
-}
-
 }  // namespace
 
 LayerSorter::Use LayerSorter::useOf(const std::string& layer) {
@@ -241,11 +233,11 @@ LayerSorter::Use LayerSorter::useOf(const std::string& layer) {
     Use& use = it->second;
     if (hidden_.count(layer) != 0)
         use = Hidden;
-    else if (matches(options_.door_layers, layer))
+    else if (matchesLayer(options_.door_layers, layer))
         use = Doors;
-    else if (matches(options_.window_layers, layer))
+    else if (matchesLayer(options_.window_layers, layer))
         use = Windows;
-    else if (options_.wall_layers.empty() || matches(options_.wall_layers, layer))
+    else if (options_.wall_layers.empty() || matchesLayer(options_.wall_layers, layer))
         use = Walls;
     return use;
 }
@@ -256,8 +248,8 @@ bool LayerSorter::isUsed(const std::string& layer) {
 }
 
 bool LayerSorter::isNamed(const std::string& name) const {
-    return matches(options_.door_layers, name) || matches(options_.window_layers, name) ||
-           matches(options_.wall_layers, name);
+    return matchesLayer(options_.door_layers, name) || matchesLayer(options_.window_layers, name) ||
+           matchesLayer(options_.wall_layers, name);
 }
 
 LayerSorter::Sorted LayerSorter::sort(std::vector<PlanShape> shapes) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/svg_elements.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <array>
 #include <string>
@@ -42,17 +40,11 @@ std::string withoutComments(std::string_view css) {
     return text;
 }
 
-bool matches(const std::vector<std::string>& globs, const char* text) {
-    return std::any_of(globs.begin(), globs.end(), [text](const std::string& glob) {
-        return ::fnmatch(glob.c_str(), text, FNM_CASEFOLD) == 0;
-    });
-}
-
 /// True if an option names layers like this.
 bool isNamed(const char* text, const ImportOptions& options) {
     return *text != '\0' &&
-           (matches(options.door_layers, text) || matches(options.window_layers, text) ||
-            matches(options.wall_layers, text));
+           (matchesLayer(options.door_layers, text) || matchesLayer(options.window_layers, text) ||
+            matchesLayer(options.wall_layers, text));
 }
 
 /// The text before the mark, which goes with it.
