@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cover/map_parts.h"
+#include "geom/polyline.h"
 #include "geom/predicates.h"
 #include "raster/contour.h"
 
@@ -196,28 +197,11 @@ void drawComparison(Picture& picture, const MapPicture& map) {
 
 std::vector<Point2> thinned(const std::vector<Point2>& points, double tolerance) {
     if (points.size() < 3) return points;
-    std::vector<bool> keep(points.size());
-    keep.front() = keep.back() = true;
-    std::vector<std::pair<std::size_t, std::size_t>> open = {{0, points.size() - 1}};
-    while (!open.empty()) {
-        const auto [first, last] = open.back();
-        open.pop_back();
-        const Segment2 chord{points[first], points[last]};
-        double farthest = tolerance;
-        std::size_t at = first;
-        for (std::size_t i = first + 1; i < last; ++i) {
-            if (const double off = distance(points[i], chord); off > farthest) {
-                farthest = off;
-                at = i;
-            }
-        }
-        if (at == first) continue;
-        keep[at] = true;
-        open.insert(open.end(), {{first, at}, {at, last}});
-    }
-    std::vector<Point2> kept;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (keep[i]) kept.push_back(points[i]);
+    std::vector<Point2> kept{points.front()};
+    thinPolyline(
+        0, points.size() - 1, [&points](std::size_t i) { return points[i]; },
+        [tolerance](std::size_t, std::size_t, double apart) { return apart <= tolerance; },
+        [&](std::size_t i) { kept.push_back(points[i]); });
     return kept;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geom/planar_map.h"
+#include "geom/polyline.h"
 #include "geom/predicates.h"
 
 namespace ispace {
@@ -103,28 +104,12 @@ class Simplifier {
 
     /// Appends the points after `begin`, up to `end`, that stay.
     void addRun(std::size_t begin, std::size_t end, Polygon& points) const {
-        std::vector<std::pair<std::size_t, std::size_t>> open{{begin, end}};
-        while (!open.empty()) {
-            const auto [from, to] = open.back();
-            open.pop_back();
-            const auto [farthest, apart] = farthestOff(from, to);
-            if (to == from + 1 || (apart <= tolerance_ && isFree(from, to))) {
-                points.push_back(point(to));
-            } else {
-                open.emplace_back(farthest, to);
-                open.emplace_back(from, farthest);
-            }
-        }
-    }
-
-    [[nodiscard]] std::pair<std::size_t, double> farthestOff(std::size_t from,
-                                                             std::size_t to) const {
-        const Segment2 line{point(from), point(to)};
-        std::pair<std::size_t, double> best{from + 1, -1};
-        for (std::size_t i = from + 1; i < to; ++i)
-            if (const double apart = distance(point(i), line); apart > best.second)
-                best = {i, apart};
-        return best;
+        thinPolyline(
+            begin, end, [this](std::size_t i) { return point(i); },
+            [this](std::size_t from, std::size_t to, double apart) {
+                return apart <= tolerance_ && isFree(from, to);
+            },
+            [&](std::size_t i) { points.push_back(point(i)); });
     }
 
     /// True if nothing else lies between the run and the line that would replace it, or on that

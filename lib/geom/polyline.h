@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "geom/point.h"
+
+namespace ispace {
+
+/// Thins the polyline point(begin) … point(end) by the method of Douglas and Peucker (1973): calls
+/// keep(i) for each index after `begin` whose point stays, ascending; the last one is `end`. A
+/// chord replaces its run of points where accepts(from, to, apart) is true, `apart` being the
+/// largest distance of these points from the chord. O(n^2) at worst.
+template <typename PointAt, typename Accepts, typename Keep>
+void thinPolyline(std::size_t begin, std::size_t end, PointAt point, Accepts accepts, Keep keep) {
+    std::vector<std::pair<std::size_t, std::size_t>> open{{begin, end}};
+    while (!open.empty()) {
+        const auto [from, to] = open.back();
+        open.pop_back();
+        const Segment2 chord{point(from), point(to)};
+        std::size_t farthest = from + 1;
+        double apart = -1;
+        for (std::size_t i = from + 1; i < to; ++i)
+            if (const double off = distance(point(i), chord); off > apart) {
+                apart = off;
+                farthest = i;
+            }
+        if (to == from + 1 || accepts(from, to, apart)) {
+            keep(to);
+        } else {
+            open.emplace_back(farthest, to);
+            open.emplace_back(from, farthest);
+        }
+    }
+}
+
+}  // namespace ispace
