@@ -69,7 +69,7 @@ bool Level::isFree(Point2 p) const {
     return !is_on_sheet;
 }
 
-bool Level::isBuried(Point2 p) const { return solids().isDeepIn(p, kRayEpsilon); }
+bool Level::isBuried(Point2 p) const { return solids().containsWithMargin(p, kRayEpsilon); }
 
 std::vector<Polygon> Level::solidsTouching(Point2 p) const {
     return solids().touching(p, kRayEpsilon);

@@ -54,11 +54,11 @@ double distanceFromEdges(const Polygon& polygon, Point2 p) {
     return least;
 }
 
-bool isDeepInOne(const Polygon& polygon, Point2 p, double depth) {
-    return locate(polygon, p) == Side::Inside && distanceFromEdges(polygon, p) > depth;
-}
-
 }  // namespace
+
+bool containsWithMargin(const Polygon& polygon, Point2 p, double margin) {
+    return locate(polygon, p) == Side::Inside && distanceFromEdges(polygon, p) > margin;
+}
 
 RegionIndex::RegionIndex(std::span<const Region> regions) {
     Box2 box;
@@ -132,17 +132,12 @@ std::optional<std::size_t> PolygonIndex::holder(Point2 p) const {
     return holder;
 }
 
-bool PolygonIndex::isDeepIn(Point2 p, double depth) const {
+bool PolygonIndex::containsWithMargin(Point2 p, double margin) const {
     bool inside = false;
-    boxes_.search({p, p},
-                  [&](std::size_t i) { inside = inside || isDeepInOne(polygons_[i], p, depth); });
-    return inside;
-}
-
-bool isDeepIn(std::span<const Polygon> polygons, Point2 p, double depth) {
-    return std::any_of(polygons.begin(), polygons.end(), [&](const Polygon& polygon) {
-        return meets(bounds(polygon), {p, p}) && isDeepInOne(polygon, p, depth);
+    boxes_.search({p, p}, [&](std::size_t i) {
+        inside = inside || ispace::containsWithMargin(polygons_[i], p, margin);
     });
+    return inside;
 }
 
 std::vector<Polygon> PolygonIndex::touching(Point2 p, double reach) const {

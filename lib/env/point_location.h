@@ -44,8 +44,8 @@ class RegionIndex {
     CellSet inside_;  // by the centres of the cells
 };
 
-/// As PolygonIndex::isDeepIn, without an index: quicker for a few points. O(corners)
-[[nodiscard]] bool isDeepIn(std::span<const Polygon> polygons, Point2 p, double depth);
+/// True if p lies strictly inside, farther than `margin` from the edge. O(corners)
+[[nodiscard]] bool containsWithMargin(const Polygon& polygon, Point2 p, double margin);
 
 /// Tells which of many polygons a point is in, or near the edge of. Thread-safe.
 class PolygonIndex {
@@ -56,8 +56,8 @@ class PolygonIndex {
     [[nodiscard]] bool empty() const { return polygons_.empty(); }
     /// The first polygon that p lies in or on the edge of; exact.
     [[nodiscard]] std::optional<std::size_t> holder(Point2 p) const;
-    /// Strictly inside one of them, farther than `depth` from its edge.
-    [[nodiscard]] bool isDeepIn(Point2 p, double depth) const;
+    /// True if one of them contains p with that margin.
+    [[nodiscard]] bool containsWithMargin(Point2 p, double margin) const;
     /// Those whose edge comes within `reach` of p.
     [[nodiscard]] std::vector<Polygon> touching(Point2 p, double reach) const;
 

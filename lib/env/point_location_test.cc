@@ -74,26 +74,39 @@ TEST(RegionIndex, DoesWithoutAKnownPointOnTheBoundary) {
 TEST(PolygonIndex, DeepIsFartherFromTheEdgeThanTold) {
     const std::vector<Polygon> squares{square(0, 0), square(1, 0), square(5, 5)};
     const PolygonIndex index(squares);
-    EXPECT_TRUE(index.isDeepIn({0.5, 0.5}, 1e-4));
-    EXPECT_TRUE(index.isDeepIn({5.2, 5.7}, 1e-4));
-    EXPECT_FALSE(index.isDeepIn({0.5, 1e-5}, 1e-4));
-    EXPECT_FALSE(index.isDeepIn({1, 0.5}, 1e-4)) << "between two that touch";
-    EXPECT_FALSE(index.isDeepIn({3, 3}, 1e-4));
-    EXPECT_FALSE(PolygonIndex({}).isDeepIn({0, 0}, 1e-4));
+    EXPECT_TRUE(index.containsWithMargin({0.5, 0.5}, 1e-4));
+    EXPECT_TRUE(index.containsWithMargin({5.2, 5.7}, 1e-4));
+    EXPECT_FALSE(index.containsWithMargin({0.5, 1e-5}, 1e-4));
+    EXPECT_FALSE(index.containsWithMargin({1, 0.5}, 1e-4)) << "between two that touch";
+    EXPECT_FALSE(index.containsWithMargin({3, 3}, 1e-4));
+    EXPECT_FALSE(PolygonIndex({}).containsWithMargin({0, 0}, 1e-4));
 }
 
-TEST(PolygonIndex, NeedsNoIndexToBeDeep) {
+TEST(ContainsWithMargin, AgreesWithTheIndex) {
     const std::vector<Polygon> squares = {square(0, 0), square(1, 0), square(5, 5.5)};
     const PolygonIndex index(squares);
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> place(-0.5, 7);
     for (int i = 0; i < 3000; ++i) {
         const Point2 p{place(random), place(random)};
-        EXPECT_EQ(isDeepIn(squares, p, 0.01), index.isDeepIn(p, 0.01)) << p.x << ' ' << p.y;
+        const bool is_in_one = std::any_of(
+            squares.begin(), squares.end(),
+            [p](const Polygon& polygon) { return containsWithMargin(polygon, p, 0.01); });
+        EXPECT_EQ(is_in_one, index.containsWithMargin(p, 0.01)) << p.x << ' ' << p.y;
     }
-    EXPECT_TRUE(isDeepIn(squares, {0.5, 0.5}, 1e-4));
-    EXPECT_FALSE(isDeepIn(squares, {1, 0.5}, 1e-4)) << "between two that touch";
-    EXPECT_FALSE(isDeepIn({}, {0, 0}, 1e-4));
+}
+
+TEST(ContainsWithMargin, RejectsPointsNearTheEdge) {
+    constexpr double kMargin = 1e-6;
+    const Polygon unit = square(0, 0);
+    EXPECT_TRUE(containsWithMargin(unit, {0.5, 0.5}, kMargin));
+    EXPECT_TRUE(containsWithMargin(unit, {0.5, 2 * kMargin}, kMargin));
+    EXPECT_FALSE(containsWithMargin(unit, {0.5, kMargin / 2}, kMargin));
+    EXPECT_FALSE(containsWithMargin(unit, {1 - kMargin / 2, 0.5}, kMargin));
+    EXPECT_FALSE(containsWithMargin(unit, {0, 0.5}, kMargin));
+    EXPECT_FALSE(containsWithMargin(unit, {2, 0.5}, kMargin)) << "far from the edges, but outside";
+    EXPECT_FALSE(containsWithMargin({{0, 0}, {1, 0}}, {0.5, 0}, kMargin));
+    EXPECT_FALSE(containsWithMargin({}, {0, 0}, kMargin));
 }
 
 TEST(PolygonIndex, HoldsTheirEdges) {

@@ -12,42 +12,19 @@
 #include "env/info.h"
 #include "env/point_location.h"
 #include "env/walls.h"
+#include "layout/check_scene.h"
 #include "layout/overlap.h"
-#include "layout/scene.h"
 
 namespace ispace {
 
-/// What all checks look at.
-struct CheckContext {
-    explicit CheckContext(const Scene& from);
-
-    [[nodiscard]] const Element& element(std::size_t i) const {
-        return scene.environment.elements()[i];
-    }
-    /// Outside the room, and farther from its walls than touching.
-    [[nodiscard]] bool isOut(Point2 p) const { return !indoor.isWithin(p, kTouching); }
-    /// Furniture, pillars, ceiling frames, meshes.
-    [[nodiscard]] bool isObject(std::size_t i) const;
-    /// "desk d1", or the id alone where that is keyword and number.
-    [[nodiscard]] std::string name(std::size_t i) const;
-    [[nodiscard]] std::string placedName(std::size_t placed) const;
-    /// A finding at an element, its name before the message.
-    [[nodiscard]] Diagnostic finding(std::size_t i, const std::string& message) const;
-
-    const Scene& scene;
-    const RegionIndex& indoor;
-    Parts parts;
-    std::map<std::size_t, MeshCuts> meshes;  ///< by element
-};
-
-/// "0.12 m", rounded up.
-std::string wayText(double way);
+struct CheckContext;
 
 /// Objects and zones: what they share with others, and whether they are in the room.
 class ThingCheck {
   public:
     explicit ThingCheck(CheckContext& context) : context_(&context) {}
-    void check(std::size_t element, Diagnostics& findings);
+    void checkObject(std::size_t element, std::vector<Finding>& findings);
+    void checkZone(std::size_t element, std::vector<Finding>& findings) const;
 
   private:
     struct Shared {
@@ -55,9 +32,7 @@ class ThingCheck {
         double way = 0;  ///< 0: not known
     };
 
-    void checkObject(std::size_t element, Diagnostics& findings);
-    void checkZone(std::size_t element, Diagnostics& findings) const;
-    void checkInRoom(std::size_t element, bool in_wall, Diagnostics& findings) const;
+    void checkInRoom(std::size_t element, bool in_wall, std::vector<Finding>& findings) const;
     [[nodiscard]] bool isPartOfBuilding(std::size_t element) const;
     /// The elements after this one, and walls, that may share space with it; ascending.
     [[nodiscard]] std::vector<std::size_t> neighbours(std::size_t element) const;
@@ -69,15 +44,15 @@ class ThingCheck {
     CheckContext* context_;
 };
 
-/// What is placed: sensors at a point, robots and people as circles.
-class PlacedCheck {
+/// Robots and people as circles that stand in objects or in each other.
+class CircleCheck {
   public:
-    explicit PlacedCheck(CheckContext& context);
-    void check(std::size_t placed, Diagnostics& findings);
+    explicit CircleCheck(CheckContext& context);
+    void check(std::size_t record, std::vector<Finding>& findings);
 
   private:
     struct Circle {
-        std::size_t placed;
+        std::size_t record;
         Point2 center;
         double radius, height;
     };
@@ -85,9 +60,6 @@ class PlacedCheck {
         Point2 place;
         double way;
     };
-
-    void checkPoint(std::size_t placed, Diagnostics& findings);
-    void checkCircle(const Circle& circle, Diagnostics& findings);
     /// What the meshes of an element fill below a height.
     struct MeshBand {
         Slice band;
@@ -96,12 +68,68 @@ class PlacedCheck {
 
     const MeshBand& bandOf(std::size_t element, double height);
     [[nodiscard]] std::map<std::size_t, Met> metBy(const Circle& circle);
-    [[nodiscard]] Diagnostic finding(std::size_t placed, const std::string& message) const;
 
     CheckContext* context_;
     std::vector<Circle> circles_;  // in order
     BoxTree tree_;                 // of the circles
     std::map<std::pair<std::size_t, double>, MeshBand> bands_;
 };
+
+/// The scene under check and the derived data that several checks share, made when first needed.
+struct CheckContext {
+    explicit CheckContext(const Scene& from);
+
+    [[nodiscard]] const Element& element(std::size_t i) const {
+        return scene.environment.elements()[i];
+    }
+    /// Outside the room, and farther from its walls than touching.
+    [[nodiscard]] bool isOut(Point2 p) const { return !indoor.isWithin(p, kTouching); }
+    /// Furniture, pillars, ceiling frames, meshes.
+    [[nodiscard]] bool isObject(std::size_t element) const;
+    /// "desk d1", or the id alone where that is keyword and number.
+    [[nodiscard]] std::string name(std::size_t record) const;
+    [[nodiscard]] std::string elementName(std::size_t element) const;
+    /// A finding about a record, its name before the message.
+    [[nodiscard]] Finding finding(std::size_t record, Severity severity, Point2 at,
+                                  const std::string& message, std::string hint) const;
+    /// A warning about an element.
+    [[nodiscard]] Finding warning(std::size_t element, Point2 at, const std::string& message,
+                                  std::string hint) const;
+
+    const Parts& parts();
+    std::map<std::size_t, MeshCuts>& meshes();  ///< by element
+    /// The findings about walls and doors, by element.
+    const std::multimap<std::size_t, Finding>& walls();
+    CircleCheck& circles();
+
+    const Scene& scene;
+    const RegionIndex& indoor;
+    std::vector<std::size_t> records;                    ///< by element
+    std::vector<std::optional<std::size_t>> element_of;  ///< by record
+    std::vector<const Placed*> placed_of;                ///< by record, or null
+
+  private:
+    std::optional<Parts> parts_;
+    std::optional<std::map<std::size_t, MeshCuts>> meshes_;
+    std::optional<std::multimap<std::size_t, Finding>> walls_;
+    std::optional<CircleCheck> circles_;
+};
+
+/// "0.12 m", rounded up.
+std::string wayText(double way);
+
+/// Findings of walls that cross and of open doors that lead into a wall.
+std::multimap<std::size_t, Finding> wallFindings(const CheckContext& context);
+
+void checkLooseEnds(CheckContext& context, std::size_t record, std::vector<Finding>& findings);
+void checkUnplaced(CheckContext& context, std::size_t record, std::vector<Finding>& findings);
+void checkOutside(CheckContext& context, std::size_t record, std::vector<Finding>& findings);
+void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>& findings);
+void checkPath(CheckContext& context, std::size_t record, std::vector<Finding>& findings);
+
+/// True once a scene has as many findings as are reported.
+inline bool isFull(const std::vector<Finding>& findings) {
+    return findings.size() >= Diagnostics::kMax;
+}
 
 }  // namespace ispace

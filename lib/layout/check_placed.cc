@@ -5,8 +5,10 @@
 #include "base/number.h"
 #include "env/slice.h"
 #include "geom/predicates.h"
+#include "geom/visibility.h"
 #include "layout/bodies.h"
 #include "layout/check_parts.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
@@ -29,19 +31,86 @@ Point2 nearestOf(const Polygon& polygon, Point2 p) {
 
 }  // namespace
 
-PlacedCheck::PlacedCheck(CheckContext& context) : context_(&context) {
+void checkUnplaced(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    if (record == context.scene.records.size()) return;
+    const Record& sensor = context.scene.records[record];
+    const SensorKind* const kind = sensorKind(sensor.keyword());
+    if (kind == nullptr || !kind->is_read || sensor.has("at") || sensor.has("on")) return;
+    findings.push_back(context.finding(record, Severity::Warning, {},
+                                       " has no position and takes no readings",
+                                       std::string("give it `at` or `on`") +
+                                           (kind->is_arranged ? ", or let arrange place it" : "")));
+}
+
+void checkOutside(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    const Placed* const placed = context.placed_of[record];
+    if (placed == nullptr || placed->mount) return;
+    const Point3 p = placed->pose.position;
+    const bool is_out = context.isOut(p.onFloor());
+    if (!is_out && p.z >= -kTouching) return;
+    findings.push_back(
+        context.finding(record, Severity::Error, p.onFloor(),
+                        (is_out ? " stands outside the room at " : " stands below the floor at ") +
+                            placeText(p.onFloor()),
+                        is_out ? "move it in" : "raise it by " + wayText(-p.z)));
+}
+
+void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    const Placed* const placed = context.placed_of[record];
+    if (placed == nullptr || context.scene.records[record].schema().find("on") == nullptr) return;
+    const Point3 p = placed->pose.position;
+    const Point2 at = p.onFloor();
+    // A level laser measures in the plane of its height, where tops and bottoms count as solid.
+    const double slack = context.scene.records[record].keyword() == "laser" ? 0 : kTouching;
+    std::map<std::size_t, double> tops;  // of the solids around it, by element
+    context.parts().search({at, at}, [&](const Part& part) {
+        if (part.isSheet() || p.z < part.bottom + slack || p.z > part.top - slack) return;
+        if (!containsWithMargin(part.footprint, at, kRayEpsilon)) return;
+        tops[part.element] = std::max(tops[part.element], part.top);
+    });
+    for (auto& [element, mesh] : context.meshes()) {
+        if (!meets(mesh.box(), {at, at}) || p.z <= mesh.heights().bottom ||
+            p.z >= mesh.heights().top)
+            continue;
+        for (const Polygon& solid : mesh.at(p.z).solids)
+            if (containsWithMargin(solid, at, kRayEpsilon)) tops[element] = mesh.heights().top;
+    }
+    for (const auto& [element, top] : tops)
+        findings.push_back(context.finding(
+            record, Severity::Error, at,
+            " stands inside " + context.elementName(element) + " at " + placeText(at),
+            "move it, or raise it above " + formatFixed(top, 2) + " m"));
+}
+
+void checkPath(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    const Placed* const placed = context.placed_of[record];
+    if (placed == nullptr) return;
+    const Scene& scene = context.scene;
+    const std::string& keyword = scene.records[record].keyword();
+    if (keyword != "robot" && keyword != "human") return;
+    const std::vector<Point2>& path = keyword == "robot" ? scene.robots[placed->index].course.path
+                                                         : scene.people[placed->index].course.path;
+    if (context.isOut(placed->pose.position.onFloor())) return;
+    const auto lost =
+        std::find_if(path.begin(), path.end(), [&context](Point2 p) { return context.isOut(p); });
+    if (lost == path.end()) return;
+    findings.push_back(context.finding(record, Severity::Warning, *lost,
+                                       " has a path that leaves the room at " + placeText(*lost),
+                                       "move that point in"));
+}
+
+CircleCheck::CircleCheck(CheckContext& context) : context_(&context) {
     const Scene& scene = context.scene;
     std::vector<Box2> boxes;
-    for (std::size_t i = 0; i < scene.placed.size(); ++i) {
-        const Placed& placed = scene.placed[i];
+    for (const Placed& placed : scene.placed) {
         const Record& record = scene.records[placed.record];
         const Point2 center = placed.pose.position.onFloor();
         if (record.keyword() == "robot") {
             const RobotModel& model = scene.robots[placed.index].model;
-            circles_.push_back({i, center, model.radius, model.height});
+            circles_.push_back({placed.record, center, model.radius, model.height});
         } else if (record.keyword() == "human") {
             const double height = record.number("height");
-            circles_.push_back({i, center, humanRadius(height), height});
+            circles_.push_back({placed.record, center, humanRadius(height), height});
         } else {
             continue;
         }
@@ -50,50 +119,7 @@ PlacedCheck::PlacedCheck(CheckContext& context) : context_(&context) {
     tree_ = BoxTree(boxes);
 }
 
-Diagnostic PlacedCheck::finding(std::size_t placed, const std::string& message) const {
-    const Scene& scene = context_->scene;
-    return scene.records[scene.placed[placed].record].finding(context_->placedName(placed) +
-                                                              message);
-}
-
-void PlacedCheck::check(std::size_t placed, Diagnostics& findings) {
-    const Placed& thing = context_->scene.placed[placed];
-    const Point2 p = thing.pose.position.onFloor();
-    // What a robot carries is where that is.
-    if (!thing.mount && context_->isOut(p))
-        findings.add(
-            finding(placed, " stands outside the room at " + placeText(p) + "; move it in"));
-    const auto circle =
-        std::lower_bound(circles_.begin(), circles_.end(), placed,
-                         [](const Circle& c, std::size_t i) { return c.placed < i; });
-    if (circle != circles_.end() && circle->placed == placed)
-        checkCircle(*circle, findings);
-    else if (context_->scene.records[thing.record].schema().find("on") != nullptr)
-        checkPoint(placed, findings);
-}
-
-void PlacedCheck::checkPoint(std::size_t placed, Diagnostics& findings) {
-    const Point3 p = context_->scene.placed[placed].pose.position;
-    std::map<std::size_t, double> tops;  // of the solids around it, by element
-    context_->parts.search({p.onFloor(), p.onFloor()}, [&](const Part& part) {
-        if (part.isSheet() || p.z <= part.bottom + kTouching || p.z >= part.top - kTouching) return;
-        if (!isDeepIn(part.footprint, p.onFloor())) return;
-        tops[part.element] = std::max(tops[part.element], part.top);
-    });
-    for (auto& [element, mesh] : context_->meshes) {
-        const Box2 at{p.onFloor(), p.onFloor()};
-        if (!meets(mesh.box(), at) || p.z <= mesh.heights().bottom || p.z >= mesh.heights().top)
-            continue;
-        for (const Polygon& solid : mesh.at(p.z).solids)
-            if (isDeepIn(solid, p.onFloor())) tops[element] = mesh.heights().top;
-    }
-    for (const auto& [element, top] : tops)
-        findings.add(finding(placed, " stands inside " + context_->name(element) + " at " +
-                                         placeText(p.onFloor()) + "; move it, or raise it above " +
-                                         formatFixed(top, 2) + " m"));
-}
-
-const PlacedCheck::MeshBand& PlacedCheck::bandOf(std::size_t element, double height) {
+const CircleCheck::MeshBand& CircleCheck::bandOf(std::size_t element, double height) {
     constexpr std::size_t kKept = 16;
     const auto known = bands_.find({element, height});
     if (known != bands_.end()) return known->second;
@@ -110,7 +136,7 @@ const PlacedCheck::MeshBand& PlacedCheck::bandOf(std::size_t element, double hei
     return near;
 }
 
-std::map<std::size_t, PlacedCheck::Met> PlacedCheck::metBy(const Circle& circle) {
+std::map<std::size_t, CircleCheck::Met> CircleCheck::metBy(const Circle& circle) {
     std::map<std::size_t, Met> met;
     const HeightRange heights{0, circle.height};
     const auto look = [&](std::size_t element, const Polygon& footprint) {
@@ -124,10 +150,10 @@ std::map<std::size_t, PlacedCheck::Met> PlacedCheck::metBy(const Circle& circle)
         if (!is_new && way > place->second.way) place->second = {nearest, way};
     };
     const Box2 box = boxAbout(circle.center, circle.radius);
-    context_->parts.search(box, [&](const Part& part) {
+    context_->parts().search(box, [&](const Part& part) {
         if (sharedHeights(part, heights).isShared()) look(part.element, part.footprint);
     });
-    for (const auto& entry : context_->meshes) {
+    for (const auto& entry : context_->meshes()) {
         const std::size_t element = entry.first;
         const MeshCuts& mesh = entry.second;
         if (!meets(mesh.box(), box) || !sharedHeights(mesh.heights(), heights).isShared()) continue;
@@ -140,30 +166,36 @@ std::map<std::size_t, PlacedCheck::Met> PlacedCheck::metBy(const Circle& circle)
     return met;
 }
 
-void PlacedCheck::checkCircle(const Circle& circle, Diagnostics& findings) {
+void CircleCheck::check(std::size_t record, std::vector<Finding>& findings) {
+    const auto found =
+        std::lower_bound(circles_.begin(), circles_.end(), record,
+                         [](const Circle& c, std::size_t i) { return c.record < i; });
+    if (found == circles_.end() || found->record != record) return;
+    const Circle& circle = *found;
     for (const auto& [element, met] : metBy(circle)) {
-        if (findings.full()) return;
-        findings.add(finding(circle.placed, " stands in " + context_->name(element) + " near " +
-                                                placeText(met.place) + "; move it, e.g. by " +
-                                                wayText(met.way)));
+        if (isFull(findings)) return;
+        findings.push_back(context_->finding(
+            record, Severity::Error, met.place,
+            " stands in " + context_->elementName(element) + " near " + placeText(met.place),
+            "move it, e.g. by " + wayText(met.way)));
     }
     std::vector<const Circle*> others;
     tree_.search(boxAbout(circle.center, circle.radius), [&](std::size_t i) {
         const Circle& other = circles_[i];
-        if (other.placed > circle.placed &&
+        if (other.record > circle.record &&
             distance(circle.center, other.center) < circle.radius + other.radius - kTouching)
             others.push_back(&other);
     });
     std::sort(others.begin(), others.end(),
-              [](const Circle* a, const Circle* b) { return a->placed < b->placed; });
+              [](const Circle* a, const Circle* b) { return a->record < b->record; });
     for (const Circle* other : others) {
-        if (findings.full()) return;
+        if (isFull(findings)) return;
         const double away = distance(circle.center, other->center);
         const Point2 middle = circle.center + 0.5 * (other->center - circle.center);
-        findings.add(finding(circle.placed, " overlaps " + context_->placedName(other->placed) +
-                                                " near " + placeText(middle) +
-                                                "; move one, e.g. by " +
-                                                wayText(circle.radius + other->radius - away)));
+        findings.push_back(context_->finding(
+            record, Severity::Error, middle,
+            " overlaps " + context_->name(other->record) + " near " + placeText(middle),
+            "move one, e.g. by " + wayText(circle.radius + other->radius - away)));
     }
 }
 

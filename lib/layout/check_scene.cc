@@ -2,6 +2,7 @@
 #include "layout/check_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -20,7 +21,7 @@ namespace ispace {
 namespace {
 
 /// Metres beyond a door at which its two sides are tested.
-constexpr double kBeside = 0.01;
+constexpr double kBesideDoor = 0.01;
 
 WallPlan planOf(const std::vector<Element>& elements, Diagnostics& ignored) {
     WallPlan plan;
@@ -52,13 +53,13 @@ std::optional<Behind> wallBehind(const WallPlan& plan, Point2 from, Vec2 directi
     return nearest;
 }
 
-/// Open doors that lead out of the room into a wall close behind, as between two rooms whose walls
-/// stand apart: what to say of them, by the index of their element. O(doors x walls).
-std::map<std::size_t, std::string> blockedDoors(const Environment& environment) {
+/// Adds the open doors that lead out of the room into a wall close behind, as between two rooms
+/// whose walls stand apart. O(doors x walls).
+void addBlockedDoors(const CheckContext& context, std::multimap<std::size_t, Finding>& found) {
+    const Environment& environment = context.scene.environment;
     const std::vector<Element>& elements = environment.elements();
     Diagnostics ignored;  // the environment would not be there with any
     const WallPlan plan = planOf(elements, ignored);
-    std::map<std::size_t, std::string> blocked;
     for (const Opening& door : placeOpenings(elements, plan, ignored)) {
         if (!door.passage) continue;
         const Segment2& wall = plan.lines[door.line];
@@ -66,105 +67,136 @@ std::map<std::size_t, std::string> blockedDoors(const Environment& environment) 
         const Point2 middle = wall.a + (door.from + door.to) / 2 * along;
         const double face = door.depth / 2;
         const auto is_indoor = [&](Vec2 side) {
-            return environment.indoor().locate(middle + (face + kBeside) * side) == Side::Inside;
+            return environment.indoor().locate(middle + (face + kBesideDoor) * side) ==
+                   Side::Inside;
         };
         const Vec2 left = perpendicular(along);
         if (is_indoor(left) == is_indoor(-left)) continue;
         const Vec2 out = is_indoor(left) ? -left : left;
         const auto behind = wallBehind(plan, middle, out, face + kWeldDistance);
         if (!behind) continue;
-        std::string text = " is open, but leads only to " +
-                           nameOf(elements[plan.owner[behind->line]]) + ", " +
-                           lengthText(behind->distance) + " m behind, near ";
-        text += placeText(middle) +
-                "; say how far it reaches through with size=" + lengthText(door.to - door.from) +
-                ',';
-        text += lengthText(2 * behind->distance);
-        blocked.emplace(door.element, std::move(text));
+        found.emplace(
+            door.element,
+            context.warning(
+                door.element, middle,
+                " is open, but leads only to " + nameOf(elements[plan.owner[behind->line]]) + ", " +
+                    lengthText(behind->distance) + " m behind, near " + placeText(middle),
+                "say how far it reaches through with size=" + lengthText(door.to - door.from) +
+                    ',' + lengthText(2 * behind->distance)));
     }
-    return blocked;
 }
 
 /// An end of a wall this near to another was meant to meet it, in metres.
 constexpr double kLooseReach = 0.2;
 
-/// All findings of a scene, record by record.
-class SceneCheck {
-  public:
-    explicit SceneCheck(const Scene& scene)
-        : context_(scene), things_(context_), placed_(context_) {
-        crossings_ = wallCrossings(scene.environment.elements(), Diagnostics::kMax + 1);
-        blocked_ = blockedDoors(scene.environment);
-    }
+void checkWalls(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    const auto element = context.element_of[record];
+    if (!element) return;
+    const auto [first, last] = context.walls().equal_range(*element);
+    for (auto found = first; found != last; ++found) findings.push_back(found->second);
+}
 
-    Diagnostics run() {
-        const Scene& scene = context_.scene;
-        std::size_t element = 0, placed = 0;
-        for (std::size_t i = 0; i < scene.records.size() && !findings_.full(); ++i) {
-            if (scene.records[i].schema().isEnvironment()) {
-                checkWalls(element);
-                things_.check(element, findings_);
-                ++element;
-            } else if (placed < scene.placed.size() && scene.placed[placed].record == i) {
-                placed_.check(placed, findings_);
-                ++placed;
-            }
-        }
-        checkLooseEnds();
-        return findings_;
-    }
+void checkObjects(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    const auto element = context.element_of[record];
+    if (element && context.isObject(*element)) ThingCheck(context).checkObject(*element, findings);
+}
 
-  private:
-    /// Ends of walls that hang in the room just before another wall.
-    void checkLooseEnds() {
-        const std::vector<Segment2>& lines = context_.scene.environment.wallLines();
-        std::map<std::pair<double, double>, int> meeting;  // lines, by their end
-        for (const Segment2& line : lines)
-            for (const Point2 p : {line.a, line.b}) ++meeting[{p.x, p.y}];
-        std::set<std::pair<double, double>> ends;
-        std::optional<Closing> narrowest;
-        for (const Closing& gap : closings(lines, {}, kLooseReach)) {
-            const Point2 middle = gap.line.a + 0.5 * (gap.line.b - gap.line.a);
-            if (context_.indoor.locate(middle) != Side::Inside) continue;
-            if (!narrowest) narrowest = gap;  // they come by width
-            for (const Point2 p : {gap.line.a, gap.line.b}) {
-                const auto found = meeting.find({p.x, p.y});
-                if (found != meeting.end() && found->second == 1) ends.insert(found->first);
-            }
-        }
-        if (!narrowest) return;
-        const Diagnostic place = context_.finding(0, "");
-        findings_.add({place.file, 0, 0,
-                       std::to_string(ends.size()) +
-                           (ends.size() == 1 ? " loose end of a wall" : " loose ends of walls") +
-                           ", the narrowest gap " + lengthText(narrowest->width) + " m near " +
-                           placeText(narrowest->line.a) + "; make them meet",
-                       Severity::Warning});
-    }
+void checkZones(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    const auto element = context.element_of[record];
+    if (element && context.element(*element).record.keyword() == "zone")
+        ThingCheck(context).checkZone(*element, findings);
+}
 
-    void checkWalls(std::size_t element) {
-        for (const WallCrossing& crossing : crossings_) {
-            if (crossing.a != element) continue;
-            std::string message = crossing.overlap ? " lies on " : " crosses ";
-            message += context_.name(crossing.b) + " near " + placeText(crossing.place);
-            message += crossing.overlap ? "; leave one of them out, or shorten it"
-                                        : "; end one of them at the other";
-            findings_.add(context_.finding(element, message));
-        }
-        if (const auto door = blocked_.find(element); door != blocked_.end())
-            findings_.add(context_.finding(element, door->second));
-    }
+void checkCollisions(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    context.circles().check(record, findings);
+}
 
-    CheckContext context_;
-    ThingCheck things_;
-    PlacedCheck placed_;
-    std::vector<WallCrossing> crossings_;
-    std::map<std::size_t, std::string> blocked_;
-    Diagnostics findings_;
-};
+constexpr std::array<SceneCheck, 9> kChecks{{{"walls", checkWalls},
+                                             {"objects", checkObjects},
+                                             {"zones", checkZones},
+                                             {"unplaced", checkUnplaced},
+                                             {"outside", checkOutside},
+                                             {"buried", checkBuried},
+                                             {"collisions", checkCollisions},
+                                             {"paths", checkPath},
+                                             {"loose ends", checkLooseEnds}}};
 
 }  // namespace
 
-Diagnostics checkScene(const Scene& scene) { return SceneCheck(scene).run(); }
+std::multimap<std::size_t, Finding> wallFindings(const CheckContext& context) {
+    std::multimap<std::size_t, Finding> found;
+    const auto& elements = context.scene.environment.elements();
+    for (const WallCrossing& crossing : wallCrossings(elements, Diagnostics::kMax + 1))
+        found.emplace(crossing.a,
+                      context.warning(crossing.a, crossing.place,
+                                      (crossing.overlap ? " lies on " : " crosses ") +
+                                          context.elementName(crossing.b) + " near " +
+                                          placeText(crossing.place),
+                                      crossing.overlap ? "leave one of them out, or shorten it"
+                                                       : "end one of them at the other"));
+    addBlockedDoors(context, found);
+    return found;
+}
+
+void checkLooseEnds(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    const Scene& scene = context.scene;
+    if (record < scene.records.size()) return;
+    const std::vector<Segment2>& lines = scene.environment.wallLines();
+    std::map<std::pair<double, double>, int> meeting;  // lines, by their end
+    for (const Segment2& line : lines)
+        for (const Point2 p : {line.a, line.b}) ++meeting[{p.x, p.y}];
+    std::set<std::pair<double, double>> ends;
+    std::optional<Closing> narrowest;
+    for (const Closing& gap : closings(lines, {}, kLooseReach)) {
+        const Point2 middle = gap.line.a + 0.5 * (gap.line.b - gap.line.a);
+        if (context.indoor.locate(middle) != Side::Inside) continue;
+        if (!narrowest) narrowest = gap;  // they come by width
+        for (const Point2 p : {gap.line.a, gap.line.b}) {
+            const auto found = meeting.find({p.x, p.y});
+            if (found != meeting.end() && found->second == 1) ends.insert(found->first);
+        }
+    }
+    if (!narrowest) return;
+    findings.push_back(
+        {.at = narrowest->line.a,
+         .message = std::to_string(ends.size()) +
+                    (ends.size() == 1 ? " loose end of a wall" : " loose ends of walls") +
+                    ", the narrowest gap " + lengthText(narrowest->width) + " m near " +
+                    placeText(narrowest->line.a),
+         .hint = "make them meet",
+         .source = context.element(0).record.place().at({})});
+}
+
+Diagnostic Finding::diagnostic() const {
+    Diagnostic diagnostic = source.finding(text());
+    diagnostic.severity = severity;
+    return diagnostic;
+}
+
+std::span<const SceneCheck> sceneChecks() { return kChecks; }
+
+std::vector<Finding> checkScene(const Scene& scene, const FindingFilter& filter) {
+    CheckContext context(scene);
+    std::vector<Finding> findings;
+    const std::size_t count = scene.records.size();
+    for (std::size_t record = 0; record <= count && !isFull(findings); ++record) {
+        if (filter.ids && (record == count || !filter.ids(scene.ids[record]))) continue;
+        for (const SceneCheck& check : kChecks)
+            if (filter.checks.empty() || std::find(filter.checks.begin(), filter.checks.end(),
+                                                   check.name) != filter.checks.end())
+                check.run(context, record, findings);
+    }
+    return findings;
+}
+
+std::vector<Diagnostic> sceneWarnings(const Scene& scene, const FindingFilter& filter) {
+    std::vector<Diagnostic> warnings;
+    for (const Finding& finding : checkScene(scene, filter)) {
+        if (warnings.size() == Diagnostics::kMax) break;
+        warnings.push_back(finding.diagnostic());
+        warnings.back().severity = Severity::Warning;
+    }
+    return warnings;
+}
 
 }  // namespace ispace

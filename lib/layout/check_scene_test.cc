@@ -46,7 +46,9 @@ constexpr const char* kGood =
     "laser id=later\n";
 
 TEST(CheckScene, NothingToFind) {
-    EXPECT_EQ(check(kGood), "");
+    EXPECT_EQ(check(kGood),
+              "room.env:20:1: warning: laser later has no position and takes no readings; give it "
+              "`at` or `on`, or let arrange place it\n");
     EXPECT_EQ(check(""), "");
 }
 
@@ -180,10 +182,11 @@ TEST(CheckScene, SensorsInsideSolidsAndOutside) {
         check("cube id=c at=2,2 size=1\n", "laser id=l at=2,2\n"),
         "room.3dm:2:1: error: laser l stands inside cube c at (2.0, 2.0); move it, or raise it "
         "above 1.00 m\n");
-    for (const char* line : {"laser at=2,2,1", "laser at=1.5,2", "laser on=c", "tag at=2,2,1.5"})
+    for (const char* line : {"laser at=2,2,1.01", "laser at=1.5,2", "laser at=2,1.50005",
+                             "laser on=c", "tag at=2,2,1.5"})
         EXPECT_EQ(check("cube id=c at=2,2 size=1\n", std::string(line) + "\n"), "") << line;
     for (const char* line : {"camera at=2,2,0.5", "tag at=1.6,2", "ranger on=c at=0,0,-0.1",
-                             "ultrasound at=2,2,0.999"})
+                             "ultrasound at=2,2,0.999", "laser at=2,2,1"})
         EXPECT_NE(check("cube id=c at=2,2 size=1\n", std::string(line) + "\n"), "") << line;
     EXPECT_EQ(check("", "laser id=l at=9,3\n"),
               "room.3dm:2:1: error: laser l stands outside the room at (9.0, 3.0); move it in\n");
@@ -195,6 +198,35 @@ TEST(CheckScene, SensorsInsideSolidsAndOutside) {
     EXPECT_EQ(text,
               "room.3dm:2:1: error: robot r stands outside the room at (10.0, 3.0); move it "
               "in\n");
+}
+
+TEST(CheckScene, PathsThatLeaveTheRoom) {
+    EXPECT_EQ(check("", "human id=h at=6,3 path=6,3;9,3\n"),
+              "room.3dm:2:1: warning: human h has a path that leaves the room at (9.0, 3.0); move "
+              "that point in\n");
+    EXPECT_EQ(check("", "robot id=r at=2,2 path=2,2;6,2\n"), "");
+    EXPECT_EQ(check("", "laser id=l at=2,2,-0.05\n"),
+              "room.3dm:2:1: error: laser l stands below the floor at (2.0, 2.0); raise it by "
+              "0.05 m\n");
+}
+
+TEST(CheckScene, FiltersChecksAndIds) {
+    const Scene made =
+        scene("ispace id=room at=4,3 size=8,6\ncube id=c at=2,2 size=1\ncube at=2.2,2 size=1\n",
+              "laser id=in at=2,2\nlaser id=out at=9,3\nrobot id=r at=10,3\nlaser id=todo\n");
+    const auto found = [&made](const FindingFilter& filter) {
+        std::string ids;
+        for (const Finding& finding : checkScene(made, filter)) ids += finding.element + ' ';
+        return ids;
+    };
+    EXPECT_EQ(found({}), "c in in out r todo ");
+    EXPECT_EQ(found({.checks = {"outside"}}), "out r ");
+    EXPECT_EQ(found({.checks = {"unplaced", "buried"}}), "in in todo ");
+    const auto is_laser = [](const std::string& id) { return id == "out" || id == "todo"; };
+    EXPECT_EQ(found({.ids = is_laser}), "out todo ");
+    EXPECT_EQ(found({.checks = {"outside"}, .ids = is_laser}), "out ");
+    for (const Diagnostic& warning : sceneWarnings(made, {.checks = {"outside"}}))
+        EXPECT_EQ(warning.severity, Severity::Warning);
 }
 
 TEST(CheckScene, RobotsAndPeopleStandInThings) {

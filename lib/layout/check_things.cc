@@ -10,10 +10,6 @@ namespace ispace {
 
 namespace {
 
-std::string nameOf(const Record& record, const std::string& id) {
-    return record.writtenId().empty() ? id : record.keyword() + ' ' + id;
-}
-
 /// Directions that are tried when something has to move: normals of at most this many edges.
 constexpr std::size_t kDirections = 32;
 
@@ -49,54 +45,87 @@ double wayApart(const std::vector<PartPair>& pairs, const PartPair& deepest) {
 }  // namespace
 
 CheckContext::CheckContext(const Scene& from)
-    : scene(from), indoor(from.environment.indoorIndex()), parts(from.environment) {
-    const std::vector<Element>& elements = scene.environment.elements();
-    for (std::size_t i = 0; i < elements.size(); ++i)
-        if (!elements[i].body.meshes.empty()) meshes.emplace(i, MeshCuts(elements[i].body));
+    : scene(from),
+      indoor(from.environment.indoorIndex()),
+      element_of(from.records.size() + 1),
+      placed_of(from.records.size() + 1) {
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        if (!scene.records[i].schema().isEnvironment()) continue;
+        element_of[i] = records.size();
+        records.push_back(i);
+    }
+    for (const Placed& placed : scene.placed) placed_of[placed.record] = &placed;
 }
 
-bool CheckContext::isObject(std::size_t i) const {
-    const RecordType type = element(i).record.schema().type;
+const Parts& CheckContext::parts() {
+    if (!parts_) parts_.emplace(scene.environment);
+    return *parts_;
+}
+
+std::map<std::size_t, MeshCuts>& CheckContext::meshes() {
+    if (meshes_) return *meshes_;
+    meshes_.emplace();
+    const std::vector<Element>& elements = scene.environment.elements();
+    for (std::size_t i = 0; i < elements.size(); ++i)
+        if (!elements[i].body.meshes.empty()) meshes_->emplace(i, MeshCuts(elements[i].body));
+    return *meshes_;
+}
+
+const std::multimap<std::size_t, Finding>& CheckContext::walls() {
+    if (!walls_) walls_ = wallFindings(*this);
+    return *walls_;
+}
+
+CircleCheck& CheckContext::circles() {
+    if (!circles_) circles_.emplace(*this);
+    return *circles_;
+}
+
+bool CheckContext::isObject(std::size_t element) const {
+    const RecordType type = this->element(element).record.schema().type;
     return type == RecordType::Other || type == RecordType::Infra;
 }
 
-std::string CheckContext::name(std::size_t i) const {
-    return nameOf(element(i).record, element(i).id);
+std::string CheckContext::name(std::size_t record) const {
+    const Record& named = scene.records[record];
+    return named.writtenId().empty() ? scene.ids[record]
+                                     : named.keyword() + ' ' + scene.ids[record];
 }
 
-std::string CheckContext::placedName(std::size_t placed) const {
-    const std::size_t record = scene.placed[placed].record;
-    return nameOf(scene.records[record], scene.ids[record]);
+std::string CheckContext::elementName(std::size_t element) const { return name(records[element]); }
+
+Finding CheckContext::finding(std::size_t record, Severity severity, Point2 at,
+                              const std::string& message, std::string hint) const {
+    return {severity,
+            scene.ids[record],
+            at,
+            name(record) + message,
+            std::move(hint),
+            scene.records[record].place()};
 }
 
-Diagnostic CheckContext::finding(std::size_t i, const std::string& message) const {
-    Diagnostic diagnostic = element(i).record.finding(name(i) + message);
-    diagnostic.severity = Severity::Warning;
-    return diagnostic;
+Finding CheckContext::warning(std::size_t element, Point2 at, const std::string& message,
+                              std::string hint) const {
+    return finding(records[element], Severity::Warning, at, message, std::move(hint));
 }
 
 std::string wayText(double way) { return formatFixed(std::ceil(100 * way - 1e-6) / 100, 2) + " m"; }
 
-void ThingCheck::check(std::size_t element, Diagnostics& findings) {
-    if (context_->element(element).record.keyword() == "zone")
-        checkZone(element, findings);
-    else if (context_->isObject(element))
-        checkObject(element, findings);
-}
-
-void ThingCheck::checkObject(std::size_t element, Diagnostics& findings) {
+void ThingCheck::checkObject(std::size_t element, std::vector<Finding>& findings) {
     bool in_wall = isPartOfBuilding(element);
     for (const std::size_t other : neighbours(element)) {
-        if (findings.full()) return;
+        if (isFull(findings)) return;
         if (isPartOfBuilding(element) && isPartOfBuilding(other)) continue;
         const auto place = shared(element, other);
         if (!place) continue;
         const bool is_wall = !context_->isObject(other);
         in_wall = in_wall || is_wall;
-        std::string message = " overlaps " + context_->name(other) + " near " +
-                              placeText(place->place) + (is_wall ? "; move it" : "; move one");
-        if (place->way > 0) message += ", e.g. by " + wayText(place->way);
-        findings.add(context_->finding(element, message));
+        std::string hint = is_wall ? "move it" : "move one";
+        if (place->way > 0) hint += ", e.g. by " + wayText(place->way);
+        findings.push_back(context_->warning(
+            element, place->place,
+            " overlaps " + context_->elementName(other) + " near " + placeText(place->place),
+            std::move(hint)));
     }
     checkInRoom(element, in_wall, findings);
 }
@@ -114,16 +143,16 @@ std::vector<std::size_t> ThingCheck::neighbours(std::size_t element) const {
             out.push_back(other);
     };
     const auto look = [&](const Box2& box, const auto& heights) {
-        context_->parts.search(box, [&](const Part& part) {
+        context_->parts().search(box, [&](const Part& part) {
             if (sharedHeights(part, heights).isShared()) add(part.element);
         });
-        for (const auto& [other, mesh] : context_->meshes)
+        for (const auto& [other, mesh] : context_->meshes())
             if (meets(mesh.box(), box) && sharedHeights(mesh.heights(), heights).isShared())
                 add(other);
     };
-    for (const Part& part : context_->parts.of(element)) look(bounds(part.footprint), part);
-    const auto mesh = context_->meshes.find(element);
-    if (mesh != context_->meshes.end()) look(mesh->second.box(), mesh->second.heights());
+    for (const Part& part : context_->parts().of(element)) look(bounds(part.footprint), part);
+    const auto mesh = context_->meshes().find(element);
+    if (mesh != context_->meshes().end()) look(mesh->second.box(), mesh->second.heights());
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
@@ -131,7 +160,7 @@ std::vector<std::size_t> ThingCheck::neighbours(std::size_t element) const {
 
 std::optional<ThingCheck::Shared> ThingCheck::shared(std::size_t a, std::size_t b) {
     if (auto found = sharedParts(a, b)) return found;
-    auto& meshes = context_->meshes;
+    auto& meshes = context_->meshes();
     const auto mesh_a = meshes.find(a), mesh_b = meshes.find(b);
     std::optional<Point2> place;
     if (mesh_a != meshes.end() && mesh_b != meshes.end())
@@ -144,7 +173,7 @@ std::optional<ThingCheck::Shared> ThingCheck::shared(std::size_t a, std::size_t 
 std::optional<ThingCheck::Shared> ThingCheck::sharedParts(std::size_t a, std::size_t b) const {
     // Those that overlap tell how far to go for things that are built of very many parts.
     constexpr std::size_t kMaxPairs = 400;
-    const auto parts_a = context_->parts.of(a);
+    const auto parts_a = context_->parts().of(a);
     const bool is_wall = !context_->isObject(b);
     std::vector<PartPair> overlapping, beside;
     std::optional<Overlap> deepest;
@@ -160,17 +189,17 @@ std::optional<ThingCheck::Shared> ThingCheck::sharedParts(std::size_t a, std::si
         deepest_pair = {&first, &second};
     };
     for (const Part& first : parts_a) {
-        context_->parts.search(bounds(first.footprint), [&](const Part& second) {
+        context_->parts().search(bounds(first.footprint), [&](const Part& second) {
             if (second.element == b) look(first, second);
         });
     }
     if (!deepest) return std::nullopt;
-    const bool few = !is_wall && parts_a.size() * context_->parts.of(b).size() <= kMaxPairs;
+    const bool few = !is_wall && parts_a.size() * context_->parts().of(b).size() <= kMaxPairs;
     return Shared{deepest->place, wayApart(few ? beside : overlapping, deepest_pair)};
 }
 
 std::optional<Point2> ThingCheck::sharedMesh(MeshCuts& mesh, std::size_t other) {
-    for (const Part& part : context_->parts.of(other)) {
+    for (const Part& part : context_->parts().of(other)) {
         const HeightRange heights = sharedHeights(mesh.heights(), part);
         if (!heights.isShared() || !meets(mesh.box(), bounds(part.footprint))) continue;
         for (const double height : mesh.heightsIn(heights))
@@ -187,7 +216,8 @@ std::optional<Point2> ThingCheck::sharedMeshes(MeshCuts& a, MeshCuts& b) {
     return std::nullopt;
 }
 
-void ThingCheck::checkInRoom(std::size_t element, bool in_wall, Diagnostics& findings) const {
+void ThingCheck::checkInRoom(std::size_t element, bool in_wall,
+                             std::vector<Finding>& findings) const {
     std::optional<Point2> out, in;
     const auto look = [&](const Box2& box, const auto& points, const auto& on_floor) {
         // Away from the walls one point tells of all.
@@ -200,19 +230,21 @@ void ThingCheck::checkInRoom(std::size_t element, bool in_wall, Diagnostics& fin
             if (!near || (out && in)) return;
         }
     };
-    for (const Part& part : context_->parts.of(element))
+    for (const Part& part : context_->parts().of(element))
         look(bounds(part.footprint), part.footprint, [](Point2 p) { return p; });
-    const auto mesh = context_->meshes.find(element);
-    if (mesh != context_->meshes.end())
+    const auto mesh = context_->meshes().find(element);
+    if (mesh != context_->meshes().end())
         for (const Mesh& part : context_->element(element).body.meshes)
             look(mesh->second.box(), part.vertices, [](const Point3& p) { return p.onFloor(); });
     if (!out || (in && in_wall)) return;
-    findings.add(context_->finding(
-        element, (in ? " lies partly outside the room near " : " lies outside the room near ") +
-                     placeText(*out) + "; move it in or leave it out"));
+    findings.push_back(context_->warning(
+        element, *out,
+        (in ? " lies partly outside the room near " : " lies outside the room near ") +
+            placeText(*out),
+        "move it in or leave it out"));
 }
 
-void ThingCheck::checkZone(std::size_t element, Diagnostics& findings) const {
+void ThingCheck::checkZone(std::size_t element, std::vector<Finding>& findings) const {
     const RegionIndex& indoor = context_->indoor;
     const Polygon outline = zoneOutline(context_->element(element).record);
     bool in = false;
@@ -223,9 +255,9 @@ void ThingCheck::checkZone(std::size_t element, Diagnostics& findings) const {
     });
     if (!in) in = indoor.locate(interiorPoint({outline, {}})) == Side::Inside;
     if (!in)
-        findings.add(context_->finding(element, " lies outside the room near " +
-                                                    placeText(outline.front()) +
-                                                    "; move it in or leave it out"));
+        findings.push_back(context_->warning(
+            element, outline.front(), " lies outside the room near " + placeText(outline.front()),
+            "move it in or leave it out"));
 }
 
 }  // namespace ispace

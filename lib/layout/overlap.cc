@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "env/body.h"
+#include "env/point_location.h"
 #include "env/slice.h"
 #include "geom/boolean.h"
 #include "geom/polygon.h"
@@ -109,7 +110,8 @@ std::optional<Point2> placeBeside(const Polygon& a, const Polygon& b) {
     for (std::size_t i = 0; i < a.size() && i < 8; ++i) {
         const Point2 p = a[i], q = a[i + 1 == a.size() ? 0 : i + 1];
         const Point2 beside = p + 0.5 * (q - p) + kBeside * perpendicular(q - p);
-        if (isDeepIn(a, beside) && isDeepIn(b, beside)) return beside;
+        if (containsWithMargin(a, beside, kTouching) && containsWithMargin(b, beside, kTouching))
+            return beside;
     }
     return std::nullopt;
 }
@@ -124,15 +126,6 @@ std::optional<Point2> edgeWithin(const Polygon& a, const Polygon& b) {
 }
 
 }  // namespace
-
-bool isDeepIn(const Polygon& polygon, Point2 p) {
-    if (locate(polygon, p) != Side::Inside) return false;
-    bool deep = true;
-    forEachEdge(polygon, [&](const Segment2& edge) {
-        if (deep && distance(p, edge) <= kTouching) deep = false;
-    });
-    return deep;
-}
 
 std::optional<Overlap> overlapOf(const Polygon& a, const Polygon& b) {
     // Things that are apart mostly are so along the way from one to the other.
@@ -162,7 +155,7 @@ std::optional<Point2> placeWithin(const Segment2& line, const Polygon& polygon) 
     for (std::size_t i = 1; i < at.size(); ++i) {
         if ((at[i] - at[i - 1]) * extent <= kTouching) continue;
         const Point2 middle = line.a + (at[i - 1] + at[i]) / 2 * (line.b - line.a);
-        if (isDeepIn(polygon, middle)) return middle;
+        if (containsWithMargin(polygon, middle, kTouching)) return middle;
     }
     return std::nullopt;
 }

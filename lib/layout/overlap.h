@@ -20,9 +20,6 @@ namespace ispace {
 /// in spite of rounding, as wall ends that are this near are welded.
 constexpr double kTouching = 1e-6;
 
-/// True if p lies deeper in the polygon than kTouching. O(n)
-bool isDeepIn(const Polygon& polygon, Point2 p);
-
 /// How far two things reach into each other, and the middle of what they share.
 struct Overlap {
     double depth = 0;  ///< the shortest way that parts them, in metres

@@ -20,17 +20,6 @@ Polygon moved(Polygon polygon, Vec2 way) {
     return polygon;
 }
 
-TEST(Overlap, DeepIn) {
-    EXPECT_TRUE(isDeepIn(kSquare, {0.5, 0.5}));
-    EXPECT_TRUE(isDeepIn(kSquare, {0.5, 2 * kTouching}));
-    EXPECT_FALSE(isDeepIn(kSquare, {0.5, kTouching / 2})) << "inside, but touching";
-    EXPECT_FALSE(isDeepIn(kSquare, {1 - kTouching / 2, 0.5}));
-    EXPECT_FALSE(isDeepIn(kSquare, {0, 0.5}));
-    EXPECT_FALSE(isDeepIn(kSquare, {2, 0.5})) << "far from the edges, but outside";
-    EXPECT_FALSE(isDeepIn({{0, 0}, {1, 0}}, {0.5, 0}));
-    EXPECT_FALSE(isDeepIn({}, {0, 0}));
-}
-
 TEST(Overlap, OfSquares) {
     const auto overlap = overlapOf(kSquare, moved(kSquare, {0.75, 0.5}));
     ASSERT_TRUE(overlap);

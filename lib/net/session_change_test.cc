@@ -59,14 +59,15 @@ TEST(SessionChange, WarnsOfWhatIsOutsideTheRoom) {
     Changing talk;
     Session& world = talk.client("WORLD");
     EXPECT_EQ(talk.answer(world, "ADD robot id=far at=50,50"),
-              "OK ADD id=far t=0.000 warning=far stands outside the room at 50,50\n");
-    EXPECT_EQ(talk.answer(world, "ADD human id=h1 at=2,-2 path=2,0;9,0"),
-              "OK ADD id=h1 t=0.000 warning=the path of h1 leads out of the room to 9,0\n");
+              "OK ADD id=far t=0.000 warning=robot far stands outside the room at (50.0, 50.0)\n");
+    EXPECT_EQ(
+        talk.answer(world, "ADD human id=h1 at=2,-2 path=2,0;9,0"),
+        "OK ADD id=h1 t=0.000 warning=human h1 has a path that leaves the room at (9.0, 0.0)\n");
     EXPECT_EQ(talk.answer(world, "SET far.at=-2,2"), "OK SET t=0.000\n");
     EXPECT_EQ(talk.answer(world, "SET r2.at=0,7"),
-              "OK SET t=0.000 warning=r2 stands outside the room at 0,7\n");
+              "OK SET t=0.000 warning=robot r2 stands outside the room at (0.0, 7.0)\n");
     EXPECT_EQ(talk.answer(world, "SET r1.path=1,1;1,-8"),
-              "OK SET t=0.000 warning=the path of r1 leads out of the room to 1,-8\n");
+              "OK SET t=0.000 warning=robot r1 has a path that leaves the room at (1.0, -8.0)\n");
     EXPECT_EQ(talk.answer(world, "SET l1.rate=5"), "OK SET t=0.000\n") << "is about no robot";
     EXPECT_EQ(talk.answer(world, "ADD cube at=-3,0 size=0.1,0.1,1"), "OK ADD id=cube1 t=0.000\n");
     for (const char* at : {"60,0", "61,0", "62,0", "63,0"})

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "layout/check_scene.h"
 #include "layout/scene_edit.h"
 #include "layout/schemas.h"
 #include "net/request_parts.h"
@@ -92,15 +93,19 @@ std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_v
     }
 }
 
-/// What a client should know of those whom a change is about.
+/// The findings about the movers of a change, in one line.
 std::string warningOf(const World& world, const std::vector<std::string>& movers) {
     constexpr std::size_t kMost = 3;
     std::vector<std::string> warnings;
-    for (const std::string& id : movers) {
-        for (const auto& more : {outsideWarnings(world.scene(), id), startWarnings(world, id)})
-            warnings.insert(warnings.end(), more.begin(), more.end());
-        if (warnings.size() > kMost) break;
-    }
+    const auto is_moved = [&movers](const std::string& id) {
+        return std::find(movers.begin(), movers.end(), id) != movers.end();
+    };
+    for (const Finding& finding :
+         checkScene(world.scene(), {.checks = {"outside", "paths"}, .ids = is_moved}))
+        warnings.push_back(finding.message);
+    for (const std::string& id : movers)
+        for (std::string& warning : startWarnings(world, id))
+            warnings.push_back(std::move(warning));
     if (warnings.size() > kMost) {
         warnings.resize(kMost);
         warnings.emplace_back("and more");

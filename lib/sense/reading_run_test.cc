@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "sense/test_readings.h"
-#include "sense/warnings.h"
 
 namespace ispace {
 
@@ -137,21 +136,6 @@ TEST(Sensors, AChoiceOfTagsIsNoChoiceOfReceivers) {
     EXPECT_EQ(sensorsOf(scene, {"t1", "u2"}).receivers.size(), 1U);
     EXPECT_TRUE(sensorsOf(scene, {"u*"}).read.empty());
     EXPECT_THROW(sensorsOf(scene, {"x*"}), UsageError);
-}
-
-TEST(SensorWarnings, SensorsWithoutPlaceAndInsideSolids) {
-    const Scene scene = testing::scene(kRoom + "cube id=c at=6,1 size=1,1,1\n",
-                                       "laser id=a\nranger id=b\nlaser id=in at=6,1\n"
-                                       "laser id=on at=6,0.5\nlaser id=touching at=6,0.50005\n"
-                                       "laser id=over at=6,1,1.2\n"
-                                       "tag at=1,1\nultrasound id=u at=6,1,0.9\n");
-    const std::vector<std::string> all = sensorWarnings(scene, sensorsOf(scene, {}), {});
-    ASSERT_EQ(all.size(), 4U);
-    EXPECT_EQ(all[0].substr(0, 15), "a has no place ");
-    EXPECT_EQ(all[1].substr(0, 15), "b has no place ");
-    EXPECT_EQ(all[2], "in stands inside something solid at 6,1,0.15");
-    EXPECT_EQ(all[3], "u stands inside something solid at 6,1,0.9");
-    EXPECT_TRUE(sensorWarnings(scene, sensorsOf(scene, {"o*"}), {"o*"}).empty());
 }
 
 /// A trajectory as a source would read it, in pieces of some bytes.

@@ -5,14 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "layout/scene.h"
 #include "sim/world.h"
 
 namespace ispace {
-
-/// Says which robots and people begin outside the room, and whose path leads there.
-/// \param id of one of them; "" for all
-std::vector<std::string> outsideWarnings(const Scene& scene, std::string_view id = "");
 
 /// Says which robots start as written as their start_noise leads nowhere free.
 /// \param id of one of them; "" for all

@@ -282,7 +282,7 @@ class LivingWorld(unittest.TestCase):
     def test_changes(self):
         with self.run_.robot("r1") as robot:
             self.assertEqual(self.world.add("cube id=box at=0,0 size=0.5,0.5,1"), "box")
-            with self.assertWarnsRegex(UserWarning, "^far stands outside the room at 50,50$"):
+            with self.assertWarnsRegex(UserWarning, r"^human far stands outside the room at \(50.0, 50.0\)$"):
                 self.assertEqual(self.world.add("human id=far at=50,50"), "far")
             self.world.remove("far")
             blocked = robot.forward(1.5)

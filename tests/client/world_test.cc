@@ -94,7 +94,7 @@ TEST_F(LivingWorld, ThingsComeAndGo) {
     EXPECT_THROW(world.set("r1", "speed", "fast"), Refused);
     EXPECT_THROW(world.add("cube size=much"), Refused);
     EXPECT_EQ(world.add("human id=far at=50,50"), "far");
-    EXPECT_EQ(world.warning(), "far stands outside the room at 50,50");
+    EXPECT_EQ(world.warning(), "human far stands outside the room at (50.0, 50.0)");
     world.set("far", "at", "1.5,-1.5");
     EXPECT_EQ(world.warning(), "");
 }

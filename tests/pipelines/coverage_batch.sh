@@ -56,7 +56,7 @@ coverage: bad:4: leaky.env:
 coverage: bad:5: error: the quote that opens here is not closed
 coverage: bad:6: error: square.env holds no placed sensor: give a layout after it
 coverage: bad:7: error: stdin is not read by a job of a list: give a file
-coverage: bad:8: warning: in stands outside the room at 3,3
+coverage: bad:8: own.env:3:1: warning: laser in stands outside
 coverage: bad: error: 6 of 8 jobs failed, see above
 SAID
 while read -r line; do

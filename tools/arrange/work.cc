@@ -9,6 +9,7 @@
 #include "base/number.h"
 #include "cli/outputs.h"
 #include "env/door_zones.h"
+#include "layout/check_scene.h"
 #include "layout/scene.h"
 #include "layout/schemas.h"
 
@@ -68,6 +69,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
         input.scene = makeScene(input.environment, &*input.layout,
                                 devicesFor({&input.environment, &*input.layout}), &input.scene);
     }
+    warn(options.common, "arrange", sceneWarnings(input.scene, {.checks = {"outside", "buried"}}));
     const bool open = options.how.target || options.how.budget;
     work.groups = groupsToPlace(input.scene, added, devices, open);
     if (work.groups.empty())

@@ -62,8 +62,8 @@ class BatchWorker {
         outcome.messages = input.choices;
         for (const Diagnostic& warning : input.environment.warnings)
             outcome.messages.push_back(warning.text());
-        for (const std::string& doubt : doubtsOf(scene))
-            outcome.messages.push_back("warning: " + doubt);
+        for (const Diagnostic& warning : sensorFindings(scene))
+            outcome.messages.push_back(warning.text());
         Worlds worlds(scene.environment);
         const Coverage coverage = measureCoverage(scene, worlds, options_.measure);
         if (std::string text = largeCellsText(options_.measure, coverage.report.grid);

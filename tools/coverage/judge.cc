@@ -2,18 +2,22 @@
 #include "coverage/judge.h"
 
 #include "base/number.h"
+#include "layout/check_scene.h"
 #include "sense/ultrasound.h"
-#include "sense/warnings.h"
 
 namespace ispace {
 
-std::vector<std::string> doubtsOf(const Scene& scene) {
-    std::vector<std::string> doubts = sensorWarnings(scene, sensorsOf(scene, {}), {}, true);
+std::vector<Diagnostic> sensorFindings(const Scene& scene) {
+    std::vector<Diagnostic> found =
+        sceneWarnings(scene, {.checks = {"unplaced", "outside", "buried"}});
     if (const std::size_t count = sensorsOf<Receiver>(scene).size();
         count > 0 && count < kMinReceivers)
-        doubts.push_back("ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
-                         " receivers have to hear a tag, here are " + std::to_string(count));
-    return doubts;
+        found.push_back(
+            {.file = "",
+             .message = "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
+                        " receivers have to hear a tag, here are " + std::to_string(count),
+             .severity = Severity::Warning});
+    return found;
 }
 
 std::string largeCellsText(const CoverageOptions& options, const Grid& grid) {

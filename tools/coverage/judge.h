@@ -12,8 +12,8 @@
 
 namespace ispace {
 
-/// What a user may not have meant, and what is left out, a sentence each.
-std::vector<std::string> doubtsOf(const Scene& scene);
+/// The findings about the sensors, robots and people of a scene.
+std::vector<Diagnostic> sensorFindings(const Scene& scene);
 
 /// A sentence where nobody asked for cells and they are not as small as usual, else "".
 std::string largeCellsText(const CoverageOptions& options, const Grid& grid);

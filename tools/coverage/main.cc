@@ -79,7 +79,7 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     if (!options.report.empty()) mustBeWritable(options.report);
     for (const Requirement& requirement : options.requirements)
         mustHaveZone(requirement, input.scene.environment);
-    warn(options.common, "coverage", doubtsOf(input.scene));
+    warn(options.common, "coverage", sensorFindings(input.scene));
     const Measured& measured =
         leftToExit(measure(options, input.scene, other ? &other->scene : nullptr));
     const CoverageReport& report = measured.coverage.report;

@@ -84,12 +84,20 @@ void rebaseTo(const std::string& output, Document& document) {
 
 /// The warnings of an import and what is wrong with the scene, together; the first count all the
 /// more where no scene can be made of it. \throws FormatError with all findings
-void check(const Document& document, const ImportReport& report, const DeviceCatalogue& devices) {
+void check(const EnvcOptions& options, const Document& document, const ImportReport& report,
+           const DeviceCatalogue& devices) {
     Diagnostics findings;
     for (const Diagnostic& warning : document.warnings) findings.add(warning);
     for (const Diagnostic& doubt : report.doubts) findings.add(doubt);
     try {
-        checkScene(makeScene(document, nullptr, devices)).throwIfAny();
+        const Scene scene = makeScene(document, nullptr, devices);
+        // A sensor without a position is what arrange asks for: named, but no mistake.
+        warn(options.common, "envc", sceneWarnings(scene, {.checks = {"unplaced"}}));
+        FindingFilter mistakes;
+        for (const SceneCheck& check : sceneChecks())
+            if (check.name != "unplaced") mistakes.checks.push_back(check.name);
+        for (const Finding& finding : checkScene(scene, mistakes))
+            findings.add(finding.diagnostic());
     } catch (const FormatError& error) {
         findings.add(error);
     }
@@ -116,7 +124,7 @@ void compile(const EnvcOptions& options, Document document, const FoundRooms* fo
     if (options.format != nullptr) rebaseTo(options.common.output, document);
     const DeviceCatalogue& devices = devicesFor({&document});
     if (options.check) {
-        check(document, report, devices);
+        check(options, document, report, devices);
         talk(options.common, "envc", "nothing found");
         return;
     }

@@ -10,6 +10,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/run_tool.h"
+#include "layout/check_scene.h"
 #include "layout/scene.h"
 #include "scan/batch.h"
 #include "scan/options.h"
@@ -62,7 +63,12 @@ void scan(const ScanCommand& command) {
     const Sensors sensors = moves ? sensorForPoses(options, scene, shippedDevices(), files)
                                   : placedSensors(options, input);
     command.checkSensors(sensors.read);
-    if (!moves) warn(options.common, "scan", sensorWarnings(scene, sensors, options.select));
+    if (!moves)
+        warn(options.common, "scan",
+             sceneWarnings(scene, {.checks = {"unplaced", "outside", "buried"},
+                                   .ids = [&options](const std::string& id) {
+                                       return isSelected(id, options.select);
+                                   }}));
     const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
     warn(options.common, "scan", format->warnings());
     if (format->isBinary()) refuseTerminal(options.common.output, options.format);

@@ -10,6 +10,7 @@
 #include "base/run_files.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
+#include "layout/check_scene.h"
 #include "net/server.h"
 #include "sim/start_warnings.h"
 #include "simrun/drawing.h"
@@ -96,8 +97,8 @@ void run(const SimrunCommand& command, JunitFile& junit) {
     const SimrunOptions& options = command.options();
     SceneInput input = readInput(options);
     warnOfImport(options.common, "simrun", input);
-    warnOfLeftOut(input.scene, options.common);
-    warn(options.common, "simrun", outsideWarnings(input.scene));
+    warn(options.common, "simrun",
+         sceneWarnings(input.scene, {.checks = {"unplaced", "outside", "buried", "paths"}}));
     std::optional<Replay> replay = openReplay(options, input.scene);
     if (!options.drawing.format.empty() && replay) warnOfChanges(*replay, options.common);
     if (!options.drawing.format.empty())

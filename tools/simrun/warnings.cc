@@ -7,7 +7,6 @@
 
 #include "base/number.h"
 #include "layout/scene.h"
-#include "sensor/kind.h"
 
 namespace ispace {
 
@@ -98,17 +97,6 @@ void warnOfChanges(const Replay& replay, const CommonOptions& options) {
         warn(options, kTool,
              "the world of the run was changed at t=" + formatMilliseconds(*time) +
                  ": the room is drawn as it was at the start");
-}
-
-void warnOfLeftOut(const Scene& scene, const CommonOptions& options) {
-    for (std::size_t i = 0; i < scene.records.size(); ++i) {
-        const Record& record = scene.records[i];
-        const SensorKind* const kind = sensorKind(record.keyword());
-        if (kind == nullptr || !kind->is_read || record.has("at") || record.has("on")) continue;
-        warn(options, kTool,
-             scene.ids[i] + " has no place and is left out: give it `at` or `on`" +
-                 (kind->is_arranged ? ", or let arrange place it" : ""));
-    }
 }
 
 }  // namespace ispace

@@ -62,7 +62,4 @@ class FailureLog {
 /// Says that a run changed its world, of which the picture shows the start.
 void warnOfChanges(const Replay& replay, const CommonOptions& options);
 
-/// Says what takes no part: sensors without a place, and what is not simulated yet.
-void warnOfLeftOut(const Scene& scene, const CommonOptions& options);
-
 }  // namespace ispace

@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# One scene through all five tools: what is wrong with it is said in the same sentences.
+. "$(dirname "$0")/common.sh"
+
+cat >room.env <<'END'
+#env 1
+ispace id=room at=4,3 size=8,6
+cube id=c at=2,2 size=1
+END
+cat >layout.3dm <<'END'
+#3dm 1
+laser id=out at=9,3
+laser id=in at=2,2
+laser id=low at=4,3,-0.1
+robot id=r at=10,3
+human id=h at=6,3 path=6,3;9,3
+laser id=todo
+END
+
+out="layout.3dm:2:1: laser out stands outside the room at (9.0, 3.0); move it in"
+in="layout.3dm:3:1: laser in stands inside cube c at (2.0, 2.0); move it, or raise it above 1.00 m"
+low="layout.3dm:4:1: laser low stands below the floor at (4.0, 3.0); raise it by 0.10 m"
+robot="layout.3dm:5:1: robot r stands outside the room at (10.0, 3.0); move it in"
+path="layout.3dm:6:1: human h has a path that leaves the room at (9.0, 3.0); move that point in"
+todo="layout.3dm:7:1: laser todo has no position and takes no readings; give it \`at\` or \`on\`, or let arrange place it"
+
+# findings TOOL SENTENCE…: ./err holds these findings and no others, in any order.
+findings() {
+    local tool=$1
+    shift
+    printf '%s\n' "$@" | LC_ALL=C sort >wanted
+    grep "^$tool: layout.3dm:" err | sed -E "s/^$tool: //; s/: (error|warning): /: /" |
+        LC_ALL=C sort >said
+    cmp -s wanted said || fail "$tool says other things: $(diff wanted said)"
+}
+
+expect_status 1 envc room.env layout.3dm --check
+findings envc "$out" "$in" "$low" "$robot" "$path" "$todo"
+expect_status 0 scan room.env layout.3dm
+findings scan "$out" "$in" "$low" "$robot" "$todo"
+expect_status 0 scan room.env layout.3dm --select 'o*'
+findings scan "$out"
+expect_status 0 coverage room.env layout.3dm
+findings coverage "$out" "$in" "$low" "$robot" "$todo"
+expect_status 0 simrun room.env layout.3dm --listen 127.0.0.1:0 --clock fast --until 0.1
+findings simrun "$out" "$in" "$low" "$robot" "$path" "$todo"
+expect_status 0 arrange room.env layout.3dm
+findings arrange "$out" "$in" "$low" "$robot"
+for tool in scan coverage; do
+    expect_status 0 $tool -q room.env layout.3dm
+    [ ! -s err ] || fail "$tool -q says: $(cat err)"
+done
