@@ -90,10 +90,14 @@ RunChanges::Step RunChanges::stepOf(const RunChange& change, const Scene& now,
             placedBy(edits, now)};
 }
 
+bool RunChanges::isDue(double before) const {
+    constexpr double kRounding = 5e-10;  // s
+    return next_ < changes_.size() && changes_[next_].time < before - kRounding;
+}
+
 std::optional<RunChanges::Step> RunChanges::next(double before, const Scene& now,
                                                  const MoverPlaces& places) {
-    constexpr double kRounding = 5e-10;  // s
-    while (next_ < changes_.size() && changes_[next_].time < before - kRounding) {
+    while (isDue(before)) {
         const RunChange& change = changes_[next_++];
         try {
             return stepOf(change, now, places);

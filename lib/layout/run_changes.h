@@ -40,6 +40,8 @@ class RunChanges {
         std::vector<std::string> placed;  ///< ids of those who were put where the scene has them
     };
     [[nodiscard]] bool empty() const { return changes_.empty(); }
+    /// True if there is a change before a time.
+    [[nodiscard]] bool isDue(double before) const;
     /// The next change before a time; nothing if all are made. \param now the scene before it
     std::optional<Step> next(double before, const Scene& now, const MoverPlaces& places);
     /// Begins anew.

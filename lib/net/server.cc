@@ -146,6 +146,7 @@ void Server::Data::stepped() {
 
 /// When a client that says nothing has something to be done for it.
 WallTime Server::Data::nextTurn() const {
+    if (state.isOnTheWay()) return steady_clock::now();
     WallTime next = has_news ? next_news : WallTime::max();
     bool may_change = false;
     for (const auto& connection : connections) {
@@ -309,6 +310,7 @@ void Server::run() {
     simulation.onStep([&data] { data.stepped(); });
     while (!simulation.finished()) {
         data.serveClients();
+        if (simulation.isDue(steady_clock::now())) data.state.prepareStep();
         // Last before sleeping: what clients asked for decides for how long.
         std::optional<WallTime> next;
         next = data.state.holdsWorld() ? simulation.flushRecord()

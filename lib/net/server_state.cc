@@ -147,7 +147,66 @@ void ServerState::doAside(Workshop::Job job) {
 
 bool ServerState::collect() {
     const bool has_made = workshop_ && workshop_->collect();
-    return (builders_ && builders_->collect()) || has_made;
+    const bool has_built = builders_ && builders_->collect();
+    return goOnSeeking() || has_built || has_made;
+}
+
+/// In the thread that builds, if there is one.
+void ServerState::build(Workshop::Job job) {
+    if (builders_)
+        builders_->give(std::move(job));
+    else
+        Workshop::doNow(std::move(job));
+}
+
+/// To end a world takes long, too.
+void ServerState::endLater(std::shared_ptr<const void> old) {
+    if (builders_ && old) builders_->give({[old = std::move(old)] {}, [](const auto&) {}});
+}
+
+std::shared_ptr<const Seek> ServerState::seek(SimTime to) {
+    const auto seek = seek_ = std::make_shared<Seek>(Seek{to, false, ""});
+    goOnSeeking();
+    return seek;
+}
+
+/// \returns true if the world has come where it was to go
+bool ServerState::goOnSeeking() {
+    // A part of it takes no longer than others may wait.
+    constexpr auto kPart = std::chrono::milliseconds(5);
+    if (!isOnTheWay()) return false;
+    try {
+        while (seek_->failure.empty() && prepare(seek_->to))
+            if (is_changing_) return false;
+        if (seek_->failure.empty() &&
+            !simulation_->seekSome(seek_->to, std::chrono::steady_clock::now() + kPart))
+            return false;
+    } catch (const FormatError& failure) {
+        seek_->failure = failure.what();
+    }
+    sync();
+    seek_->is_over = true;
+    seek_.reset();
+    return true;
+}
+
+/// \returns false if there is nothing to prepare
+bool ServerState::prepare(std::optional<SimTime> to) {
+    auto work = simulation_->preparation(to);
+    if (!work) return false;
+    is_changing_ = true;
+    build({std::move(work), [this](const std::exception_ptr& failure) {
+               is_changing_ = false;
+               try {
+                   if (failure) std::rethrow_exception(failure);
+                   endLater(simulation_->adoptPrepared());
+               } catch (const std::exception& error) {
+                   if (!seek_) throw;
+                   seek_->failure = error.what();
+               }
+               sync();
+           }});
+    return true;
 }
 
 bool ServerState::await() {
@@ -167,11 +226,7 @@ void ServerState::change(WorldChange change,
                     end = std::move(end)](const std::exception_ptr& failure) mutable {
         adopt(std::move(change), failure, began, end);
     };
-    Workshop::Job job{std::move(prepare), std::move(adopted)};
-    if (builders_)
-        builders_->give(std::move(job));
-    else
-        Workshop::doNow(std::move(job));
+    build({std::move(prepare), std::move(adopted)});
 }
 
 void ServerState::adopt(WorldChange change, std::exception_ptr failure, WallTime began,
@@ -188,10 +243,8 @@ void ServerState::adopt(WorldChange change, std::exception_ptr failure, WallTime
     end(failure);
     changes_.spend(began, std::chrono::steady_clock::now());
     sync();
-    // To end a world takes long, too.
-    if (builders_)
-        builders_->give(
-            {[change = std::move(change), old = std::move(old)] {}, [](const auto&) {}});
+    endLater(std::make_shared<const std::pair<WorldChange, std::shared_ptr<const void>>>(
+        std::move(change), std::move(old)));
 }
 
 std::shared_ptr<const ServerState::Asked> ServerState::ask(std::size_t sensor,

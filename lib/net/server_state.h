@@ -107,6 +107,13 @@ class ChangeBudget {
     WallTime next_{};
 };
 
+/// A replay on its way to another time.
+struct Seek {
+    SimTime to{};
+    bool is_over = false;
+    std::string failure;  ///< why the world stops on the way; "": it is there
+};
+
 /// What all sessions share: which robots are held, and the text of the newest scans, made once for
 /// all readers.
 class ServerState {
@@ -131,16 +138,25 @@ class ServerState {
     [[nodiscard]] ChangeBudget& changes() { return changes_; }
     /// False while changes leave the world time to go on, or one is under way.
     [[nodiscard]] bool mayChangeNow(WallTime now) const {
-        return !is_changing_ && changes_.mayBegin(now);
+        return !is_changing_ && !seek_ && changes_.mayBegin(now);
     }
     /// When that will be so; nothing: when a change is over.
     [[nodiscard]] std::optional<WallTime> nextChange() const {
-        return is_changing_ ? std::nullopt : std::optional(changes_.next());
+        return is_changing_ || seek_ ? std::nullopt : std::optional(changes_.next());
     }
     /// Changes the world: at once, or if makeAside() was called with what takes long in another
     /// thread, where nobody waits for it but pictures. `end` is then called by collect(), with what
     /// was thrown, or null, and may throw that again. \pre mayChangeNow()
     void change(WorldChange change, std::function<void(const std::exception_ptr& failure)> end);
+    /// Takes a replay to another time, a part now and the others in collect().
+    /// \pre isAtRest(), Simulation::maySeek()
+    std::shared_ptr<const Seek> seek(SimTime to);
+    /// True if collect() has something to do at once.
+    [[nodiscard]] bool isOnTheWay() const { return seek_ && !is_changing_; }
+    /// Prepares what the next step of a replay needs, in another thread if makeAside() was called.
+    void prepareStep() {
+        if (isAtRest()) prepare({});
+    }
     /// True if there may be news for clients since the last call: a change, a mark.
     [[nodiscard]] bool hasNews();
 
@@ -175,8 +191,9 @@ class ServerState {
         workshop_.reset();
         builders_.reset();
     }
-    /// True if nothing is being made of the world as it is: no picture, no change.
-    [[nodiscard]] bool isAtRest() const { return !isMaking() && !is_changing_; }
+    /// True if nothing is being made of the world as it is: no picture, no change, no way to
+    /// another time.
+    [[nodiscard]] bool isAtRest() const { return !isMaking() && !is_changing_ && !seek_; }
     /// The world must not go on: it takes the same steps however long something takes.
     [[nodiscard]] bool holdsWorld() const;
     /// Completes what was asked for and is ready, between steps. \returns false if nothing is
@@ -212,6 +229,10 @@ class ServerState {
     [[nodiscard]] std::shared_ptr<const Asked> refusal(std::size_t sensor) const;
     std::function<SensorReading()> beginMaking(Making& making);
     void make(const Making& making, std::function<SensorReading()> take, FrameJob frame = {});
+    bool prepare(std::optional<SimTime> to);
+    bool goOnSeeking();
+    void build(Workshop::Job job);
+    void endLater(std::shared_ptr<const void> old);
     void adopt(WorldChange change, std::exception_ptr failure, WallTime began,
                const std::function<void(const std::exception_ptr& failure)>& end);
 
@@ -231,6 +252,7 @@ class ServerState {
     std::shared_ptr<std::size_t> alive_ = std::make_shared<std::size_t>(0);
     std::vector<Making> makings_;
     bool is_changing_ = false;
+    std::shared_ptr<Seek> seek_;  // null: there is none
     std::function<bool()> stopped_;
     // The last, as their jobs are about the others: of pictures, and of changes of the world.
     std::optional<Workshop> workshop_, builders_;

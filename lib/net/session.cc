@@ -169,6 +169,7 @@ void Session::stepped(bool has_room) {
     tellEnds();
     if (has_room) tellEvents();
     if (every_ > 0) streamSensor();
+    if (seek_ && seek_->is_over) answerSeek();
     if (steps_) {
         state_->steps().settle();
         if (steps_->over) answerStep();
@@ -202,8 +203,9 @@ void Session::silent() {
 void Session::finish() {
     sync();
     if (!running_.empty()) world().command(subject_, {Verb::Stop, 0});
-    if (role_ == Role::World && (wanted_ || !held_.empty())) {
+    if (role_ == Role::World && (wanted_ || seek_ || !held_.empty())) {
         wanted_.reset();
+        seek_.reset();
         held_.clear();
         may_go_on_ = nullptr;
         error(405, {"the run has ended"});
@@ -334,6 +336,7 @@ void Session::leave() {
     if (drives()) state_->release(id_, hold_);
     state_->steps().drop(std::exchange(steps_, nullptr));
     state_->simulation().events().unwant(std::exchange(events_, {}));
+    seek_.reset();
     held_.clear();
     may_go_on_ = nullptr;
     role_ = Role::None;
@@ -359,6 +362,12 @@ void Session::answerStep() {
     out_.append("OK STEP n=").append(std::to_string(steps_->count - steps_->left));
     out_.append(" t=").append(formatMilliseconds(world().time())).append("\n");
     steps_.reset();
+}
+
+void Session::answerSeek() {
+    const std::string failure = std::exchange(seek_, nullptr)->failure;
+    if (!failure.empty()) return error(409, {failure});
+    out_.append("OK SEEK t=").append(formatMilliseconds(world().time())).append("\n");
 }
 
 void Session::help(Words /*words*/) {

@@ -46,10 +46,10 @@ class Session {
     /// Ends what is under way, at the end of the run, and says so.
     void finish();
 
-    /// True while a STEP, a change of the world or a picture is under way; later requests wait for
-    /// its answer.
+    /// True while a STEP, a SEEK, a change of the world or a picture is under way; later requests
+    /// wait for its answer.
     [[nodiscard]] bool waiting() const {
-        return steps_ != nullptr || !held_.empty() || wanted_ || coming_;
+        return steps_ != nullptr || seek_ || !held_.empty() || wanted_ || coming_;
     }
     [[nodiscard]] bool hasRole() const { return role_ != Role::None; }
     /// True if that is a change that waits for its turn.
@@ -93,6 +93,7 @@ class Session {
     void tellEnds();
     void tellEvents();
     void answerStep();
+    void answerSeek();
     void hold(Words words, Condition until);
     void goOn();
     [[nodiscard]] bool mayChange() const;
@@ -154,6 +155,7 @@ class Session {
     // What is being made: the answer of a reading or a change, and a reading of the stream.
     std::shared_ptr<const ServerState::Asked> wanted_, coming_;
     std::shared_ptr<const StepQueue::Ticket> steps_;  // of a STEP to be answered
+    std::shared_ptr<const Seek> seek_;                // of a SEEK to be answered
     // A request that is answered once this is so.
     std::string held_;
     Condition may_go_on_ = nullptr;

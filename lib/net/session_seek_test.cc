@@ -2,6 +2,10 @@
 // A replay is taken to another time while something is still being made of the world as it is.
 #include <gtest/gtest.h>
 
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
 #include <memory>
 #include <string>
 #include <thread>
@@ -113,6 +117,88 @@ TEST_F(SessionSeekTest, IsRefusedWhenTheRunEnds) {
     seeker.finish();
     EXPECT_EQ(seeker.take(), "ERR 405 the run has ended\n");
     EXPECT_FALSE(seeker.waiting());
+}
+
+/// Calls it. \returns processor time of this thread
+template <typename Call>
+std::chrono::nanoseconds workOf(const Call& call) {
+    const auto now = [] {
+        timespec time{};
+        ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+        return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+    };
+    const auto begin = now();
+    call();
+    return now() - begin;
+}
+
+TEST(SessionSeek, LeavesTheThreadThatServesToOthers) {
+    // A large room, to which the run adds a robot after 0.1 s.
+    std::string room = "ispace size=150,150\n";
+    for (int x = -70; x <= 70; ++x)
+        for (int y = 2; y <= 70; ++y)
+            room += "cube at=" + std::to_string(x) + ',' + std::to_string(y) + " size=0.1\n";
+    const Scene scene = testing::scene(room, "robot id=r1 at=0,0\n");
+    const testing::TestFolder folder;
+    std::string moments = "t,id,x,y,heading_deg,stall\n";
+    for (const char* t : {"0", "0.1", "0.2", "0.3"})
+        moments.append(t).append(",r1,").append(t).append(",0,0,0\n");
+    writeAll(folder / "robots.csv", moments);
+    writeAll(folder / "events.csv",
+             "t,kind,id,other,x,y,value,text\n0.1,change,,,,,,\"ADD robot id=r9 at=0,-2\"\n");
+    const auto changes = [&] { return RunChanges(folder.path(), scene, {}, {}); };
+    constexpr auto kStep = std::chrono::milliseconds(100);
+
+    World alone(scene, kStep);
+    Replay record(folder.path());
+    record.makeChanges(changes());
+    const auto whole = workOf([&] {
+        record.seek(alone, 3 * kStep);
+        record.seek(alone, SimTime(0));
+    });
+
+    World world(scene, kStep);
+    Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
+    Replay replay(folder.path());
+    replay.makeChanges(changes());
+    simulation.replay(replay, true);
+    ServerState state(simulation);
+    state.makeAside([] {}, nullptr);
+    Session seeker(state), other(state);
+    seeker.request("WORLD");
+    other.request("WORLD");
+    seeker.take();
+    other.take();
+    std::chrono::nanoseconds most{};
+    const auto seek = [&](const std::string& time) {
+        most = std::max(most, workOf([&] { seeker.request("SEEK " + time); }));
+        EXPECT_TRUE(seeker.waiting());
+        while (seeker.waiting()) {
+            other.request("TIME");
+            EXPECT_TRUE(other.take().starts_with("OK TIME t="));
+            most = std::max(most, workOf([&] { state.collect(); }));
+            most = std::max(most, workOf([&] { seeker.proceed(); }));
+            std::this_thread::yield();
+        }
+        return seeker.take();
+    };
+    EXPECT_EQ(seek("0.3"), "OK SEEK t=0.300\n");
+    EXPECT_TRUE(world.moverNamed("r9"));
+    EXPECT_EQ(seek("0"), "OK SEEK t=0.000\n");
+    EXPECT_FALSE(world.moverNamed("r9"));
+    EXPECT_LT(most, whole / 4) << "of " << whole.count() << " ns";
+    // A step makes the change aside as well.
+    simulation.allow(3);
+    while (simulation.owed() > 0) {
+        most = std::max(most, workOf([&] {
+                            if (simulation.isDue({})) state.prepareStep();
+                            if (!state.holdsWorld()) simulation.run({}, {});
+                        }));
+        most = std::max(most, workOf([&] { state.collect(); }));
+    }
+    EXPECT_TRUE(world.moverNamed("r9"));
+    EXPECT_LT(most, whole / 4) << "of " << whole.count() << " ns";
+    state.endAside();
 }
 
 }  // namespace

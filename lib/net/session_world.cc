@@ -115,13 +115,10 @@ void Session::seek(Words words) {
     if (!maySeek()) return hold(words, &Session::maySeek);
     if (!mayAskFor(words.front())) return;
     state_->steps().cut();
-    try {
-        simulation.seek(*time, std::chrono::steady_clock::now());
-    } catch (const FormatError& failure) {
-        return error(409, {failure.what()});
-    }
+    simulation.forgo(simulation.owed());
+    seek_ = state_->seek(*time);
     sync();
-    out_.append("OK SEEK t=").append(formatMilliseconds(world().time())).append("\n");
+    if (seek_->is_over) answerSeek();
 }
 
 void Session::step(Words words) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "base/error.h"
 #include "base/message.h"
@@ -86,23 +87,52 @@ bool Replay::isEmptyAt(SimTime time) const {
     return changed_ && *changed_ <= next && time < next;
 }
 
-/// Makes the changes before the next step.
-void Replay::change(World& world) {
-    if (!run_changes_) return;
-    const auto place_of = [&world](const std::string& id) {
-        const auto mover = world.moverNamed(id);
-        return mover ? std::optional(world.status(*mover).pose) : std::nullopt;
-    };
+std::function<void()> Replay::preparation(const World& world, std::optional<SimTime> to) {
+    if (to && *to < world.time())
+        return [this, prepare = world.preparer(), start = world.sharedBeginning()] {
+            prepared_.emplace(Prepared{true, {}, prepare(Scene(*start))});
+        };
+    if (to && *to < world.time() + step_) return nullptr;
     const double before = seconds(world.time() + step_);
-    while (auto step = run_changes_->next(before, world.scene(), place_of)) {
+    if (!is_ahead_ || !run_changes_ || !run_changes_->isDue(before)) return nullptr;
+    std::unordered_map<std::string_view, Pose2> places;
+    for (std::size_t i = 0; i < world.movers().size(); ++i)
+        places.emplace(world.movers()[i].id, world.status(i).pose);
+    return [this, before, scene = world.sharedScene(), prepare = world.preparer(),
+            places = std::move(places)] {
+        prepared_ = Prepared{false, std::nullopt, {}};
+        auto& [rewinds, step, next] = *prepared_;
+        step = run_changes_->next(before, *scene, [&places](const std::string& id) {
+            const auto place = places.find(id);
+            return place == places.end() ? std::nullopt : std::optional(place->second);
+        });
+        if (!step) return;
         try {
-            if (step->restarts)
-                world.restart(std::move(step->scene));
-            else
-                world.change(std::move(step->scene), step->placed);
+            next = prepare(std::move(step->scene));
         } catch (const FormatError& error) {
             run_changes_->refuse(error.what());
+            step.reset();
         }
+    };
+}
+
+std::shared_ptr<const void> Replay::adopt(World& world) {
+    const Prepared prepared = std::exchange(prepared_, std::nullopt).value();
+    if (prepared.rewinds) return rewind(world, prepared.next);
+    if (!prepared.step) return nullptr;
+    try {
+        return prepared.step->restarts ? world.restart(prepared.next)
+                                       : world.change(prepared.next, prepared.step->placed);
+    } catch (const FormatError& error) {
+        run_changes_->refuse(error.what());
+        return nullptr;
+    }
+}
+
+void Replay::prepareAll(World& world, std::optional<SimTime> to) {
+    while (const auto prepare = preparation(world, to)) {
+        prepare();
+        adopt(world);
     }
 }
 
@@ -142,7 +172,7 @@ bool Replay::step(World& world, bool reads) {
         throw FormatError(
             {reader_.name(), 0, 0,
              "goes on at t=" + formatSimTime(time) + ", wanted t=" + formatSimTime(now)});
-    change(world);
+    prepareAll(world, {});
     find(world);
     states_.resize(world.movers().size());
     for (std::size_t i = 0; i < states_.size(); ++i) states_[i] = world.status(i);
@@ -169,17 +199,21 @@ bool Replay::step(World& world, bool reads) {
     return true;
 }
 
-void Replay::rewind(World& world) {
+std::shared_ptr<const void> Replay::rewind(World& world, const NextScene& beginning) {
     RunReader again(folder_);
     is_ahead_ = again.next() && (is_late_ || again.next());
     reader_ = std::move(again);
     movers_.clear();
     if (run_changes_) run_changes_->rewind();
-    world.rewind();
+    return world.rewind(beginning);
 }
 
 void Replay::seek(World& world, SimTime time) {
-    if (time < world.time()) rewind(world);
+    do prepareAll(world, time);
+    while (!seekSome(world, time, std::chrono::steady_clock::time_point::max()));
+}
+
+bool Replay::seekSome(World& world, SimTime time, std::chrono::steady_clock::time_point until) {
     // Every sensor is read once in its turn before that time; of a laser that spins the first scan
     // from then on may miss its beginning, and the next one is late.
     double settle = 0;
@@ -188,8 +222,13 @@ void Replay::seek(World& world, SimTime time) {
         const int periods = laser != nullptr && laser->duration() > 0 ? 4 : 1;
         settle = std::max(settle, periods * (1 / sensor.rate() + 2 * seconds(step_)));
     }
-    while (world.time() + step_ <= time)
+    if (time < world.time()) return false;
+    while (world.time() + step_ <= time) {
+        if (preparation(world) != nullptr) return false;
         if (!step(world, seconds(time - world.time()) <= settle)) break;
+        if (std::chrono::steady_clock::now() >= until) return false;
+    }
+    return true;
 }
 
 std::optional<SimTime> Replay::end() const {

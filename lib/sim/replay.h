@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +52,17 @@ class Replay {
     /// Takes the world to its last step at or before a time, back or forth, or to the end of the
     /// record. Sensors are read as if all steps had been taken one by one. \throws as step()
     void seek(World& world, SimTime time);
+
+    /// What takes long before the next step, or on the way to a time: a change of the world, or its
+    /// beginning. For any thread, while the world takes no step and is changed by no other; adopt()
+    /// then completes it. Null where there is none. step() and seek() prepare by themselves.
+    [[nodiscard]] std::function<void()> preparation(const World& world,
+                                                    std::optional<SimTime> to = {});
+    /// \returns what the world was, to be ended by somebody with time for it
+    std::shared_ptr<const void> adopt(World& world);
+    /// seek() in parts: until that moment, or until there is something to prepare.
+    /// \returns true if the world is there
+    bool seekSome(World& world, SimTime time, std::chrono::steady_clock::time_point until);
     /// When the record ends, as far as that is known.
     [[nodiscard]] std::optional<SimTime> end() const;
     /// When clients first changed the world of the run.
@@ -57,8 +72,14 @@ class Replay {
 
   private:
     bool step(World& world, bool reads);
-    void rewind(World& world);
-    void change(World& world);
+    /// A scene that is ready to be adopted.
+    struct Prepared {
+        bool rewinds;
+        std::optional<RunChanges::Step> step;  // without its scene; nothing: it cannot be made
+        NextScene next;
+    };
+    std::shared_ptr<const void> rewind(World& world, const NextScene& beginning);
+    void prepareAll(World& world, std::optional<SimTime> to);
     void find(const World& world);
     void collide(const World& world);
     [[nodiscard]] bool isEmptyAt(SimTime time) const;
@@ -69,6 +90,7 @@ class Replay {
     SimTime step_{};
     std::optional<SimTime> changed_;
     std::optional<RunChanges> run_changes_;
+    std::optional<Prepared> prepared_;
     std::vector<RunState> start_;
     bool is_late_ = false;                          // it has no moment of the start
     bool is_ahead_ = false;                         // the reader's moment is that of the next step

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include "layout/test_layout.h"
+#include "sim/setting.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -16,6 +18,17 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 using std::chrono::seconds;
 using testing::scene;
+
+TEST(Setting, HasTheMeshThatItsSensorsNeed) {
+    const auto has_mesh = [](const std::string& records) {
+        const auto room = std::make_shared<const Scene>(scene("ispace size=8,6\n", records));
+        return Setting(room, {}, {}).worlds.meshes().opaque;
+    };
+    EXPECT_FALSE(has_mesh("robot id=r1 at=0,0\nlaser at=1,1 beams=3\n"));
+    EXPECT_TRUE(has_mesh("ranger at=1,1 pixels=4,4\n"));
+    EXPECT_TRUE(has_mesh("tag at=1,1\n")) << "its echoes";
+    EXPECT_TRUE(has_mesh("robot id=r1 model=pioneer-2dx at=0,0\n")) << "it has sonars";
+}
 
 TEST(SensorReader, ReadsAtTheFirstStepOfAPeriod) {
     for (const int rate : {10, 40, 7}) {

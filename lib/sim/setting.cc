@@ -16,7 +16,13 @@ Setting::Setting(std::shared_ptr<const Scene> made_of, const RunOptions& options
       worlds(scene->environment) {
     if (meshes.opaque) worlds.prepareMesh();
     if (meshes.solid) worlds.prepareMesh(Surfaces::Solid);
+    // A client that asks first must not wait for them, nor the others.
+    if (std::any_of(scene->robots.begin(), scene->robots.end(),
+                    [](const PlacedRobot& robot) { return !robot.model.sonar.places.empty(); }))
+        worlds.prepareMesh(Surfaces::Solid);
     for (const Sensor& sensor : scene->sensors) {
+        if (sensor.is<Ranger>()) worlds.prepareMesh();
+        if (sensor.is<Tag>()) worlds.prepareMesh(Surfaces::Solid);
         const auto* const laser = std::get_if<Laser>(&sensor.model);
         if (laser == nullptr) continue;
         worlds.prepare(sensor.pose);

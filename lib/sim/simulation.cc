@@ -121,14 +121,14 @@ void Simulation::replay(Replay& replay, bool holds) {
     endIfReached();
 }
 
-void Simulation::seek(SimTime time, WallTime now) {
+bool Simulation::seekSome(SimTime time, WallTime until) {
     assert(maySeek());
-    owed_ = 0;
-    replay_->seek(*world_, std::min(time, until_));
+    if (!replay_->seekSome(*world_, std::min(time, until_), until)) return false;
     events_.stepped();
     endIfReached();
     ahead_.reset();
-    if (started_) startAt(now);
+    if (started_) startAt(steady_clock::now());
+    return true;
 }
 
 void Simulation::step() {
@@ -183,7 +183,7 @@ void Simulation::forgive(WallTime now) {
 bool Simulation::isDue(WallTime now) const {
     if (finished_) return false;
     if (paused_) return owed_ > 0;
-    return clock_.kind != Clock::Kind::Real || dueAt() <= now;
+    return clock_.kind != Clock::Kind::Real || (started_ && dueAt() <= now);
 }
 
 std::optional<WallTime> Simulation::flushRecord() {
@@ -220,6 +220,7 @@ std::optional<WallTime> Simulation::runDue(WallTime now, nanoseconds budget) {
         step();
         if (finished_) break;
         if (!finishStep(end)) return next_part();
+        if (preparation()) break;
         if (steady_clock::now() >= end) break;
     }
     if (isDue(now)) return now;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -84,8 +85,16 @@ class Simulation {
     }
     /// Somebody needs the steps of a replay from the first to the last.
     void keepOrder() { is_in_order_ = true; }
-    /// Takes a replay to a time, see Replay::seek; steps allowed are dropped. \pre maySeek()
-    void seek(SimTime time, WallTime now);
+    /// Takes a replay to a time in parts, see Replay::seekSome: call it until it returns true.
+    /// Steps allowed before are to be dropped. \pre maySeek()
+    bool seekSome(SimTime time, WallTime until);
+    /// What is to be prepared before the next step of a replay, or on the way to a time: see
+    /// Replay::preparation. run() prepares by itself where its first step needs it.
+    [[nodiscard]] std::function<void()> preparation(std::optional<SimTime> to = {}) const {
+        if (to) to = std::min(*to, until_);
+        return replay_ == nullptr ? nullptr : replay_->preparation(*world_, to);
+    }
+    std::shared_ptr<const void> adoptPrepared() { return replay_->adopt(*world_); }
     /// When a replay ends, as far as that is known.
     [[nodiscard]] std::optional<SimTime> end() const {
         return replay_ == nullptr ? std::nullopt : replay_->end();
@@ -115,6 +124,8 @@ class Simulation {
     /// a second is forgiven: time then goes slower, instead of faster later. \returns when to call
     /// again; nothing: only once told to step or resume
     std::optional<WallTime> run(WallTime now, std::chrono::nanoseconds budget);
+    /// True if a step is to be taken now.
+    [[nodiscard]] bool isDue(WallTime now) const;
     /// When the next step is due by the clock Real; nothing with others, or while paused.
     [[nodiscard]] std::optional<WallTime> due() const;
     /// How punctual the steps were that were due by the clock Real: the latest of them, and how
@@ -142,8 +153,6 @@ class Simulation {
     void noteLateness();
     /// Gives up a lag that is too long.
     void forgive(WallTime now);
-    /// True if a step is to be taken now.
-    [[nodiscard]] bool isDue(WallTime now) const;
 
     World* world_;
     EventLog events_;

@@ -41,6 +41,7 @@ const RunOptions& World::options() const { return data_->options; }
 const Scene& World::scene() const { return *data_->scene; }
 std::shared_ptr<const Scene> World::sharedScene() const { return data_->scene; }
 std::shared_ptr<const Scene> World::sharedStart() const { return data_->latest_start; }
+std::shared_ptr<const Scene> World::sharedBeginning() const { return data_->start; }
 std::int64_t World::changes() const { return data_->changes; }
 SimTime World::stepLength() const { return data_->step_length; }
 std::int64_t World::steps() const { return data_->steps; }
@@ -286,13 +287,11 @@ void World::passTo(std::span<const RobotStatus> states) {
     data.sensors.pass(data.where());
 }
 
-void World::rewind() {
-    const std::int64_t changes = data_->changes + 1;
-    const auto room =
-        std::make_shared<Setting>(data_->start, data_->options, data_->setting->worlds.meshes());
-    data_ = std::make_shared<Data>(room, data_->step_length, data_->options);
-    data_->changes = changes;
-    data_->sensors.read(data_->time, data_->where());
+std::shared_ptr<const void> World::rewind(const NextScene& next) {
+    auto begun = std::make_shared<Data>(next.setting, data_->step_length, data_->options);
+    begun->changes = data_->changes + 1;
+    begun->sensors.read(begun->time, begun->where());
+    return std::exchange(data_, std::move(begun));
 }
 
 void World::step() {

@@ -116,6 +116,8 @@ class World {
     [[nodiscard]] std::shared_ptr<const Scene> sharedScene() const;
     /// The scene in which everything started last: that of the beginning, or of the last restart.
     [[nodiscard]] std::shared_ptr<const Scene> sharedStart() const;
+    /// That of time 0.
+    [[nodiscard]] std::shared_ptr<const Scene> sharedBeginning() const;
     /// Robots and people, then robots or people alone, in the order of the scene.
     [[nodiscard]] std::span<const Mover> movers() const;
     [[nodiscard]] std::span<const PlacedRobot> robots() const;
@@ -196,7 +198,7 @@ class World {
     /// What the bumpers of a robot feel while it is stalled in such steps, until told anew.
     void feel(std::size_t robot, std::vector<bool> bumpers);
     /// Back to time 0 and the scene of then, as it was made. Counts as a change.
-    void rewind();
+    void rewind() { rewind(preparer()(Scene(*sharedBeginning()))); }
 
     /// Goes on in another scene, between steps. What has the same id in both stays as it is: robots
     /// keep pose, motion, command and stall, unless `at` or `heading` of their record is another,
@@ -208,13 +210,15 @@ class World {
     /// The same, but everything starts anew where the scene has it; running commands are Stopped.
     /// A robot's ids of commands go on all the same.
     void restart(Scene scene);
-    /// Both in two parts, for those who have somebody else to serve meanwhile: the function that
-    /// this returns does what takes long, in any thread and while the world goes on.
+    /// These and rewind() in two parts, for those who have somebody else to serve meanwhile: the
+    /// function that this returns does what takes long, in any thread and while the world goes on.
     [[nodiscard]] std::function<NextScene(Scene scene)> preparer() const;
     /// \returns what the world was, to be ended by somebody with time for it
     std::shared_ptr<const void> change(const NextScene& next,
                                        std::span<const std::string> placed = {});
     std::shared_ptr<const void> restart(const NextScene& next);
+    /// \param next the scene of sharedBeginning()
+    std::shared_ptr<const void> rewind(const NextScene& next);
     /// Changes and restarts so far.
     [[nodiscard]] std::int64_t changes() const;
 
