@@ -208,9 +208,4 @@ CellSet cellsOfClass(const Coverage& coverage, std::size_t index);
 /// none.
 std::optional<double> coveredShare(const CellSet& covered, const CellSet& target);
 
-/// One JSON object and a newline, schema ispace-coverage/1.
-std::string coverageJson(const CoverageReport& report);
-/// The same for people, aligned lines.
-std::string coverageText(const CoverageReport& report);
-
 }  // namespace ispace

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/coverage_report.h"
+
 #include <algorithm>
 
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "base/program.h"
-#include "cover/coverage.h"
-#include "cover/run_sight.h"
+#include "cover/run_sight_report.h"
 #include "cover/text_table.h"
 
 namespace ispace {
@@ -112,8 +113,6 @@ void writeList(JsonWriter& json, const char* key, const std::vector<Item>& items
 }
 
 }  // namespace
-
-std::string coverageJson(const CoverageReport& report) { return coverageJson(report, nullptr); }
 
 std::string coverageJson(const CoverageReport& report, const RunSight* run) {
     const Box2& limits = report.limits;

@@ -2,16 +2,12 @@
 #include "cover/coverage.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
-#include <cctype>
 #include <cmath>
 #include <numeric>
 
 #include "base/error.h"
-#include "cover/coverage_formats.h"
 #include "cover/test_scenes.h"
-#include "env/level.h"
 
 namespace ispace {
 namespace {
@@ -108,82 +104,11 @@ TEST(Coverage, LoneSensorIsWorthAllItSees) {
     EXPECT_NEAR(*report.sensors[0].slice_area, std::acos(-1.0) * 16 * 181 / 360, 1e-9);
 }
 
-TEST(Coverage, SameForAnyNumberOfThreads) {
-    std::string lines = kOffice;
-    lines +=
-        "laser at=1,1,0.6 fov=200\nlaser at=6,5,1.2 sweep=tilt sweep_span=30\n"
-        "ranger at=7,5,1.5 tilt=-50 heading=-120\nranger at=1,4,2 tilt=-90\n";
-    for (int i = 0; i < 5; ++i)
-        lines += "ultrasound tilt=-90 at=" + std::to_string(i + 1) + ",2,2.4\n";
-    const Scene scene = sceneOf(lines);
-    const auto with_threads = [&scene](std::size_t threads) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        const Coverage coverage = coverageOf(scene);
-        return coverageJson(coverage.report) + coverageGeoJson(scene, coverage) +
-               coverageCsv(coverage);
-    };
-    const std::string one = with_threads(1);
-    for (int run = 0; run < 3; ++run) EXPECT_EQ(with_threads(4), one);
-}
-
-/// As many lines, round bodies and edges of free floor as are worth several threads.
-TEST(Coverage, SameForAnyNumberOfThreadsInALargeHall) {
-    constexpr int kSide = 52;
-    const auto size = std::to_string(3 * kSide);
-    std::string lines = "ispace size=" + size + ',' + size + '\n';
-    for (int i = 0; i < kSide * kSide; ++i) {
-        const std::string at = std::to_string(3 * (i % kSide) - 3 * kSide / 2 + 1) + ',' +
-                               std::to_string(3 * (i / kSide) - 3 * kSide / 2 + 1);
-        lines += (i % 2 == 0 ? "table at=" : "desk heading=" + std::to_string(i % 90) + " at=") +
-                 at + '\n';
-    }
-    lines += "laser at=0,0 fov=270\nlaser at=30,20 fov=180 heading=70 range=20\n";
-    const auto with_threads = [&lines](std::size_t threads) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        const Scene scene = sceneOf(lines);  // what is known of it is made anew
-        const Coverage coverage = coverageOf(scene);
-        EXPECT_GT(scene.environment.level(kScanHeight)->slice().straightLines().size(), 20'000U);
-        EXPECT_FALSE(coverage.report.unseen.empty());
-        return coverageJson(coverage.report) + coverageCsv(coverage);
-    };
-    const std::string one = with_threads(1);
-    for (const std::size_t threads : {2U, 3U}) EXPECT_EQ(with_threads(threads), one);
-}
-
 TEST(Coverage, OneCellWillDo) {
     const CoverageReport report =
         coverageOf(sceneOf("ispace size=6,4\nlaser at=1,1 fov=360\n"), 1, 1).report;
     EXPECT_EQ(report.coverage.grid, 1.0);
     EXPECT_EQ(report.total_effective_area.grid, 24.0);
-}
-
-TEST(Coverage, WhatHoldsNoCentreOfACellIsNotKnownByCells) {
-    const Scene scene = sceneOf(
-        "ispace size=6,4\nzone id=gap at=0,0 size=0.02,0.03\nzone id=yard at=9,9 size=1,1\n"
-        "laser at=1,1 fov=360\n");
-    const CoverageReport report = coverageOf(scene, 60, 40).report;
-    EXPECT_FALSE(report.zones[0].coverage.grid);
-    EXPECT_NEAR(report.zones[0].coverage.exact.value_or(0), 1, 1e-6);
-    EXPECT_FALSE(report.zones[1].coverage.grid);
-    const std::string json = coverageJson(report);
-    EXPECT_NE(json.find(R"("coverage":{"grid":null,"exact":)"), std::string::npos) << json;
-    const std::string text = coverageText(report);
-    const std::string row = text.substr(text.find("zone gap"));
-    EXPECT_NE(row.substr(0, row.find('\n')).find(" -   100.00%"), std::string::npos) << text;
-}
-
-TEST(Coverage, NoIndoorCellIsNoShareAtAll) {
-    // The only centre lies in the notch.
-    const CoverageReport report =
-        coverageOf(sceneOf("fence path=0,0;4,0;4,1;1,1;1,4;0,4 closed=yes\ninside at=0.5,0.5\n"
-                           "laser at=0.5,0.5 fov=360\n"),
-                   1, 1)
-            .report;
-    EXPECT_FALSE(report.coverage.grid);
-    EXPECT_FALSE(report.free_coverage.grid);
-    EXPECT_NE(coverageJson(report).find(R"("redundancy":null)"), std::string::npos);
-    EXPECT_NE(coverageText(report).find("seen by no sensor            -  "), std::string::npos)
-        << coverageText(report);
 }
 
 TEST(MakeTarget, RefusesGridsOfNoOrTooManyCells) {
@@ -200,20 +125,6 @@ TEST(MakeTarget, FreeIsIndoorLessSolidsAtTheHeight) {
     EXPECT_EQ(low.indoor.count(), 2400U);
     EXPECT_EQ(low.free.count(), 1800U);
     EXPECT_EQ(makeTarget(scene.environment, CellCount{60, 40}, 1.01).free.count(), 2400U);
-}
-
-TEST(CoverageJson, MetricsHaveNoDigitsThatRoundingMade) {
-    const Scene scene =
-        sceneOf("ispace size=6,4\nlaser id=l1 at=-1,0.3 range=3 fov=123\nlaser at=1.1,0 fov=77\n");
-    const std::string json = coverageJson(coverageOf(scene).report);
-    std::size_t digits = 0, most = 0;
-    for (const char c : json.substr(json.find("limits"))) {
-        const bool is_digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
-        if (is_digit && (digits > 0 || c != '0')) ++digits;
-        if (!is_digit && c != '.') digits = 0;
-        most = std::max(most, digits);
-    }
-    EXPECT_EQ(most, 12U) << json;
 }
 
 }  // namespace

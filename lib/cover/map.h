@@ -6,7 +6,7 @@
 
 #include "cover/coverage.h"
 #include "cover/run_sight.h"
-#include "cover/trace_file.h"
+#include "cover/tried_pose.h"
 #include "draw/picture.h"
 
 namespace ispace {

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "cover/pictures.h"
 #include "cover/test_map.h"
 #include "geom/predicates.h"
 
@@ -317,6 +318,25 @@ TEST(MapCurves, ThinnedLinesStayNear) {
         }
     }
     EXPECT_EQ(thinned({{0, 0}, {1, 0}, {2, 0}}, 0.1), (std::vector<Point2>{{0, 0}, {2, 0}}));
+}
+
+TEST(DensityMap, IsColouredByClass) {
+    const std::string lines =
+        "ispace size=8,8,3\ncamera at=-3.9,0,2 tilt=-20 fov=90 pixels=640,480\n";
+    const Scene scene = sceneOf(lines);
+    const Coverage coverage = coverageOf(scene);
+    MapOptions options;
+    options.color = MapColor::Density;
+    const PlanPixels plan(drawCoverageMap(scene, coverage, options), 8);
+    const FloorDensity density(scene.sensors[0].as<Camera>(), scene.sensors[0].pose, 0);
+    for (const Point2 place : {Point2{-1.3, 0.9}, {0.4, 1.7}, {2.9, 2.5}}) {
+        std::size_t index = 0;
+        while (index < pixelDensities().size() &&
+               density.at(place) >= pixelDensities()[index].pixels_per_metre)
+            ++index;
+        EXPECT_GT(plan.shareOf(densityColor(index), place.x, place.y, 3), 0.6) << place.x;
+    }
+    EXPECT_GT(plan.shareOf(palette::kFloor, -3.4, 3.2, 3), 0.6);
 }
 
 }  // namespace

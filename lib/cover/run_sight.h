@@ -15,8 +15,6 @@
 
 namespace ispace {
 
-class JsonWriter;
-
 /// The longest time that somebody was seen by no sensor.
 struct SightGap {
     double begin = 0, end = 0;  ///< seconds
@@ -68,12 +66,5 @@ struct RunSight {
 /// \param changes of the world in the run, which are made again; null: none
 RunSight measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
                     RunChanges* changes = nullptr);
-
-/// Metrics for people, aligned lines.
-std::string runText(const RunSight& run);
-/// coverageJson() with a member `run`, unless that is null.
-std::string coverageJson(const CoverageReport& report, const RunSight* run);
-/// That member.
-void writeRun(JsonWriter& json, const RunSight& run);
 
 }  // namespace ispace

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/run_sight_report.h"
+
 #include <algorithm>
 
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "cover/run_sight.h"
 #include "cover/text_table.h"
 
 namespace ispace {

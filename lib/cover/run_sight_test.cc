@@ -82,7 +82,6 @@ TEST(RunSight, ARunMayBeAMoment) {
     const RunSight run = sightOf(robotsCsv(0));
     EXPECT_EQ(run.members[0].duration, 0);
     EXPECT_FALSE(run.members[0].longest_gap);
-    EXPECT_FALSE(runText(run).empty());
     EXPECT_THROW(sightOf("t,id,x,y,heading_deg\n"), FormatError);
     EXPECT_THROW(sightOf("t,id,x,y,heading_deg\n0,r9,0,0,0\n"), FormatError);
 }
@@ -106,22 +105,6 @@ TEST(RunSight, WhoJoinsLaterIsLookedAt) {
     ASSERT_EQ(run.members.size(), 2U);
     EXPECT_EQ(run.members[1].duration, 1);
     EXPECT_EQ(run.members[1].time_shares, (std::vector<double>{0, 0, 1}));
-}
-
-TEST(RunSight, IsReported) {
-    RunSight run = sightOf(robotsCsv());
-    run.name = "drive";
-    const std::string text = runText(run);
-    EXPECT_NE(text.find("run drive, t=0.00 to 6.00 s"), std::string::npos) << text;
-    EXPECT_NE(text.find("robot r1"), std::string::npos);
-    EXPECT_NE(text.find("where sight was lost:"), std::string::npos);
-    const std::string json = coverageJson({}, &run);
-    EXPECT_NE(
-        json.find(
-            R"("run":{"record":"drive","begin":0,"end":6,"members":[{"id":"r1","kind":"robot")"),
-        std::string::npos)
-        << json;
-    EXPECT_EQ(coverageJson({}, nullptr).find("\"run\""), std::string::npos);
 }
 
 }  // namespace

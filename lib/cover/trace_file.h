@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/program.h"
-#include "geom/pose.h"
+#include "cover/tried_pose.h"
 
 namespace ispace {
-
-/// A pose that a search for an arrangement tried for a sensor, and what it would cover.
-struct TriedPose {
-    std::string sensor;  ///< id; of several that are alike the first
-    Pose3 pose;
-    double value = 0;  ///< share of what counts that it would add to what stands already
-    bool is_chosen = false;
-    std::optional<double> slice_area = {};  ///< of a laser, eq. (4.4), m2
-};
 
 /// The "assist info" of the thesis' Sensor Arranger as JSONL: a header object
 /// {"schema":"ispace-trace/1","history":[...]}, then a line a pose,

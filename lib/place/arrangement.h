@@ -10,7 +10,7 @@
 
 #include "base/program.h"
 #include "base/progress.h"
-#include "cover/trace_file.h"
+#include "cover/tried_pose.h"
 #include "layout/scene.h"
 #include "place/arrange_options.h"
 #include "place/sensor_group.h"

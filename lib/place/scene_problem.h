@@ -13,7 +13,7 @@
 #include "base/progress.h"
 #include "cover/coverage.h"
 #include "cover/sight.h"
-#include "cover/trace_file.h"
+#include "cover/tried_pose.h"
 #include "place/arrange_options.h"
 #include "place/candidate_pool.h"
 #include "place/sensor_group.h"

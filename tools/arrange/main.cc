@@ -15,6 +15,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/run_tool.h"
+#include "cover/trace_file.h"
 #include "place/arrangement.h"
 #include "place/curve.h"
 #include "record/text.h"

@@ -15,6 +15,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/run_tool.h"
+#include "cover/coverage_report.h"
 #include "coverage/judge.h"
 #include "coverage/measured.h"
 #include "coverage/outcome.h"
