@@ -173,7 +173,7 @@ constexpr std::size_t kSpotsListed = 5;
 
 std::string metres(double value) { return formatFixed(value, 2); }
 std::string area(double value) { return formatFixed(value, 2) + " m2"; }
-std::string percent(double share) { return formatFixed(100 * share, 2) + "%"; }
+std::string percent(double share) { return percentText(share); }
 
 template <typename Format>
 std::string withSign(double value, Format format) {

@@ -5,6 +5,7 @@
 
 #include "base/number.h"
 #include "cover/map_parts.h"
+#include "cover/text_table.h"
 
 namespace ispace {
 
@@ -12,7 +13,7 @@ namespace {
 
 using Sign = LegendItem::Sign;
 
-std::string percent(double share) { return formatFixed(100 * share, 1) + "%"; }
+std::string percent(double share) { return percentText(share, 1); }
 
 std::string area(double value) {
     if (value >= 1e6) return formatFixed(value / 1e6, 2) + " km²";

@@ -15,7 +15,6 @@ namespace {
 constexpr std::size_t kColumns = 4;  // numbers of sensors, the last one and more
 constexpr std::size_t kLossesListed = 5;
 
-std::string percent(double share) { return formatFixed(100 * share, 1) + "%"; }
 std::string seconds(double time) { return formatFixed(time, 2) + " s"; }
 std::string placeText(Point2 place) {
     return "(" + formatFixed(place.x, 2) + ", " + formatFixed(place.y, 2) + ")";
@@ -74,7 +73,7 @@ TextRow rowOf(const RunSight& run, const RunSightMetrics& metrics, bool is_way) 
     TextRow row = {who, is_way ? formatFixed(metrics.length, 2) + " m" : seconds(metrics.duration)};
     const std::size_t columns = columnsOf(run);
     for (std::size_t k = 0; k < columns; ++k)
-        row.push_back(shares.empty() ? "-" : percent(shareOf(shares, k, k + 1 == columns)));
+        row.push_back(shares.empty() ? "-" : percentText(shareOf(shares, k, k + 1 == columns), 1));
     if (is_way) return row;
     row.push_back(std::to_string(metrics.losses));
     const auto& gap = metrics.longest_gap;

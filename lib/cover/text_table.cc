@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/number.h"
+
 namespace ispace {
 
 std::string aligned(const std::vector<TextRow>& rows, const std::string& sides) {
@@ -25,6 +27,10 @@ std::string aligned(const std::vector<TextRow>& rows, const std::string& sides) 
         text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     }
     return text;
+}
+
+std::string percentText(double share, int decimals) {
+    return formatFixed(100 * share, decimals) + '%';
 }
 
 }  // namespace ispace

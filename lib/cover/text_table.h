@@ -13,4 +13,7 @@ using TextRow = std::vector<std::string>;
 /// whose last letter counts on.
 std::string aligned(const std::vector<TextRow>& rows, const std::string& sides);
 
+/// A share with so many decimals: 0.974 is "97.40%" with two.
+std::string percentText(double share, int decimals = 2);
+
 }  // namespace ispace

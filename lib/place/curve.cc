@@ -2,11 +2,11 @@
 #include "place/curve.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/number.h"
+#include "cover/text_table.h"
 #include "draw/color.h"
 #include "draw/picture.h"
 
@@ -22,8 +22,6 @@ constexpr Color kGridLine = Color::rgb(0xE1E4E8);
 constexpr Color kGap = Color::rgb(0x0072B2).faded(0.14);
 Color valueColor() { return seriesColor(3); }
 Color boundColor() { return seriesColor(0); }
-
-std::string percent(double share, int decimals) { return formatFixed(100 * share, decimals) + "%"; }
 
 /// A stretch of an axis with its ticks, all whole multiples of `step`.
 struct Axis {
@@ -91,8 +89,8 @@ void drawAxes(const Chart& chart) {
     chart.shares.forEachTick([&](double value) {
         const double y = chart.at(chart.sensors.first, value / 100).y;
         chart.picture.line({plot.low.x, y}, {plot.high.x, y}, {kGridLine, em / 16});
-        chart.picture.text({plot.low.x - 0.5 * em, y + 0.36 * em}, percent(value / 100, decimals),
-                           chart.text(Align::Right));
+        chart.picture.text({plot.low.x - 0.5 * em, y + 0.36 * em},
+                           percentText(value / 100, decimals), chart.text(Align::Right));
     });
     chart.sensors.forEachTick([&](double count) {
         const double x = chart.at(count, 0).x;
@@ -116,7 +114,8 @@ void drawFigures(const Chart& chart) {
     for (const CurvePoint& point : chart.points) {
         const Point2 dot = chart.at(point.sensors, point.value);
         if (dot.y + 1.6 * em > chart.plot.high.y) continue;
-        chart.picture.text({dot.x + 0.35 * em, dot.y + 1.35 * em}, percent(point.value, 1), style);
+        chart.picture.text({dot.x + 0.35 * em, dot.y + 1.35 * em}, percentText(point.value, 1),
+                           style);
     }
 }
 
@@ -174,23 +173,12 @@ std::string curveCsv(const std::vector<CurvePoint>& points) {
 }
 
 std::string curveText(const std::vector<CurvePoint>& points) {
-    std::vector<std::array<std::string, 3>> rows = {{"sensors", "coverage", "at most"}};
+    std::vector<TextRow> rows = {{"sensors", "coverage", "at most"}};
     rows.reserve(points.size() + 1);
     for (const CurvePoint& point : points)
         rows.push_back(
-            {std::to_string(point.sensors), percent(point.value, 2), percent(point.bound, 2)});
-    std::array<std::size_t, 3> widths = {};
-    for (const auto& row : rows)
-        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-    std::string text;
-    for (const auto& row : rows) {
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            if (i > 0) text += "  ";
-            text.append(widths[i] - row[i].size(), ' ').append(row[i]);
-        }
-        text += '\n';
-    }
-    return text;
+            {std::to_string(point.sensors), percentText(point.value), percentText(point.bound)});
+    return aligned(rows, "r");
 }
 
 std::string drawCurve(const std::vector<CurvePoint>& points, const std::string& title,

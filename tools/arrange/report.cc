@@ -5,13 +5,12 @@
 
 #include "base/message.h"
 #include "base/number.h"
+#include "cover/text_table.h"
 #include "place/curve.h"
 
 namespace ispace {
 
 namespace {
-
-std::string percent(double share) { return formatFixed(share * 100, 2) + "%"; }
 
 std::string counted(std::size_t count, const char* one, const char* many) {
     return std::to_string(count) + ' ' + (count == 1 ? one : many);
@@ -38,15 +37,16 @@ std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) 
 
 std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement) {
     std::string text = "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") +
-                       ", coverage " + percent(arrangement.coverage);
+                       ", coverage " + percentText(arrangement.coverage);
     // The bound is about what was maximised, before it was refined.
     if (arrangement.value)
-        text += "; value " + percent(arrangement.candidate_value);
+        text += "; value " + percentText(arrangement.candidate_value);
     else if (how.refine)
-        text += "; before it was refined " + percent(arrangement.candidate_value);
+        text += "; before it was refined " + percentText(arrangement.candidate_value);
     const double gap = gapOf(arrangement);
-    text += ", bound " + percent(arrangement.candidate_bound) + " (" +
-            (gap > 0 ? "gap " + percent(gap) : "proven best") + ") " + overText(how, arrangement);
+    text += ", bound " + percentText(arrangement.candidate_bound) + " (" +
+            (gap > 0 ? "gap " + percentText(gap) : "proven best") + ") " +
+            overText(how, arrangement);
     if (!arrangement.is_complete && gap > 0) text += ", cut short";
     text += '\n';
     if (!arrangement.is_complete && gap <= 0)
@@ -56,7 +56,7 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
                 formatFixed(arrangement.refined_after, 3) +
                 " m2 by exact area, off the candidates; " +
                 (arrangement.bound < 1 ? "from any places at all at most " +
-                                             percent(arrangement.bound) + " can be covered"
+                                             percentText(arrangement.bound) + " can be covered"
                                        : "for any places at all no bound below 100% is known") +
                 '\n';
     } else if (how.refine) {
@@ -64,7 +64,7 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
                 formatFixed(arrangement.refined_before, 3) + " m2 by exact area\n";
     }
     if (arrangement.least) {
-        text += "arrange: target " + percent(*how.target) + " reached " +
+        text += "arrange: target " + percentText(*how.target) + " reached " +
                 (arrangement.has_costs
                      ? "at a cost of " + formatDouble(arrangement.cost) +
                            "; nothing cheaper than " + formatDouble(*arrangement.least)
@@ -83,10 +83,10 @@ std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangem
     std::string text = "the target of " + formatPercent(how.target.value_or(1)) +
                        " is not reached: " +
                        counted(arrangement.sensors.size(), "sensor covers ", "sensors cover ") +
-                       percent(arrangement.candidate_value);
+                       percentText(arrangement.candidate_value);
     if (arrangement.candidate_bound < how.target.value_or(1))
         text += ", and no layout of these candidates covers more than " +
-                percent(arrangement.candidate_bound);
+                percentText(arrangement.candidate_bound);
     if (!arrangement.is_complete) return text + "; the search was cut short";
     if (arrangement.is_exhausted)
         return text +
