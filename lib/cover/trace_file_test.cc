@@ -94,20 +94,23 @@ TEST(TraceFile, ErrorsNameTheLine) {
     EXPECT_EQ(errorOf("#env 1\n"),
               "t.jsonl:1: error: no trace, wanted what arrange --trace writes");
     EXPECT_EQ(errorOf("{\"schema\":\"ispace-scan/1\"}"),
-              "t.jsonl:1:11: error: found schema `ispace-scan/1`, wanted `ispace-trace/1`");
-    EXPECT_EQ(errorOf("{}"), "t.jsonl:1:3: error: no `schema`");
+              "t.jsonl:1: error: found schema `ispace-scan/1`, wanted `ispace-trace/1`");
+    EXPECT_EQ(errorOf("{}"), "t.jsonl:1: error: no `schema`");
     EXPECT_EQ(errorOf(kHeader + good + "{\"sensor\":\"a\",\"value\":0}\n"),
-              "t.jsonl:3:25: error: no `pose`");
+              "t.jsonl:3: error: no `pose`");
     EXPECT_EQ(errorOf(kHeader + "{\"sensor\":\"a\",\"pose\":[1,2,3],\"value\":0}"),
-              "t.jsonl:2:28: error: a pose has six numbers, x,y,z,heading,tilt,roll, found 3");
+              "t.jsonl:2: error: a pose has six numbers, x,y,z,heading,tilt,roll, found 3");
     EXPECT_EQ(errorOf(kHeader + "{\"value\":01}"),
-              "t.jsonl:2:11: error: found `1}`, wanted a comma or }");
+              "t.jsonl:2:11: error: found `1}`, which JSON does not have there");
     EXPECT_EQ(errorOf(kHeader + good + good + "{\"value\":1,\"value\":1}"),
-              "t.jsonl:4:12: error: a second `value`");
+              "t.jsonl:4: error: a second `value`");
     EXPECT_EQ(errorOf(kHeader + "{\"value\":"),
-              "t.jsonl:2:10: error: the line ends here, wanted a number");
+              "t.jsonl:2:10: error: the line ends here, within its JSON object");
+    EXPECT_EQ(errorOf(kHeader + "[]"), "t.jsonl:2: error: the line is no JSON object");
+    EXPECT_EQ(errorOf(kHeader + "{\"sensor\":1}"), "t.jsonl:2: error: `sensor` is not a string");
+    EXPECT_EQ(errorOf(kHeader + "{\"sensor\":1e999}"), "t.jsonl:2: error: a number is too large");
     EXPECT_EQ(errorOf(kHeader + good.substr(0, good.size() - 1) + " x"),
-              "t.jsonl:2:47: error: found `x` behind the object");
+              "t.jsonl:2:47: error: found `x`, which JSON does not have there");
 }
 
 TEST(TraceFile, WhatJsonDoesNotKnowIsRefused) {
