@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sense/reading_fields.h"
 #include "sense/reading_format.h"
 
 namespace ispace {
@@ -34,7 +35,7 @@ class FormatBase : public ReadingFormat {
                                     const Sensor& one);
     /// A reading as a file of its own.
     [[nodiscard]] virtual std::string whole(std::size_t index, const Reading& reading) const;
-    static bool hasRanges(const Sensor& one) { return one.is<Laser>() || one.is<Ranger>(); }
+    static bool hasRanges(const Sensor& one) { return readingKind(one.model).points != nullptr; }
     static bool isCamera(const Sensor& one) { return one.is<Camera>(); }
 
     static constexpr const char* kCameraInfo = ".yaml";

@@ -132,9 +132,15 @@ class Las final : public FormatBase {
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
         const PointCloud cloud = cloudOf(sensors_, index, reading, Coordinates::World);
         out.reserve(out.size() + kPointBytes * cloud.size());
-        for (std::size_t i = 0; i < cloud.size(); ++i)
-            if (!std::isnan(cloud.xyz[3 * i]))
-                appendPoint(out, index, &cloud.xyz[3 * i], timeOf(index, reading, i));
+        const auto delay = readingKind(sensor(index).model).delay;
+        const std::vector<ReadingView> views = viewsOf(sensor(index), reading);
+        for (std::size_t i = 0; i < cloud.size(); ++i) {
+            if (std::isnan(cloud.xyz[3 * i])) continue;
+            const std::size_t part = i * views.size() / cloud.size();
+            const std::size_t element = i - part * (cloud.size() / views.size());
+            appendPoint(out, index, &cloud.xyz[3 * i],
+                        views[part].time + (delay == nullptr ? 0 : delay(sensor(index), element)));
+        }
     }
     [[nodiscard]] std::unique_ptr<ReadingStream> stream(ByteSink write) const override {
         return std::make_unique<LasStream>(std::move(write), sensors_);
@@ -143,16 +149,6 @@ class Las final : public FormatBase {
     [[nodiscard]] bool isBinary() const override { return true; }
 
   private:
-    /// When the point of a cloud was measured.
-    [[nodiscard]] double timeOf(std::size_t index, const Reading& reading,
-                                std::size_t point) const {
-        if (const auto* frame = std::get_if<DepthFrame>(&reading)) return frame->time;
-        const Laser& laser = sensor(index).as<Laser>();
-        const auto beams = static_cast<std::size_t>(laser.beams);
-        return std::get<std::vector<Scan>>(reading)[point / beams].time +
-               laser.timeOf(static_cast<int>(point % beams));
-    }
-
     void appendPoint(std::string& out, std::size_t index, const float* place, double time) const {
         for (int axis = 0; axis < 3; ++axis) {
             const double units = std::round(static_cast<double>(place[axis]) / kScale);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "base/error.h"
 #include "base/number.h"
-#include "raster/encode.h"
 #include "sense/format_base.h"
 #include "sense/mcap_writer.h"
 #include "sense/ros_messages.h"
@@ -19,36 +18,14 @@ namespace {
 constexpr std::string_view kWorldFrame = "map";
 constexpr const char* kOptical = "_optical";
 
-/// A topic of a sensor.
-struct Topic {
-    RosType type;
-    const char* name;
-};
+constexpr RosTopic kOdometry{RosType::Odometry, "odom", RosFrame::World};
 
-constexpr Topic kScan{RosType::LaserScan, "scan"}, kPoints{RosType::PointCloud2, "points"},
-    kDepth{RosType::Image, "depth/image_rect"},
-    kDepthInfo{RosType::CameraInfo, "depth/camera_info"},
-    kImage{RosType::CompressedImage, "image_raw/compressed"},
-    kImageInfo{RosType::CameraInfo, "camera_info"}, kPosition{RosType::PointStamped, "position"},
-    kOdometry{RosType::Odometry, "odom"};
-
-bool isPinhole(const Ranger& ranger) { return ranger.projection == Projection::Pinhole; }
-
-/// What a sensor publishes, in the order of its channels.
-std::vector<Topic> topicsOf(const Sensor& sensor) {
-    if (sensor.is<Laser>()) {
-        if (sensor.as<Laser>().sweep == SweepAxis::None) return {kScan};
-        return {kScan, kPoints};
-    }
-    if (sensor.is<Ranger>()) {
-        if (!isPinhole(sensor.as<Ranger>())) return {kPoints};
-        return {kPoints, kDepth, kDepthInfo};
-    }
-    if (sensor.is<Camera>()) {
-        if (sensor.as<Camera>().lens == Lens::Mirror) return {kImage};
-        return {kImage, kImageInfo};
-    }
-    return {kPosition};
+/// The topics of a sensor, in the order of its channels.
+std::vector<const RosTopic*> topicsOf(const Sensor& sensor) {
+    std::vector<const RosTopic*> topics;
+    for (const RosTopic& topic : readingKind(sensor.model).topics)
+        if (topic.is_sent == nullptr || topic.is_sent(sensor)) topics.push_back(&topic);
+    return topics;
 }
 
 /// In nanoseconds; ROS counts seconds in 31 bits. \param who for messages
@@ -68,82 +45,69 @@ class Messages {
   public:
     /// \param first channel of the sensor
     Messages(std::string& out, const std::string& name, std::uint16_t first, const Sensor& sensor)
-        : out_(out), name_(name), optical_(name + kOptical), first_(first), sensor_(sensor) {}
-
-    void add(const std::vector<Scan>& scans) {
-        const Laser& laser = sensor_.as<Laser>();
-        for (const Scan& scan : scans) add(laser, scan);
-        if (laser.sweep == SweepAxis::None || scans.empty()) return;
-        const std::uint64_t end = nanoseconds(scans.back().time);
-        send(1, sequenceOf(scans.back()), end,
-             pointCloudMessage({end, kWorldFrame}, cloudOf(laser, scans, Coordinates::World)));
+        : out_(out),
+          name_(name),
+          optical_(name + kOptical),
+          first_(first),
+          sensor_(sensor),
+          kind_(readingKind(sensor.model)),
+          topics_(topicsOf(sensor)) {
+        for (const RosTopic* topic : topics_)
+            is_optical_ = is_optical_ || topic->frame == RosFrame::Optical;
     }
 
-    void add(const DepthFrame& frame) {
-        const Ranger& ranger = sensor_.as<Ranger>();
-        const std::uint64_t time = nanoseconds(frame.time);
-        const auto sequence = static_cast<std::uint32_t>(frame.frame);
-        addPose(time, sequence, frame.pose, isPinhole(ranger));
-        send(0, sequence, time,
-             pointCloudMessage({time, name_}, cloudOf(ranger, frame, Coordinates::Sensor)));
-        if (!isPinhole(ranger)) return;
-        send(1, sequence, time, depthImageMessage({time, optical_}, ranger, frame.depths));
-        send(2, sequence, time, cameraInfoMessage({time, optical_}, ranger));
-    }
-
-    void add(const Photo& photo) {
-        const Camera& camera = sensor_.as<Camera>();
-        const std::uint64_t time = nanoseconds(photo.time);
-        const auto sequence = static_cast<std::uint32_t>(photo.frame);
-        addPose(time, sequence, photo.pose, true);
-        send(0, sequence, time,
-             compressedImageMessage({time, optical_}, "png",
-                                    pngOfRgb(camera.columns, camera.rows, photo.rgb)));
-        if (camera.lens == Lens::Mirror) return;
-        send(1, sequence, time, cameraInfoMessage({time, optical_}, camera));
-    }
-
-    void add(const Burst& burst) {
-        const std::uint64_t time = nanoseconds(burst.time);
-        const auto sequence = static_cast<std::uint32_t>(burst.frame);
-        addPose(time, sequence, burst.pose, false);
-        std::optional<Point3> place;
-        if (burst.fix) place = burst.fix->position;
-        if (burst.simple) place = Point3{burst.simple->x, burst.simple->y, burst.pose.position.z};
-        if (place) send(0, sequence, time, pointMessage({time, kWorldFrame}, *place));
+    void add(const Reading& reading) {
+        const std::vector<ReadingView> views = viewsOf(sensor_, reading);
+        for (const ReadingView& view : views) addPart(view);
+        for (std::size_t i = 0; i < topics_.size() && !views.empty(); ++i) {
+            if (topics_[i]->message != nullptr) continue;
+            const std::uint64_t end = nanoseconds(views.back().time);
+            send(i, sequenceOf(views.back()), end,
+                 pointCloudMessage({end, kWorldFrame},
+                                   kind_.points(sensor_, reading, Coordinates::World)));
+        }
     }
 
   private:
-    void add(const Laser& laser, const Scan& scan) {
-        const std::uint32_t sequence = sequenceOf(scan);
-        const std::uint64_t begin = nanoseconds(scan.time);
-        addPose(begin, sequence, scan.pose, false);
-        // A clockwise scanner measures its last beam first.
-        const int last = laser.beams - 1;
-        const int latest = laser.timeOf(last) > 0 ? last : 0;
-        if (laser.timeOf(latest) > 0)
-            addPose(nanoseconds(scan.time + laser.timeOf(latest)), sequence,
-                    scan.poseAt(static_cast<std::size_t>(latest)), false);
-        const double first_beam = laser.timeOf(0);
-        const double increment = last > 0 ? (laser.timeOf(last) - first_beam) / last : 0;
-        send(0, sequence, begin,
-             laserScanMessage({nanoseconds(scan.time + first_beam), name_}, laser, increment,
-                              scan.ranges));
+    void addPart(const ReadingView& view) {
+        const std::uint32_t sequence = sequenceOf(view);
+        const std::uint64_t begin = nanoseconds(view.time);
+        addPose(begin, sequence, view.pose);
+        std::uint64_t measured = begin;
+        if (kind_.delay != nullptr) {
+            // A clockwise scanner measures its last beam first.
+            const std::size_t last = kind_.counts(sensor_).front() - 1;
+            const std::size_t latest = kind_.delay(sensor_, last) > 0 ? last : 0;
+            if (const double delay = kind_.delay(sensor_, latest); delay > 0)
+                addPose(nanoseconds(view.time + delay), sequence, kind_.pose(view, latest));
+            measured = nanoseconds(view.time + kind_.delay(sensor_, 0));
+        }
+        for (std::size_t i = 0; i < topics_.size(); ++i) {
+            if (topics_[i]->message == nullptr) continue;
+            const std::string message = topics_[i]->message({measured, frameOf(*topics_[i])}, view);
+            if (!message.empty()) send(i, sequence, begin, message);
+        }
     }
 
-    [[nodiscard]] std::uint32_t sequenceOf(const Scan& scan) const {
-        const auto scans = static_cast<std::uint32_t>(sensor_.as<Laser>().scans());
-        return static_cast<std::uint32_t>(scan.frame) * scans +
-               static_cast<std::uint32_t>(scan.number);
+    [[nodiscard]] std::string_view frameOf(const RosTopic& topic) const {
+        if (topic.frame == RosFrame::World) return kWorldFrame;
+        return topic.frame == RosFrame::Optical ? optical_ : name_;
     }
 
-    void addPose(std::uint64_t time, std::uint32_t sequence, const Pose3& pose, bool is_optical) {
+    [[nodiscard]] std::uint32_t sequenceOf(const ReadingView& view) const {
+        const int part = kind_.part == nullptr ? 0 : kind_.part(view);
+        return static_cast<std::uint32_t>(view.frame) *
+                   static_cast<std::uint32_t>(std::max(1, partsOf(sensor_))) +
+               static_cast<std::uint32_t>(part);
+    }
+
+    void addPose(std::uint64_t time, std::uint32_t sequence, const Pose3& pose) {
         std::vector<RosTransform> transforms{{{time, kWorldFrame}, name_, pose}};
-        if (is_optical) transforms.push_back({{time, name_}, optical_, Pose3(), true});
+        if (is_optical_) transforms.push_back({{time, name_}, optical_, Pose3(), true});
         appendMcapMessage(out_, 0, sequence, time, transformsMessage(transforms));
     }
 
-    void send(std::uint16_t topic, std::uint32_t sequence, std::uint64_t time,
+    void send(std::size_t topic, std::uint32_t sequence, std::uint64_t time,
               const std::string& message) {
         appendMcapMessage(out_, static_cast<std::uint16_t>(first_ + topic), sequence, time,
                           message);
@@ -158,6 +122,9 @@ class Messages {
     std::string optical_;
     std::uint16_t first_;
     const Sensor& sensor_;
+    const ReadingKind& kind_;
+    std::vector<const RosTopic*> topics_;
+    bool is_optical_ = false;
 };
 
 class McapStream final : public ReadingStream {
@@ -196,7 +163,7 @@ class Mcap final : public FormatBase {
         for (const Sensor& one : sensors.read) {
             names_.push_back(takeName(rosName(one.id), one.id));
             first_.push_back(static_cast<std::uint16_t>(channels_.size()));
-            for (const Topic& topic : topicsOf(one)) addChannel(names_.back(), topic);
+            for (const RosTopic* topic : topicsOf(one)) addChannel(names_.back(), *topic);
             if (channels_.size() > std::numeric_limits<std::uint16_t>::max())
                 throw UsageError("mcap has 65535 channels, which " +
                                  std::to_string(sensors.read.size()) +
@@ -205,8 +172,7 @@ class Mcap final : public FormatBase {
         for (const RunMember& one : options_.members) addMember(one);
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
-        Messages messages(out, names_[index], first_[index], sensor(index));
-        std::visit([&](const auto& one) { messages.add(one); }, reading);
+        Messages(out, names_[index], first_[index], sensor(index)).add(reading);
     }
     void appendMoment(std::string& out, std::uint32_t sequence, double time,
                       std::span<const RunState> states) const override {
@@ -247,9 +213,9 @@ class Mcap final : public FormatBase {
                              "; choose sensors with --select, or give them other ids");
         return name;
     }
-    void addChannel(const std::string& name, const Topic& topic) {
+    void addChannel(const std::string& name, const RosTopic& topic) {
         channels_.push_back(
-            {static_cast<std::uint16_t>(topic.type), "/" + name + "/" + topic.name});
+            {static_cast<std::uint16_t>(topic.type), "/" + name + "/" + std::string(topic.name)});
     }
     void addMember(const RunMember& one) {
         Member member{takeName(rosName(one.id), one.id), "", 0};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <set>
 #include <span>
 
@@ -10,14 +9,12 @@
 #include "base/numpy_file.h"
 #include "base/spool.h"
 #include "sense/format_base.h"
-#include "sense/reading_picture.h"
 
 namespace ispace {
 
 namespace {
 
-constexpr std::string_view kFloat = "<f4", kDouble = "<f8", kByte = "|u1";
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr std::string_view kFloat = "<f4", kDouble = "<f8";
 
 /// An array of a sensor that each reading adds a row to.
 struct GrowingArray {
@@ -37,33 +34,19 @@ struct GrowingArray {
     }
 };
 
-std::uint64_t size(int count) { return static_cast<std::uint64_t>(count); }
-
-/// What a sensor's readings add to, the measured values first.
+/// Arrays that the readings of a sensor add to, the measured values first.
 std::vector<GrowingArray> arraysOf(const Sensor& sensor, const Sensors& sensors) {
-    const std::uint64_t parts = 6;
-    if (sensor.is<Laser>()) {
-        const Laser& laser = sensor.as<Laser>();
-        const std::uint64_t beams = size(laser.beams), scans = size(laser.scans());
-        if (laser.sweep == SweepAxis::None)
-            return {
-                {"ranges", kFloat, {beams}}, {"times", kDouble, {}}, {"poses", kDouble, {parts}}};
-        return {{"ranges", kFloat, {scans, beams}},
-                {"times", kDouble, {scans}},
-                {"poses", kDouble, {scans, parts}}};
-    }
+    const ReadingView view{.sensor = sensor, .receivers = sensors.receivers};
+    constexpr std::uint64_t kPoseParts = 6;
     std::vector<GrowingArray> arrays;
-    if (sensor.is<Ranger>()) {
-        const Ranger& ranger = sensor.as<Ranger>();
-        arrays = {{"depths", kFloat, {size(ranger.rows), size(ranger.columns)}}};
-    } else if (sensor.is<Camera>()) {
-        const Camera& camera = sensor.as<Camera>();
-        arrays = {{"rgb", kByte, {size(camera.rows), size(camera.columns), 3}}};
-    } else {
-        arrays = {{"ranges", kDouble, {sensors.receivers.size()}}, {"positions", kDouble, {3}}};
-    }
+    for (const ReadingField& field : readingKind(sensor.model).fields)
+        if ((field.uses & kInArray) != 0)
+            arrays.push_back({std::string(field.name), field.type, field.shape(view)});
     arrays.push_back({"times", kDouble, {}});
-    arrays.push_back({"poses", kDouble, {parts}});
+    arrays.push_back({"poses", kDouble, {kPoseParts}});
+    if (isSwept(sensor))
+        for (GrowingArray& array : arrays)
+            array.row.insert(array.row.begin(), static_cast<std::uint64_t>(partsOf(sensor)));
     return arrays;
 }
 
@@ -72,16 +55,8 @@ struct FixedArray {
     std::string name, bytes;  ///< of the whole file
 };
 
-template <typename Number>
-FixedArray fixedArray(const std::string& name, std::string_view type,
-                      std::vector<std::uint64_t> shape, const std::vector<Number>& values) {
-    std::string bytes = npyHeader(type, shape);
-    for (const Number value : values) appendLittle(bytes, value);
-    return {name, std::move(bytes)};
-}
-
 /// Texts of NumPy have equal lengths, four bytes a letter.
-FixedArray textArray(const std::string& name, const std::vector<std::string>& texts) {
+std::string textArray(const std::vector<std::string>& texts) {
     std::vector<std::u32string> letters;
     std::size_t most = 1;
     for (const std::string& text : texts) {
@@ -105,56 +80,52 @@ FixedArray textArray(const std::string& name, const std::vector<std::string>& te
         one.resize(most);
         for (const char32_t letter : one) appendLittle(bytes, static_cast<std::uint32_t>(letter));
     }
-    return {name, std::move(bytes)};
+    return bytes;
+}
+
+/// The bytes of a field's numbers; "" of all others.
+struct NumberBytes {
+    template <typename Number>
+    std::string operator()(std::span<const Number> values) const {
+        return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
+    }
+    std::string operator()(const std::vector<float>& values) const {
+        return (*this)(std::span<const float>(values));
+    }
+    std::string operator()(const std::vector<double>& values) const {
+        return (*this)(std::span<const double>(values));
+    }
+    std::string operator()(double value) const {
+        return (*this)(std::span<const double>(&value, 1));
+    }
+    template <typename Value>
+    std::string operator()(const Value& /*value*/) const {
+        return {};
+    }
+};
+
+/// A whole file of an array with the field's value.
+std::string fixedArray(const ReadingField& field, const ReadingView& view) {
+    const FieldValue value = field.value(view);
+    if (const auto* const text = std::get_if<FieldText>(&value)) return textArray({text->value()});
+    if (const auto* const texts = std::get_if<std::vector<std::string>>(&value))
+        return textArray(*texts);
+    const std::string_view type = field.type.empty() ? kDouble : field.type;
+    const std::string bytes = std::visit(NumberBytes(), value);
+    const std::vector<std::uint64_t> shape =
+        field.shape == nullptr ? std::vector<std::uint64_t>{bytes.size() / sizeof(double)}
+                               : field.shape(view);
+    return npyHeader(type, shape) + bytes;
 }
 
 std::vector<FixedArray> fixedArraysOf(const Sensor& sensor, const Sensors& sensors) {
-    if (sensor.is<Laser>()) {
-        const Laser& laser = sensor.as<Laser>();
-        std::vector<double> angles;
-        angles.reserve(static_cast<std::size_t>(laser.beams));
-        for (int k = 0; k < laser.beams; ++k) angles.push_back(laser.bearing(k).radians());
-        return {fixedArray("angles", kDouble, {angles.size()}, angles),
-                fixedArray("limits", kDouble, {2},
-                           std::vector<double>{laser.min_range, laser.max_range})};
-    }
-    if (sensor.is<Ranger>()) {
-        const Ranger& ranger = sensor.as<Ranger>();
-        std::vector<float> rays;
-        rays.reserve(3 * ranger.pixels());
-        for (int row = 0; row < ranger.rows; ++row)
-            for (int column = 0; column < ranger.columns; ++column) {
-                const Vec3 ray = ranger.ray(column, row);
-                for (const double part : {ray.x, ray.y, ray.z})
-                    rays.push_back(static_cast<float>(part));
-            }
-        return {fixedArray("rays", kFloat, {size(ranger.rows), size(ranger.columns), 3}, rays),
-                fixedArray("limits", kDouble, {2},
-                           std::vector<double>{ranger.min_range, ranger.max_range})};
-    }
-    if (sensor.is<Camera>()) {
-        const Camera& camera = sensor.as<Camera>();
-        const auto [model, coefficients] = lensModelOf(camera);
-        std::vector<FixedArray> arrays{
-            fixedArray(
-                "matrix", kDouble, {3, 3},
-                std::vector<double>{camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1}),
-            fixedArray("coefficients", kDouble, {coefficients.size()},
-                       std::vector<double>(coefficients.begin(), coefficients.end())),
-            textArray("model", {std::string(model)})};
-        if (camera.lens == Lens::Mirror)
-            arrays.push_back(fixedArray("xi", kDouble, {1}, std::vector<double>{camera.mirror}));
-        return arrays;
-    }
-    std::vector<std::string> names;
-    std::vector<double> places;
-    for (const Sensor& receiver : sensors.receivers) {
-        names.push_back(receiver.id);
-        const Point3& at = receiver.pose.position;
-        places.insert(places.end(), {at.x, at.y, at.z});
-    }
-    return {textArray("receivers", names),
-            fixedArray("receiver_positions", kDouble, {names.size(), 3}, places)};
+    const ReadingView view{.sensor = sensor, .receivers = sensors.receivers};
+    std::vector<FixedArray> arrays;
+    for (const ReadingField& field : readingKind(sensor.model).fields)
+        if ((field.uses & kInFixed) != 0 &&
+            !std::holds_alternative<std::monostate>(field.value(view)))
+            arrays.push_back({std::string(field.name), fixedArray(field, view)});
+    return arrays;
 }
 
 /// An id as a folder in an archive: one that stays within it, wherever it is unpacked.
@@ -173,68 +144,26 @@ void appendRow(std::string& out, std::uint32_t array, std::string_view bytes) {
     out += bytes;
 }
 
-template <typename Number>
-std::string_view bytesOf(const std::vector<Number>& values) {
-    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number)};
-}
-
-void appendNumbers(std::string& out, std::initializer_list<double> values) {
-    for (const double value : values) appendLittle(out, value);
-}
-
-void appendPose(std::string& out, const Pose3& pose) {
-    appendNumbers(out, {pose.position.x, pose.position.y, pose.position.z, pose.heading.radians(),
-                        pose.tilt.radians(), pose.roll.radians()});
-}
-
 /// The rows of a reading, in the order of arraysOf().
-struct RowsOf {
-    const Sensors& sensors;
-
-    std::vector<std::string> operator()(const std::vector<Scan>& scans) const {
-        std::vector<std::string> rows(3);
-        for (const Scan& scan : scans) {
-            rows[0] += bytesOf(scan.ranges);
-            appendLittle(rows[1], scan.time);
-            appendPose(rows[2], scan.pose);
-        }
-        return rows;
+std::vector<std::string> rowsOf(const Sensor& sensor, const Sensors& sensors,
+                                const Reading& reading) {
+    std::vector<std::string> rows;
+    for (const ReadingView& view : viewsOf(sensor, reading, sensors.receivers)) {
+        std::size_t row = 0;
+        const auto append = [&](std::string_view bytes) {
+            if (row == rows.size()) rows.emplace_back();
+            rows[row++] += bytes;
+        };
+        for (const ReadingField& field : readingKind(sensor.model).fields)
+            if ((field.uses & kInArray) != 0) append(std::visit(NumberBytes(), field.value(view)));
+        append(NumberBytes()(view.time));
+        const Pose3& pose = view.pose;
+        append(NumberBytes()(std::vector<double>{pose.position.x, pose.position.y, pose.position.z,
+                                                 pose.heading.radians(), pose.tilt.radians(),
+                                                 pose.roll.radians()}));
     }
-    std::vector<std::string> operator()(const DepthFrame& frame) const {
-        return {std::string(bytesOf(frame.depths)), timeOf(frame), poseOf(frame)};
-    }
-    std::vector<std::string> operator()(const Photo& photo) const {
-        return {std::string(bytesOf(photo.rgb)), timeOf(photo), poseOf(photo)};
-    }
-    std::vector<std::string> operator()(const Burst& burst) const {
-        std::vector<double> ranges(sensors.receivers.size(), kUnknown);
-        for (const TimeOfFlight& flight : burst.heard) ranges[flight.receiver] = flight.distance;
-        std::string place;
-        if (burst.fix) {
-            const Point3& at = burst.fix->position;
-            appendNumbers(place, {at.x, at.y, at.z});
-        } else if (burst.simple) {
-            appendNumbers(place, {burst.simple->x, burst.simple->y, kUnknown});
-        } else {
-            appendNumbers(place, {kUnknown, kUnknown, kUnknown});
-        }
-        return {std::string(bytesOf(ranges)), place, timeOf(burst), poseOf(burst)};
-    }
-
-  private:
-    template <typename One>
-    static std::string timeOf(const One& reading) {
-        std::string out;
-        appendLittle(out, reading.time);
-        return out;
-    }
-    template <typename One>
-    static std::string poseOf(const One& reading) {
-        std::string out;
-        appendPose(out, reading.pose);
-        return out;
-    }
-};
+    return rows;
+}
 
 /// Hands the rows in the results of append() to where their arrays are kept.
 template <typename Take>
@@ -330,7 +259,7 @@ class Npz final : public FormatBase {
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
         std::uint32_t array = arrays_.first[index];
-        for (const std::string& row : std::visit(RowsOf{sensors_}, reading))
+        for (const std::string& row : rowsOf(sensor(index), sensors_, reading))
             appendRow(out, array++, row);
     }
     [[nodiscard]] std::unique_ptr<ReadingStream> stream(ByteSink write) const override {
@@ -359,10 +288,10 @@ class Npy final : public FormatBase {
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
         appendRow(out, static_cast<std::uint32_t>(index),
-                  std::visit(RowsOf{sensors_}, reading).front());
+                  rowsOf(sensor(index), sensors_, reading).front());
     }
     [[nodiscard]] std::string whole(std::size_t index, const Reading& reading) const override {
-        return arrays_[index].header(1) + std::visit(RowsOf{sensors_}, reading).front();
+        return arrays_[index].header(1) + rowsOf(sensor(index), sensors_, reading).front();
     }
     [[nodiscard]] std::unique_ptr<ReadingStream> stream(ByteSink write) const override {
         return std::make_unique<NpyStream>(std::move(write), arrays_.front());

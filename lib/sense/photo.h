@@ -73,12 +73,4 @@ void appendRgb24(std::string& out, const Photo& photo);
 /// YUV4MPEG2: 4:4:4, BT.601, limited range.
 std::string y4mHeader(const Camera& camera);
 void appendY4mFrame(std::string& out, const Photo& photo);
-/// One line of JSON: "sensor", "t", "frame", "pose", "width", "height", "projection" and the
-/// lens, then "png", the picture in base64.
-void appendLines(std::string& out, const Sensor& sensor, const Photo& photo,
-                 std::span<const Sensor> receivers = {});
-/// The same with "file", its name, in place of the picture.
-void appendFileLine(std::string& out, const Sensor& sensor, const Photo& photo,
-                    const std::string& file);
-
 }  // namespace ispace

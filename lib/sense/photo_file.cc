@@ -5,10 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "base/base64.h"
-#include "base/json_writer.h"
 #include "raster/encode.h"
-#include "sense/float_text.h"
 #include "sense/photo.h"
 #include "sense/reading_format.h"
 #include "sense/reading_picture.h"
@@ -110,48 +107,6 @@ void addEndingsBeside(const FormatOptions& options, std::vector<std::string>& en
     for (std::string& ending : beside)
         if (std::find(endings.begin(), endings.end(), ending) == endings.end())
             endings.push_back(std::move(ending));
-}
-
-namespace {
-
-/// All but the pixels.
-void beginLine(JsonWriter& json, const Sensor& sensor, const Photo& photo) {
-    const Camera& camera = sensor.as<Camera>();
-    json.beginObject().key("sensor").value(sensor.id);
-    json.key("t").value(photo.time).key("frame").value(photo.frame);
-    addPose(json, photo.pose);
-    json.key("width").value(camera.columns).key("height").value(camera.rows);
-    json.key("projection")
-        .value(camera.lens == Lens::Pinhole   ? "pinhole"
-               : camera.lens == Lens::Fisheye ? "fisheye"
-                                              : "omni");
-    json.key("fx").value(nineDecimals(camera.fx)).key("fy").value(nineDecimals(camera.fy));
-    json.key("cx").value(nineDecimals(camera.cx)).key("cy").value(nineDecimals(camera.cy));
-    if (camera.lens == Lens::Mirror) json.key("mirror").value(camera.mirror);
-    if (camera.isDistorted()) {
-        json.key("coefficients").beginArray();
-        for (const double value : lensModelOf(camera).coefficients) json.value(value);
-        json.endArray();
-    }
-}
-
-}  // namespace
-
-void appendLines(std::string& out, const Sensor& sensor, const Photo& photo,
-                 std::span<const Sensor> /*receivers*/) {
-    const Camera& camera = sensor.as<Camera>();
-    JsonWriter json;
-    beginLine(json, sensor, photo);
-    json.key("png").value(base64(pngOfRgb(camera.columns, camera.rows, photo.rgb)));
-    out.append(json.endObject().text()).append("\n");
-}
-
-void appendFileLine(std::string& out, const Sensor& sensor, const Photo& photo,
-                    const std::string& file) {
-    JsonWriter json;
-    beginLine(json, sensor, photo);
-    json.key("file").value(file);
-    out.append(json.endObject().text()).append("\n");
 }
 
 }  // namespace ispace

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <cstring>
-#include <type_traits>
 #include <utility>
 
 #include "base/error.h"
@@ -47,9 +45,8 @@ class Jsonl final : public FormatBase {
         return scanHeaderLine(options_.history, options_.seed);
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
-        std::visit(
-            [&](const auto& one) { appendLines(out, sensor(index), one, sensors_.receivers); },
-            reading);
+        for (const ReadingView& view : viewsOf(sensor(index), reading, sensors_.receivers))
+            appendLine(out, view);
     }
 };
 
@@ -71,12 +68,7 @@ class Csv final : public FormatBase {
         return bytes;
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
-        std::visit(
-            [&](const auto& one) {
-                if constexpr (!std::is_same_v<decltype(one), const Photo&>)
-                    appendRows(out, sensor(index), one, options_.coordinates, sensors_.receivers);
-            },
-            reading);
+        appendRows(out, sensor(index), reading, options_.coordinates, sensors_.receivers);
     }
 };
 
@@ -87,22 +79,17 @@ class Raw final : public FormatBase {
         : FormatBase(sensors, std::move(options), ".raw") {
         accept("raw", "ranges", hasRanges);
     }
-    void append(std::string& out, std::size_t /*index*/, const Reading& reading) const override {
-        if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
-            for (const Scan& scan : *scans) append(out, scan.ranges);
-        } else {
-            append(out, std::get<DepthFrame>(reading).depths);
-        }
+    void append(std::string& out, std::size_t index, const Reading& reading) const override {
+        static_assert(std::endian::native == std::endian::little);
+        for (const ReadingView& view : viewsOf(sensor(index), reading))
+            for (const ReadingField& field : readingKind(view.sensor.model).fields) {
+                const FieldValue value =
+                    (field.uses & kInArray) != 0 ? field.value(view) : FieldValue();
+                if (const auto* const ranges = std::get_if<std::span<const float>>(&value))
+                    out.append(reinterpret_cast<const char*>(ranges->data()), ranges->size_bytes());
+            }
     }
     [[nodiscard]] bool isBinary() const override { return true; }
-
-  private:
-    static void append(std::string& out, const std::vector<float>& values) {
-        static_assert(std::endian::native == std::endian::little);
-        const std::size_t begin = out.size(), bytes = values.size() * sizeof(float);
-        out.resize(begin + bytes);
-        if (bytes > 0) std::memcpy(out.data() + begin, values.data(), bytes);
-    }
 };
 
 /// Points, as `write` puts them into a file.
@@ -368,11 +355,8 @@ std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& 
 PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,
                    Coordinates in) {
     const Sensor& one = sensors.read[sensor];
-    if (const auto* scans = std::get_if<std::vector<Scan>>(&reading))
-        return cloudOf(one.as<Laser>(), *scans, in);
-    if (const auto* frame = std::get_if<DepthFrame>(&reading))
-        return cloudOf(one.as<Ranger>(), *frame, in);
-    return {};
+    const ReadingKind& kind = readingKind(one.model);
+    return kind.points == nullptr ? PointCloud() : kind.points(one, reading, in);
 }
 
 }  // namespace ispace

@@ -2,6 +2,7 @@
 #include "sense/reading_text.h"
 
 #include <cmath>
+#include <optional>
 
 #include "base/json_writer.h"
 #include "base/number.h"
@@ -17,45 +18,6 @@ void addPose(JsonWriter& json, const Pose3& pose) {
     json.endArray();
 }
 
-namespace {
-
-/// Appends what is written so far, the long list of `key`, and the end of line and object.
-void appendWithRanges(std::string& out, JsonWriter& json, std::string_view key,
-                      std::span<const float> ranges) {
-    json.key(key).beginArray();
-    out += json.text();
-    TextTail tail(out, kNumberRoom * ranges.size() + 3);
-    bool comma = false;
-    for (const float range : ranges) {
-        if (comma) tail.put(',');
-        comma = true;
-        if (std::isfinite(range)) {
-            tail.put(range);
-        } else {
-            tail.put("null");
-        }
-    }
-    tail.put("]}\n");
-}
-
-void addPosition(JsonWriter& json, const Burst& burst) {
-    json.key("position");
-    if (!burst.fix && !burst.simple) {
-        json.null();
-        return;
-    }
-    json.beginArray();
-    if (burst.fix) {
-        const Point3& p = burst.fix->position;
-        json.value(roundSignificant(p.x)).value(roundSignificant(p.y)).value(roundSignificant(p.z));
-    } else {
-        json.value(roundSignificant(burst.simple->x)).value(roundSignificant(burst.simple->y));
-    }
-    json.endArray();
-}
-
-}  // namespace
-
 std::string scanHeaderLine(const History& history, std::uint64_t seed) {
     JsonWriter json;
     json.beginObject().key("schema").value("ispace-scan/1");
@@ -65,128 +27,78 @@ std::string scanHeaderLine(const History& history, std::uint64_t seed) {
     return json.take() + std::to_string(seed) + "}\n";
 }
 
-void appendScanLine(std::string& out, const Sensor& sensor, const Scan& scan) {
-    const Laser& laser = sensor.as<Laser>();
-    JsonWriter json;
-    json.beginObject().key("sensor").value(sensor.id);
-    json.key("t").value(scan.time).key("frame").value(scan.frame);
-    if (laser.sweep != SweepAxis::None) json.key("scan").value(scan.number);
-    addPose(json, scan.pose);
-    json.key("angle_min").value(laser.first.radians());
-    json.key("angle_max").value(laser.last().radians());
-    json.key("angle_increment").value(laser.step.radians());
-    json.key("range_min").value(laser.min_range);
-    json.key("range_max").value(laser.max_range);
-    appendWithRanges(out, json, "ranges", scan.ranges);
-}
-
 namespace {
 
-/// All but the depths.
-void beginLine(JsonWriter& json, const Sensor& sensor, const DepthFrame& frame) {
-    const Ranger& ranger = sensor.as<Ranger>();
-    json.beginObject().key("sensor").value(sensor.id);
-    json.key("t").value(frame.time).key("frame").value(frame.frame);
-    addPose(json, frame.pose);
-    json.key("width").value(ranger.columns).key("height").value(ranger.rows);
-    json.key("projection");
-    if (ranger.projection == Projection::Pinhole) {
-        json.value("pinhole");
-        json.key("fx").value(nineDecimals(ranger.fx()));
-        json.key("fy").value(nineDecimals(ranger.fy()));
-        json.key("cx").value(ranger.cx()).key("cy").value(ranger.cy());
-    } else {
-        json.value("spherical").key("fov").beginArray();
-        json.value(ranger.fov_x.radians()).value(ranger.fov_y.radians()).endArray();
+/// Appends values to a line of JSON, of which `out` has the beginning.
+struct JsonValue {
+    std::string& out;
+    JsonWriter& json;
+
+    void operator()(std::monostate /*none*/) const {}
+    void operator()(Angle angle) const { json.value(angle.radians()); }
+    void operator()(const Measured& measured) const {
+        measured.value ? json.value(roundSignificant(*measured.value)) : json.null();
     }
-    json.key("measures").value(ranger.measures_depth ? "depth" : "distance");
-    json.key("range_min").value(ranger.min_range);
-    json.key("range_max").value(ranger.max_range);
-    if (ranger.ambiguity > 0) json.key("ambiguity").value(ranger.ambiguity);
-}
-
-}  // namespace
-
-void appendLines(std::string& out, const Sensor& sensor, const DepthFrame& frame,
-                 std::span<const Sensor> /*receivers*/) {
-    JsonWriter json;
-    beginLine(json, sensor, frame);
-    appendWithRanges(out, json, "depths", frame.depths);
-}
-
-void appendFileLine(std::string& out, const Sensor& sensor, const DepthFrame& frame,
-                    const std::string& file) {
-    JsonWriter json;
-    beginLine(json, sensor, frame);
-    json.key("file").value(file);
-    out.append(json.endObject().text()).append("\n");
-}
-
-void appendLines(std::string& out, const Sensor& sensor, std::span<const Scan> scans,
-                 std::span<const Sensor> /*receivers*/) {
-    for (const Scan& scan : scans) appendScanLine(out, sensor, scan);
-}
-
-void appendLines(std::string& out, const Sensor& tag, const Burst& burst,
-                 std::span<const Sensor> receivers) {
-    JsonWriter json;
-    json.beginObject().key("sensor").value(tag.id);
-    json.key("t").value(burst.time).key("frame").value(burst.frame);
-    addPose(json, burst.pose);
-    json.key("heard").beginArray();
-    for (const TimeOfFlight& flight : burst.heard) {
-        json.beginObject().key("receiver").value(receivers[flight.receiver].id);
-        json.key("time_of_flight").value(roundSignificant(flight.time));
-        json.key("range").value(roundSignificant(flight.distance));
+    void operator()(const Computed& computed) const { json.value(nineDecimals(computed.value)); }
+    template <typename Value>
+    void operator()(const std::vector<Value>& list) const {
+        json.beginArray();
+        for (const Value& value : list) (*this)(value);
+        json.endArray();
+    }
+    void operator()(std::span<const float> ranges) const {
+        json.beginArray();
+        out += json.take();
+        TextTail tail(out, kNumberRoom * ranges.size());
+        bool comma = false;
+        for (const float range : ranges) {
+            if (comma) tail.put(',');
+            comma = true;
+            if (std::isfinite(range)) {
+                tail.put(range);
+            } else {
+                tail.put("null");
+            }
+        }
+        json.endArray();
+    }
+    void operator()(std::span<const std::uint8_t> /*pixels*/) const {}
+    void operator()(const FieldRecord& record) const {
+        json.beginObject();
+        for (const auto& [name, value] : record.values) {
+            json.key(name);
+            std::visit(*this, value);
+        }
         json.endObject();
     }
-    json.endArray();
-    addPosition(json, burst);
-    const auto metric = [&burst](double Fix::*part) {
-        return burst.fix ? std::optional(roundSignificant((*burst.fix).*part)) : std::nullopt;
-    };
-    json.key("residual").value(metric(&Fix::residual));
-    json.key("pdop").value(metric(&Fix::pdop));
-    json.key("hdop").value(metric(&Fix::hdop));
-    json.key("vdop").value(metric(&Fix::vdop));
-    out.append(json.endObject().text()).append("\n");
-}
-
-namespace {
-
-/// To the nanosecond.
-void appendTime(std::string& out, double seconds) { appendDouble(out, nineDecimals(seconds)); }
-
-void appendPoint(TextTail& tail, const PointCloud& cloud, std::size_t index) {
-    const float* point = &cloud.xyz[3 * index];
-    for (int part = 0; part < 3; ++part) {
-        tail.put(',');
-        if (!std::isnan(point[part])) tail.put(point[part]);
+    template <typename Value>
+    void operator()(const Value& value) const {
+        json.value(value);
     }
-    tail.put('\n');
-}
-
-void appendNumberField(std::string& out, double value) {
-    out += ',';
-    appendDouble(out, value);
-}
-
-void appendPlace(std::string& out, const Burst& burst) {
-    if (burst.fix) {
-        const Fix& fix = *burst.fix;
-        for (const double part : {fix.position.x, fix.position.y, fix.position.z, fix.residual,
-                                  fix.pdop, fix.hdop, fix.vdop})
-            appendNumberField(out, part);
-    } else if (burst.simple) {
-        appendNumberField(out, burst.simple->x);
-        appendNumberField(out, burst.simple->y);
-        out += ",,,,,";
-    } else {
-        out += ",,,,,,,";
-    }
-}
+};
 
 }  // namespace
+
+void appendLine(std::string& out, const ReadingView& reading, const std::string& file) {
+    const ReadingKind& kind = readingKind(reading.sensor.model);
+    JsonWriter json;
+    json.beginObject().key("sensor").value(reading.sensor.id);
+    json.key("t").value(reading.time).key("frame").value(reading.frame);
+    if (isSwept(reading.sensor)) json.key("scan").value(kind.part(reading));
+    addPose(json, reading.pose);
+    for (const ReadingField& field : kind.fields) {
+        if ((field.uses & kInJson) == 0) continue;
+        if ((field.uses & kIsFrame) != 0 && !file.empty()) {
+            json.key("file").value(file);
+            continue;
+        }
+        const FieldValue value = field.value(reading);
+        if (std::holds_alternative<std::monostate>(value)) continue;
+        json.key(field.name);
+        std::visit(JsonValue{out, json}, value);
+    }
+    out.append(json.endObject().text()).append("\n");
+}
 
 void appendCsvField(std::string& out, std::string_view text) {
     if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
@@ -202,89 +114,110 @@ void appendCsvField(std::string& out, std::string_view text) {
 }
 
 std::string csvHeader(const Sensor& sensor) {
-    if (sensor.is<Laser>()) return "sensor,frame,scan,t,beam,bearing_deg,range,x,y,z\n";
-    if (sensor.is<Ranger>()) return "sensor,frame,t,column,row,depth,x,y,z\n";
-    return "sensor,frame,t,x,y,z,residual,pdop,hdop,vdop,heard,times\n";
+    const ReadingKind& kind = readingKind(sensor.model);
+    std::string out = kind.part == nullptr ? "sensor,frame,t" : "sensor,frame,scan,t";
+    for (const std::string_view index : kind.indices) out.append(",").append(index);
+    for (const ReadingField& field : kind.fields)
+        if ((field.uses & kInColumn) != 0) out.append(",").append(field.name);
+    return out + (kind.points == nullptr ? "\n" : ",x,y,z\n");
 }
 
-void appendRows(std::string& out, const Sensor& sensor, std::span<const Scan> scans, Coordinates in,
-                std::span<const Sensor> /*receivers*/) {
-    const Laser& laser = sensor.as<Laser>();
-    const PointCloud cloud = cloudOf(laser, scans, in);
-    std::size_t point = 0;
-    for (const Scan& scan : scans) {
+namespace {
+
+void putFinite(TextTail& tail, float value) {
+    tail.put(',');
+    if (std::isfinite(value)) tail.put(value);
+}
+
+/// The fields of a row that is a whole reading.
+struct CsvValue {
+    std::string& out;
+
+    void operator()(std::int64_t value) const { out += std::to_string(value); }
+    void operator()(const Measured& measured) const {
+        if (measured.value) appendDouble(out, *measured.value);
+    }
+    void operator()(const FieldText& text) const { appendCsvField(out, text.value_or("")); }
+    template <typename Value>
+    void operator()(const Value& /*value*/) const {}
+};
+
+/// A row for each element, with its floats and its point.
+void appendElements(std::string& out, const ReadingView& reading, const std::string& prefix,
+                    const float* point) {
+    const Sensor& sensor = reading.sensor;
+    const ReadingKind& kind = readingKind(sensor.model);
+    std::vector<FieldValue> values;
+    for (const ReadingField& field : kind.fields)
+        if ((field.uses & kInColumn) != 0) values.push_back(field.value(reading));
+    std::vector<std::span<const float>> columns;
+    for (const FieldValue& value : values) {
+        const auto* const own = std::get_if<std::vector<float>>(&value);
+        columns.push_back(own != nullptr ? std::span<const float>(*own)
+                                         : std::get<std::span<const float>>(value));
+    }
+    const std::size_t count = columns.front().size();
+    const std::vector<std::size_t> sizes = kind.counts(sensor);
+    constexpr std::size_t kPointNumbers = 3;
+    const std::size_t numbers = 1 + sizes.size() + columns.size() + kPointNumbers;
+    TextTail tail(out, count * (prefix.size() + numbers * kNumberRoom));
+    for (std::size_t k = 0; k < count; ++k) {
+        tail.put(prefix);
+        tail.putNineDecimals(reading.time + (kind.delay == nullptr ? 0 : kind.delay(sensor, k)));
+        std::size_t index = k;
+        for (const std::size_t size : sizes) {
+            tail.put(',');
+            tail.put(index % size);
+            index /= size;
+        }
+        for (const std::span<const float> column : columns) putFinite(tail, column[k]);
+        for (std::size_t axis = 0; axis < kPointNumbers; ++axis) putFinite(tail, *point++);
+        tail.put('\n');
+    }
+}
+
+}  // namespace
+
+void appendRows(std::string& out, const Sensor& sensor, const Reading& reading, Coordinates in,
+                std::span<const Sensor> receivers) {
+    const ReadingKind& kind = readingKind(sensor.model);
+    const PointCloud cloud =
+        kind.points == nullptr ? PointCloud() : kind.points(sensor, reading, in);
+    std::size_t part = 0;
+    for (const ReadingView& view : viewsOf(sensor, reading, receivers)) {
         std::string prefix;
         appendCsvField(prefix, sensor.id);
-        prefix.append(",").append(std::to_string(scan.frame)).append(",");
-        prefix.append(std::to_string(scan.number)).append(",");
-        TextTail tail(out, scan.ranges.size() * (prefix.size() + 8 * kNumberRoom));
-        for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
-            tail.put(prefix);
-            tail.putNineDecimals(scan.time + laser.timeOf(static_cast<int>(k)));
-            tail.put(',');
-            tail.put(k);
-            tail.put(',');
-            tail.put(static_cast<float>(laser.bearing(static_cast<int>(k)).degrees()));
-            tail.put(',');
-            if (std::isfinite(scan.ranges[k])) tail.put(scan.ranges[k]);
-            appendPoint(tail, cloud, point++);
+        prefix.append(",").append(std::to_string(view.frame)).append(",");
+        if (kind.part != nullptr) prefix.append(std::to_string(kind.part(view))).append(",");
+        if (kind.points != nullptr) {
+            const std::size_t width = cloud.size() / (kind.part == nullptr ? 1 : cloud.height);
+            appendElements(out, view, prefix, cloud.xyz.data() + 3 * width * part++);
+            continue;
         }
-    }
-}
-
-void appendRows(std::string& out, const Sensor& sensor, const DepthFrame& frame, Coordinates in,
-                std::span<const Sensor> /*receivers*/) {
-    const PointCloud cloud = cloudOf(sensor.as<Ranger>(), frame, in);
-    std::string prefix;
-    appendCsvField(prefix, sensor.id);
-    prefix.append(",").append(std::to_string(frame.frame)).append(",");
-    appendTime(prefix, frame.time);
-    TextTail tail(out, cloud.size() * (prefix.size() + 6 * kNumberRoom));
-    std::size_t index = 0;
-    for (std::size_t row = 0; row < cloud.height; ++row) {
-        for (std::size_t column = 0; column < cloud.width; ++column, ++index) {
-            tail.put(prefix);
-            tail.put(',');
-            tail.put(column);
-            tail.put(',');
-            tail.put(row);
-            tail.put(',');
-            if (std::isfinite(frame.depths[index])) tail.put(frame.depths[index]);
-            appendPoint(tail, cloud, index);
+        out += prefix;
+        appendDouble(out, nineDecimals(view.time));
+        for (const ReadingField& field : kind.fields) {
+            if ((field.uses & kInColumn) == 0) continue;
+            out += ',';
+            std::visit(CsvValue{out}, field.value(view));
         }
+        out += '\n';
     }
-}
-
-void appendRows(std::string& out, const Sensor& tag, const Burst& burst, Coordinates /*in*/,
-                std::span<const Sensor> receivers) {
-    appendCsvField(out, tag.id);
-    out.append(",").append(std::to_string(burst.frame)).append(",");
-    appendTime(out, burst.time);
-    appendPlace(out, burst);
-    out.append(",").append(std::to_string(burst.heard.size())).append(",");
-    std::string times;
-    for (const TimeOfFlight& flight : burst.heard) {
-        if (!times.empty()) times += ' ';
-        times.append(receivers[flight.receiver].id).append("=");
-        appendDouble(times, flight.time);
-    }
-    appendCsvField(out, times);
-    out += '\n';
 }
 
 namespace {
 
 constexpr int kSimulatedLaser = 3;  // of CARMEN's laser types
 
-void appendNumber(std::string& out, double value) {
+void appendCarmenNumber(std::string& out, double value) {
     out += ' ';
     appendDouble(out, value);
 }
 
-void appendPose(std::string& out, Point2 position, Angle heading) {
-    appendNumber(out, position.x);
-    appendNumber(out, position.y);
-    appendNumber(out, wrapped(heading).radians());
+void appendCarmenPose(std::string& out, Point2 position, Angle heading) {
+    appendCarmenNumber(out, position.x);
+    appendCarmenNumber(out, position.y);
+    appendCarmenNumber(out, wrapped(heading).radians());
 }
 
 }  // namespace
@@ -308,11 +241,11 @@ void appendCarmenLine(std::string& out, std::size_t number, const Sensor& sensor
     const Angle middle = laser.first + 0.5 * fov;
     out.append("ROBOTLASER").append(std::to_string(number)).append(" ");
     out += std::to_string(kSimulatedLaser);
-    appendNumber(out, (-0.5 * fov).radians());
-    appendNumber(out, fov.radians());
-    appendNumber(out, laser.step.radians());
-    appendNumber(out, laser.max_range);
-    appendNumber(out, laser.noise.sigma[0]);
+    appendCarmenNumber(out, (-0.5 * fov).radians());
+    appendCarmenNumber(out, fov.radians());
+    appendCarmenNumber(out, laser.step.radians());
+    appendCarmenNumber(out, laser.max_range);
+    appendCarmenNumber(out, laser.noise.sigma[0]);
     out.append(" 0 ").append(std::to_string(scan.ranges.size()));
     {
         TextTail tail(out, kNumberRoom * scan.ranges.size());
@@ -323,13 +256,13 @@ void appendCarmenLine(std::string& out, std::size_t number, const Sensor& sensor
         }
     }
     out += " 0";
-    appendPose(out, scan.pose.position.onFloor(), scan.pose.heading + middle);
-    appendPose(out, robot.position, robot.heading);
+    appendCarmenPose(out, scan.pose.position.onFloor(), scan.pose.heading + middle);
+    appendCarmenPose(out, robot.position, robot.heading);
     // Neither speeds nor safety distances are known of a scan.
     out += " 0 0 0 0 0";
-    appendNumber(out, scan.time);
+    appendCarmenNumber(out, scan.time);
     out += " sim";
-    appendNumber(out, scan.time);
+    appendCarmenNumber(out, scan.time);
     out += '\n';
 }
 

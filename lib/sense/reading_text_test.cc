@@ -32,7 +32,7 @@ TEST(ScanJsonl, ScanLine) {
     scan.frame = 7;
     scan.ranges = {0.1F, std::numeric_limits<float>::infinity(), 4.095F};
     std::string out = "before\n";
-    appendScanLine(out, sensor, scan);
+    appendLine(out, viewOf(sensor, scan));
     EXPECT_EQ(out,
               "before\n{\"sensor\":\"l\\\"1\",\"t\":0.25,\"frame\":7,"
               "\"pose\":[1,-2.5,0.15,3.141592653589793,0,0],"
@@ -48,7 +48,7 @@ TEST(ScanJsonl, ScansOfASweepAreNumbered) {
     scan.frame = 2;
     scan.number = 5;
     std::string out;
-    appendScanLine(out, sensor, scan);
+    appendLine(out, viewOf(sensor, scan));
     EXPECT_NE(out.find("\"frame\":2,\"scan\":5,\"pose\""), std::string::npos) << out;
     EXPECT_TRUE(out.ends_with("\"ranges\":[null,0,1]}\n")) << out;
 }
@@ -62,7 +62,7 @@ TEST(DepthJsonl, Pinhole) {
     frame.frame = 1;
     frame.depths = {1.25F, kNone};
     std::string out = "before\n";
-    appendLines(out, sensor, frame);
+    appendLine(out, viewOf(sensor, frame));
     EXPECT_EQ(out,
               "before\n{\"sensor\":\"r1\",\"t\":0.04,\"frame\":1,\"pose\":[0,0,0,0,0,0],"
               "\"width\":2,\"height\":1,\"projection\":\"pinhole\",\"fx\":1,\"fy\":0.5,"
@@ -77,7 +77,7 @@ TEST(DepthJsonl, Spherical) {
     DepthFrame frame;
     frame.depths = {2};
     std::string out;
-    appendLines(out, sensor, frame);
+    appendLine(out, viewOf(sensor, frame));
     EXPECT_NE(out.find("\"projection\":\"spherical\",\"fov\":[6.283185307179586,"
                        "1.5707963267948966],\"measures\":\"distance\",\"range_min\":0,\"range_"
                        "max\":5,\"depths\":[2]}"),
@@ -89,7 +89,7 @@ std::string burstLine(const Burst& burst) {
     const Sensor tag{"t1", Tag(), {}};
     const std::vector<Sensor> receivers = {{"u1", Receiver(), {}}, {"u2", Receiver(), {}}};
     std::string out;
-    appendLines(out, tag, burst, receivers);
+    appendLine(out, viewOf(tag, burst, receivers));
     return out;
 }
 
@@ -121,7 +121,7 @@ TEST(BurstJsonl, WithAndWithoutAPlace) {
 
 TEST(ScanJsonl, NoBeamsIsAnEmptyList) {
     std::string out;
-    appendScanLine(out, {}, {});
+    appendLine(out, viewOf(Sensor(), Scan()));
     EXPECT_TRUE(out.ends_with("\"ranges\":[]}\n")) << out;
 }
 
@@ -153,14 +153,14 @@ TEST(ReadingCsv, LaserRows) {
     scan.number = 1;
     scan.time = 0.1 + 0.2;
     std::string out = "before\n";
-    appendRows(out, sensor, std::span(&scan, 1), Coordinates::World);
+    appendRows(out, sensor, std::vector{scan}, Coordinates::World);
     EXPECT_EQ(out,
               "before\n"
               "\"a,b\",3,1,0.3,0,-90,0.1,1.1,2,0.15\n"
               "\"a,b\",3,1,0.3,1,0,,,,\n"
               "\"a,b\",3,1,0.3,2,90,2.5,-1.5,2,0.15\n");
     out.clear();
-    appendRows(out, sensor, std::span(&scan, 1), Coordinates::Sensor);
+    appendRows(out, sensor, std::vector{scan}, Coordinates::Sensor);
     EXPECT_TRUE(out.starts_with("\"a,b\",3,1,0.3,0,-90,0.1,0,-0.1,0\n")) << out;
 }
 
@@ -170,7 +170,7 @@ TEST(ReadingCsv, BeamsOfATurningLaserHaveTheirOwnTimes) {
     Scan scan = scanOf({}, {1, 1, kNone});
     scan.time = 0.3;
     std::string out;
-    appendRows(out, sensor, std::span(&scan, 1), Coordinates::Sensor);
+    appendRows(out, sensor, std::vector{scan}, Coordinates::Sensor);
     EXPECT_EQ(out, "l1,0,0,0.3,0,-90,1,0,-1,0\nl1,0,0,0.325,1,0,1,1,0,0\nl1,0,0,0.35,2,90,,,,\n");
 }
 
@@ -184,7 +184,7 @@ TEST(ReadingCsv, LongIdsFit) {
     Scan scan = scanOf(randomPose(random), randomRanges(random, 500));
     scan.time = 123456.789;
     std::string out;
-    appendRows(out, sensor, std::span(&scan, 1), Coordinates::World);
+    appendRows(out, sensor, std::vector{scan}, Coordinates::World);
     EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 500);
     EXPECT_EQ(std::count(out.begin(), out.end(), ','), 500 * 9);
 }

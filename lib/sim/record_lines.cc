@@ -102,16 +102,6 @@ struct LineWriter {
     std::span<const Sensor> receivers;
     const std::string& file;
 
-    void operator()(const Scan& scan) const { appendScanLine(out, *sensor.sensor(), scan); }
-    void operator()(const DepthFrame& frame) const {
-        appendFileLine(out, *sensor.sensor(), frame, file);
-    }
-    void operator()(const Photo& photo) const {
-        appendFileLine(out, *sensor.sensor(), photo, file);
-    }
-    void operator()(const Burst& burst) const {
-        appendLines(out, *sensor.sensor(), burst, receivers);
-    }
     void operator()(const Hearings& hearings) const {
         JsonWriter json = begin();
         json.key("tags").beginArray();
@@ -141,6 +131,10 @@ struct LineWriter {
         gate.last.empty() ? json.null() : json.value(gate.last_in ? "in" : "out");
         json.key("broken").value(gate.broken);
         end(json);
+    }
+    template <typename One>
+    void operator()(const One& one) const {
+        appendLine(out, viewOf(*sensor.sensor(), one, receivers), file);
     }
 
   private:

@@ -105,7 +105,8 @@ TEST_F(RecorderTest, WritesScansAsScanDoes) {
     std::string expected = scanHeaderLine({"simrun \"room\".env"}, 7);
     const auto append = [&] {
         for (const std::size_t laser : world.read())
-            appendScanLine(expected, *world.sensors()[laser].sensor(), world.reading(laser).scan());
+            appendLine(expected,
+                       viewOf(*world.sensors()[laser].sensor(), world.reading(laser).scan()));
     };
     append();
     EXPECT_EQ(text("run/scans.jsonl"), expected) << "time 0 is there from the start";
