@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "cover/pictures.h"
 #include "geom/boolean.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
 
@@ -133,8 +134,7 @@ class AxisPairs {
   public:
     AxisPairs(const std::vector<const SensorView*>& cameras, const ParallaxChoice& choice)
         : wanted_(choice.cameras), apart_(cameras.size()) {
-        constexpr double kRounding = 1e-12;
-        const double most = cos(choice.least) + kRounding;
+        const double most = cos(choice.least) + kUnitTolerance;
         for (std::size_t i = 0; i < cameras.size(); ++i)
             for (std::size_t k = 0; k < cameras.size(); ++k)
                 if (i != k &&

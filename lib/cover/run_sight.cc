@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/message.h"
+#include "geom/tolerance.h"
 #include "sense/sensors.h"
 
 namespace ispace {
@@ -271,7 +272,6 @@ RunSight measureRun(const Scene& start, RunReader& reader, const WatchOptions& o
             members.emplace(*now, reader);
         }
     };
-    constexpr double kRounding = 1e-9;
     do {
         make_changes();
         Sample sample{
@@ -282,7 +282,7 @@ RunSight measureRun(const Scene& start, RunReader& reader, const WatchOptions& o
             sample.people = members->people;
         }
         passed.reset();
-        if (sample.time < next - kRounding) {
+        if (sample.time < next - kTimeTolerance) {
             passed = std::move(sample);
             continue;
         }

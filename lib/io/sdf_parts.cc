@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/number.h"
+#include "geom/tolerance.h"
 #include "io/robot_xml.h"
 #include "layout/robot.h"
 #include "plan/elements.h"
@@ -14,8 +15,6 @@ namespace ispace {
 
 namespace {
 
-/// Corners this near to a line, or a rectangle, are on it: metres.
-constexpr double kStraight = 1e-9;
 /// Plates are this thick, metres.
 constexpr double kPlateThickness = 0.001;
 
@@ -31,7 +30,7 @@ Polygon cornersOf(const Polygon& footprint) {
     for (std::size_t i = 0; i < count; ++i) {
         const Point2 before = footprint[(i + count - 1) % count], here = footprint[i];
         const Vec2 chord = footprint[(i + 1) % count] - before;
-        if (std::abs(cross(chord, here - before)) > kStraight * length(chord))
+        if (std::abs(cross(chord, here - before)) > kContactTolerance * length(chord))
             corners.push_back(here);
     }
     return corners;
@@ -40,8 +39,8 @@ Polygon cornersOf(const Polygon& footprint) {
 bool isRectangle(const Polygon& corners) {
     if (corners.size() != 4) return false;
     const Vec2 a = corners[1] - corners[0], b = corners[3] - corners[0];
-    return length((corners[2] - corners[1]) - b) <= kStraight &&
-           std::abs(dot(a, b)) <= kStraight * std::max(length(a), length(b));
+    return length((corners[2] - corners[1]) - b) <= kContactTolerance &&
+           std::abs(dot(a, b)) <= kContactTolerance * std::max(length(a), length(b));
 }
 
 /// A rectangle as a box; which of its sides is the length depends on where it should point.
@@ -50,7 +49,7 @@ SdfPart boxPart(const Polygon& corners, double bottom, double top, bool is_frame
     Vec2 along = corners[1] - corners[0], across = corners[3] - corners[0];
     part.place = {corners[0].x + (along.x + across.x) / 2, corners[0].y + (along.y + across.y) / 2,
                   (bottom + top) / 2};
-    const bool swaps = is_framed ? std::abs(along.y) > std::abs(along.x) * (1 + kStraight)
+    const bool swaps = is_framed ? std::abs(along.y) > std::abs(along.x) * (1 + kContactTolerance)
                                  : length(across) > length(along);
     if (swaps) {
         std::swap(along, across);

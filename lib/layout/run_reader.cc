@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "geom/tolerance.h"
 #include "layout/bumper_file.h"
 #include "layout/table_lines.h"
 
@@ -271,9 +272,8 @@ std::optional<double> RunReader::Data::upcoming() {
     for (const MomentFile& file : files)
         is_cut = is_cut || file.isCut() || (!end && is_over && file.upcoming());
     if (!end) return is_over ? std::nullopt : files.front().upcoming();
-    constexpr double kRounding = 5e-10;
-    if (next && *next > *end + kRounding) is_cut = true;
-    return next && *next <= *end + kRounding ? next : std::nullopt;
+    if (next && *next > *end + 0.5 * kTimeTolerance) is_cut = true;
+    return next && *next <= *end + 0.5 * kTimeTolerance ? next : std::nullopt;
 }
 
 RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()) {

@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/tolerance.h"
+
 namespace ispace {
 
 namespace {
-
-/// Slack of comparisons of cosines and sines: what is on an edge is in.
-constexpr double kRounding = 1e-12;
 
 Angle angleOf(const Laser& laser, const Pose3& pose) {
     switch (laser.sweep) {
@@ -47,7 +46,7 @@ BearingWindow::BearingWindow(const Laser& laser, Angle more)
 
 bool BearingWindow::holds(Vec3 local) const {
     const double distance = std::sqrt(local.x * local.x + local.y * local.y);
-    return dot(Vec2{local.x, local.y}, middle) >= (cosine - kRounding) * distance;
+    return dot(Vec2{local.x, local.y}, middle) >= (cosine - kUnitTolerance) * distance;
 }
 
 SweptScan::SweptScan(const Sensor& placed)
@@ -99,7 +98,7 @@ Vec3 SweptScan::equationOf(Vec3 way) const {
 }
 
 bool SweptScan::isSeenAt(CosSin swept, Vec3 way) const {
-    if (swept.cos * middle_.cos + swept.sin * middle_.sin < cosine_ - kRounding) return false;
+    if (swept.cos * middle_.cos + swept.sin * middle_.sin < cosine_ - kUnitTolerance) return false;
     Turns turns = turns_;
     sweptOf(turns) = swept;
     return window_.holds(turns.toSensor(way));
@@ -109,7 +108,7 @@ bool SweptScan::passes(Point3 place) const {
     const Vec3 way = place - origin_;
     const auto [a, b, c] = equationOf(way);
     const double squared = a * a + b * b;
-    const double slack = kRounding * kRounding * dot(way, way);
+    const double slack = kUnitTolerance * kUnitTolerance * dot(way, way);
     if (squared <= slack) {
         // Every scan has the place in its plane, or none. The place is on the axis of the sweep,
         // or the plane turns in itself.

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/random.h"
+#include "geom/tolerance.h"
 #include "sense/noise.h"
 #include "sense/sensors.h"
 
@@ -24,8 +25,7 @@ double axisCosine(const Pose3& pose, Point3 place) {
 
 /// Directions on the cone itself are in it, whatever rounding makes of them.
 bool isWithinCone(Angle fov, double axis_cosine) {
-    constexpr double kRounding = 1e-12;
-    return axis_cosine >= cos(0.5 * fov) - kRounding;
+    return axis_cosine >= cos(0.5 * fov) - kUnitTolerance;
 }
 
 /// Bodies of neither carrier are in the way.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/number.h"
+#include "geom/tolerance.h"
 #include "sensor/drawing.h"
 #include "sensor/keys.h"
 #include "sensor/kind.h"
@@ -13,24 +14,23 @@ namespace ispace {
 
 namespace {
 
-/// Slack of divisions and comparisons in degrees: fov=0.3 step=0.1 are four beams, not three.
-constexpr double kSlack = 1e-9;
-
 constexpr Angle kTurn = Angle::degrees(360);
 
 /// Numbers of beams within a span, both ends included; a double as it may be huge.
-double beamsWithin(double span, double step) { return std::floor(span / step + kSlack) + 1; }
+double beamsWithin(double span, double step) {
+    return std::floor(span / step + kStepTolerance) + 1;
+}
 
 /// As beamsWithin; a full turn ends before it comes back to where it began.
 double scansWithin(const Laser& laser) {
     const double span = laser.sweep_span.degrees(), step = laser.sweep_step.degrees();
-    return span < 360 ? beamsWithin(span, step) : std::ceil(span / step - kSlack);
+    return span < 360 ? beamsWithin(span, step) : std::ceil(span / step - kStepTolerance);
 }
 
 void applyBeams(Laser& laser, const Record& record, Diagnostics& findings) {
     const bool fov = record.has("fov"), step = record.has("step"), beams = record.has("beams");
     const double old_span = (laser.last() - laser.first).degrees();
-    const bool was_closed = laser.span() >= kTurn && old_span < 360 - kSlack;
+    const bool was_closed = laser.span() >= kTurn && old_span < 360 - kStepTolerance;
     double count = laser.beams;
     if (step) laser.step = record.angle("step");
     // Beams spread over a field of view.
@@ -40,7 +40,7 @@ void applyBeams(Laser& laser, const Record& record, Diagnostics& findings) {
         laser.first = -0.5 * record.angle("fov");
         count = beamsWithin(record.number("fov"), laser.step.degrees());
     } else if (step) {
-        count = was_closed ? std::ceil(360 / laser.step.degrees() - kSlack)
+        count = was_closed ? std::ceil(360 / laser.step.degrees() - kStepTolerance)
                            : beamsWithin(old_span, laser.step.degrees());
     }
     if (record.has("first")) laser.first = record.angle("first");
@@ -67,7 +67,7 @@ void applyBeams(Laser& laser, const Record& record, Diagnostics& findings) {
     }
     laser.beams = static_cast<int>(count);
     const double span = (laser.last() - laser.first).degrees();
-    if (span > 360 + kSlack)
+    if (span > 360 + kStepTolerance)
         findings.add(record.finding(
             cause, "the beams cover " + formatDouble(span) + " degrees, more than a full turn"));
 }
@@ -96,7 +96,7 @@ void applyTimes(Laser& laser, const Record& record, Diagnostics& findings) {
         laser.rate = rate;
     }
     if (record.has("spin")) laser.spin = record.number("spin");
-    if (laser.duration() * laser.rate > 1 + kSlack)
+    if (laser.duration() * laser.rate > 1 + kStepTolerance)
         findings.add(record.finding(record.has("spin") ? "spin" : "rate",
                                     "a scan takes " + formatDouble(laser.duration()) + " s at " +
                                         formatDouble(laser.spin) + " turns a second, longer than " +
@@ -132,13 +132,14 @@ Angle Laser::sweptSpan() const {
 
 bool Laser::seesAround() const {
     return (sweep == SweepAxis::None || sweep == SweepAxis::Heading) &&
-           sweptSpan() >= Angle::degrees(360 - kSlack / 2);
+           sweptSpan() >= Angle::degrees(360 - kStepTolerance / 2);
 }
 
 bool Laser::sees(Angle bearing) const {
     double beyond_first = std::fmod((bearing - first).degrees(), 360.0);
     if (beyond_first < 0) beyond_first += 360;
-    return beyond_first <= span().degrees() + kSlack || beyond_first >= 360 - kSlack;
+    return beyond_first <= span().degrees() + kStepTolerance ||
+           beyond_first >= 360 - kStepTolerance;
 }
 
 Laser withParameters(Laser base, const Record& record) {
