@@ -48,6 +48,7 @@ class Expander {
 
     std::vector<PlanShape> expand(double metres_per_unit) {
         const Affine metres{{metres_per_unit, 0}, {0, metres_per_unit}, {}};
+        shapes_.reserve(drawing_.entities.size());
         add(drawing_.entities, metres, "", 0);
         return std::move(shapes_);
     }

@@ -16,24 +16,6 @@
 
 namespace ispace {
 
-/// The parts of a DXF file that make a plan, checked and rewritten so that dxflib can read them
-/// safely.
-///
-/// dxflib trusts its input: group 42 before the first vertex writes out of bounds, counts are
-/// allocated unchecked, a line of more than 1024 characters never ends, and a malformed number has
-/// any value. So only the groups that are needed are passed on, with valid numbers and true counts;
-/// polylines of both kinds become LWPOLYLINE, and group 5 (the handle) of each entity holds its
-/// line in the file.
-struct DxfText {
-    std::string text;
-    std::map<std::string, std::size_t> left_out;  ///< entities not handed on, by type or reason
-    std::map<int, DrawnSize> sizes;  ///< of polylines and circles that have any, by their lines
-};
-
-/// \throws FormatError with its line: no group code, a number that is none, a missing coordinate,
-///         an end before `EOF`
-DxfText checkedDxf(std::string_view bytes, const std::string& name);
-
 /// Straight pieces and arcs; a LINE has two vertices.
 struct DxfPolyline {
     struct Vertex {
@@ -71,8 +53,10 @@ struct DxfInsert {
     double column_step = 0, row_step = 0;
 };
 
+using DxfShape = std::variant<DxfPolyline, DxfArc, DxfEllipse, DxfSpline, DxfInsert>;
+
 struct DxfEntity {
-    std::variant<DxfPolyline, DxfArc, DxfEllipse, DxfSpline, DxfInsert> shape;
+    DxfShape shape;
     std::string layer;
     bool mirrored = false;  ///< seen from below: x is mirrored
     int line = 0;           ///< of the file
@@ -90,8 +74,8 @@ struct DxfDrawing {
     std::set<std::string> hidden_layers;  ///< off or frozen
     std::map<std::string, DxfBlock> blocks;
     std::vector<DxfEntity> entities;
-    std::map<std::string, std::size_t> left_out;  ///< see DxfText
-    std::map<int, DrawnSize> sizes;               ///< see DxfText
+    std::map<std::string, std::size_t> left_out;  ///< entities, by type or reason
+    std::map<int, DrawnSize> sizes;  ///< of polylines and circles that have any, by their lines
 };
 
 /// True for a drawing with the layers on which writeDxf() draws a room, see dxfRoomLayers().
@@ -103,9 +87,10 @@ bool isDrawnRoom(const DxfDrawing& drawing);
 void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& sizes,
                     double metres_per_unit, ImportRecords& out);
 
-/// Reads ASCII DXF through dxflib. Depends on the global C++ locale being the classic one, as it
-/// is unless a program changes it.
-/// \throws FormatError, see checkedDxf
+/// Reads ASCII DXF. Counts in the file are not believed, and only numbers that are needed are
+/// read.
+/// \throws FormatError with its line: no group code, a number that is none, a missing coordinate,
+///         an end before `EOF`
 DxfDrawing readDrawing(std::string_view bytes, const std::string& name);
 
 }  // namespace ispace

@@ -229,6 +229,14 @@ TEST(Dxf, SeenFromBelow) {
     // OCS: an arc is mirrored with its normal, a line is not.
     const std::string half = arc("W", -5, 0, 1, 0, 180) + group(230, -1) + line("W", 4, 0, 6, 0);
     EXPECT_NEAR(areaOf(drawing(half, "", 6)), std::numbers::pi / 2, 0.003);
+    // The upper half of an ellipse, whose parameter runs clockwise.
+    const std::string ellipse = group(0, "ELLIPSE") + group(8, "W") + group(10, 0) + group(20, 0) +
+                                group(11, 2) + group(21, 0) + group(40, 0.5) +
+                                group(41, std::numbers::pi) + group(42, 2 * std::numbers::pi) +
+                                group(230, -1);
+    const std::string below =
+        line("W", -2, 0, -2, -1) + line("W", -2, -1, 2, -1) + line("W", 2, -1, 2, 0);
+    EXPECT_NEAR(areaOf(drawing(ellipse + below, "", 6)), 4 + std::numbers::pi, 0.01);
 }
 
 TEST(Dxf, OnlyTheLargestRegionIsKept) {

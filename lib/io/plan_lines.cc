@@ -291,6 +291,7 @@ std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap) {
 
 std::vector<Segment2> pathPieces(const std::vector<PlanPath>& paths) {
     std::vector<Segment2> pieces;
+    pieces.reserve(paths.size());
     for (const PlanPath& path : paths)
         for (std::size_t i = 0; i < path.pieceCount(); ++i) pieces.push_back(path.piece(i));
     return pieces;

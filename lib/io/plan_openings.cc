@@ -300,6 +300,7 @@ class Finder {
 
 PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
                           std::span<const Segment2> walls) {
+    if (doors.empty() && windows.empty()) return {};
     Finder finder(walls);
     finder.find(doors, false);
     if (std::any_of(doors.begin(), doors.end(),
