@@ -40,6 +40,8 @@ constexpr double kMinPlan = 2, kMaxPlan = 2000;
 constexpr std::size_t kMaxGroups = 500;
 
 constexpr std::size_t kMaxPlaces = 6;  // in one message
+/// Metres; messages tell gaps to the millimetre.
+constexpr double kMinListedGap = 0.0005;
 
 /// Metres from the edge of the plan at which a room touches it.
 constexpr double kAtBorder = 1e-3;
@@ -347,7 +349,7 @@ class RoomChooser {
     }
 
     void report(const Attempt& taken, const PlanRooms& rooms) {
-        if (!rooms.closing.empty()) out_.warn(gapsText(rooms.closing, taken.width));
+        warnOfGaps(rooms.closing, taken.width);
         std::size_t faces = 0;
         Box2 kept;
         for (const PlanRegion& region : rooms.regions)
@@ -390,10 +392,12 @@ class RoomChooser {
         out_.warn(std::move(text));
     }
 
-    [[nodiscard]] static std::string gapsText(std::span<const Segment2> closing, double width) {
+    void warnOfGaps(std::span<const Segment2> closing, double width) {
         std::vector<std::pair<double, Point2>> gaps;
         for (const Segment2& line : closing)
-            gaps.emplace_back(distance(line.a, line.b), line.a + 0.5 * (line.b - line.a));
+            if (const double gap = distance(line.a, line.b); gap >= kMinListedGap)
+                gaps.emplace_back(gap, line.a + 0.5 * (line.b - line.a));
+        if (gaps.empty()) return;
         std::stable_sort(gaps.begin(), gaps.end(),
                          [](const auto& a, const auto& b) { return a.first > b.first; });
         std::string text = "the walls do not close: closed " + countText(gaps.size(), "gap") +
@@ -403,7 +407,7 @@ class RoomChooser {
                     placeText(gaps[i].second);
         if (gaps.size() > kMaxPlaces)
             text += " and " + std::to_string(gaps.size() - kMaxPlaces) + " more";
-        return text + "); --close-gaps M sets the widest";
+        out_.warn(text + "); --close-gaps M sets the widest");
     }
 
     const PlanWalls& plan_;

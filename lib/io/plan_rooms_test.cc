@@ -156,6 +156,16 @@ TEST(PlanRooms, OpenFrontDoorsAreClosed) {
     EXPECT_NEAR(choose(openHall(), options).area(), 7.8 * 4.8 + 0.9 * 0.1, 1e-9);
 }
 
+TEST(PlanRooms, GapsTooSmallToShowAreClosedSilently) {
+    PlanWalls plan;
+    addRectangle(plan.lines, 0, 0, 6, 4);
+    plan.lines.back().a.y -= 4e-5;
+    const Chosen room = choose(plan);
+    EXPECT_NEAR(room.area(), 24, 1e-9);
+    EXPECT_EQ(room.rooms.closing.size(), 1U);
+    EXPECT_EQ(room.warnings, "");
+}
+
 TEST(PlanRooms, AClosetIsKeptButTheFlatIsNamed) {
     PlanWalls plan = openHall();
     addRectangle(plan.lines, 0.2, 3.5, 1.7, 5);
