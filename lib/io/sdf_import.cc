@@ -104,14 +104,13 @@ class SdfImporter {
     /// Meshes stand in for walls where others enclose no room, or as the user says.
     void cutIntoWalls() {
         const auto choose = [this](std::span<const Segment2> lines) {
-            ImportOptions quiet = options_;  // the messages and rooms of a trial do not count
-            quiet.found = nullptr;
-            quiet.report = nullptr;
-            ImportRecords trial(schemas_, name_, quiet);
-            return lines.empty() ? PlanRooms() : roomsAmong(lines, trial);
+            return roomsAmong(lines).rooms;
         };
         const std::vector<Segment2> lines = ownLines();
-        if (!options_.slice_walls && !choose(lines).regions.empty()) return;
+        if (!options_.slice_walls) {
+            uncut_ = roomsAmong(lines);
+            if (!uncut_->rooms.regions.empty()) return;
+        }
         if (options_.slice_top) failFile(name_, "meshes are cut at one height: --slice-walls M");
         const double height = options_.slice_walls.value_or(kMeshCut);
         std::vector<SdfMeshCut> cuts = cutMeshes(world_.shapes, name_, height, schemas_);
@@ -120,6 +119,7 @@ class SdfImporter {
         for (const SdfMeshCut& cut : cuts)
             for (const Segment2& piece : pathPieces(cut.wall.paths)) all.push_back(piece);
         if (!options_.slice_walls && choose(all).regions.empty()) return;  // it were no use
+        uncut_.reset();
         for (SdfMeshCut& cut : cuts) {
             walls_.push_back(std::move(cut.wall));
             is_cut_.insert(cut.shape);
@@ -181,21 +181,43 @@ class SdfImporter {
         return lines;
     }
 
-    PlanRooms roomsAmong(std::span<const Segment2> lines, ImportRecords& out) const {
+    /// Tried rooms; their messages are reported once the rooms are kept.
+    struct Trial {
+        PlanRooms rooms;
+        FoundRooms found;
+        Document messages;
+    };
+
+    [[nodiscard]] Trial roomsAmong(std::span<const Segment2> lines) const {
+        Trial trial;
+        if (lines.empty()) return trial;
         if (crossTooOften(lines)) failFile(name_, "its walls cross too often to be a plan");
-        return withFileName(name_, [&] {
-            return chooseRooms({{lines.begin(), lines.end()}, {}, {}, {}, {}}, options_, out);
+        ImportOptions options = options_;
+        if (options.found != nullptr) options.found = &trial.found;
+        ImportRecords out(schemas_, name_, options);
+        trial.rooms = withFileName(name_, [&] {
+            return chooseRooms({{lines.begin(), lines.end()}, {}, {}, {}, {}}, options, out);
         });
+        trial.messages = out.take();
+        return trial;
+    }
+
+    PlanRooms keep(Trial trial) {
+        for (FoundRoom& room : trial.found.rooms) out_.room(std::move(room));
+        for (const Segment2& gap : trial.found.closed_gaps) out_.closedGap(gap);
+        for (std::string& note : trial.messages.notes) out_.note(std::move(note));
+        for (Diagnostic& warning : trial.messages.warnings) out_.warn(std::move(warning.message));
+        return std::move(trial.rooms);
     }
 
     /// Walls of the rooms that are meant, and what closes them.
     void chooseRoom() {
         const std::vector<Segment2> lines = ownLines();
         if (lines.empty()) return;
-        PlanRooms rooms = roomsAmong(lines, out_);
-        std::vector<bool> keep(lines.size(), true);
-        if (!rooms.regions.empty()) keep = belongsTo(rooms.regions, lines);
-        auto kept = keep.begin();
+        PlanRooms rooms = keep(uncut_ ? *std::move(uncut_) : roomsAmong(lines));
+        std::vector<bool> belongs(lines.size(), true);
+        if (!rooms.regions.empty()) belongs = belongsTo(rooms.regions, lines);
+        auto kept = belongs.begin();
         const auto take = [&kept](const std::vector<PlanPath>& paths) {
             std::size_t count = 0;
             for (const PlanPath& path : paths) count += path.pieceCount();
@@ -314,6 +336,7 @@ class SdfImporter {
     ImportRecords& out_;
     std::vector<SdfWall> walls_;
     std::set<std::size_t> is_cut_;  // shapes that are walls now
+    std::optional<Trial> uncut_;    // rooms of the walls as they are: no mesh is cut
     std::vector<Fence> fences_;
     std::vector<SdfBlock> blocks_;
     std::map<std::string, std::size_t> missing_;
