@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/budget.h"
 #include "base/number.h"
 #include "geom/polygon.h"
 #include "io/cell_map.h"
@@ -24,6 +25,7 @@ namespace {
 
 constexpr double kCell = 0.05;        // metres, unless the user says otherwise
 constexpr double kMostCells = 25e6;   // of the grid in which points are counted
+constexpr double kCellsPerUnit = 4;   // of Budget
 constexpr int kRim = 3;               // cells around, so that the outside is connected
 constexpr int kManyPoints = 10;       // in half of the cells: then a single one is a stray
 constexpr int kSmallestThing = 3;     // cells; smaller ones are noise
@@ -67,7 +69,11 @@ class CloudPlan {
   public:
     CloudPlan(std::string_view bytes, const std::string& name, const ImportOptions& options,
               ImportRecords& out)
-        : file_(bytes, name), name_(name), options_(options), out_(out) {}
+        : file_(bytes, name),
+          name_(name),
+          options_(options),
+          budget_(bytes.size(), options.max_work),
+          out_(out) {}
 
     void write() {
         measure();
@@ -117,11 +123,14 @@ class CloudPlan {
         corner_ = {band.low.x - (rim + 0.5) * cell_, band.low.y - (rim + 0.5) * cell_};
         const double columns = std::ceil((band.high.x - corner_.x) / cell_) + rim;
         const double rows = std::ceil((band.high.y - corner_.y) / cell_) + rim;
-        if (columns * rows > kMostCells)
+        const bool is_huge = columns * rows > kMostCells;
+        const double units = std::min(columns * rows, kMostCells) / kCellsPerUnit;
+        if (is_huge || !budget_.take(static_cast<std::uint64_t>(units)))
             failFile(name_, "its points reach over " + formatFixed(band.high.x - band.low.x, 1) +
-                                " x " + formatFixed(band.high.y - band.low.y, 1) +
-                                " m: too many cells of " + formatDouble(cell_) +
-                                " m; take larger ones with --resolution");
+                                " x " + formatFixed(band.high.y - band.low.y, 1) + " m, cells of " +
+                                formatDouble(cell_) + " m make " +
+                                (is_huge ? "more than 25 million" : budget_.excess()) +
+                                "; take larger ones with --resolution");
         columns_ = static_cast<int>(columns);
         rows_ = static_cast<int>(rows);
         checkCellMap(columns_, rows_, cell_, name_);
@@ -313,6 +322,7 @@ class CloudPlan {
     CloudFile file_;
     const std::string& name_;
     const ImportOptions& options_;
+    Budget budget_;
     ImportRecords& out_;
     double cell_ = kCell, floor_ = 0;
     Point2 corner_;

@@ -212,8 +212,17 @@ TEST(CloudPlan, SaysHow) {
               std::string::npos);
     EXPECT_NE(errorOf(asciiPcd({{0, 0, 1}, {5, 5, 1}}), between(0, 2)).find("enclose no room"),
               std::string::npos);
-    EXPECT_NE(errorOf(asciiPcd({{0, 0, 1}, {9e5, 9e5, 1}}), between(0, 2)).find("too many cells"),
+    EXPECT_NE(errorOf(asciiPcd({{0, 0, 1}, {9e5, 9e5, 1}}), between(0, 2))
+                  .find("cells of 0.05 m make more than 25 million; take larger ones with "
+                        "--resolution"),
               std::string::npos);
+    // Two points do not explain 16 million cells.
+    const std::string far = asciiPcd({{0, 0, 1}, {200, 200, 1}});
+    EXPECT_NE(errorOf(far, between(0, 2)).find("units of work (`--max-work "), std::string::npos)
+        << errorOf(far, between(0, 2));
+    ImportOptions coarse = between(0, 2);
+    coarse.resolution = 0.2;
+    EXPECT_NE(errorOf(far, coarse).find("enclose no room"), std::string::npos);
 }
 
 TEST(CloudPlan, DamageIsAnError) {
