@@ -59,6 +59,7 @@ struct BuildingSpace {
 struct BuildingWall {
     std::uint64_t storey = 0;  ///< see storeyOfSections()
     bool is_column = false;
+    bool is_inside = false;  ///< belongs to a storey that is cut here, not to the site or another
     BuildingSection section;
     BuildingBox box;
 };

@@ -92,6 +92,8 @@ class BuildingReader {
             product.shape = shapes_.shapeOf(product.instance[6].reference());
         } catch (const UnreadGeometry& part) {
             ++out_.unread[part.what()];
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error("#" + std::to_string(id) + ": " + error.what());
         }
         for (IfcSolid& solid : product.shape) {
             solid.body.move(product.frame);
@@ -183,6 +185,7 @@ class BuildingReader {
     void addWall(StepId id, bool is_column) {
         const Product product = productOf(id);
         const IfcHeights heights = heightsOf(product.shape);
+        const std::optional<std::uint64_t> own = storeyOf(id);
         for (std::uint64_t i = 0; i < out_.storeys.size(); ++i) {
             const double cut = out_.storeys[i].cut;
             if (cut < heights.low || cut >= heights.high || storeyOfSections(out_, i) != i)
@@ -190,6 +193,7 @@ class BuildingReader {
             BuildingWall wall;
             wall.storey = i;
             wall.is_column = is_column;
+            wall.is_inside = own && storeyOfSections(out_, *own) == i;
             wall.section = sectionOf(product.shape, cut);
             const auto box = boxAround(product.shape, product.axis());
             if (wall.section.empty() || !box) continue;

@@ -134,6 +134,23 @@ TEST(Building, WithoutStoreysItsDoorsStandOnTheFloor) {
     EXPECT_THROW(readBuilding("ISO-10303-21;", std::nullopt), std::runtime_error);
 }
 
+TEST(Building, WallsOfTheSiteDoNotLowerAStorey) {
+    Building building = cabin("cabin-2x3-mm.ifc");
+    const auto wall = std::find_if(
+        building.walls.begin(), building.walls.end(),
+        [](const BuildingWall& w) { return w.storey == 1 && !w.is_column && w.is_inside; });
+    ASSERT_NE(wall, building.walls.end());
+    BuildingWall fence = *wall;
+    fence.is_inside = false;
+    fence.box.length = 1000;
+    fence.box.top = building.storeys[1].elevation + 1.2;
+    building.walls.push_back(fence);
+    EXPECT_NEAR(wallsOf(building, 1).top - building.storeys[1].elevation, 2.8, 1e-6);
+    // A file that says of no wall where it belongs.
+    std::erase_if(building.walls, [](const BuildingWall& w) { return w.is_inside; });
+    EXPECT_NEAR(wallsOf(building, 1).top - building.storeys[1].elevation, 1.2, 1e-6);
+}
+
 TEST(Building, SliceTakesTheStoreyBelow) {
     const Building building = readBuilding(ifcBytes("cabin-2x3-mm.ifc"), 0.2);
     EXPECT_EQ(building.storeys[1].cut, 0.2);

@@ -163,7 +163,7 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey) {
     storey = storeyOfSections(building, storey);
     StoreyWalls walls;
     std::vector<Piece> pieces;
-    std::vector<std::pair<double, double>> tops;
+    std::vector<std::pair<double, double>> tops, other_tops;
     for (const BuildingWall& wall : building.walls) {
         if (wall.storey != storey || wall.is_column) continue;
         for (std::vector<Polygon>& part : partsOf(wall.section))
@@ -172,7 +172,7 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey) {
             for (std::size_t i = 1; i < sheet.size(); ++i)
                 walls.sheets.push_back(
                     {wholeMicrometres(sheet[i - 1]), wholeMicrometres(sheet[i])});
-        tops.emplace_back(wall.box.top, wall.box.length);
+        (wall.is_inside ? tops : other_tops).emplace_back(wall.box.top, wall.box.length);
     }
     std::vector<std::size_t> owners;
     const std::vector<Segment2> edges = edgesOf(pieces, owners);
@@ -185,7 +185,7 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey) {
             for (std::vector<Polygon>& part : partsOf(wall.section))
                 pieces.push_back({std::move(part)});
     }
-    walls.top = heightOfMost(std::move(tops));
+    walls.top = heightOfMost(std::move(tops.empty() ? other_tops : tops));
     dropCopies(pieces);
     letMeet(pieces);
     std::vector<Layer> layers;
