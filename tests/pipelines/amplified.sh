@@ -50,6 +50,9 @@ quick sdf_same 12000
 quick ifc_mapped_walls 20000
 quick ifc_mapped_walls 400000
 quick ifc_mappings 400000
+grep -q ': error: #[0-9]*: mapped shapes make more than [0-9]* units of work' err || fail "another error: $(cat err)"
+quick gltf_instances 400000
+grep -q 'nodes that repeat meshes make more than [0-9]* units of work' err || fail "another error: $(cat err)"
 quick env_coincident_things 800000
 refused sdf_apart 60000 model.sdf
 

@@ -23,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/budget.h"
 #include "base/message.h"
 #include "env/mesh.h"
 #include "geom/weld.h"
@@ -46,6 +47,8 @@ using Vertex = FloatPlace;
 using Triangle = std::array<std::uint32_t, 3>;
 
 constexpr std::size_t kMaxWords = 1000;
+/// Corners of meshes that are used again, in the time of one unit of Budget.
+constexpr std::size_t kMeshCornersPerUnit = 8;
 
 [[noreturn]] void fail(const std::string& message) { throw std::runtime_error(message); }
 
@@ -71,8 +74,10 @@ bool comesWithYUp(const aiScene& scene) {
 /// Puts the meshes of all nodes into one list of triangles.
 class Gatherer {
   public:
-    Gatherer(const aiScene& scene, bool turn_y_up) : scene_(scene), turn_y_up_(turn_y_up) {
-        checkSize();
+    /// \param size of the file in bytes
+    Gatherer(const aiScene& scene, bool turn_y_up, std::size_t size)
+        : scene_(scene), turn_y_up_(turn_y_up) {
+        checkSize(Budget(size));
     }
 
     /// All in one.
@@ -84,8 +89,9 @@ class Gatherer {
 
   private:
     /// Before anything is set aside for it: instances are quickly written.
-    void checkSize() const {
+    void checkSize(Budget budget) const {
         std::vector<std::pair<const aiNode*, std::size_t>> open{{scene_.mRootNode, 1}};
+        std::vector<bool> is_used(scene_.mNumMeshes);
         std::size_t nodes = 0, triangles = 0, vertices = 0;
         while (!open.empty()) {
             const auto [node, depth] = open.back();
@@ -98,6 +104,11 @@ class Gatherer {
                 const aiMesh& part = partOf(*node, i);
                 triangles += part.mNumFaces;
                 vertices += part.mNumVertices;
+                const std::size_t corners = std::size_t{3} * part.mNumFaces + part.mNumVertices;
+                if (is_used[node->mMeshes[i]] && !budget.take(1 + corners / kMeshCornersPerUnit))
+                    fail("nodes that repeat meshes make more than " +
+                         std::to_string(budget.limit()) + " units of work");
+                is_used[node->mMeshes[i]] = true;
             }
             if (triangles > kMaxMeshTriangles || vertices > 3 * kMaxMeshTriangles)
                 fail("more than " + std::to_string(kMaxMeshTriangles) + " triangles");
@@ -255,7 +266,7 @@ TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& 
     if (scene == nullptr || scene->mRootNode == nullptr)
         fail("bad mesh file: it cannot be read as " + suffix + " (assimp says: " +
              assimpsWords(importer.GetErrorString(), name) + "); is it damaged?");
-    Gatherer gatherer(*scene, !as_is && (obj_up == "y" || comesWithYUp(*scene)));
+    Gatherer gatherer(*scene, !as_is && (obj_up == "y" || comesWithYUp(*scene)), size);
     TriangleMesh mesh = gatherer.gather();
     clean(mesh);
     return mesh;
