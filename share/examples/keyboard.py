@@ -82,7 +82,7 @@ class Wheel:
 
 
 def find_laser(address, robot, wanted):
-    """The laser that is wanted, or else the first that rides on the robot; None without one."""
+    """Returns the requested laser, or else the first on the robot; None without one."""
     if wanted:
         return wanted
     with ispace.World(address) as world:

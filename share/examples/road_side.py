@@ -66,7 +66,7 @@ def smooth(values, reach=2):
 
 
 def find_kerb(points):
-    """The kerb among the points of one side, from the middle outwards; None if there is none."""
+    """Finds the kerb among the points of one side, from the middle outwards; None without one."""
     road = [point.z for point in points if abs(point.bearing) < MIDDLE]
     if not road:
         return None
@@ -94,7 +94,7 @@ def find_kerbs(points):
 
 
 def fit(places):
-    """A line through places, least squares across it: its middle and its direction in radians."""
+    """Fits a line to points, least squares across it: returns its middle and its direction in radians."""
     x, y = (statistics.fmean(place[axis] for place in places) for axis in (0, 1))
     xx = sum((place[0] - x) ** 2 for place in places)
     yy = sum((place[1] - y) ** 2 for place in places)
@@ -144,7 +144,7 @@ def collect(args, drive):
 
 
 def report(found, count):
-    """Says where the kerbs are; whether both were found."""
+    """Prints the kerbs; returns whether both were found."""
     complete = True
     for side in ("left", "right"):
         mine = [kerb for kerb in found if kerb[0] == side]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A robot drives around a barrier: plan, dynamic window, Kalman filter; with what the thesis left out, too."""
+"""A robot drives around a barrier: plan, dynamic window, Kalman filter; also with the noise that the thesis omits."""
 
 import math
 import shutil
@@ -25,7 +25,7 @@ CAUSES = {"noise": (ODOMETRY,), "friction": (SLIP,), "start": (STRAY,), "all": (
 
 
 class Trial:
-    """One drive, and what became of it by the true way."""
+    """One drive, and its errors against the true way."""
 
     def __init__(self, lab, env, layout, seed, obstacles, options=(), name="", shown=False):
         run = name or "trial"

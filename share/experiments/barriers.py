@@ -69,7 +69,7 @@ def returns(lab):
 
 
 def noise(lab):
-    """The spread over many scans, against what the devices' data sheets say."""
+    """The spread over many scans, against the devices' data sheets."""
     frames = len(lab.seeds(400, 40))
     lab.tool("scan", "barriers.env", "barriers.3dm", "--noise", "--frames", frames, "-o", "many.jsonl")
     ideal, noisy = ranges(lab, "ideal.jsonl"), ranges(lab, "many.jsonl")

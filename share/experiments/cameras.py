@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Distributed cameras and what each of them sees."""
+"""Distributed cameras and their pictures."""
 
 TITLE = "Distributed cameras"
 SOURCE = "section 3.4.3 ii, fig. 3.15"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Two lasers for the small place in which people are tracked."""
+"""Two lasers for the small area in which people are tracked."""
 
 import math
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the thesis left to do: speed, noise, friction, several platforms."""
+"""Future work of the thesis: speed, noise, friction, several platforms."""
 
 import csv
 import json

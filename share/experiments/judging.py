@@ -10,7 +10,7 @@ import judge_tracks  # noqa: E402
 
 
 class Outcome:
-    """What one run of the tracker made of a record: the truth, the tracks and a verdict by source."""
+    """One run of the tracker on a record: the truth, the tracks and a verdict by source."""
 
     def __init__(self, lab, tracks, record, begin=3.0):
         self.truth = judge_tracks.read_truth(lab.path(record))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an experiment works with: the tools, a folder of its own, and the sheet that goes into the report."""
+"""The lab of an experiment: the tools, a folder, and the sheet that goes into the report."""
 
 import contextlib
 import json
@@ -22,7 +22,7 @@ REPRODUCED, FITTED, MISSED = "Reproduced", "Fitted", "Not reproduced"
 
 
 class ToolFailed(Exception):
-    """A command did not do what it was to do."""
+    """A command failed, or did not return the expected status."""
 
 
 class Port(int):
@@ -32,8 +32,8 @@ class Port(int):
 
 
 class Lab:
-    """Commands run in the lab's folder, with the tools of the build in PATH. What is shown of them is
-    what a reader types there."""
+    """Runs commands in the lab's folder, with the tools of the build in PATH, and shows them as a reader types them
+    there."""
 
     def __init__(self, name, title, source, build, folder, quick=False):
         self.name, self.title, self.source = name, title, source
@@ -94,8 +94,8 @@ class Lab:
 
     @contextlib.contextmanager
     def serve(self, *args, shown=True):
-        """A simrun with these arguments that serves clients on a port (the value, for tool()) as long as
-        the block lasts. With --clock step what clients get does not depend on the machine."""
+        """Runs simrun with these arguments, serving clients on a port (the value, for tool()) during the block. With
+        --clock step its replies do not depend on the machine."""
         start = _line("simrun", [*args, "--listen", f"127.0.0.1:{Port.SHOWN}"]) + " &\nsleep 1"
         shown = shown and start not in self.commands
         if shown:
@@ -130,7 +130,7 @@ class Lab:
         return [self.tool(name, *args, "--seed", seed, shown=False) for seed in seeds]
 
     def shell(self, text):
-        """Runs a line of the shell, shown as it is; for files that a loop writes."""
+        """Runs a line of the shell, shown unchanged; for files that a loop writes."""
         self.command(text)
         done = subprocess.run(["sh", "-ec", text], cwd=self.folder, capture_output=True, text=True,
                               env=self._environment(), check=False, timeout=PATIENCE)
@@ -144,7 +144,7 @@ class Lab:
                 if line.strip() and not line.startswith("#")]
 
     def result(self, name):
-        """What `arrange` says of a layout of the folder: numbers, shares in per cent."""
+        """Reads the result of `arrange` in a layout of the folder: numbers, shares in per cent."""
         (record,) = [keys for keyword, keys in self.layout(name) if keyword == "result"]
         return {key: float(value.rstrip("%")) for key, value in record.items()
                 if value.rstrip("%").replace(".", "", 1).isdigit()}
@@ -155,7 +155,7 @@ class Lab:
                 for found, keys in self.layout(name) if found == keyword]
 
     def command(self, text):
-        """A command as it is shown, once."""
+        """Records a command for the report, once."""
         if text not in self.commands:
             self.commands.append(text)
 
@@ -182,11 +182,10 @@ class Lab:
         self.parts.append(("text", paragraph))
 
     def row(self, what, thesis, ours, unit="", bound=None, note="", digits=None, verdict=None):
-        """A line of the table: numbers, or words where there are none (None: nothing is said). `bound` is
-        (least, most), what ours must keep to; `note` says in a sentence why they differ; whole numbers
-        are shown as they are and others with two decimals, unless `digits` says how many. `verdict` is the
-        list of the report in which the thesis' figure stands: REPRODUCED unless stated; a number that
-        differs and has no bound needs one."""
+        """A line of the table: numbers, or words without numbers (None: unstated). `bound` is (least, most), the
+        limits of ours; `note` gives the reason for a difference in a sentence; whole numbers have no decimals and
+        others two, unless `digits` sets them. `verdict` is the list of the report for the thesis' figure:
+        REPRODUCED unless stated; a number that differs and has no bound requires one."""
         if not self.parts or self.parts[-1][0] != "rows":
             self.parts.append(("rows", []))
         kept = bound is None or (ours is not None and bound[0] <= ours <= bound[1])
@@ -217,11 +216,11 @@ class Lab:
         self.cited.append((what, source))
 
     def assumption(self, text):
-        """What the thesis does not say, and is ours."""
+        """Records an assumption of ours that the thesis does not state."""
         self.assumed.append(text)
 
     def fitted(self, text):
-        """What was chosen so that a figure of the thesis comes out."""
+        """Records a choice that reproduces a figure of the thesis."""
         self.fits.append(text)
 
     def require(self, holds, what):
@@ -243,7 +242,7 @@ def _argument(value):
 
 
 def _line(name, args):
-    """A command as it is typed."""
+    """Returns a command as a reader types it."""
     return shlex.join([name, *(str(Port.SHOWN) if isinstance(arg, Port) else str(arg)
                                for arg in args)])
 

@@ -33,8 +33,8 @@ def viridis(share):
 
 
 class Plot:
-    """A drawing of `width` pixels whose axes are `height` high, or as high as they must be to be to scale
-    if `equal`. `x` and `y` are the limits of the axes."""
+    """A drawing of `width` pixels with axes `height` high, or to scale if `equal`. `x` and `y` are the limits of the
+    axes."""
 
     def __init__(self, x, y, title="", x_label="", y_label="", width=640, height=360, equal=False,
                  right=20):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where people put sensors, and where the best places are."""
+"""Positions that people choose for sensors, and the best ones."""
 
 import math
 
@@ -21,7 +21,7 @@ NEAR = 0.3  # metres from a wall: against it
 
 
 def to_wall(x, y, outline):
-    """The distance of a place from an outline."""
+    """The distance of a point from an outline."""
     least = math.inf
     for (ax, ay), (bx, by) in zip(outline, outline[1:] + outline[:1]):
         dx, dy = bx - ax, by - ay

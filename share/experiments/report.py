@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The report of experiments: one HTML file that needs nothing else, its pictures in it."""
+"""The report of experiments: one self-contained HTML file, with its pictures."""
 
 import base64
 import html as markup

@@ -23,7 +23,7 @@ laser id=front on=r1 at=0,0,0.5 tilt=-30 range=3 fov=180 step=0.25 sigma=0.01
 
 
 def look(lab, layout, seed, *options, shown=False):
-    """(side, x, y, height) of the kerbs that the client finds, and what it says."""
+    """(side, x, y, height) of the kerbs that the client finds, and its output."""
     words = [*CLIENT, *options]
     with lab.serve("road.env", layout, "--clock", "step", "--noise", "--seed", seed, shown=shown) as port:
         if shown:
@@ -63,7 +63,7 @@ def standing(lab):
 
 
 def numbers(said):
-    """What the client prints of each side: metres beside the start, degrees, metres of height."""
+    """Parses the client's output for each side: metres beside the start, degrees, metres of height."""
     return {line.split(":")[0]: [float(word) for word in line.replace(":", " ").split()
                                  if word.replace(".", "", 1).lstrip("-").isdigit()]
             for line in said.splitlines()}

@@ -45,7 +45,7 @@ def place_in_thesis(source):
 
 
 def perform(name, build, folder, quick):
-    """Runs one experiment, in a process of its own; its lab is what the report is made of."""
+    """Runs one experiment, in a separate process; the report reads its lab."""
     module = importlib.import_module(name)
     lab = Lab(name, module.TITLE, module.SOURCE, build, os.path.join(folder, name), quick)
     start = time.monotonic()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Three strategies place three lasers; what the thesis says of each."""
+"""Three strategies arrange three lasers; figures of the thesis for each."""
 
 import statistics
 

@@ -49,7 +49,7 @@ def gaits(seed):
 
 
 def show_walks(lab, count, tracker_layout):
-    """The commands of so many walks, whose speeds and pauses are in gaits.txt."""
+    """The commands of this many walks, with speeds and pauses from gaits.txt."""
     keys = list(gaits(0))
     names = [key.replace(".", "_") for key in keys]
     sets = " ".join(f"--set {key}=${name}" for key, name in zip(keys, names))
@@ -62,7 +62,7 @@ def show_walks(lab, count, tracker_layout):
 
 
 def walk(lab, seed, shown, tracker_layout="both.3dm"):
-    """Two people walk for a minute; what the tracker makes of it."""
+    """Two people walk for a minute; the tracker follows them."""
     sets = [word for key, value in gaits(seed).items() for word in ("--set", f"{key}={value}")]
     lab.tool("envc", "both.3dm", *sets, "--to", "3dm", "-o", "walk.3dm", shown=shown)
     with lab.serve("tracking.env", "walk.3dm", "--clock", "step", "--noise", "--seed", seed, "--record", "run",
@@ -75,14 +75,14 @@ def walk(lab, seed, shown, tracker_layout="both.3dm"):
 
 
 def owner(outcome, source, at, track):
-    """Whom a track follows then: the nearest within a quarter of a metre."""
+    """The person that a track follows then: the nearest within a quarter of a metre."""
     place, people = outcome.tracks[source][at][track], outcome.truth[at]
     who = min(people, key=lambda one: math.dist(people[one], place))
     return who if math.dist(people[who], place) <= 0.25 else None
 
 
 def lives(outcome, source, begin=3):
-    """The tracks that follow `left` at first, each as [(owner, place)]."""
+    """The tracks that follow `left` at first, each as [(owner, point)]."""
     found = {}
     for at in sorted(outcome.tracks[source]):
         for track, place in outcome.tracks[source][at].items():
@@ -92,7 +92,7 @@ def lives(outcome, source, begin=3):
 
 
 def mixture(life):
-    """How many places of a track belong to whom it follows less."""
+    """The number of points of a track that belong to the person it follows less."""
     return min(sum(one == who for one, _ in life) for who in COLORS)
 
 

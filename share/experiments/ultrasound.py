@@ -19,7 +19,7 @@ TAGS = ("for i in $(seq 0 16); do for j in $(seq 0 16); do echo \"tag id=$i-$j m
 
 
 def errors(lab, file):
-    """For each tag its place and the distances of its fixes from there, on the floor."""
+    """For each tag its position and the distances of its fixes from there, on the floor."""
     found = {}
     with open(lab.path(file), encoding="utf-8", newline="") as table:
         for row in csv.DictReader(table):

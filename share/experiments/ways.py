@@ -12,7 +12,7 @@ def rows(lab, file):
 
 
 def way(lab, file, who, every=0.1, x="x", y="y"):
-    """(t, x, y) of somebody in robots.csv or people.csv of a record, each tenth of a second and at the end."""
+    """(t, x, y) of a mover in robots.csv or people.csv of a record, each tenth of a second and at the end."""
     found, due = [], 0.0
     mine = [row for row in rows(lab, file) if row["id"] == who]
     for row in mine:
@@ -28,7 +28,7 @@ def length(places):
 
 
 class Obstacles:
-    """What stands in a room at a height: the outlines, as segments ((x, y), (x, y))."""
+    """The outlines of the bodies in a room at a height, as segments ((x, y), (x, y))."""
 
     def __init__(self, lab, env, height):
         text = lab.tool("envc", env, "--slice", height, "--to", "geojson", shown=False)
@@ -60,7 +60,7 @@ class Obstacles:
 
 
 def distance(place, segments):
-    """From a place to the nearest of the segments."""
+    """Distance from a point to the nearest of the segments."""
     x, y = place
     least = math.inf
     for (ax, ay), (bx, by) in segments:

@@ -54,7 +54,7 @@ def main(version: str, arguments: Sequence[str] | None = None) -> int:
 
 
 class _Stopped(BaseException):
-    """By a signal: what is half written is removed on the way out."""
+    """Exits on a signal, removing half-written files on the way out."""
 
     def __init__(self, number: int) -> None:
         self.number = number
@@ -100,7 +100,7 @@ def _parse(arguments: Sequence[str] | None, version: str) -> argparse.Namespace:
     add("--y", metavar="COLUMN", help="what is drawn (default: the coverage)")
     add("--by", metavar="AXIS", help="a curve for each choice of AXIS")
     add("--over", metavar="AXIS", help="a heat map with the choices of AXIS up its side")
-    add("-q", "--quiet", action="store_true", help="print nothing but errors")
+    add("-q", "--quiet", action="store_true", help="report only errors")
     add("-h", "--help", action="store_true", help="show this help and exit")
     add("-V", "--version", action="store_true", help="show version and licence and exit")
     options = parser.parse_intermixed_args(arguments)

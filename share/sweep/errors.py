@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What can go wrong, told as the other tools tell it."""
+"""Errors, in the form of the other tools."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class UsageError(Exception):
 
 
 class DataError(Exception):
-    """Findings in a file, or jobs without output: exit status 1. Each is a whole message with its place."""
+    """Findings in a file, or jobs without output: exit status 1. Each is a whole message with its position."""
 
     def __init__(self, findings: Iterable[str]) -> None:
         self.findings = list(findings)
@@ -21,7 +21,7 @@ class DataError(Exception):
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """", did you mean `count`?", or "" if nothing is near: to be appended to a message."""
+    """Returns ", did you mean `count`?", or "" without a similar name: to be appended to a message."""
     import difflib  # only where something is wrong already
 
     near = difflib.get_close_matches(word, list(known), 1)

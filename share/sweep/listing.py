@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sweep for those who run it: lines of the shell, JSON lines, names of files, rules for make."""
+"""Lists the jobs of a sweep for other programs: lines of the shell, JSON lines, names of files, rules for make."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .model import CommandWriter, Job, Step, Sweep
 
 
 def commands(sweep: Sweep, jobs: Iterable[Job], writer: CommandWriter, missing: bool) -> Iterator[str]:
-    """A line for each job; with `missing` only what is not done yet."""
+    """A line for each job; with `missing` only incomplete ones."""
     for job in jobs:
         steps = _steps(sweep, job, missing)
         if steps:
@@ -98,7 +98,7 @@ def _make_name(name: str) -> str:
 
 
 def values(sweep: Sweep, job: Job) -> dict[str, str | float | int]:
-    """What is chosen on each axis."""
+    """The choice on each axis."""
     return {axis.name: number_or_text(choice.text) for axis, choice in zip(sweep.axes, job.choices)}
 
 

@@ -16,8 +16,8 @@ OUT = "out"  # the placeholder of a job's own files
 
 @dataclass(frozen=True)
 class Choice:
-    """One value of an axis: its part in the names of files, what the table says, and the words of the
-    command line that it stands for."""
+    """One value of an axis: its part in the names of files, its text in the table, and the words of the command line
+    that replace it."""
 
     part: str
     text: str
@@ -26,7 +26,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Axis:
-    """What varies, and over which choices; those of files are inputs of the jobs."""
+    """A name, and the choices over which it varies; choices of files are inputs of the jobs."""
 
     name: str
     choices: tuple[Choice, ...]
@@ -45,7 +45,7 @@ class Word:
 
     @property
     def suffix(self) -> str | None:
-        """What follows {out} at the end of the word; None if it names no file of the job."""
+        """The text after {out} at the end of the word; None if it names no file of the job."""
         if len(self.parts) >= 3 and self.parts[-2] == OUT:
             return self.parts[-1]
         return None
@@ -63,7 +63,7 @@ class Step:
 
     @property
     def files(self) -> tuple[str, ...]:
-        """What tells that the step is done: outputs without a suffix are folders, which say nothing."""
+        """The files that mark a complete step: outputs with a suffix, as folders mark none."""
         return tuple(suffix for suffix in self.makes if suffix)
 
 
@@ -82,8 +82,8 @@ class Job:
 
 @dataclass(frozen=True)
 class Sweep:
-    """What a sweep's file says. `excluded` are combinations to leave out: names of axes to the texts of
-    choices; `accept` are exit statuses of a step that count as success, besides 0."""
+    """The content of a sweep's file. `excluded` are combinations to skip: names of axes to the texts of choices;
+    `accept` are exit statuses of a step that count as success, besides 0."""
 
     file: str
     digest: str
@@ -99,8 +99,8 @@ class Sweep:
         return tuple(suffix for step in self.steps for suffix in step.files)
 
     def jobs(self) -> Iterator[Job]:
-        """All jobs; the last axis varies fastest. Depends on the sweep's file alone (and, with patterns,
-        on the names of files that match), not on what has been done."""
+        """All jobs; the last axis varies fastest. Depends on the sweep's file alone (and, with patterns, on the names
+        of files that match), not on completed jobs."""
         names = [axis.name for axis in self.axes]
         number = 0
         for choices in itertools.product(*(axis.choices for axis in self.axes)):
@@ -164,7 +164,7 @@ class CommandWriter:
         return words
 
     def step(self, job: Job, step: Step) -> str:
-        """One step for sh: what it prints goes nowhere or, by way of a name of its own, into its file."""
+        """One step for sh: discards its output or writes it, by way of a temporary name, into its file."""
         program, *arguments = self.words(job, step)
         line = " ".join([_quote_program(program), *map(shlex.quote, arguments)])
         accepted = "".join(f" || [ $? -eq {status} ]" for status in self._sweep.accept)
@@ -201,8 +201,8 @@ def _runs_tool(words: Sequence[str]) -> bool:
 
 
 def part_of(text: str, axis: str) -> str:
-    """What a value contributes to the names of files: letters, digits, `.`, `+` and `-`. Of a path it is the
-    base name without suffix; numbers get the name of their axis: count3."""
+    """Converts a value to its part in the names of files: letters, digits, `.`, `+` and `-`. Of a path it is the base
+    name without suffix; numbers get the name of their axis: count3."""
     if re.fullmatch(r"[+-]?([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][+-]?[0-9]+)?", text):
         return _clean(axis) + text
     return _clean(re.sub(r"(?<=.)[.]([A-Za-z][A-Za-z0-9]*|3dm)$", "", os.path.basename(text.rstrip("/"))))

@@ -16,8 +16,8 @@ USUAL = ("coverage.exact", "result.coverage", "coverage.grid")  # columns drawn 
 
 def draw(sweep: Sweep, rows: Sequence[Row], table: dict[str, list[Value]], x: str, y: str | None,
          by: str | None, over: str | None, form: str) -> bytes:
-    """The means of column `y` over axis `x`, with least and greatest where several jobs share a place: a
-    curve for each choice of `by`, or with `over` a cell for each two choices."""
+    """Draws the means of column `y` over axis `x`, with least and greatest if several jobs share a point: a curve for
+    each choice of `by`, or with `over` a cell for each two choices."""
     axes = {axis.name: axis for axis in sweep.axes}
     for option, name in (("--x", x), ("--by", by), ("--over", over)):
         if name is not None and name not in axes:
@@ -55,7 +55,7 @@ def _is_number(value: Value) -> bool:
 
 
 class _Cells:
-    """Figures by what was chosen on some axes."""
+    """Figures by the choices on some axes."""
 
     def __init__(self, sweep: Sweep, rows: Sequence[Row], figures: dict[int, Value]) -> None:
         self.names = [axis.name for axis in sweep.axes]
@@ -75,7 +75,7 @@ class _Cells:
         return found
 
     def spread(self, *shown: Axis | None) -> str:
-        """What the mean is taken over."""
+        """Describes the values of a mean."""
         names = {axis.name for axis in shown if axis}
         others = [name for index, name in enumerate(self.names) if name not in names
                   and len({row.job.choices[index].text for row in self.rows}) > 1]
@@ -140,7 +140,7 @@ def _heat(cells: _Cells, x: Axis, over: Axis, column: str) -> Any:
 
 
 def _places(axis: Axis) -> tuple[dict[str, float], list[str]]:
-    """Where choices stand on the axis of a drawing: numbers in their places, words one beside the other."""
+    """Positions of choices on the axis of a drawing: numbers to scale, words evenly spaced."""
     try:
         return {choice.text: float(choice.text) for choice in axis.choices}, []
     except ValueError:
@@ -149,7 +149,7 @@ def _places(axis: Axis) -> tuple[dict[str, float], list[str]]:
 
 
 def _ticks(setter: Callable[..., Any], place: dict[str, Any], labels: list[str]) -> None:
-    """All places have their words, at most twenty of them; numbers of few places have their own."""
+    """Labels all ticks with words, at most twenty of them; few numbers are labelled each."""
     if labels:
         every = -(-len(labels) // 20)
         setter(list(place.values())[::every], [label[:28] for label in labels][::every])

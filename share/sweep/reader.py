@@ -80,7 +80,7 @@ class _Reader:
         return Axis(name, tuple(choice for _, choice in choices), files)
 
     def _values(self, name: str, node: Any) -> Iterable[tuple[Any, Choice]]:
-        """Values as they are written, each one word; 1..8 are the numbers from 1 to 8."""
+        """Parses values, each one word; 1..8 are the numbers from 1 to 8."""
         for item in self.tree.items(node):
             text = self.tree.scalar(item, f"a choice of `{name}`")
             if text is None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the jobs of a sweep wrote, as one table: a row for each job, with where its figures come from."""
+"""The results of a sweep as one table: a row for each job, with the origin of its figures."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ LONGEST_LIST = 16  # items of a list of numbers that become columns
 
 @dataclass
 class Row:
-    """A job and its results. `digest` is that of its room, `history` the commands that its layouts and
-    readings tell, `seed` theirs, `version` that of the tools whose reports tell it."""
+    """A job and its results. `digest` is that of its room, `history` the commands in its layouts and readings, `seed`
+    theirs, `version` that of the tools in its reports."""
 
     job: Job
     values: dict[str, str | float | int]
@@ -35,8 +35,8 @@ class Row:
 
 
 def join(sweep: Sweep, jobs: Iterable[Job], partial: bool) -> list[Row]:
-    """The rows of the jobs that are done. Throws DataError that names those that are not, unless `partial`,
-    and files that are not what their suffix says."""
+    """Returns the rows of complete jobs. Throws DataError that names the others, unless `partial`, and files of
+    another type than their suffix."""
     writer = CommandWriter(sweep, None)
     rows: list[Row] = []
     missing: list[str] = []
@@ -68,7 +68,7 @@ def _missing(files: list[str], jobs: int) -> list[str]:
 
 
 def _read(row: Row, path: str, suffix: str) -> None:
-    """Takes what a file of the job says; of a file that is neither layout, report nor readings, nothing."""
+    """Reads the data of a file of the job; skips a file that is neither layout, report nor readings."""
     stem, kind = os.path.splitext(suffix)
     if not kind:
         stem, kind = "", suffix
@@ -155,7 +155,7 @@ def _read_header(row: Row, path: str) -> None:
 
 
 def _add_history(row: Row, line: str) -> None:
-    """A command that a file tells. Without --seed its seed was 0, as the manual says."""
+    """Parses a command in a file. Without --seed its seed was 0, as the manual states."""
     row.history.append(line)
     seed = re.search(r"(?:^| )--seed[ =]([0-9]+)(?= |$)", line)
     row.seed = int(seed[1]) if seed else row.seed or 0

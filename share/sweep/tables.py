@@ -37,7 +37,7 @@ def columns(sweep: Sweep, rows: Sequence[Row]) -> dict[str, list[Value]]:
 
 
 def _in_order(rows: Sequence[Row]) -> list[str]:
-    """The keys of all results; one that only some rows have stands behind what it follows there."""
+    """The keys of all results; a key of some rows only follows its predecessor there."""
     keys: list[str] = []
     known: set[str] = set()
     for row in rows:
@@ -90,7 +90,7 @@ def to_jsonl(sweep: Sweep, rows: Sequence[Row], version: str) -> bytes:
 
 
 def to_npz(sweep: Sweep, rows: Sequence[Row], _version: str) -> bytes:
-    """An array for each column: doubles, NaN where nothing is known, or texts. numpy.load needs no pickle."""
+    """An array for each column: doubles, NaN if unknown, or texts. numpy.load needs no pickle."""
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, values in columns(sweep, rows).items():

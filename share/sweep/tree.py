@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""YAML with places: a file as PyYAML's nodes, and findings in it as the other tools tell them."""
+"""YAML with positions: a file as PyYAML's nodes, and findings in it in the form of the other tools."""
 
 from __future__ import annotations
 
@@ -64,14 +64,14 @@ class Tree:
             self.check()
 
     def check(self) -> None:
-        """Throws what was found."""
+        """Throws the findings."""
         if self._findings:
             raise DataError(self._findings)
 
     # ---- Nodes
 
     def entries(self, node: Any, what: str, known: Iterable[str] = ()) -> list[tuple[str, Any, Any]]:
-        """(key, its node, node of its value) of a map, in order; findings where it is none, or a key is
+        """Returns (key, its node, node of its value) of a map, in order; adds findings if it is no map, or a key is
         doubled or not `known`."""
         if not isinstance(node, yaml.MappingNode):
             self.find(node, f"{what} is a map, `key: value`, not {_kind(node)}")
@@ -94,7 +94,7 @@ class Tree:
         return list(node.value) if isinstance(node, yaml.SequenceNode) else [node]
 
     def scalar(self, node: Any, what: str) -> str | None:
-        """A value as it is written; None, with a finding, where it is no single one."""
+        """Returns a scalar's text; None, with a finding, for another node."""
         if not isinstance(node, yaml.ScalarNode):
             self.find(node, f"{what} is a single value, not {_kind(node)}")
             return None

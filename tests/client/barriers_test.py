@@ -76,7 +76,7 @@ class Barriers(unittest.TestCase):
         self.assertTrue(end.done, f"{end.reason} at {robot.status().pose}")
 
     def blocked_cells(self, robot):
-        """Cells too near to what three lasers see: one on the robot, two in the room."""
+        """Cells too near to the points that three lasers see: one on the robot, two in the room."""
         seen = set(hits(robot.scan("l3"), robot.status().pose))
         for id, pose in (("l1", ispace.Pose(-1.3, 2.6, -70)), ("l2", ispace.Pose(-1.3, -2.6, 70))):
             with self.run_.laser(id) as laser:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Binary frames as ispace-protocol(7) describes them, read with numpy and OpenCV alone: they are what scan writes."""
+"""Binary frames as ispace-protocol(7) describes them, read with numpy and OpenCV alone, equal scan's output."""
 
 import json
 import os

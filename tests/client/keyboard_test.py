@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The keyboard example in a terminal of its own: keys drive, the screen shows it."""
+"""The keyboard example in a pseudo-terminal: keys drive, the screen shows it."""
 
 import fcntl
 import os
@@ -25,7 +25,7 @@ ROWS, COLUMNS = 30, 100
 
 
 class Screen:
-    """What a VT100 shows of the bytes it gets, as far as curses uses it."""
+    """The screen of a VT100 for the bytes it gets, as far as curses uses it."""
 
     TOKEN = re.compile(r"\x1b\[(\?)?([\d;]*)([A-Za-z])|\x1b[()].|\x1b.|[\s\S]")
 
@@ -111,7 +111,7 @@ class Keyboard(unittest.TestCase):
                 pass
 
     def until(self, pattern):
-        """What the screen says sooner or later."""
+        """Waits until the screen holds this text."""
         end = time.monotonic() + 60
         while not (found := re.search(pattern, self.screen.text)):
             self.assertLess(time.monotonic(), end, f"in vain: {pattern} in\n{self.screen.text}")

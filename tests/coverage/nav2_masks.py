@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masks for Nav2's costmap filters: their pictures, read by OpenCV, give by the formulas of Nav2's
-map_server and filters what coverage --to csv says of the same cells; see coverage(1) and envc(1)."""
+"""Masks for Nav2's costmap filters: OpenCV reads their pictures, and the formulas of Nav2's map_server and filters
+convert them to the values of coverage --to csv for the same cells; see coverage(1) and envc(1)."""
 import csv
 import os
 import subprocess

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""looks.py BUILD: the report in a browser, at the width of a desk and of a phone: every picture is there,
-and nothing is wider than the page."""
+"""looks.py BUILD: the report in a browser, at the width of a desk and of a phone: every picture is there, and no
+element is wider than the page."""
 
 import os
 import sys

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""quick.py BUILD: every experiment with few seeds keeps to its bounds, twice with the same bytes; what
-fails is shown as failed, and mistakes of the command line are told."""
+"""quick.py BUILD: every experiment with few seeds keeps its bounds, twice with the same bytes; the report shows
+failures as failed, and run.py reports wrong arguments."""
 
 import os
 import shutil
@@ -45,7 +45,7 @@ def twice():
 
 
 def verdicts():
-    """The page begins with what is reproduced, fitted and not reproduced, each with the figures."""
+    """The page begins with the reproduced, fitted and not reproduced figures."""
     page = report("first")
     lists = [part.split("<h3", 1)[0] for part in page.split("<h3>")[1:4]]
     check([text.split(":")[0] for text in lists] == ["Reproduced", "Fitted", "Not reproduced"],
@@ -63,7 +63,7 @@ def verdicts():
 
 
 def what_goes_wrong():
-    """A build whose coverage tool fails: the others are shown, and so is that one."""
+    """A build with a failing coverage tool: the page shows the other experiments, and that one as failed."""
     build = os.path.join(SCRATCH, "broken")
     os.makedirs(os.path.join(build, "bin"))
     for tool in ("envc", "arrange", "scan", "simrun"):

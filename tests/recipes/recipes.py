@@ -40,7 +40,7 @@ ESCAPES = {r"\-": "-", r"\e": "\\", r"\(aq": "'", r"\(dq": '"', r"\&": ""}
 
 
 class Broken(Exception):
-    """A recipe that does not do what the page says; with its line there."""
+    """A failing recipe, with its line of the page."""
 
     def __init__(self, line, why):
         super().__init__(why)
@@ -147,7 +147,7 @@ def run_printed(block, command):
 
 
 def wait_for_server(process, line):
-    """Reads the line with which simrun says where it listens."""
+    """Reads simrun's first line, which holds its address."""
     for told in process.stdout:
         if told.startswith('{"schema":"ispace-simrun/'):
             return told.rstrip("\n")
@@ -176,7 +176,7 @@ def watch(process):
 
 
 class Session:
-    """What is typed on a page: the server stays for the sessions that follow, a connection lasts a block."""
+    """Typed lines of a page: the server stays for the sessions that follow, a connection lasts a block."""
 
     def __init__(self):
         self.server = self.address = self.connection = None
@@ -251,7 +251,7 @@ def run_block(block, session):
 
 
 def furnish(folder):
-    """Copies what the text names into the folder."""
+    """Copies the files that the text names into the folder."""
     for origin in (os.path.join(SOURCE, "share", "scenes"), os.path.join(HERE, "inputs")):
         shutil.copytree(origin, folder, dirs_exist_ok=True)
     for name, origin in INPUTS.items():

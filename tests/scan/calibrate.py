@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""OpenCV calibrates cameras by pictures of a chessboard, and finds what the records say."""
+"""OpenCV calibrates cameras by pictures of a chessboard, and finds the parameters of the records."""
 from seen import *
 
 SIZE = (640, 480)
 
 
 def widest_error(camera, truth, project):
-    """Greatest distance in pixels of what two calibrations make of the rays of a picture."""
+    """Greatest distance in pixels of two calibrations over the rays of a picture."""
     return np.abs(project(*camera) - project(*truth)).max()
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What OpenCV makes straight again is what a straight camera sees; camera_info comes back."""
+"""OpenCV's undistorted pictures equal those of a straight camera; camera_info reads back."""
 from seen import *
 
 SIZE, FOCAL = (640, 480), 330

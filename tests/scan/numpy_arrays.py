@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""NumPy finds in .npz and .npy what the same scan has as JSON lines; see scan(1)."""
+"""NumPy reads from .npz and .npy the values of the same scan as JSON lines; see scan(1)."""
 import base64
 import json
 import os
@@ -158,7 +158,7 @@ def nothing():
 
 
 def cells():
-    """What coverage writes is the table of --to csv."""
+    """coverage writes the table of --to csv."""
     for suffix in ("npz", "npy", "csv"):
         subprocess.run(["coverage", "square.env", "half.3dm", "--grid", "40,20", "-o", f"cells.{suffix}"],
                        check=True, stdout=subprocess.DEVNULL)

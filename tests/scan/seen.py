@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""For tests of pictures by OpenCV: poses, scan, and what it has to find."""
+"""For tests of pictures by OpenCV: poses, scan, and expected positions."""
 import atexit
 import os
 import shutil
@@ -105,7 +105,7 @@ def board_points():
 
 
 def aside(pose, left, up):
-    """A pose turned so that what it faced is so far off the axis: tangents."""
+    """Turns a pose so that the point it faced is this far off the axis: tangents."""
     eye, matrix = pose
     forward = matrix @ [1, -left, -up]
     forward /= np.linalg.norm(forward)
@@ -129,14 +129,14 @@ def board_poses(near, far, left, up):
 
 
 def corners(picture, guess, reach=4):
-    """Corners to parts of a pixel, from places near them."""
+    """Refines corners to parts of a pixel, from points near them."""
     end = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 100, 1e-4)
     return cv2.cornerSubPix(linear(picture), guess.astype(np.float32).reshape(-1, 1, 2).copy(),
                             (reach, reach), (-1, -1), end).reshape(-1, 2)
 
 
 def find_board(picture):
-    """Corners in the order of board_points, found without knowing where; None if not found."""
+    """Finds the corners in the order of board_points, without initial positions; None if not found."""
     found, places = cv2.findChessboardCornersSB(picture, (COLUMNS, ROWS))
     if not found:
         return None

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""junit.py FILE…: holds files to JUnit's usual schema, that of Jenkins' xUnit plugin (junit-10.xsd), with
-the standard library alone. What is here of it is what may stand in a file: elements, their attributes, what
-must be there, in which order, and numbers that add up. junit.py --self-test: it can fail."""
+"""junit.py FILE…: validates files by JUnit's usual schema, that of Jenkins' xUnit plugin (junit-10.xsd), with the
+standard library alone. Implements the part for our files: elements, their attributes, required ones, their order,
+and sums of counts. junit.py --self-test: it can fail."""
 
 import re
 import sys

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""validate.py SCHEMAS FILE...: holds JSON that the tools wrote to share/schemas.
+"""validate.py SCHEMAS FILE...: validates JSON of the tools by share/schemas.
 
-A FILE is one object, or lines of objects of which the first has `schema`. Of a golden case (.out)
-only what begins with such an object counts, and what follows it line by line.
-validate.py --self-test SCHEMAS: every key is described, and none that is not can pass."""
+A FILE is one object, or lines of objects of which the first has `schema`. Of a golden case (.out) it reads only
+such an object, and the lines that follow it. validate.py --self-test SCHEMAS: every key is described, and an
+undescribed one fails.
+"""
 
 import copy
 import json

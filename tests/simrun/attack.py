@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""attack.py PORT PID KIND: clients of a simrun that are up to no good, and what it costs others.
+"""attack.py PORT PID KIND: malicious clients of a simrun, and their cost for others.
 
-Prints what it measures; fails if a sum does not hold: memory, descriptors, threads, rates."""
+Prints its measurements; fails if a sum is exceeded: memory, descriptors, threads, rates.
+"""
 import os
 import signal
 import socket
@@ -11,7 +12,7 @@ from clients import KIND, MIB, PORT, Client, check, descriptors, eventually, mem
 
 
 def stall():
-    """Each holds another big scan, or several, and reads nothing."""
+    """Each requests another big scan, or several, and reads no byte."""
     world, reader = Client("WORLD"), Client("LASER big")
     reader.ask("STREAM")
     before = memory("VmRSS")
@@ -44,7 +45,7 @@ def rates(world, driver, seconds=1.5):
 
 
 def asking(requests, count):
-    """A process with clients that send requests as fast as they are taken, and read."""
+    """A process with clients that send requests and read as fast as the server does."""
     child = os.fork()
     if child:
         time.sleep(0.5)
@@ -61,7 +62,7 @@ def asking(requests, count):
 
 
 def flood():
-    """What a client that never reads, and many that always ask, take from others."""
+    """The cost for others of a client that never reads, and of many that always send requests."""
     world, driver = Client("WORLD"), Client("ROBOT r1")
     alone = rates(world, driver)
     print(f"alone: {alone[0]:.0f} steps and {alone[1]:.0f} answers a second")
@@ -131,7 +132,7 @@ def noise():
 
 
 def silent():
-    """As many as there are places, without a word; one who asks gets one all the same."""
+    """Silent clients up to the limit; a new one with a request is served all the same."""
     clients = [Client() for _ in range(256)]
     time.sleep(1.2)
     for _ in range(3):
@@ -184,7 +185,7 @@ def storm():
 
 
 def edits():
-    """Many who change the world as fast as they may, and send changes that cannot be."""
+    """Many clients that change the world as fast as they may, and send impossible changes."""
     world, driver = Client("WORLD"), Client("ROBOT r1")
     before = memory("VmRSS")
     bad = "".join(f"SET r1.{'k' * 3000}=1\nADD human id=x path={'0,0;' * 900}\nDELETE {'*' * 3000}\n"

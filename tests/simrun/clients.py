@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What scripts PORT PID KIND share: clients of a running simrun, and what it takes of the machine."""
+"""Shared by the scripts PORT PID KIND: clients of a running simrun, and its use of the machine."""
 import os
 import socket
 import struct

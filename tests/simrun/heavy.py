@@ -15,7 +15,7 @@ PATIENCE = float(os.environ.get("ISPACE_PATIENCE", "3"))
 
 
 class Watch:
-    """Another client, who asks for the time all along."""
+    """Another client, which requests the time continuously."""
 
     def __init__(self):
         self.client, self.slowest = Client("WORLD"), 0.0
@@ -91,7 +91,7 @@ def pictures():
 
 
 def sums():
-    """Sensors until memory would be out: each is refused by itself, and the run goes on."""
+    """Sensors until memory would be out: the server rejects each, and the run continues."""
     watch, world = Watch(), Client("WORLD")
     answers = [world.ask("ADD laser at=0,1 step=0.0009 rate=40") for _ in range(64)]
     refused = [answer for answer in answers if not answer.startswith("OK ADD ")]
@@ -119,7 +119,7 @@ def web_socket(address):
 
 
 def places():
-    """All places of each port taken by clients that say a word and no more."""
+    """All connections of each port taken by clients that send one request."""
     with open("announced", encoding="utf-8") as file:
         ports = json.load(file)
     web = ports["web"].removeprefix("http://").rstrip("/")

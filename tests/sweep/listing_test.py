@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ispace-sweep makes of a sweep's file: jobs, in order, with names that hold and words that arrive as they
-were written; and what it says of files that are no sweeps."""
+"""ispace-sweep reads a sweep's file: jobs, in order, with stable names and unchanged words; and it reports files that
+are no sweeps."""
 
 import json
 import os
@@ -76,7 +76,7 @@ NASTY = ["plain", "two words", "a'b", 'a"b', "$HOME `id` $(id)", "a;b&c|d>e<f", 
 
 
 def quoting(folder):
-    """Each word arrives at the program as it is in the sweep, by way of sh and of make."""
+    """Each word reaches the program unchanged, by way of sh and of make."""
     folder.write("show", "#!/usr/bin/python3\nimport json, os, sys\n"
                  "os.makedirs('results', exist_ok=True)\n"
                  "json.dump(sys.argv[1:-2], open(sys.argv[-1], 'w'))\n")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ispace-sweep makes of the results: by the tools a table in three forms, which others read, and pictures;
-and what it says of files that are not what they should be."""
+"""ispace-sweep reads the results of the tools: it writes a table in three forms, which other programs read, and
+pictures; and it reports files of a wrong type."""
 
 import csv
 import io

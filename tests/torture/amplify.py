@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that ask for far more work than their size says, for every reader that repeats.
+"""Files that require far more work than their size suggests, for every reader that repeats.
 
 A family is a function of a size in bytes that returns the files of one input, the operand first.
 """
@@ -71,7 +71,7 @@ def dxf_circles_of_nothing(size):
 
 
 def dxf_lines(size):
-    """What repetition draws lies apart: walls by the million."""
+    """Repetitions draw separate walls: millions of them."""
     return dxf({"B": repeated(lambda i: line((0, i), (5, i)), size)},
                ROOM_OF_LINES + insert("B", 0, 1400, 1400))
 
@@ -117,7 +117,7 @@ def svg_use_empty(size):
 
 
 def svg_style(size):
-    """An element whose style is long, used as often as fits."""
+    """An element with a long style, used as often as fits."""
     style = "a:b;" * (size // 2 // 4)
     uses = '<use href="#a"/>\n' * (size // 2 // 17)
     return svg(f'<defs><path id="a" d="M1 1h1" style="{style}fill:none"/></defs>{uses}')
@@ -161,7 +161,7 @@ def svg_coincident(size):
 
 
 def svg_long_ids(size):
-    """Elements in groups whose names are long."""
+    """Elements in groups with long names."""
     name = "n" * (size // 2)
     return svg(f'<g id="{name}">' + '<path d="M100 100h50"/>' * (size // 2 // 23) + "</g>")
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A process of clients that send what grammar.py draws: some read each reply and check that it is that of the request,
-some never read, send half lines, a byte at a time, or vanish."""
+"""A process of clients that send requests of grammar.py: some read each reply and check that it is that of the
+request, some never read, send half lines, a byte at a time, or vanish."""
 import os
 import random
 import socket
@@ -15,7 +15,7 @@ MOST_AHEAD = 8  # requests of a polite client that wait for a reply
 
 
 class Attacker:
-    """One connection, made anew when it ends."""
+    """One connection, opened again when it ends."""
 
     def __init__(self, r, port, web):
         self.r, self.port, self.page = r, port, web
@@ -52,7 +52,7 @@ class Attacker:
         return bytes([128 | self.r.choice((1, 1, 1, 2, 9, 10, 8, 0, 3))]) + size + bytes(4) + data
 
     def act(self):
-        """Sends something, reads what there is; the number of requests sent."""
+        """Sends a request, reads available replies; returns the number of requests sent."""
         if self.socket is None:
             self.connect()
             return 1
@@ -168,7 +168,7 @@ class Attacker:
 
 
 def attack(port, web, seed, count, report):
-    """Until it is killed; writes a line to `report` for what is wrong, and how many requests were sent."""
+    """Runs until killed; writes a line to `report` for each violation, and the number of requests sent."""
     r = random.Random(seed)
     attackers = [Attacker(r, port, web) for _ in range(count)]
     sent, told = 0, time.monotonic()

@@ -36,7 +36,7 @@ class Client:
         return line[:-1]
 
     def ask(self, request):
-        """The reply; lines that nobody asked for are passed over."""
+        """Returns the reply; skips unrequested lines."""
         self.socket.sendall(request.encode() + b"\n")
         while True:
             line = self.line()
@@ -61,7 +61,7 @@ class StreamReader:
         self.client.ask("STREAM")
 
     def read(self):
-        """One reading; raises ConnectionError at the end of the run, Wrong if it is not what it should be."""
+        """Reads one reading; raises ConnectionError at the end of the run, Wrong if it is invalid."""
         line = self.client.line()
         if line.startswith(b"EVENT "):
             return
@@ -127,7 +127,7 @@ def memory(pid, name="VmRSS"):
 
 
 class Watch:
-    """Asks for the time all along and keeps the longest wait, without what this process itself was late by."""
+    """Requests the time continuously and stores the longest wait, less the delay of this process."""
 
     def __init__(self, port):
         self.client, self.slowest, self.asked = Client(port, "WORLD", patience=60), 0.0, 0

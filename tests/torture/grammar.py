@@ -22,7 +22,7 @@ def name(r, kinds="rhlckmuz"):
 
 
 def pattern(r):
-    """A glob that never means what is honest."""
+    """A glob that never matches ids of honest clients."""
     return "x" + "".join(r.choice(("*", "?", "a" * r.randint(1, 90), "b", "r1", "[a-z]", "\\", "c")) for _ in range(r.randint(1, 9)))
 
 

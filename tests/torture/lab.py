@@ -38,7 +38,7 @@ JOBS = (
 
 
 class Result:
-    """How a command ended: status (negative for a signal, None if it had to be killed), output, seconds, bytes."""
+    """The end of a command: status (negative for a signal, None if it had to be killed), output, seconds, bytes."""
 
     def __init__(self, status, out, err, wall, usage):
         self.status, self.out, self.err, self.wall = status, out, err, wall
@@ -98,7 +98,7 @@ class Lab:
 
     def start(self, argv, cwd, env=None, out=subprocess.DEVNULL, err=subprocess.DEVNULL, stdin=subprocess.DEVNULL,
               umask=-1):
-        """The command in a session of its own, the tool from the build."""
+        """The command in a separate session, the tool from the build."""
         return subprocess.Popen([self.tool(argv[0]) if argv[0] in TOOLS else argv[0], *argv[1:]], cwd=cwd,
                                 env=self.environment if env is None else env, stdin=stdin, stdout=out, stderr=err,
                                 start_new_session=True, umask=umask)
@@ -151,7 +151,7 @@ def allowed(seconds):
 
 
 def product(folder, job):
-    """A digest of all that the job wrote, without what differs from run to run; "" if it wrote nothing."""
+    """A digest of all files of the job, without the parts that differ from run to run; "" without files."""
     path = os.path.join(folder, job.product)
     files = [path]
     if os.path.isdir(path):

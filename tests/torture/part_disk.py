@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A small disk that fills up at any byte of what a command of each tool writes: one line of error and status 1, the
+"""A small disk that is full at any byte of the output of a command of each tool: one line of error and status 1, the
 old file stays, and a record ends with whole lines."""
 import os
 import shlex

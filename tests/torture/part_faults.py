@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every n-th allocation and system call fails, for a command of each tool.
 
-It ends with status 1 and one line, or does its work as ever where the fault does no harm; it neither crashes nor
-hangs, and what stands under the target's name is the old file or the new one. Calls that do less than they are asked
-to, or are interrupted, change nothing at all."""
+It ends with status 1 and one line, or completes its work if the fault does no harm; it neither crashes nor hangs,
+and the target is the old file or the new one. Calls that are interrupted, or do less than requested, change no
+byte.
+"""
 import os
 import re
 import shlex
@@ -61,7 +62,7 @@ class Target:
                               f"{shlex.join(self.job.argv[1:])} -j {threads}")
 
     def judge(self, kind, status, said):
-        """What is wrong with that end, or ""."""
+        """Describes the violation by that end, or ""."""
         job, made = self.job, labs.product(self.folder, self.job)
         if status is None:
             return f"hangs for {LIMIT} s"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The fuzz targets of tests/fuzz, all with the same time; what they find to try stays in build-fuzz/corpus."""
+"""The fuzz targets of tests/fuzz, all with the same time; build-fuzz/corpus stores their inputs."""
 import glob
 import os
 import re

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""SIGKILL, TERM and INT at random moments of each tool that writes: what stands under the target's name is the old
-file or the new one, TERM and INT leave no stand-in, and a record keeps whole lines."""
+"""SIGKILL, TERM and INT at random moments of each tool that writes: the target is the old file or the new one, TERM
+and INT leave no temporary file, and a record keeps whole lines."""
 import os
 import shlex
 import signal
@@ -81,7 +81,7 @@ class Target:
         return "complete=no" in text and text.endswith("\n") and "\nresult " in text
 
     def is_half_set(self):
-        """Between two renames nobody can be saved from SIGKILL: each file is whole."""
+        """SIGKILL may come between two renames: each file is whole."""
         stem = os.path.join(self.folder, self.job.product[:-5])
         with open(stem + ".pgm", "rb") as pgm:
             content = pgm.read()

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""FIFOs, devices, links, folders and odd names wherever a file may be named, by the user or by a file.
+"""FIFOs, devices, links, folders and odd names for every file that the user or a file may name.
 
-A tool refuses or handles each within five seconds, with bounded memory, and leaves what is no regular file as it is.
-Only a FIFO or an endless device that the user names may be read on and on, as `cat` does; TERM ends that within a
-second."""
+A tool rejects or handles each within five seconds, with bounded memory, and leaves files that are not regular
+unchanged. It may read only a FIFO or an endless device that the user names without end, as `cat` does; TERM ends
+that within a second.
+"""
 import os
 import shlex
 import shutil
@@ -138,7 +139,7 @@ class Field:
             self.lab.violated(f"{command} where {os.path.basename(path)} is a {kind}: {broken}")
 
     def wait_for(self, command, kind):
-        """Either refuses it, or reads on until TERM."""
+        """Either rejects it, or reads on until TERM."""
         process = self.lab.start([word.replace("~", " ") for word in command.split()], self.folder)
         self.lab.count("names")
         try:
@@ -176,7 +177,7 @@ def judge(tool, result, limit):
 
 
 def same_file(path, before):
-    """Whether what stands there is of the kind it was; a tool may fill a folder."""
+    """Whether the entry is of the kind it was; a tool may fill a folder."""
     try:
         return stat.S_IFMT(os.lstat(path).st_mode) == stat.S_IFMT(before.st_mode)
     except FileNotFoundError:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A simrun under attack: TIME is answered within a second, TERM obeyed within one, memory stays bounded, streams of
-honest clients are whole and in order, and clients without a role shut nobody out."""
+"""A simrun under attack: it answers TIME within a second, obeys TERM within one, memory stays bounded, streams of
+honest clients are whole and in order, and clients without a role block no other."""
 import json
 import os
 import random
@@ -54,7 +54,7 @@ class Run:
         return int(next(iter(self.announced[kind].values())).rpartition(":")[2].split("/")[0])
 
     def end(self, what):
-        """TERM; how long the run took to end, in seconds. Whoever does not obey is killed."""
+        """Sends TERM; returns the seconds until the run ended. Kills a run that does not obey."""
         begin = time.monotonic()
         self.process.send_signal(signal.SIGTERM)
         while self.process.poll() is None and time.monotonic() < begin + 60:
@@ -113,7 +113,7 @@ def write_scenes(folder):
 
 
 def last_counts(path, word):
-    """The last count that a report tells of, and the lines of what was wrong."""
+    """The last count in a report, and the lines of its violations."""
     with open(path, encoding="utf-8", errors="replace") as file:
         lines = file.read().splitlines()
     counts = [int(line.split()[1]) for line in lines if line.startswith(word + " ")]
@@ -148,7 +148,7 @@ class Siege:
         self.children.append(child(work, path))
 
     def hold(self, seconds):
-        """Watches; returns what was violated."""
+        """Watches; returns the violations."""
         end, most, waited = time.monotonic() + seconds, 0, 0
         try:
             while time.monotonic() < end and waited <= 20:

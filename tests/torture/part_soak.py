@@ -39,7 +39,7 @@ def visit(lab, port, kept):
 
 
 def check_robots(lab, path, steps):
-    """Every step has a row of each robot, in their order, and times go on by a step."""
+    """Every step has a row of each robot, in their order, and times advance by a step."""
     ids, row, last = [], 0, None
     with open(path, encoding="ascii") as file:
         next(file)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page shows what cameras see, and who can goes sideways."""
+"""The page shows camera pictures, and drives omnidirectional robots sideways."""
 
 import time
 
@@ -27,7 +27,7 @@ return [picture.width, picture.height, colors.size];"""
 
 
 def picture(page):
-    """Width, height and number of colours of what the camera sees."""
+    """Width, height and number of colours of the camera's picture."""
     return page.browser.execute_script(PICTURE)
 
 
@@ -55,7 +55,7 @@ def refreshes(page):
 
 
 def click_map(page, x, y):
-    """At a place of the room."""
+    """Clicks a point of the room."""
     width, height = page.map_size()
     rim = min(48, 0.08 * width)
     scale = min((width - rim) / 10.2, (height - rim) / 7.2)  # the outline, and its walls of 0.2 m

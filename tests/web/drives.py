@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What people do on the page happens in the world: keys, drags, buttons, the pad of phones."""
+"""Actions on the page reach the world: keys, drags, buttons, the pad of phones."""
 
 import time
 
@@ -34,7 +34,7 @@ def drives_by_keys(run, page):
 
 
 def holds_and_frees(run, page):
-    """Who is driven belongs to the page, until something else is selected."""
+    """The page drives the selected mover, until another selection."""
     check(ask(run, "ROBOT r1")[0].startswith("ERR 409"), "r1 is free while the page drives it")
     page.select("r2")
     eventually("r1 is free", lambda: ask(run, "ROBOT r1")[0].startswith("OK ROBOT r1"))

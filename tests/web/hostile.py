@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Strangers' pages, lies and silence at simrun --web: refused, and nobody else is the worse for it."""
+"""Pages of strangers, lies and silence at simrun --web: rejected, without harm to others."""
 
 import os
 import socket
@@ -11,7 +11,7 @@ from web_client import WebClient, dial
 
 
 def first_line(url, request):
-    """What a request by hand is answered, its first line; "" if the server just closes."""
+    """The first line of the answer to a raw request; "" if the server just closes."""
     client, _ = dial(url)
     with client:
         client.sendall(request)
@@ -43,7 +43,7 @@ def strangers(run):
 
 
 def lies(run):
-    """Frames that say they are huge, that are, and what is no frame at all."""
+    """Frames that claim to be huge, that are, and invalid ones."""
     for length in (4097, 1 << 20, 1 << 40, (1 << 63) + 5):
         client = WebClient(run.url)
         client.receive()
@@ -77,7 +77,7 @@ def latest(watcher):
 
 
 def silence(run):
-    """Two hundred sockets that say nothing, and pages that never read: time goes on for others."""
+    """Two hundred silent sockets, and pages that never read: time advances for others."""
     watcher = WebClient(run.url)
     watcher.receive()
     watcher.ask("WORLD")
@@ -107,7 +107,7 @@ def silence(run):
 
 
 def too_many(run):
-    """More WebSockets than there are places: the last ones are turned away, the first ones stay."""
+    """More WebSockets than the limit: the server rejects the last ones, the first ones stay."""
     clients, refused = [], 0
     for _ in range(100):
         try:

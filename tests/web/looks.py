@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the page draws, at the width of a desk and of a phone."""
+"""The drawing of the page, at the width of a desk and of a phone."""
 
 from page import Page
 from running import Run, check

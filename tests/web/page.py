@@ -46,7 +46,7 @@ class Page:
         check(False, f"no {mover} in the list")
 
     def facts(self):
-        """What the page says of the selected one: {"x": 2.0, …}"""
+        """The page's data of the selected mover: {"x": 2.0, …}"""
         rows = self.browser.execute_script(
             "return [...document.querySelectorAll('#facts > *')].map(e => e.textContent)")
         return {name: float(value.split()[0].rstrip("°/s"))
@@ -84,7 +84,7 @@ class Page:
             "const map = document.getElementById('map'); return [map.clientWidth, map.clientHeight]")
 
     def settle(self):
-        """Until what was done last is drawn."""
+        """Waits until the last change is drawn."""
         self.browser.execute_script("return new Promise(done => requestAnimationFrame(() => "
                                     "requestAnimationFrame(() => requestAnimationFrame(done))))")
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page shows a record as it shows a run, and lets nobody drive in it."""
+"""The page shows a record as it shows a run, without driving."""
 
 import os
 import subprocess

@@ -89,7 +89,7 @@ class Run:
 
 
 def ask(run, *requests):
-    """The answers of a connection of its own."""
+    """The replies on a separate connection."""
     with socket.create_connection(("127.0.0.1", run.port)) as client:
         lines = client.makefile("rw", newline="\n")
         lines.readline()
@@ -102,7 +102,7 @@ def ask(run, *requests):
 
 
 def pose(run, mover):
-    """x and y as the server says them."""
+    """x and y from the server."""
     poses = ask(run, "WORLD", "POSES")[1].split("poses=")[1].split()[0]
     for row in poses.split(";"):
         name, x, y = row.split(",")[:3]

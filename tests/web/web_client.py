@@ -46,7 +46,7 @@ class WebClient:
         return taken
 
     def frame(self, data, opcode=1, length=None, fin=True):
-        """Sends a frame; `length` is what it says of itself, if that is to be a lie."""
+        """Sends a frame; `length` overrides its stated length."""
         size = len(data) if length is None else length
         head = bytes([(0x80 if fin else 0) | opcode])
         if size < 126:

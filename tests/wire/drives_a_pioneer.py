@@ -20,7 +20,7 @@ def near(found, wanted, most, what):
 
 
 def to_wall(x, y, angle):
-    """Millimetres from a place in the room to its wall."""
+    """Millimetres from a point of the room to its wall."""
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     walls = [((3 if d > 0 else -3) - p) / d for p, d in ((x, c), (y, s)) if abs(d) > 1e-12]
     return 1000 * min(walls)

@@ -20,7 +20,7 @@ def own_address():
 
 
 def answer(address, port):
-    """What a laser says there, up to the end of its answer or of the connection."""
+    """Reads a laser's answer there, up to its end or that of the connection."""
     said = b""
     with socket.create_connection((address, port), timeout=30) as client:
         try:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Two robots and three lasers of two models, at ten times real time: no packet is lost or torn. A minute
-of simulated time, or as many seconds as ISPACE_WIRE_SECONDS says."""
+"""Two robots and three lasers of two models, at ten times real time: no packet is lost or torn. A minute of simulated
+time, or ISPACE_WIRE_SECONDS seconds."""
 import os
 import pathlib
 import socket

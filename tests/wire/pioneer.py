@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A client of Pioneer robots, written from what is published of their packets; it shares nothing
-with the programs it talks to. Numbers are in millimetres and degrees."""
+"""A client of Pioneer robots, written from the published packets; it shares no code with the programs it talks to.
+Numbers are in millimetres and degrees."""
 import socket
 import struct
 
@@ -97,8 +97,8 @@ class Pioneer:
                 return data
 
     def until(self, is_true, most=600):
-        """Reads statuses, a tenth of a simulated second apart, until one is as wanted; says now and
-        then that it is there."""
+        """Reads statuses, a tenth of a simulated second apart, until one meets the condition; sends a packet now and
+        then to stay connected."""
         for k in range(most):
             self.wait(STATUS)
             if is_true(self.status):

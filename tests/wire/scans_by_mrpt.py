@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""MRPT's rawlog-grabber records scans of simulated Hokuyos and a SICK as of real ones: its ranges are
-those that `scan` takes from the same places, to the millimetre of SCIP and CoLa."""
+"""MRPT's rawlog-grabber records scans of simulated Hokuyos and a SICK as of real ones: its ranges are those of `scan`
+at the same poses, to the millimetre of SCIP and CoLa."""
 import json
 import math
 import pathlib
@@ -64,7 +64,7 @@ def recorded(name):
 
 
 def computed():
-    """The scans that `scan` takes, in whole millimetres; None is no return."""
+    """The scans of `scan`, in whole millimetres; None is no return."""
     text = subprocess.run(["scan", SCENES / "ispace.env", "lasers.3dm"], check=True, text=True,
                           capture_output=True).stdout
     scans = {}

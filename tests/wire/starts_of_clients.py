@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What drivers of lasers send until their first scan, byte for byte as their sources have it, each request once the
-one before it is answered: no answer is a refusal, and scans come. hokuyolx itself runs where it is installed."""
+"""Requests of laser drivers until their first scan, byte for byte by their sources, each after the reply to the one
+before: no reply rejects one, and scans come. hokuyolx itself runs if installed."""
 import importlib.util
 import os
 import pathlib

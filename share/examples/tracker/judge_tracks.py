@@ -19,7 +19,7 @@ NEAR = 0.5  # m: farther tracks do not follow a person
 
 @dataclasses.dataclass
 class Verdict:
-    """What became of the tracks of one source."""
+    """Errors and counts of the tracks of one source."""
 
     errors: list = dataclasses.field(default_factory=list)  # m
     present: int = 0  # times with a person present
@@ -64,7 +64,7 @@ def read_tracks(path):
 
 
 def match(truth, tracks, before, near):
-    """Who is followed by which track: as before where that is still right, else the nearest first."""
+    """Maps people to tracks: as before while that is still right, else the nearest first."""
     found = {}
     for who, track in before.items():
         if who in truth and track in tracks and track not in found.values():
@@ -78,8 +78,8 @@ def match(truth, tracks, before, near):
 
 
 def judge(truth, sources, name, near=NEAR, begin=0.0):
-    """A Verdict on one of the sources; what is before `begin`, in seconds, does not count. A source that has no track
-    at a time that another has one follows nobody then."""
+    """Computes the Verdict on one source; times before `begin`, in seconds, do not count. A source without a track at
+    a time at which another has one follows no person then."""
     verdict, last, owner = Verdict(), {}, {}
     for at in sorted(set().union(*sources.values())):
         if at < 1000 * begin or at not in truth:

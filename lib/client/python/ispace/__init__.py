@@ -13,11 +13,10 @@
     report = ispace.coverage("room.env", ispace.arrange("room.env", sensor="urg-04lx:3"))
     print(report.coverage.exact)
 
-Robot and Person drive, LaserSensor, Camera and their kin read, World has the clock, changes and events; each
-is a connection of its own to a running simrun, by its address ``"127.0.0.1:7001"``. Units are those of the
-protocol: metres, degrees, simulated seconds; frames are right-handed and headings counter-clockwise. What goes
-wrong is an Error with the server's text. The standard library is enough; arrays are numpy's where it is
-installed.
+Robot and Person drive, LaserSensor, Camera and their kin read, World controls the clock, changes and events; each
+is a separate connection to a running simrun, by its address ``"127.0.0.1:7001"``. Units are those of the protocol:
+metres, degrees, simulated seconds; frames are right-handed and headings counter-clockwise. Failures raise an Error
+with the server's text. The standard library is enough; arrays are numpy's if it is installed.
 """
 
 from ._connection import Address, Connection

@@ -29,10 +29,10 @@ def host_and_port(address: Address) -> Tuple[str, int]:
 
 
 class Connection:
-    """Requests, their answers, and what the server says of itself in between, kept until it is asked for.
+    """Sends requests, reads their answers, and stores messages that arrive in between.
 
-    One thread at a time may use it: open a connection for each robot and sensor. Times to wait are
-    seconds of wall time; infinity waits for ever.
+    One thread at a time may use it: open a connection for each robot and sensor. Times to wait are seconds of wall
+    time; infinity waits for ever.
     """
 
     _MOST_KEPT = 10000  # events and ends that nobody asks for
@@ -83,23 +83,23 @@ class Connection:
         return answer
 
     def next_end(self, timeout: float) -> Optional[Message]:
-        """The next DONE or FAIL; None if none came in time."""
+        """Returns the next DONE or FAIL; None after the timeout."""
         return self._next(self._ends, timeout)
 
     def next_event(self, timeout: float) -> Optional[Message]:
-        """The next EVENT; None if none came in time."""
+        """Returns the next EVENT; None after the timeout."""
         return self._next(self._events, timeout)
 
     def next_scan(self, timeout: float) -> Optional[Message]:
-        """The next scan of a stream; None if none came in time."""
+        """Returns the next scan of a stream; None after the timeout."""
         return self._next(self._scans, timeout)
 
     def drop_scans(self) -> None:
-        """Forgets the scans of a stream that nobody has asked for."""
+        """Removes the unread scans of a stream."""
         self._scans.clear()
 
     def close(self) -> None:
-        """Says goodbye, so that what was held is free when this returns."""
+        """Sends QUIT, so that its robot is free when this returns."""
         if self._socket is None:
             return
         try:
@@ -133,7 +133,7 @@ class Connection:
         return queue.popleft()
 
     def _take(self, end: float) -> bool:
-        """Takes one message to where it belongs; False if none came in time."""
+        """Reads one message and stores it by its kind; False after the timeout."""
         message = self._read(end)
         if message is None:
             return False
@@ -154,7 +154,7 @@ class Connection:
         return True
 
     def _read(self, end: float) -> Optional[Message]:
-        """A line and its bytes; None if they are not there in time (what came is kept)."""
+        """Reads a line and its bytes; None after the timeout, which keeps received bytes."""
         while (newline := self._buffer.find(b"\n", self._searched)) < 0:
             self._searched = len(self._buffer)
             if not self._receive(end):
@@ -221,7 +221,7 @@ def _refusal(message: Message) -> Error:
 
 
 class Client:
-    """What all roles have in common: a connection, and ``with``."""
+    """Base of all roles: a connection, and ``with``."""
 
     def __init__(self, role: str, address: Address, timeout: float, token: str) -> None:
         self.connection = Connection(address, timeout, token)

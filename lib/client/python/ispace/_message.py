@@ -49,12 +49,12 @@ def text_of(value: float) -> str:
 
 
 def split(text: str, separator: str) -> List[str]:
-    """The parts between separators; none of an empty text."""
+    """Returns the parts between separators; an empty list for an empty text."""
     return text.split(separator) if text else []
 
 
 class Fields(Dict[str, str]):
-    """The ``key=value`` pairs of a line. Looking up what is not there is a ProtocolError."""
+    """The ``key=value`` pairs of a line. Reading a missing key raises ProtocolError."""
 
     def __missing__(self, key: str) -> str:
         raise ProtocolError(f"the server's answer has no `{key}`")
@@ -93,7 +93,7 @@ class Message:
 
 
 def parse_message(line: str) -> Message:
-    """A line taken apart. ``text=`` and ``what=``, in events, and ``warning=`` go to its end."""
+    """Parses a line. ``text=`` and ``what=``, in events, and ``warning=`` reach to its end."""
     message = Message(line)
     ending = re.search(" (text|what|warning)=", line)
     head = line[: ending.start()] if ending else line

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What this module raises."""
+"""Exceptions of this module."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Refused(Error):
 
 
 class ToolError(Error):
-    """A tool of ispace has failed; the text is what it said."""
+    """A tool of ispace has failed; the text is its message."""
 
     def __init__(self, text: str, status: int) -> None:
         super().__init__(text)

@@ -27,10 +27,9 @@ Option = Union[None, bool, int, float, str, os.PathLike[str], Sequence[Any]]
 
 
 class Object(Dict[str, Any]):
-    """An object of JSON, whose keys are attributes as well: ``report.coverage.exact``.
+    """An object of JSON with its keys as attributes: ``report.coverage.exact``.
 
-    share/schemas says what they mean. Angles in JSON are in radians, and poses
-    ``[x, y, z, heading, tilt, roll]``.
+    share/schemas describes them. Angles in JSON are in radians, and poses ``[x, y, z, heading, tilt, roll]``.
     """
 
     def __getattr__(self, key: str) -> Any:
@@ -41,16 +40,16 @@ class Object(Dict[str, Any]):
 
 
 class Figure(Object):
-    """A figure of a report, counted on cells and in closed form; None is unknown."""
+    """A figure of a report, by cells and exact; None if unknown."""
 
     grid: Optional[float]
     exact: Optional[float]
 
 
 class CoverageReport(Object):
-    """The report of ``coverage --json``; share/schemas/coverage.json says what its keys mean.
+    """The report of ``coverage --json``; share/schemas/coverage.json describes its keys.
 
-    Those that only some options or sensors bring are attributes, too, without a type.
+    Keys that only some options or sensors cause are untyped attributes.
     """
 
     schema: str
@@ -91,7 +90,7 @@ class Record:
 
 @dataclass(frozen=True)
 class Layout:
-    """What is placed in a room, as the text of a ``.3dm`` file."""
+    """A layout, as the text of a ``.3dm`` file."""
 
     text: str
 
@@ -102,7 +101,7 @@ class Layout:
 
     @property
     def result(self) -> Dict[str, str]:
-        """What arrange says of it: coverage, bound, strategy …; empty if it says nothing."""
+        """The result record of arrange: coverage, bound, strategy …; empty without one."""
         for record in self.records:
             if record.keyword == "result":
                 return record.keys
@@ -118,7 +117,7 @@ Placed = Union[None, str, os.PathLike[str], Layout]
 
 
 def coverage(room: Room, layout: Placed = None, **options: Option) -> CoverageReport:
-    """What the sensors of a layout cover: the report of ``coverage --json``.
+    """Measures the coverage of a layout: returns the report of ``coverage --json``.
 
     Raises RequirementMissed, with the report as ``product``, if ``require`` is not met.
     """
@@ -136,15 +135,15 @@ def info(room: Room, **options: Option) -> Object:
 
 
 def arrange(room: Room, layout: Placed = None, **options: Option) -> Layout:
-    """Where sensors should stand: ``arrange("room.env", sensor="urg-04lx:3", optimize="exact")``.
+    """Computes poses for sensors: ``arrange("room.env", sensor="urg-04lx:3", optimize="exact")``.
 
-    The sensors of ``layout``, if there is one, are placed or kept as arrange(1) says.
+    Sensors of ``layout`` get or keep their poses by the rules of arrange(1).
     """
     return Layout(_run("arrange", room, layout, {"quiet": True, **options}, Layout))
 
 
 def scan(room: Room, layout: Placed = None, **options: Option) -> List[Object]:
-    """What the sensors read: the lines of ``scan``, less the one that describes them.
+    """Reads the sensors: returns the lines of ``scan``, less the header.
 
     Each has ``sensor``, ``t`` and ``pose``, a laser ``ranges`` (None: no return).
     """
@@ -199,7 +198,7 @@ def operands(room: Optional[Room], layout: Placed) -> Iterator[List[str]]:
 
 
 def last_line(text: str) -> str:
-    """What a tool says it died of."""
+    """Returns the error message of a tool."""
     lines = text.strip().splitlines()
     return lines[-1] if lines else "no message"
 

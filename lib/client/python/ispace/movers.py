@@ -17,7 +17,7 @@ from .readings import R, Scan
 
 @dataclass(frozen=True)
 class Status:
-    """What a robot or person does: its true pose in the room."""
+    """State of a robot or person: its true pose in the room, speeds and accelerations."""
 
     time: float  #: simulated seconds
     pose: Pose  #: m, degrees
@@ -31,7 +31,7 @@ class Status:
 
 @dataclass(frozen=True)
 class Limits:
-    """How fast a robot or person goes on a floor without friction."""
+    """Speeds and accelerations of a robot or person on a floor without friction."""
 
     speed: float  #: m/s of forward() and backward()
     rotspeed: float  #: degrees/s of left() and right()
@@ -44,9 +44,9 @@ class Limits:
 
 @dataclass(frozen=True)
 class Odometry:
-    """What a robot's wheels tell it, from (0, 0, 0) where it started.
+    """Odometry of a robot's wheels, from (0, 0, 0) at its start.
 
-    It differs from Status.pose where the run has noise.
+    It differs from Status.pose in a run with noise.
     """
 
     time: float
@@ -74,7 +74,7 @@ class Bumper:
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion with an end: what forward(), left(), path() and their kin began."""
+    """A motion with an end, as forward(), left(), path() and their kin return it."""
 
     id: int
     length: float = 0  #: of a path, m
@@ -93,8 +93,8 @@ class End:
 class Mover(Client):
     """A robot or person that this client drives.
 
-    Only one client can; others are refused (409). When it is closed, or its program dies, the robot brakes
-    and is free. A motion replaces the one that runs.
+    Only one client can; the server rejects others (409). When it is closed, or its program dies, the robot brakes
+    and is free. A motion replaces the running one.
     """
 
     def __init__(self, role: str, address: Address, id: str, timeout: float, token: str) -> None:
@@ -140,11 +140,11 @@ class Mover(Client):
         return self._begin(request + (" loop=yes" if loop else ""))
 
     def speed(self, metres_per_second: float) -> None:
-        """A speed to keep, negative backward; leaves the rotation as it is."""
+        """Sets a lasting speed, negative backward; keeps the rotation."""
         self._ask(f"SPEED {text_of(metres_per_second)}")
 
     def rotspeed(self, degrees_per_second: float) -> None:
-        """A rotation to keep, counter-clockwise; leaves the speed as it is."""
+        """Sets a lasting rotation, counter-clockwise; keeps the speed."""
         self._ask(f"ROTSPEED {text_of(degrees_per_second)}")
 
     def sidespeed(self, metres_per_second: float) -> None:
@@ -225,7 +225,7 @@ class Robot(Mover):
         )
 
     def sonar(self) -> List[Sonar]:
-        """Its ring of sonars; empty if it has none."""
+        """Reads its ring of sonars; empty without sonars."""
         fields = self._ask("SONAR").fields
         places = [tuple(map(number_of, place.split(","))) for place in split(fields["at"], ";")]
         ranges = fields.numbers("r")
@@ -238,7 +238,7 @@ class Robot(Mover):
         return [bumper.hit for bumper in self.rim()]
 
     def rim(self) -> List[Bumper]:
-        """Its bumpers, and which are pressed; empty if it has none."""
+        """Reads its bumpers, and which are pressed; empty without bumpers."""
         fields = self._ask("BUMPER").fields
         places = [tuple(map(number_of, place.split(","))) for place in split(fields["at"], ";")]
         hit = fields.numbers("hit")

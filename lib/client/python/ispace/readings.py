@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What sensors read.
+"""Readings of sensors.
 
-Arrays are numpy's where numpy is installed, else of the standard library's ``array``.
+Arrays are numpy's if it is installed, else the standard library's ``array``.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .errors import ProtocolError
 
 
 def _numpy() -> Any:
-    """The module, or None: untyped, so that types are the same with and without it."""
+    """Returns the module, or None: untyped, so that types are the same with and without it."""
     try:
         return importlib.import_module("numpy")
     except ImportError:
@@ -68,7 +68,7 @@ def _millimetres(data: bytes) -> Floats:
 
 @dataclass
 class Reading:
-    """What every reading has; of a sensor of any kind, as the server sent it."""
+    """Base of all readings; of a sensor of any kind, as the server sent it."""
 
     sensor: str  #: id
     time: float  #: simulated seconds
@@ -118,7 +118,7 @@ class Scan(Reading):
 
 @dataclass
 class Picture(Reading):
-    """What a camera took, or a ranger's depths as a picture."""
+    """A picture of a camera, or a ranger's depths as a picture."""
 
     def _check(self) -> None:
         self.format = self.fields["format"]  #: png, jpeg or rgb (8 bits each, rows from the top)
@@ -170,7 +170,7 @@ class Depths(Reading):
 
 @dataclass
 class Cloud(Reading):
-    """A point a pixel of a ranger (format cloud), in its own frame: x ahead, y left, z up; m; NaN: none."""
+    """A point a pixel of a ranger (format cloud), in its frame: x ahead, y left, z up; m; NaN: no return."""
 
     def _check(self) -> None:
         values = _floats(self.data)
@@ -184,7 +184,7 @@ class Cloud(Reading):
 
 @dataclass
 class Burst(Reading):
-    """What an ultrasonic receiver heard of each tag."""
+    """Times of flight that an ultrasonic receiver measures from each tag."""
 
     @property
     def times_of_flight(self) -> List[Tuple[str, float]]:
@@ -194,7 +194,7 @@ class Burst(Reading):
 
 @dataclass
 class Fix(Reading):
-    """Where the receivers place a tag."""
+    """Position of a tag, computed by the receivers."""
 
     def _check(self) -> None:
         self.heard = self.fields.integer("heard")  #: receivers that heard it
@@ -204,7 +204,7 @@ class Fix(Reading):
 
 @dataclass
 class Load(Reading):
-    """Who stands on a mat."""
+    """Robots and people on a mat."""
 
     @property
     def on(self) -> List[str]:
@@ -214,7 +214,7 @@ class Load(Reading):
 
 @dataclass
 class Passages(Reading):
-    """Who has passed a gate, since the run began."""
+    """Movers that have passed a gate since the start of the run."""
 
     def _check(self) -> None:
         self.in_ = self.fields.integer("in")

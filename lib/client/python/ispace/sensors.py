@@ -13,7 +13,7 @@ T = TypeVar("T", bound=Reading)
 
 
 class SensorOf(Client, Generic[T]):
-    """A sensor whose readings are of the type T."""
+    """A sensor with readings of the type T."""
 
     _reading: Type[T]
 
@@ -28,9 +28,9 @@ class SensorOf(Client, Generic[T]):
         return self._reading.from_message(self._ask("SCAN"))
 
     def stream(self, every: int = 1) -> None:
-        """From now on the server sends every new reading whose number is a multiple of ``every``.
+        """Requests every new reading whose number is a multiple of ``every``.
 
-        A client that does not keep up gets the newest.
+        A slow client reads the newest.
         """
         self._ask(f"STREAM every={every}")
 
@@ -74,7 +74,7 @@ class Sensor(SensorOf[Reading]):
 
 
 class LaserSensor(SensorOf[Scan]):
-    """A laser range finder (role LASER). Its scans come as bytes unless binary(False) says otherwise."""
+    """A laser range finder (role LASER). Its scans come as bytes, unless after binary(False)."""
 
     _reading = Scan
 
@@ -90,7 +90,7 @@ class LaserSensor(SensorOf[Scan]):
 
 
 class Camera(SensorOf[Picture]):
-    """A camera; its pictures come as PNG unless format() says otherwise."""
+    """A camera; its pictures come as PNG by default, see format()."""
 
     _reading = Picture
 
@@ -108,7 +108,7 @@ class Ranger(SensorOf[Depths]):
 
 
 class CloudSensor(SensorOf[Cloud]):
-    """A ranger whose points are wanted."""
+    """A ranger, read as points."""
 
     _reading = Cloud
 
@@ -130,7 +130,7 @@ class Ultrasound(SensorOf[Burst]):
 
 
 class Tag(SensorOf[Fix]):
-    """A tag, which sends ultrasound, and where the receivers place it."""
+    """A tag, which sends ultrasound, and its computed position."""
 
     _reading = Fix
 
@@ -139,7 +139,7 @@ class Tag(SensorOf[Fix]):
 
 
 class Mat(SensorOf[Load]):
-    """A mat, which feels who stands on it."""
+    """A mat, which detects robots and people on it."""
 
     _reading = Load
 
@@ -148,7 +148,7 @@ class Mat(SensorOf[Load]):
 
 
 class Gate(SensorOf[Passages]):
-    """A light gate, which counts who passes it each way."""
+    """A light gate, which counts the movers that pass it each way."""
 
     _reading = Passages
 

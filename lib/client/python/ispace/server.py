@@ -71,7 +71,7 @@ class Simrun:
 
     @property
     def messages(self) -> str:
-        """What it has said so far: warnings, errors."""
+        """Its messages so far: warnings, errors."""
         if self._errors.closed:
             return self._said
         return os.pread(self._errors.fileno(), 1 << 20, 0).decode(errors="replace")
@@ -132,8 +132,8 @@ def simrun(
             with run.robot("r1") as robot:
                 robot.wait(robot.forward(1))
 
-    ``clock`` and ``options`` are those of simrun(1): ``dt``, ``until``, ``script``, ``record`` …; a run that was
-    recorded is served again by ``simrun(replay="run")``, in its own room. At the end of
-    the context it stops what it has started, and nothing else. ``timeout``: seconds until it must listen.
+    ``clock`` and ``options`` are those of simrun(1): ``dt``, ``until``, ``script``, ``record`` …;
+    ``simrun(replay="run")`` serves a recorded run again, in its room. At the end of the context it stops only the
+    process that it has started. ``timeout``: seconds until it must listen.
     """
     return Simrun(room, layout, clock, timeout, **options)

@@ -39,7 +39,7 @@ class World(Client):
         return self
 
     def list(self) -> Dict[str, List[str]]:
-        """The ids of what is there, by what LIST calls it: robots, lasers, people, sensors …"""
+        """The ids of the world, by the keys of LIST: robots, lasers, people, sensors …"""
         return {key: split(value, ",") for key, value in self._ask("LIST").fields.items()}
 
     def time(self) -> float:
@@ -73,9 +73,9 @@ class World(Client):
         self._ask("RESUME")
 
     def step(self, steps: int = 1, timeout: float = math.inf) -> int:
-        """Advances a paused world, or one with the clock ``step``, and waits until it has.
+        """Advances a paused world, or one with the clock ``step``, and waits for its last step.
 
-        Returns how many steps were taken: fewer if somebody else pauses or the run ends.
+        Returns the number of steps: fewer if another client pauses or the run ends.
         """
         return self._ask(f"STEP {steps}", timeout).fields.integer("n")
 
@@ -97,7 +97,7 @@ class World(Client):
         self._ask("SHUTDOWN")
 
     def reset(self) -> None:
-        """Robots and people go back to where they started; time goes on."""
+        """Moves robots and people back to their starts; time continues."""
         self._change("RESET")
 
     def set(self, id: str, key: str, value: str) -> None:
@@ -117,19 +117,19 @@ class World(Client):
         layout: Union[None, str, os.PathLike[str]] = None,
         timeout: float = 600,
     ) -> None:
-        """Another room. Names of files as the server sees them; without ``layout`` there is none."""
+        """Loads another room. Names of files are those of the server; ``layout`` is optional."""
         names = [os.fspath(environment)] + ([] if layout is None else [os.fspath(layout)])
         self._change("LOAD " + " ".join(names), timeout)
 
     def _change(self, request: str, timeout: Optional[float] = None) -> Fields:
-        """Changes the world; what the server warns of, as of a robot outside the room, is a UserWarning."""
+        """Changes the world; a warning of the server, as of a robot outside the room, becomes a UserWarning."""
         fields = self._ask(request, timeout).fields
         if "warning" in fields:
             warnings.warn(fields["warning"], stacklevel=3)
         return fields
 
     def mark(self, text: str) -> None:
-        """Writes a line into the records and to all who follow events."""
+        """Writes a line into the records and to all clients that read events."""
         self._ask(f"MARK {text}")
 
     def follow(self, *kinds: str) -> None:
@@ -140,13 +140,13 @@ class World(Client):
         self._ask("EVENTS off")
 
     def next_event(self, timeout: float = math.inf) -> Optional[Event]:
-        """The next event; None if none came within seconds of wall time."""
+        """Returns the next event; None after this many seconds of wall time."""
         message = self.connection.next_event(timeout)
         if message is None:
             return None
         return Event(message.word(1), message.fields.number("t"), message.fields)
 
     def events(self, timeout: float = math.inf) -> Iterator[Event]:
-        """Events as they come, until none comes for seconds of wall time."""
+        """Yields events, until a pause of this many seconds of wall time."""
         while (event := self.next_event(timeout)) is not None:
             yield event
