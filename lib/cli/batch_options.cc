@@ -14,12 +14,11 @@ void addBatchOptions(CommandLine& line, BatchOptions& options, const std::string
         "do the I-th of N shares of the job (" + shares + ") and write a part for --merge",
         Enters::Nothing);
     line.flag("--merge", options.merge,
-              "operands are the parts of all shards, which know their job: join them to what one "
-              "run would have written",
+              "merge the parts of all shards, which are the operands, to the output of one run",
               Enters::Nothing);
     line.flag("--resume", options.resume,
-              "keep what is done in FILE.resume beside the output, and go on with what a killed "
-              "run with the same command left there",
+              "store completed work in FILE.resume beside the output, and continue a killed run of "
+              "the same command from there",
               Enters::Nothing);
     line.manyOperandsWith(options.merge);
 }

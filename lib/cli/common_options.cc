@@ -69,7 +69,7 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
         };
         line.parsed("-o,--output", "FILE", take_output, output_help, Enters::Nothing);
     }
-    line.flag("-q,--quiet", options.quiet, "print nothing but errors", Enters::Nothing);
+    line.flag("-q,--quiet", options.quiet, "report only errors", Enters::Nothing);
     line.flag("-v,--verbose", options.verbose, "print more about the work", Enters::Nothing);
     line.count("-j,--threads", "N", options.threads, 0, kMaxThreads,
                "worker threads, 0 for all cores; the result does not depend on it",
@@ -83,7 +83,7 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
                 Enters::History);
     line.switchFlag("--progress", "--no-progress", options.progress,
                     "show progress of long work on stderr (default: if that is a terminal)",
-                    "show none", Enters::Nothing);
+                    "do not report it", Enters::Nothing);
 }
 
 void talk(const CommonOptions& options, const std::string& tool, const std::string& text) {
@@ -253,11 +253,11 @@ void addDensityOption(CommandLine& line, double& pixels_per_metre) {
         throw UsageError(excerpt(text) + " is not a number of pixels a metre above 0, nor " +
                          listOf(names) + didYouMean(text, names));
     };
-    line.parsed("--density", "N|NAME", read,
-                "pixels a metre without which a camera sees nothing: a number, or monitor (12.5), "
-                "detect (25), observe (62.5), recognise (125), identify (250) or inspect (1000) of "
-                "EN 62676-4",
-                Enters::History);
+    line.parsed(
+        "--density", "N|NAME", read,
+        "pixels a metre that cameras require to cover floor: a number, or monitor (12.5), detect "
+        "(25), observe (62.5), recognise (125), identify (250) or inspect (1000) of EN 62676-4",
+        Enters::History);
 }
 
 void addSceneRules(CommandLine& line, SceneRules& rules) {

@@ -71,7 +71,7 @@ KeySpec sizeKey(std::string help, std::size_t min_count, std::size_t max_count, 
     return key;
 }
 
-KeySpec heightKey(std::string help = "height where size gives none") {
+KeySpec heightKey(std::string help = "height, unless size holds it") {
     return {.name = "height",
             .type = KeyType::Number,
             .unit = Unit::Length,
@@ -81,7 +81,7 @@ KeySpec heightKey(std::string help = "height where size gives none") {
             .lower_open = true};
 }
 
-KeySpec heightKey(double standard, std::string help = "height where size gives none") {
+KeySpec heightKey(double standard, std::string help = "height, unless size holds it") {
     KeySpec key = heightKey(std::move(help));
     key.default_value = standard;
     return key;
@@ -177,8 +177,8 @@ void addWalls(std::vector<Schema>& out) {
         schema("wall", RecordType::Wall, "a straight wall, by its ends or by centre and length",
                {pointKey("from", "one end of the mid-line"), pointKey("to", "the other end"),
                 atKey(), headingKey(), std::move(wall_size), heightKey(kWallHeight),
-                thicknessKey("thickness where size gives none"),
-                kindKey("what it is made of", {"plain", "brick", "wood", "concrete"}),
+                thicknessKey("thickness, unless size holds it"),
+                kindKey("material", {"plain", "brick", "wood", "concrete"}),
                 textureKey("that covers each of its two faces once, upright, from neither side "
                            "mirrored")}));
     out.push_back(schema(
@@ -224,12 +224,12 @@ std::vector<KeySpec> openingKeys(double standard_width) {
 
 void addOpenings(std::vector<Schema>& out) {
     std::vector<KeySpec> door = openingKeys(0.9);
-    door.push_back(heightKey(2, "height where size gives none"));
+    door.push_back(heightKey(2, "height, unless size holds it"));
     door.push_back(flagKey("open", "yes: one can pass, and the rooms on both sides are one"));
     out.push_back(schema("door", RecordType::Wall, "an opening down to the floor, with a leaf",
                          std::move(door)));
     std::vector<KeySpec> window = openingKeys(1.2);
-    window.push_back(heightKey(1.2, "height where size gives none"));
+    window.push_back(heightKey(1.2, "height, unless size holds it"));
     window.push_back({.name = "sill",
                       .type = KeyType::Number,
                       .unit = Unit::Length,
@@ -239,7 +239,7 @@ void addOpenings(std::vector<Schema>& out) {
                       .upper = kFarthest});
     KeySpec glass{.name = "glass",
                   .type = KeyType::Choice,
-                  .help = "clear: light passes; opaque: nothing does; none: an open hole",
+                  .help = "clear: light passes; opaque: light stops; none: an open hole",
                   .default_value = "clear",
                   .choices = {"clear", "opaque", "none"}};
     window.push_back(std::move(glass));
@@ -273,8 +273,8 @@ Schema meshSchema() {
           .choices = {"m", "cm", "mm", "inch", "foot"}},
          {.name = "up",
           .type = KeyType::Choice,
-          .help = "the file's axis that points up; auto: y in glTF, as the file says in COLLADA, "
-                  "and in a comment of OBJ (`y up`), else z",
+          .help = "the file's axis that points up; auto: y in glTF, the axis that COLLADA or a "
+                  "comment of OBJ (`y up`) names, else z",
           .default_value = "auto",
           .choices = {"auto", "x", "y", "z"}},
          {.name = "scale",
@@ -292,7 +292,7 @@ Schema meshSchema() {
           .choices = {"folder", "anywhere"}},
          {.name = "digest",
           .type = KeyType::Word,
-          .help = "sha256: of the content when it was compiled; another content is refused"}});
+          .help = "sha256: of the content when it was compiled; readers reject other content"}});
 }
 
 void addThings(std::vector<Schema>& out) {
@@ -325,7 +325,7 @@ void addThings(std::vector<Schema>& out) {
            textureKey("that covers each side of its board once, upright")});
     other("cube", "a box",
           {sizeKey("the edge, or length,width[,height]", 1, 3, {0.5}),
-           heightKey("height where size gives none; without it the length"),
+           heightKey("height, unless size holds it; without both the length"),
            textureKey("that covers each of its four sides once, upright, and its top, with the "
                       "picture's right towards the heading")});
     other("cylinder", "an upright cylinder, elliptic where length and width differ",

@@ -34,9 +34,9 @@ constexpr ExportFormat kFormats[] = {
     {.name = "glb",
      .suffix = "glb",
      .help = "glTF 2.0, which any viewer opens: one named node for each element, sensor and robot, "
-             "in metres, y up. It holds the records as text and the meshes they name, so nothing "
-             "is lost. The view of a sensor is a translucent sheet of the material sensor-view, no "
-             "longer than the plan is wide; no other format has it.",
+             "in metres, y up. It holds the records as text and the meshes they name, without "
+             "loss. The view of a sensor is a translucent sheet of the material sensor-view, no "
+             "longer than the width of the plan; no other format has it.",
      .binary = "a GLB",
      .write = [](const Scene& scene, const Document& document,
                  const ExportOptions& /*options*/) -> ExportedFiles {
@@ -58,11 +58,10 @@ constexpr ExportFormat kFormats[] = {
      .write_records = [](Document&& document) { return writeYaml(document); }},
     {.name = "obj",
      .suffix = "obj",
-     .help =
-         "A mesh in metres, y up as Blender and most programs take OBJ (x, y, z of the file are "
-         "x, z, -y of the room; its first line says so), with its materials in FILE.mtl beside "
-         "it. Walls without thickness, panes and floors are single surfaces, visible from both "
-         "sides.",
+     .help = "A mesh in metres, y up as Blender and most programs read OBJ (x, y, z of the file "
+             "are x, z, -y of the room; its first line states that), with its materials in "
+             "FILE.mtl beside it. Walls without thickness, panes and floors are single surfaces, "
+             "visible from both sides.",
      .write = [](const Scene& scene, const Document& /*document*/,
                  const ExportOptions& options) { return writeObj(scene, options.beside); },
      .beside_suffix = ".mtl",
@@ -78,13 +77,13 @@ constexpr ExportFormat kFormats[] = {
      }},
     {.name = "sdf",
      .suffix = "sdf",
-     .help = "A world for Gazebo (SDF 1.9): a static model for each element, with boxes, cylinders "
-             "and polylines, a ground plane, and the sensors with their fields of view, samples, "
-             "ranges, rates and noise; robots and people are bodies that stand still. Walls "
-             "without thickness become 2 mm thick. Meshes stand in FILE.meshes.obj beside it. SDF "
-             "has no sweeps (the first scan is written) and no mirrors. Ultrasound and tags stand "
-             "there as bodies that do nothing, mats and gates not at all, and a warning counts "
-             "them; zones are left out.",
+     .help =
+         "A world for Gazebo (SDF 1.9): a static model for each element, with boxes, cylinders and "
+         "polylines, a ground plane, and the sensors with their fields of view, samples, ranges, "
+         "rates and noise; robots and people are bodies at rest. Walls without thickness become 2 "
+         "mm thick. FILE.meshes.obj beside it holds meshes. SDF has no sweeps (envc writes the "
+         "first scan) and no mirrors. Ultrasound and tags become mere bodies; envc skips mats and "
+         "gates, and reports the number of all these; it also skips zones.",
      .write =
          [](const Scene& scene, const Document& /*document*/, const ExportOptions& options) {
              return writeSdf(scene, options.title, options.beside);
@@ -95,9 +94,9 @@ constexpr ExportFormat kFormats[] = {
      .naming_hint = "FILE.meshes.obj holds the meshes of an SDF world: name it FILE.sdf"},
     {.name = "urdf",
      .suffix = "urdf",
-     .help = "The placed sensors as links with fixed joints from the link world, or from the robot "
-             "or person that carries them; cameras and rangers with a lens have a second link, "
-             "ID_optical, with z forward, as ROS wants it.",
+     .help = "The sensors with a pose as links with fixed joints from the link world, or from the "
+             "robot or person that carries them; cameras and rangers with a lens have a second "
+             "link, ID_optical, with z forward, as ROS requires it.",
      .write = [](const Scene& scene, const Document& /*document*/,
                  const ExportOptions& options) -> ExportedFiles {
          return {writeUrdf(scene, options.title), "",
@@ -107,14 +106,14 @@ constexpr ExportFormat kFormats[] = {
      }},
     {.name = "ifc",
      .suffix = "ifc",
-     .help = "A building of one storey in IFC4, in metres and degrees: walls with their openings, "
-             "doors "
-             "and windows, rooms and zones as spaces with areas, furniture, pillars and other "
-             "things, and the sensors (IfcSensor; cameras as IfcAudioVisualAppliance), whose "
-             "property set ispace_Sensor has Model, Height, Heading, Tilt, Roll, FieldOfView, "
-             "FieldOfViewVertical and Range. Rooms end at the faces of walls; walls without "
-             "thickness become 5 mm thick. Robots, people and what they carry are left out, and "
-             "a warning counts them. GUIDs depend on the records alone, and the file has no date.",
+     .help =
+         "A building of one storey in IFC4, in metres and degrees: walls with their openings, "
+         "doors and windows, rooms and zones as spaces with areas, furniture, pillars and other "
+         "objects, and the sensors (IfcSensor; cameras as IfcAudioVisualAppliance) with a property "
+         "set ispace_Sensor of Model, Height, Heading, Tilt, Roll, FieldOfView, "
+         "FieldOfViewVertical and Range. Rooms end at the faces of walls; walls without thickness "
+         "become 5 mm thick. envc skips robots, people and their sensors, and a warning reports "
+         "their number. GUIDs depend on the records alone, and the file has no date.",
      .write = [](const Scene& scene, const Document& /*document*/,
                  const ExportOptions& options) { return writeIfc(scene, options.title); }},
     {.name = "svg",
@@ -141,10 +140,9 @@ constexpr ExportFormat kFormats[] = {
      .write = drawnAs<PictureFormat::Pdf>},
     {.name = "geojson",
      .suffix = "geojson",
-     .help =
-         "The indoor region and the footprints. Coordinates are metres in the frame of the room, "
-         "as the members coordinate_system (local-metres) and crs say, the latter to GDAL and "
-         "QGIS; programs that know neither take them for degrees.",
+     .help = "The indoor region and the footprints. Coordinates are metres in the frame of the "
+             "room, which the members coordinate_system (local-metres) and crs state, the latter "
+             "for GDAL and QGIS; programs that read neither treat them as degrees.",
      .takes_slice = true,
      .write = [](const Scene& scene, const Document& /*document*/,
                  const ExportOptions& options) -> ExportedFiles {
@@ -155,10 +153,9 @@ constexpr ExportFormat kFormats[] = {
      .help = "The plan in metres as ASCII DXF (AutoCAD 2000), on the layers walls, doors, windows, "
              "objects, sensors, views, robots, zones, floors and names. Walls are the mid-lines "
              "that enclose the room, drawn as wide as they are thick, shut doors 4 cm wide, open "
-             "ones as lines; objects are the outlines of their solid parts, and elevation and "
-             "thickness say where each begins and how high it is. envc knows these layers and "
-             "reads the same room back: walls, openings, and the parts of objects as cubes and "
-             "cylinders.",
+             "ones as lines; objects are the outlines of their solid parts, whose elevation and "
+             "thickness hold base and height. envc reads the same room back from these layers: "
+             "walls, openings, and the parts of objects as cubes and cylinders.",
      .takes_slice = true,
      .write = [](const Scene& scene, const Document& /*document*/,
                  const ExportOptions& options) -> ExportedFiles {

@@ -30,8 +30,9 @@ void addStrayKeys(std::vector<KeySpec>& keys) {
                         .lower = 0,
                         .upper = kMost});
     };
-    alphas("motion_noise", "alpha 1 to 4 of what the robot does against what its wheels do");
-    alphas("odometry_noise", "alpha 1 to 4 of what the robot counts against what its wheels do");
+    alphas("motion_noise", "alpha 1 to 4 of the robot's motion relative to that of its wheels");
+    alphas("odometry_noise",
+           "alpha 1 to 4 of the robot's odometry relative to the motion of its wheels");
     keys.push_back({.name = "start_noise",
                     .type = KeyType::Tuple,
                     .help = "standard deviation of x and y in metres, and of the heading in "
@@ -74,7 +75,7 @@ void addContactKeys(std::vector<KeySpec>& keys) {
 /// Speeds are lengths and angles a second, with the suffixes of those.
 void addRobotParameters(std::vector<KeySpec>& keys) {
     keys.push_back(positiveKey("radius", Unit::Length,
-                               "of the circle about the centre of rotation that hits things",
+                               "of the circle about the centre of rotation that collides",
                                kLargest));
     keys.push_back({.name = "size",
                     .type = KeyType::Tuple,
@@ -92,7 +93,7 @@ void addRobotParameters(std::vector<KeySpec>& keys) {
                     .lower = -kLargest,
                     .upper = kLargest});
     keys.push_back(
-        positiveKey("height", Unit::Length, "height of the body where size gives none", kLargest));
+        positiveKey("height", Unit::Length, "height of the body, unless size holds it", kLargest));
     keys.push_back(
         positiveKey("speed", Unit::Length, "metres a second of FORWARD and BACKWARD", kFastest));
     keys.push_back(
@@ -140,7 +141,7 @@ void addCourse(std::vector<KeySpec>& keys) {
     keys.push_back({.name = "path",
                     .type = KeyType::TupleList,
                     .unit = Unit::Length,
-                    .help = "places x,y to go to, one after another",
+                    .help = "points x,y of the way, one after another",
                     .min_count = 2,
                     .max_count = 2,
                     .lower = -kFarthest,
@@ -148,12 +149,12 @@ void addCourse(std::vector<KeySpec>& keys) {
                     .role = Role::Course});
     keys.push_back({.name = "loop",
                     .type = KeyType::Flag,
-                    .help = "from the last place of path to the first, again and again",
+                    .help = "from the last point of path to the first, again and again",
                     .default_value = false});
     KeySpec pause{.name = "pause",
                   .type = KeyType::Number,
                   .unit = Unit::Time,
-                  .help = "to stay at each place of path",
+                  .help = "to stay at each point of path",
                   .default_value = 0.0,
                   .lower = 0,
                   .upper = 1e6};
@@ -220,7 +221,7 @@ KeySpec rateKey() {
 Schema matSchema() {
     return {.keyword = "mat",
             .type = RecordType::Placement,
-            .help = "a pressure mat on the floor: tells whether somebody stands on it",
+            .help = "a pressure mat on the floor: reports the robots and people on it",
             .keys = {idKey(), floorAtKey("centre x,y"), headingKey("direction of the length"),
                      areaSizeKey("length,width", {1, 1}), rateKey()}};
 }
@@ -232,7 +233,7 @@ Schema gateSchema() {
     width.default_value = 1.0;
     return {.keyword = "gate",
             .type = RecordType::Placement,
-            .help = "a light gate: tells whether something stands between its posts",
+            .help = "a light gate: reports bodies between its posts",
             .keys = {idKey(), floorAtKey("middle between the posts"),
                      headingKey("direction in which one passes"), std::move(width),
                      std::move(height), rateKey()}};
@@ -261,40 +262,41 @@ Schema resultSchema() {
                        .lower = 0,
                        .upper = 1};
     };
-    return {.keyword = "result",
-            .type = RecordType::Meta,
-            .help = "how good a layout is, and how it was found",
-            .keys = {
-                idKey(),
-                share("coverage", "covered share of the target"),
-                {.name = "area",
-                 .type = KeyType::Number,
-                 .unit = Unit::Area,
-                 .help = "total effective area, eq. (4.6)",
-                 .lower = 0},
-                share("value",
-                      "share of what counts (zones, weights, redundancy), where that is "
-                      "not the coverage"),
-                share("bound",
-                      "no layout has a greater value, or coverage where no value is written: none "
-                      "of the candidates or, once sensors were refined, of any places"),
-                share("candidates_bound",
-                      "where sensors were refined: the same of the candidates, proven before"),
-                {.name = "strategy", .type = KeyType::Word, .help = "how places were proposed"},
-                {.name = "optimize", .type = KeyType::Word, .help = "how they were chosen"},
-                {.name = "candidates",
-                 .type = KeyType::Number,
-                 .help = "poses to choose from, of all kinds of sensors",
-                 .lower = 0,
-                 .whole = true},
-                {.name = "least",
-                 .type = KeyType::Number,
-                 .help = "no fewer sensors reach the target (no less cost, with a budget or costs)",
-                 .lower = 0},
-                {.name = "complete",
-                 .type = KeyType::Flag,
-                 .help = "no if a time limit or a signal cut the search",
-                 .default_value = true}}};
+    return {
+        .keyword = "result",
+        .type = RecordType::Meta,
+        .help = "how good a layout is, and how it was found",
+        .keys = {
+            idKey(),
+            share("coverage", "covered share of the target"),
+            {.name = "area",
+             .type = KeyType::Number,
+             .unit = Unit::Area,
+             .help = "total effective area, eq. (4.6)",
+             .lower = 0},
+            share("value",
+                  "weighted share of the required floor (zones, weights, redundancy), if that is "
+                  "not the coverage"),
+            share("bound",
+                  "upper bound on the value, or on the coverage without a value: of layouts of the "
+                  "candidates or, after refinement, of any poses"),
+            share("candidates_bound",
+                  "where sensors were refined: the same of the candidates, proven before"),
+            {.name = "strategy", .type = KeyType::Word, .help = "strategy that proposed the sites"},
+            {.name = "optimize", .type = KeyType::Word, .help = "how they were chosen"},
+            {.name = "candidates",
+             .type = KeyType::Number,
+             .help = "poses to choose from, of all kinds of sensors",
+             .lower = 0,
+             .whole = true},
+            {.name = "least",
+             .type = KeyType::Number,
+             .help = "no fewer sensors reach the target (no less cost, with a budget or costs)",
+             .lower = 0},
+            {.name = "complete",
+             .type = KeyType::Flag,
+             .help = "no if a time limit or a signal cut the search",
+             .default_value = true}}};
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ constexpr StrategyOption kDensity = {
     .field = &ArrangeOptions::density,
     .lowest = kMinLength,
     .highest = kMaxLength,
-    .help = "steps of the lattice and along walls, headings per place (default 0.25,0.25,16)",
+    .help = "steps of the lattice and along walls, headings per site (default 0.25,0.25,16)",
     .refusal = "the thesis' strategies have their own numbers"};
 constexpr StrategyOption kDensityOptions[] = {kDensity};
 constexpr StrategyOption kListOptions[] = {kDensity,
@@ -82,14 +82,14 @@ constexpr StrategyOption kGridOptions[] = {
     {"-Y", &ArrangeOptions::y, 1, kMaxLines,
      "interior lines across y (default: 5 per maximum range)"}};
 constexpr StrategyOption kRandomOptions[] = {
-    {"--r1", &ArrangeOptions::first_places, 1, kMaxPlaces, "places tried first, for each sensor"},
-    {"--r2", &ArrangeOptions::more_places, 0, kMaxPlaces, "places tried about the best of them"},
+    {"--r1", &ArrangeOptions::first_places, 1, kMaxPlaces, "sites tried first, for each sensor"},
+    {"--r2", &ArrangeOptions::more_places, 0, kMaxPlaces, "sites tried about the best of them"},
     {"--scope", &ArrangeOptions::scope, kMinLength, kMaxLength,
      "radius in which these lie (default: maximum range / 5)"}};
 constexpr StrategyOption kWallOptions[] = {
     {"--dist", &ArrangeOptions::dist, kMinLength, kMaxDist, "distance from the wall",
      MountOn::Wall},
-    {"--times", &ArrangeOptions::times, 1, kMaxPlaces, "places per wall"}};
+    {"--times", &ArrangeOptions::times, 1, kMaxPlaces, "sites per wall"}};
 
 constexpr StrategyRow kRows[] = {
     {Strategy::All, "all", "default: a lattice and along walls", false, 0, kDensityOptions,
@@ -100,7 +100,7 @@ constexpr StrategyRow kRows[] = {
     {Strategy::Wall, "wall", "its Along Wall", true, 0, kWallOptions, proposeAlongWalls},
     {Strategy::Medial, "medial", "axis of the free floor", false, 0, kDensityOptions,
      proposeMedialAxis},
-    {Strategy::List, "list", "the places of --places", false, 0, kListOptions, proposeListed}};
+    {Strategy::List, "list", "the sites of --places", false, 0, kListOptions, proposeListed}};
 
 }  // namespace
 

@@ -57,8 +57,8 @@ void addSensorPose(std::vector<KeySpec>& keys, std::string heading_help) {
     keys.push_back({.name = "at",
                     .type = KeyType::Tuple,
                     .unit = Unit::Length,
-                    .help = "optical centre; height 0.15 without z; left out: to be placed, or "
-                            "with `on` 0,0",
+                    .help = "optical centre; height 0.15 without z; without it a sensor has no "
+                            "pose, or with `on` 0,0",
                     .min_count = 2,
                     .max_count = 3,
                     .lower = -kFarthest,

@@ -37,8 +37,8 @@ void addNoiseKeys(std::vector<KeySpec>& keys) {
     keys.push_back({.name = "incidence",
                     .type = KeyType::Tuple,
                     .unit = Unit::Angle,
-                    .help = "angles to the normal of what is met: between them returns are lost "
-                            "more and more, beyond the second all are",
+                    .help = "angles to the normal of the surface: between them a growing share of "
+                            "returns is lost, beyond the second all",
                     .min_count = 2,
                     .max_count = 2,
                     .lower = 0,

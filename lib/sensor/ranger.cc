@@ -97,18 +97,17 @@ void addRangerKeys(std::vector<KeySpec>& keys) {
                     .type = KeyType::Choice,
                     .help = "equal steps across a plane picture, or equal angles about the sensor",
                     .choices = {"pinhole", "spherical"}});
-    keys.push_back({.name = "measures",
-                    .type = KeyType::Choice,
-                    .help = "what its limits and noise are about: distance along the ray, or depth "
-                            "along the axis",
-                    .choices = {"distance", "depth"}});
     keys.push_back(
-        {.name = "ambiguity",
-         .type = KeyType::Number,
-         .unit = Unit::Length,
-         .help = "distances are measured modulo this, however far things are; 0: in full",
-         .lower = 0,
-         .upper = kFarthest});
+        {.name = "measures",
+         .type = KeyType::Choice,
+         .help = "subject of its limits and noise: distance along the ray, or depth along the axis",
+         .choices = {"distance", "depth"}});
+    keys.push_back({.name = "ambiguity",
+                    .type = KeyType::Number,
+                    .unit = Unit::Length,
+                    .help = "distances are measured modulo this, at any range; 0: in full",
+                    .lower = 0,
+                    .upper = kFarthest});
     addNoiseKeys(keys);
 }
 

@@ -105,18 +105,17 @@ std::pair<std::string, double> splitWeight(const std::string& text) {
 }
 
 ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
-    : ToolCommand(
-          "arrange", "[ENV] [LAYOUT]",
-          "Place sensors in a room: those of LAYOUT without a place, and those of --sensor. "
-          "Writes a layout (.3dm) and says how near it is to the best there can be.") {
+    : ToolCommand("arrange", "[ENV] [LAYOUT]",
+                  "Compute poses for sensors in a room: those of LAYOUT without one, and those of "
+                  "--sensor. Writes a layout (.3dm) and reports an upper bound on coverage.") {
     line_.operands(options_.operands, 2);
     line_.texts("--sensor", "MODEL[,KEY=VALUE...][:COUNT]", options_.sensors,
-                "place COUNT sensors of a device or a bare kind (laser, ranger, camera, "
-                "ultrasound), e.g. urg-04lx:3 or laser,range=4,fov=180:3",
+                "add COUNT sensors of a device or a bare kind (laser, ranger, camera, ultrasound), "
+                "e.g. urg-04lx:3 or laser,range=4,fov=180:3",
                 Enters::History);
     line_.texts("--fixed", "ID", options_.fixed,
-                "keep only these sensors of LAYOUT in place (globs allowed) and place the others "
-                "again; by default all placed sensors stay",
+                "keep the poses of these sensors of LAYOUT only (globs allowed) and compute new "
+                "ones for the others; by default all sensors with a pose keep it",
                 Enters::History);
     addPlaceOptions();
     addMountOptions();
@@ -133,10 +132,10 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
 void ArrangeCommand::addPlaceOptions() {
     ArrangeOptions& how = options_.how;
     line_.choice("--effort", words_.effort, {"low", "medium", "high"},
-                 "the thesis' time levels: random places; a grid with 8 headings; one with 16",
+                 "the thesis' time levels: random sites; a grid with 8 headings; one with 16",
                  Enters::History);
     std::vector<std::string> names;
-    std::string help = "how places are proposed: ";
+    std::string help = "strategy that proposes sites: ";
     for (const StrategyRow& row : strategies()) {
         help.append(names.empty() ? "" : ", ").append(row.name).append(" (").append(row.help) +=
             ')';
@@ -147,11 +146,10 @@ void ArrangeCommand::addPlaceOptions() {
     for (const StrategyRow& row : strategies())
         for (const StrategyOption& option : row.options)
             if (added.insert(option.name).second) addStrategyOption(row, option);
-    line_.count(
-        "--deg", "N", how.headings, 1, kMaxHeadings,
-        "headings per place, 360/N degrees apart from 0, or from the inner normal of a wall "
-        "(default: 8 for grid and random, the normal for wall, else as in --candidates)",
-        Enters::History);
+    line_.count("--deg", "N", how.headings, 1, kMaxHeadings,
+                "headings per site, 360/N degrees apart from 0, or from the inner normal of a wall "
+                "(default: 8 for grid and random, the normal for wall, else as in --candidates)",
+                Enters::History);
 }
 
 void ArrangeCommand::addStrategyOption(const StrategyRow& row, const StrategyOption& option) {
@@ -181,8 +179,8 @@ void ArrangeCommand::addMountOptions() {
     MountRules& mount = options_.how.mount;
     line_.choice(
         "--mount", words_.mount, wordsOf(kMounts),
-        "what sensors are fixed to: floor (default; cameras: ceiling), wall (only places along "
-        "walls), frame (bars of infra), ceiling; on the last two rangers and ultrasound look down",
+        "support of the sensors: floor (default; cameras: ceiling), wall (only sites along walls), "
+        "frame (bars of infra), ceiling; on the last two rangers and ultrasound look down",
         Enters::History);
     line_.parsed(
         "--z", "H[,H...]",
@@ -198,8 +196,8 @@ void ArrangeCommand::addMountOptions() {
             for (const double tilt : numbers(text, Unit::Angle, 1, 100, -90, 90))
                 mount.tilts.push_back(Angle::degrees(tilt));
         },
-        "tilts to choose from, for sensors without one of their own (default 0; of cameras "
-        "-30,-15,-45 on walls and -90,-60,-30 above)",
+        "tilts to choose from, for sensors without tilt= (default 0; of cameras -30,-15,-45 on "
+        "walls and -90,-60,-30 above)",
         Enters::History);
     line_.meters("--clearance", mount.clearance, 0, 1000,
                  "minimum distance from walls and objects at that height", Enters::History);
@@ -224,7 +222,7 @@ void ArrangeCommand::addGoalOptions() {
                "views must form one connected whole by sharing cells", Enters::History);
     line_.parsed(
         "--target", "SHARE", [&how](const std::string& text) { how.target = readShare(text); },
-        "place the fewest sensors (or the cheapest, cost=) that cover this share, e.g. 95%; COUNT "
+        "find the fewest sensors (or the cheapest, cost=) that cover this share, e.g. 95%; COUNT "
         "is then a maximum; exit with 3 if it cannot be reached",
         Enters::History);
     line_.parsed(
@@ -241,8 +239,8 @@ void ArrangeCommand::addGoalOptions() {
     addCellOptions(line_, words_.cells, "while searching");
     line_.parsed(
         "--reso", "DEG", [&how](const std::string& text) { how.beam_step = readResolution(text); },
-        "while searching, lasers see what lies within the contour of beams so far apart, as in the "
-        "thesis; sensor: their own step (default: all that is in view)",
+        "while searching, lasers cover the contour of beams this far apart, as in the thesis; "
+        "sensor: their step (default: the whole visible area)",
         Enters::History);
     line_.choice(
         "--judge", words_.judge, {"yes", "no"},
@@ -268,7 +266,7 @@ void ArrangeCommand::addSearchOptions() {
                    "end with the best so far after this time (500ms, 2s, 1min), marked complete=no",
                    Enters::History);
     line_.flag("--refine", how.refine,
-               "improve the best layout in continuous places and headings, by exact area",
+               "improve the best layout in continuous positions and headings, by exact area",
                Enters::History);
     line_.parsed(
         "--max-memory", "SIZE",
@@ -278,8 +276,8 @@ void ArrangeCommand::addSearchOptions() {
 
 void ArrangeCommand::addFileOptions() {
     line_.file("--curve", "FILE", options_.curve_file,
-               "also print what 1, 2, ... sensors cover, and write it to FILE (.csv, .png, .svg "
-               "or .pdf)",
+               "also report the coverage of 1, 2, ... sensors, and write it to FILE (.csv, .png, "
+               ".svg or .pdf)",
                Enters::Nothing);
     line_.file("--trace", "FILE", options_.trace_file,
                "write every candidate with its value as JSONL, for coverage --trace",

@@ -11,11 +11,11 @@
 namespace ispace {
 
 void ArrangeCommand::addShareOptions() {
-    addBatchOptions(line_, options_.batch, "what its optimizer spends most time on");
+    addBatchOptions(line_, options_.batch, "the slowest part of its optimizer");
     std::vector<std::string> words;
     for (const Shared what : kShared) words.emplace_back(nameOf(what));
     line_.choice("--share", words_.share, words,
-                 "what shards share: what the candidates see (default of greedy and with "
+                 "work that shards divide: views of the candidates (default of greedy and with "
                  "--target), random starts (of swap), or subtrees of the proof (of exact)",
                  Enters::Nothing);
     constexpr double kLongest = 86400;

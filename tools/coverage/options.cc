@@ -66,8 +66,8 @@ std::vector<double> parseSpeeds(const std::string& text) {
 void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words) {
     addCellOptions(line, words.cells, "that metrics count");
     line.choice("--grid-of", words.cells_by, {"region", "beams"},
-                "a cell is seen if it lies in what a laser sees, or in the polygon of its beam "
-                "ends (default region)",
+                "a laser sees the cells in its visible area, or in the polygon of its beam ends "
+                "(default region)",
                 Enters::History);
     line.meters("--height", measure.height, 0, 1000, "height of the free floor", Enters::History);
     line.meters("--plane", measure.plane, 0, 1000,
@@ -78,8 +78,8 @@ void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words
         measure.parallax = parseParallax(text);
     };
     line.parsed("--parallax", "DEG[,K]", parallax,
-                "report the floor that K cameras see (default 2) whose axes are pairwise at least "
-                "so many degrees apart",
+                "report the floor that K cameras see (default 2) with axes pairwise at least this "
+                "many degrees apart",
                 Enters::History);
 }
 
@@ -152,8 +152,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     CoverageToolOptions o;
     Words words;
     CommandLine line("coverage", "[ENV] [LAYOUT]",
-                     "Measure what the placed sensors see and draw it. Without LAYOUT read it from "
-                     "stdin unless ENV holds placed sensors. The report goes to stdout.");
+                     "Measure and draw the floor that sensors cover. Without LAYOUT read it from "
+                     "stdin unless ENV holds sensors with a pose. The report goes to stdout.");
     line.operands(o.operands, 2);
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
     line.file("--report", "FILE", o.report, "also write the report there, as JSON (.json)",
@@ -168,14 +168,14 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         "of "
         "the whole",
         Enters::Nothing);
-    line.flag("--resume", o.resume,
-              "with --batch: keep what is done beside FILE, and go on with what a run that was "
-              "killed left there",
-              Enters::Nothing);
+    line.flag(
+        "--resume", o.resume,
+        "with --batch: store completed reports beside FILE, and continue a killed run from there",
+        Enters::Nothing);
     addMeasureOptions(line, o.measure, words);
     line.texts("--zone", "ZONE", o.zones,
                "report this part of the floor, too, as a zone: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
-               "door:GLOB,M within M of doors, whose zones are called DOOR-zone",
+               "door:GLOB,M within M of doors, named DOOR-zone",
                Enters::History);
     line.texts("--require", "SHARE", words.requirements,
                "exit with 3 if less is covered, by exact metrics where they are known: 95% of the "
@@ -183,7 +183,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                "identify:NAME=95%",
                Enters::History);
     line.file("--junit", "FILE", o.junit,
-              "write what became of the requirements there, as XML that CI servers read",
+              "write the results of the requirements there, as XML that CI servers read",
               Enters::Nothing);
     line.file("--compare", "LAYOUT", o.other,
               "report gains and losses against this layout, in numbers and on the map",
@@ -209,8 +209,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         "more (default 30%,60%,100%)",
         Enters::History);
     line.file("--trace", "FILE", o.trace,
-              "draw the places that arrange --trace wrote to this file on the map, coloured by the "
-              "best value there",
+              "draw the sites that arrange --trace wrote to this file on the map, coloured by "
+              "their best value",
               Enters::Nothing);
     addSceneRules(line, o.rules);
     addCommonOptions(line, o.common, "draw the map there (default: no map)");

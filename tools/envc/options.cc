@@ -53,8 +53,7 @@ void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to)
     line.flag("--json", options.json, "the report of --info, or --rooms list, as JSON",
               Enters::Nothing);
     line.flag("--check", options.check,
-              "list errors and warnings about the environment and what stands in it",
-              Enters::Nothing);
+              "report errors and warnings about the environment and its objects", Enters::Nothing);
 }
 
 void addEditOptions(CommandLine& line, std::vector<Edit>& edits) {
@@ -69,7 +68,7 @@ void addEditOptions(CommandLine& line, std::vector<Edit>& edits) {
     edit(Edit::Kind::Set, "ID.KEY=VALUE", "set a key; without VALUE, remove it");
     edit(Edit::Kind::Move, "ID:DX,DY[,DZ]", "move along the axes");
     edit(Edit::Kind::Forward, "ID:M", "move along its heading");
-    edit(Edit::Kind::Rotate, "ID:DEG", "rotate counter-clockwise about its place");
+    edit(Edit::Kind::Rotate, "ID:DEG", "rotate counter-clockwise about its position");
     edit(Edit::Kind::Tilt, "ID:DEG", "tilt a sensor up");
     edit(Edit::Kind::Delete, "ID", "remove");
 }
@@ -139,7 +138,7 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
         "remove noise below this size from maps made by robots (default 0.5 m; 0: keep all)",
         Enters::History);
     line.choice("--unknown", import.unknown, {"unknown", "free"},
-                "what shade 205 of a map means, which robots write for unknown (default unknown)",
+                "meaning of shade 205 of a map, which robots write for unknown (default unknown)",
                 Enters::History);
     line.choice("--units", import.units, kUnits, "unit of a drawing or a mesh", Enters::History);
     line.meters("--width-is", import.width_is, 0.01, 100'000,

@@ -49,7 +49,7 @@ Options parseOptions(int argc, const char* const* argv) {
                "(sensors.*.model)",
                Enters::Nothing);
     line.flag("--history", o.history, "compare history, too", Enters::Nothing);
-    line.flag("-q,--quiet", o.quiet, "only the exit status tells", Enters::Nothing);
+    line.flag("-q,--quiet", o.quiet, "report by the exit status alone", Enters::Nothing);
     line.parse(argc, argv);
     if (o.operands.size() != 2) throw UsageError("two files are wanted, EXPECTED and ACTUAL");
     if (o.operands[0] == "-" && o.operands[1] == "-")

@@ -29,9 +29,9 @@ struct Tool {
 /// In the order of a pipeline; the summaries are those of the manual pages.
 constexpr auto kTools = std::to_array<Tool>({
     {"envc", "compile, check, convert, edit and draw rooms"},
-    {"arrange", "place sensors in a room"},
-    {"scan", "simulate what the sensors in a room read"},
-    {"coverage", "measure and draw what the sensors in a room see"},
+    {"arrange", "compute poses for sensors in a room"},
+    {"scan", "simulate the readings of sensors in a room"},
+    {"coverage", "measure and draw the floor that sensors cover"},
     {"simrun", "simulate the robots and sensors of a room and serve them over TCP"},
 });
 

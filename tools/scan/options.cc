@@ -40,8 +40,8 @@ DepthSpectrum depthSpectrum(const std::string& text) {
 ScanCommand::ScanCommand(int argc, const char* const* argv)
     : ToolCommand(
           "scan", "[ENV] [LAYOUT]",
-          "Simulate what placed sensors read: lasers, 3-D rangers, cameras, ultrasonic receivers. "
-          "Without LAYOUT read it from stdin unless ENV holds placed sensors.") {
+          "Simulate the readings of sensors: lasers, 3-D rangers, cameras, ultrasonic receivers. "
+          "Without LAYOUT read it from stdin unless ENV holds sensors with a pose.") {
     declare();
     line_.parse(argc, argv);
     ScanToolOptions& o = options_;
@@ -92,14 +92,14 @@ void ScanCommand::declare() {
                "laser,range=8,fov=270 (default: the one sensor there is)",
                Enters::History);
     line_.flag("--motion", o.motion,
-               "drive along the poses at the sensor's rate, each beam from its own place",
+               "drive along the poses at the sensor's rate, each beam from the pose at its time",
                Enters::History);
     line_.choice("--coordinates", coordinates_, {"world", "sensor"},
                  "frame of the points in csv, pcd and ply (default world)", Enters::History);
     line_.choice("--encoding", encoding_, {"binary", "ascii"},
                  "encoding of pcd and ply (default binary)", Enters::History);
     line_.choice("--compression", compression_, {"none", "zstd"},
-                 "mcap: how its chunks are packed (default none)", Enters::History);
+                 "mcap: compression of its chunks (default none)", Enters::History);
     constexpr double kMaxScale = 1e6;
     line_.parsed(
         "--depth-scale", "N",

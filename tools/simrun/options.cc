@@ -32,7 +32,7 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     : ToolCommand(
           "simrun", "[ENV] [LAYOUT]",
           "Simulate the robots and sensors of a room and serve them over TCP. The first line of "
-          "output says where; TERM, INT and the request SHUTDOWN end the run.") {
+          "output holds the address; TERM, INT and the request SHUTDOWN end the run.") {
     line_.operands(options_.operands, 2);
     declareRun();
     declareReplay();
@@ -54,8 +54,8 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
 void SimrunCommand::declareRun() {
     SimrunOptions& o = options_;
     line_.texts("--zone", "ZONE", o.zones,
-                "add a zone, which events and --expect know: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
-                "door:GLOB,M within M of doors, whose zones are called DOOR-zone",
+                "add a zone for events and --expect: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
+                "door:GLOB,M within M of doors, named DOOR-zone",
                 Enters::History);
     line_.parsed(
         "--clock", "CLOCK", [&o](const std::string& text) { o.clock = parseClock(text); },
@@ -72,28 +72,27 @@ void SimrunCommand::declareRun() {
         "--until", "TIME",
         [&o](const std::string& text) { o.until = timeOption(text, SimTime(0), kLongestTime); },
         "end the run at this simulated time (90, 90s, 1.5min)", Enters::History);
-    line_.flag(
-        "--noise", o.noise,
-        "sensors have the noise of their records; robots, their odometry and their starts stray "
-        "as motion_noise, odometry_noise and start_noise say",
-        Enters::History);
+    line_.flag("--noise", o.noise,
+               "sensors have the noise of their records; robots, their odometry and their starts "
+               "that of motion_noise, odometry_noise and start_noise",
+               Enters::History);
     line_.file("--script", "FILE", o.script,
                "commands for the robots, lines `TIME ROBOT COMMAND` (- is stdin)",
                Enters::BaseName);
     line_.file("--record", "DIR", o.record,
-               "write what happens there: tables of robots, people and events, readings, pictures",
+               "write the run there: tables of robots, people and events, readings, pictures",
                Enters::Nothing);
     line_.parsed(
         "--record-frames", "RATE",
         [&o](const std::string& text) { o.recorded_frames = recordedRate(text, "frames"); },
-        "pictures and depth frames recorded of each sensor in a simulated second, at most (default "
-        "1; 0: none)",
+        "maximum of recorded pictures and depth frames of each sensor in a simulated second "
+        "(default 1; 0: off)",
         Enters::Nothing);
     line_.parsed(
         "--record-sonars", "RATE",
         [&o](const std::string& text) { o.recorded_sonars = recordedRate(text, "readings"); },
-        "readings recorded of each robot's sonars in a simulated second, at most (default 10; 0: "
-        "none)",
+        "maximum of recorded readings of each robot's sonars in a simulated second (default 10; 0: "
+        "off)",
         Enters::Nothing);
     line_.parsed(
         "--record-limit", "SIZE",
@@ -108,7 +107,7 @@ void SimrunCommand::declareJudgement() {
                 "'no collision', 'h1 unseen at most 5' (see the manual)",
                 Enters::Nothing);
     line_.file("--junit", "FILE", o.junit,
-               "write what became of the expectations there, as XML that CI servers read",
+               "write the verdicts on the expectations there, as XML that CI servers read",
                Enters::Nothing);
 }
 

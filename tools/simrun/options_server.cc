@@ -36,10 +36,10 @@ void SimrunCommand::declareServer() {
                                  std::to_string(kMaxClients));
             o.limits.clients = static_cast<std::size_t>(*count);
         },
-        "clients served at once; more are refused (default 256)", Enters::Nothing);
+        "clients served at once; rejects more (default 256)", Enters::Nothing);
     line_.file("--token-file", "FILE", o.token_file,
-               "its first line is what clients must know to change the world or end the run, and "
-               "for anything if they may connect from other machines",
+               "its first line is the token that clients need to change the world or end the run, "
+               "and for any role if they may connect from other machines",
                Enters::Nothing);
     line_.parsed(
         "--watchdog", "TIME",
@@ -47,14 +47,14 @@ void SimrunCommand::declareServer() {
             o.limits.watchdog =
                 timeOption(text, std::chrono::milliseconds(1), std::chrono::hours(24));
         },
-        "stop a robot or person whose client has been silent for so long (wall time)",
+        "stop the robot or person of a client that is silent for this long (wall time)",
         Enters::Nothing);
     line_.file("--load", "DIR", o.load_folder,
                "folder from which the request LOAD reads (default that of ENV)", Enters::Nothing);
     line_.switchFlag("--changes", "--no-changes", o.changes,
-                     "let clients change the world (default)", "refuse it", Enters::Nothing);
+                     "let clients change the world (default)", "reject it", Enters::Nothing);
     line_.switchFlag("--shutdown", "--no-shutdown", o.shutdown,
-                     "let the request SHUTDOWN end the run (default)", "refuse it",
+                     "let the request SHUTDOWN end the run (default)", "reject it",
                      Enters::Nothing);
 }
 
