@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -v shell=bash|zsh|fish -v only=TOOL -f completions.awk HELP…: completions of a shell from what the tools
-# print for --help: of the command `ispace`, or of one tool where `only` names it. HELP are files that
+# awk -v shell=bash|zsh|fish -v only=TOOL -f completions.awk HELP…: completions of a shell from the output
+# of --help: of the command `ispace`, or of one tool where `only` names it. HELP are files that
 # begin with `Usage: TOOL`, that of ispace first.
 
 function trim(text) {
@@ -29,7 +29,7 @@ part == "Options:" && /^  -/ {
 }
 part == "Options:" && /^          / { text[tool, count[tool]] = trim(text[tool, count[tool]] " " trim($0)) }
 
-# What may stand behind an option: "words a b", "files", "folders", "models", "" for nothing, "any" for no value.
+# The kind of an option's value: "words a b", "files", "folders", "models", "" for nothing, "any" for no value.
 function kind(tool, at,    v, list) {
     v = value[tool, at]
     if (v == "") return "any"

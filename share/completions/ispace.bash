@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # shellcheck shell=bash
 # Below the tables: _ispace_options TOOL; _ispace_value TOOL OPTION, the kind of its value (words …, files,
-# folders, models, nothing), or nothing printed where it takes none.
+# folders, models, nothing), or an empty line for an option without a value.
 _ispace() {
     local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} tool=${COMP_WORDS[0]##*/} kind
     COMPREPLY=()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nextflow run main.nf: the sweep's jobs, its table and its picture. Jobs work in the folder where Nextflow
-// was started, which the nodes share; --missing does what -resume does elsewhere. Written for DSL 2 in the
+// was started, which the nodes share; --missing replaces -resume. Written for DSL 2 in the
 // strict syntax of Nextflow 26.04; it has never been run.
 
 process list_jobs {
