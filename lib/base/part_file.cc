@@ -2,6 +2,7 @@
 #include "base/part_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,6 +10,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cstdlib>
+#include <filesystem>
 #include <system_error>
 #include <utility>
 
@@ -22,7 +25,9 @@ namespace ispace {
 
 namespace {
 
-constexpr std::string_view kMagic = "#part 1\n", kEnd = "end";
+constexpr std::string_view kMagic = "#part 2\n", kAnyMagic = "#part ", kEnd = "end";
+/// Bytes of replaced records that a kept file may have before it is written anew.
+constexpr std::uint64_t kMaxReplacedBytes = std::uint64_t{16} << 20U;
 /// Longest header: histories are long where there were many commands, but no longer.
 constexpr std::size_t kMaxHead = std::size_t{1} << 24U;
 constexpr std::size_t kMaxRecordLine = 200;
@@ -81,6 +86,29 @@ bool readField(PartHead& head, std::string_view key, std::string_view value) {
     return true;
 }
 
+[[noreturn]] void failOn(const std::string& file) {
+    throw std::system_error(errno, std::generic_category(), file);
+}
+
+/// A file without a name in the folder of `output`, of a stream in TMPDIR.
+OpenFile namelessFileBeside(const std::string& output) {
+    std::error_code ignored;
+    std::filesystem::path folder(output);
+    const auto status = std::filesystem::status(folder, ignored);
+    if (output == "-" || (exists(status) && !is_regular_file(status) && !is_directory(status)))
+        folder = std::filesystem::temp_directory_path(ignored);
+    else if (!is_directory(status))
+        folder = folder.parent_path();
+    if (folder.empty()) folder = ".";
+    constexpr mode_t kMode = S_IRUSR | S_IWUSR;
+    OpenFile file(::open(folder.c_str(), O_TMPFILE | O_RDWR | O_APPEND | O_CLOEXEC, kMode));
+    if (file.fd() >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL)) return file;
+    std::string name = (folder / ".ispace.tmp-XXXXXX").string();
+    file = OpenFile(::mkostemp(name.data(), O_APPEND | O_CLOEXEC));
+    if (file.fd() >= 0) ::unlink(name.c_str());
+    return file;
+}
+
 std::string beside(const std::string& one, const std::string& other) {
     return " (" + excerpt(one) + ", " + excerpt(other) + ")";
 }
@@ -122,31 +150,13 @@ std::string partRecordText(std::string_view name, std::string_view bytes) {
     return text.append(hexText(hashOf(bytes))).append("\n").append(bytes).append("\n");
 }
 
-void PartFile::refuse(const std::string& message, int line) const {
-    throw FormatError({displayName(file_), line, 0, message});
-}
-
-PartFile::PartFile(const std::string& file) : file_(file) {
-    struct stat info {};
-    const auto check = [&](bool is_found) {
-        if (!is_found) throw std::system_error(errno, std::generic_category(), file);
-        if (!S_ISREG(info.st_mode)) refuse("a part is a regular file: it is read more than once");
-    };
-    // Before it is opened, too, as openRegular() does; but a checkpoint is an output as well.
-    check(::stat(file.c_str(), &info) == 0);
-    open_ = OpenFile(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-    check(open_.fd() >= 0 && ::fstat(open_.fd(), &info) == 0);
-    readHead();
-    findRecords(static_cast<std::uint64_t>(info.st_size));
-}
-
-std::string PartFile::read(std::uint64_t at, std::size_t size) const {
+std::string JobResults::File::read(std::uint64_t at, std::size_t size) const {
     std::string bytes(size, '\0');
     std::size_t done = 0;
     while (done < size) {
         const ssize_t n =
-            ::pread(open_.fd(), bytes.data() + done, size - done, static_cast<off_t>(at + done));
-        if (n < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), file_);
+            ::pread(open.fd(), bytes.data() + done, size - done, static_cast<off_t>(at + done));
+        if (n < 0 && errno != EINTR) failOn(name);
         if (n == 0) break;
         if (n > 0) done += static_cast<std::size_t>(n);
     }
@@ -154,119 +164,262 @@ std::string PartFile::read(std::uint64_t at, std::size_t size) const {
     return bytes;
 }
 
-void PartFile::readHead() {
+void JobResults::File::refuse(const std::string& message, int line) const {
+    throw FormatError({displayName(name), line, 0, message});
+}
+
+void JobResults::File::readHead() {
     constexpr std::size_t kChunk = 1 << 12;
     std::string text = read(0, kChunk);
     if (!text.starts_with(kMagic))
-        refuse("not a part of a job, as --shard writes: it does not begin with `#part 1`");
-    std::size_t end = text.find("\n\n");
-    while (end == std::string::npos && text.size() < kMaxHead) {
+        refuse(text.starts_with(kAnyMagic)
+                   ? "of another version of ispace, whose parts have another form: delete it and "
+                     "run its shard again"
+                   : "not a part of a job, as --shard writes: it does not begin with `#part 2`");
+    std::size_t mark = text.find("\n\n");
+    while (mark == std::string::npos && text.size() < kMaxHead) {
         const std::string more = read(text.size(), text.size());
         if (more.empty()) break;
         text += more;
-        end = text.find("\n\n");
+        mark = text.find("\n\n");
     }
-    if (end == std::string::npos) refuse("its header has no end");
-    begin_ = end_ = end + 2;
-    std::string_view rest = std::string_view(text).substr(kMagic.size(), end + 1 - kMagic.size());
+    if (mark == std::string::npos) refuse("its header has no end");
+    begin = end = mark + 2;
+    std::string_view rest = std::string_view(text).substr(kMagic.size(), mark + 1 - kMagic.size());
     for (int line = 2; !rest.empty(); ++line) {
         std::string_view words = takeUpTo(rest, '\n');
         if (words.starts_with("# ")) {
-            head_.job.history.emplace_back(words.substr(2));
+            head.job.history.emplace_back(words.substr(2));
             continue;
         }
         const std::string_view key = takeUpTo(words, ' ');
-        if (!readField(head_, key, words))
+        if (!readField(head, key, words))
             refuse("bad line " + excerpt(key) + " in the header of a part", line);
     }
-    if (head_.job.tool.empty()) refuse("its header names no tool");
+    if (head.job.tool.empty()) refuse("its header names no tool");
 }
 
-void PartFile::add(Entry entry) {
-    end_ = entry.at + entry.size + 1;
-    const auto [at, is_new] = by_name_.emplace(entry.name, records_.size());
-    if (!is_new) live_ -= records_[std::exchange(at->second, records_.size())].size;
-    live_ += entry.size;
-    records_.push_back(std::move(entry));
+void JobResults::addFile(const std::string& name) {
+    File file{.name = name};
+    struct stat info {};
+    const auto check = [&](bool is_found) {
+        if (!is_found) failOn(name);
+        if (!S_ISREG(info.st_mode))
+            file.refuse("a part is a regular file: it is read more than once");
+    };
+    // Before it is opened, too, as openRegular() does; but a kept file is an output as well.
+    check(::stat(name.c_str(), &info) == 0);
+    const int mode = is_kept_ ? O_RDWR | O_APPEND : O_RDONLY;
+    file.open = OpenFile(::open(name.c_str(), mode | O_NONBLOCK | O_CLOEXEC));
+    check(file.open.fd() >= 0 && ::fstat(file.open.fd(), &info) == 0);
+    // A file system without locks lets two processes write.
+    if (is_kept_ && ::flock(file.open.fd(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        file.refuse("another process works on this job: wait for it, or end it");
+    file.readHead();
+    files_.push_back(std::move(file));
+    readRecords(files_.back(), static_cast<std::uint64_t>(info.st_size));
 }
 
-void PartFile::noteAdded(std::string_view name, std::string_view bytes, std::uint64_t written) {
-    const std::uint64_t size = bytes.size(), line = written - size - 1;
-    add({std::string(name), end_ + line, size, hashOf(bytes)});
+void JobResults::keep(const std::string& key, const Record& record) {
+    files_[record.file].end = record.at + record.size + 1;
+    const auto [at, is_new] = records_.try_emplace(key, record);
+    if (!is_new && is_merge_) return;
+    if (!is_new) live_ -= std::exchange(at->second, record).size;
+    live_ += record.size;
 }
 
-void PartFile::findRecords(std::uint64_t size) {
-    while (end_ < size) {
-        const std::string line = read(end_, kMaxRecordLine);
+void JobResults::readRecords(File& file, std::uint64_t size) {
+    while (file.end < size) {
+        const std::string line = file.read(file.end, kMaxRecordLine);
         const std::size_t newline = line.find('\n');
         std::string_view words = std::string_view(line).substr(0, newline);
         if (newline == std::string::npos || !words.starts_with("=")) return;
         words.remove_prefix(1);
-        Entry entry;
-        entry.name = takeUpTo(words, ' ');
+        const std::string key(takeUpTo(words, ' '));
         const auto bytes = parseInteger(takeUpTo(words, ' '));
         const auto hash = parseHex(words);
-        if (entry.name.empty() || !bytes || *bytes < 0 || !hash) return;
-        entry.at = end_ + newline + 1;
-        entry.size = static_cast<std::uint64_t>(*bytes);
-        entry.hash = *hash;
-        if (entry.size >= size - entry.at || read(entry.at + entry.size, 1) != "\n") return;
-        if (entry.name == kEnd) {
-            is_finished_ = true;
+        if (key.empty() || !bytes || *bytes < 0 || !hash) return;
+        const Record record{files_.size() - 1, file.end + newline + 1,
+                            static_cast<std::uint64_t>(*bytes), *hash};
+        if (record.size >= size - record.at || file.read(record.at + record.size, 1) != "\n")
+            return;
+        std::string found;
+        if (key == kEnd) {
+            file.is_finished = true;
             return;
         }
-        add(std::move(entry));
+        // A machine that went down may have left anything.
+        if (is_kept_ && !readRecord(record, found)) return;
+        keep(key, record);
     }
 }
 
-bool PartFile::readRecord(const Entry& entry, std::string& bytes) const {
-    bytes = read(entry.at, static_cast<std::size_t>(entry.size));
-    return bytes.size() == entry.size && hashOf(bytes) == entry.hash;
+bool JobResults::readRecord(const Record& record, std::string& bytes) const {
+    bytes = files_[record.file].read(record.at, static_cast<std::size_t>(record.size));
+    return bytes.size() == record.size && hashOf(bytes) == record.hash;
 }
 
-void PartFile::dropDamaged() {
-    std::vector<Entry> all;
-    all.swap(records_);
-    by_name_.clear();
-    end_ = begin_;
-    live_ = 0;
+std::string JobResults::bytesOf(const std::string& key, const Record& record) const {
     std::string bytes;
-    for (Entry& entry : all) {
-        if (!readRecord(entry, bytes)) return;
-        add(std::move(entry));
-    }
-}
-
-std::string PartFile::bytes(std::size_t record) const {
-    const Entry& entry = records_[record];
-    std::string bytes;
-    if (!readRecord(entry, bytes))
-        refuse("damaged: record " + excerpt(entry.name) + " at byte " + std::to_string(entry.at) +
-               " is not what was written; delete it and run shard " + head_.shard.text() +
-               " again");
+    const File& file = files_[record.file];
+    if (!readRecord(record, bytes))
+        file.refuse("damaged: record " + excerpt(key) + " at byte " + std::to_string(record.at) +
+                    " is not what was written; delete it and run shard " + file.head.shard.text() +
+                    " again");
     return bytes;
 }
 
-std::optional<std::string> PartFile::find(const std::string& name) const {
-    const auto at = by_name_.find(name);
-    if (at == by_name_.end()) return std::nullopt;
-    return bytes(at->second);
+std::string JobResults::keptFile(const std::string& output, const Shard& shard) {
+    std::error_code ignored;
+    if (!output.ends_with('/') && !std::filesystem::is_directory(output, ignored))
+        return output + ".resume";
+    const std::string name = (std::filesystem::path(output) / ".resume").string();
+    if (shard.count == 1) return name;
+    return name + '-' + std::to_string(shard.index) + "of" + std::to_string(shard.count);
 }
 
-PartWriter::PartWriter(const std::string& target, const PartHead& head) : file_(target) {
-    file_.write(partHeadText(head));
+JobResults::JobResults(const std::string& output, const JobId& job, Shard shard, bool is_kept)
+    : is_kept_(is_kept) {
+    if (is_kept) {
+        files_.push_back({.name = keptFile(output, shard)});
+        openKept({job, shard});
+        return;
+    }
+    File file{.name = output, .open = namelessFileBeside(output), .head = {job, shard}};
+    if (file.open.fd() < 0) failOn(output);
+    files_.push_back(std::move(file));
 }
 
-void PartWriter::add(std::string_view name, std::string_view bytes) {
-    file_.write(partRecordText(name, bytes));
+void JobResults::openKept(const PartHead& head) {
+    const std::string name = files_.front().name;
+    std::error_code ignored;
+    if (!std::filesystem::exists(name, ignored)) writeAll(name, partHeadText(head));
+    files_.clear();
+    records_.clear();
+    live_ = 0;
+    addFile(name);
+    const File& file = files_.front();
+    std::string difference = file.head.job.differenceFrom(head.job);
+    if (difference.empty() && file.head.shard != head.shard)
+        difference = "the shard (" + file.head.shard.text() + ", " + head.shard.text() + ")";
+    if (!difference.empty())
+        file.refuse("what a job left, and not this one: " + difference +
+                    " differs; delete the file, or write to another");
+    if (::ftruncate(file.open.fd(), static_cast<off_t>(file.end)) != 0) failOn(name);
 }
 
-void PartWriter::finish() {
-    file_.write(partRecordText(kEnd, ""));
-    file_.commit();
+std::vector<std::string> JobResults::keys() const {
+    const std::lock_guard lock(*mutex_);
+    std::vector<std::string> keys;
+    keys.reserve(records_.size());
+    for (const auto& [key, record] : records_) keys.push_back(key);
+    return keys;
 }
 
-void PartWriter::leaveOpen() { file_.commit(); }
+std::optional<std::string> JobResults::find(const std::string& key) const {
+    const std::lock_guard lock(*mutex_);
+    const auto at = records_.find(key);
+    if (at == records_.end()) return std::nullopt;
+    return bytesOf(key, at->second);
+}
+
+void JobResults::append(std::string_view bytes) {
+    const File& file = files_.front();
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t n = ::write(file.open.fd(), bytes.data() + done, bytes.size() - done);
+        if (n >= 0) {
+            done += static_cast<std::size_t>(n);
+        } else if (errno != EINTR) {
+            const int error = errno;
+            // A reader would cut half a record off; but the next one needs its room.
+            static_cast<void>(::ftruncate(file.open.fd(), static_cast<off_t>(file.end)) == 0);
+            throw std::system_error(error, std::generic_category(), file.name);
+        }
+    }
+}
+
+void JobResults::store(const std::string& key, std::string_view bytes) {
+    if (is_merge_) return;
+    const std::lock_guard lock(*mutex_);
+    const Clock::time_point begin = Clock::now();
+    const std::string record = partRecordText(key, bytes);
+    try {
+        append(record);
+        const std::uint64_t start = files_.front().end + record.size() - bytes.size() - 1;
+        keep(key, {0, start, bytes.size(), hashOf(bytes)});
+        if (is_kept_ && files_.front().end > 2 * live_ + kMaxReplacedBytes) {
+            OutputFile anew(files_.front().name);
+            anew.write(partHeadText(head()));
+            writeRecords(anew, {});
+            anew.commit();
+            openKept(PartHead(head()));
+        }
+    } catch (const std::system_error& error) {
+        if (!is_optional_) throw;
+        trouble_ = error.what();
+    }
+    // Most of the time is for the job.
+    constexpr int kStoringShare = 20;
+    const Clock::time_point end = Clock::now();
+    next_ = end + std::max(interval_, kStoringShare * (end - begin));
+}
+
+void JobResults::writeRecords(OutputFile& to, std::span<const std::string_view> prefixes) const {
+    for (const auto& [key, record] : records_) {
+        const auto begins = [&key = key](std::string_view prefix) {
+            return key.starts_with(prefix);
+        };
+        if (prefixes.empty() || std::any_of(prefixes.begin(), prefixes.end(), begins))
+            to.write(partRecordText(key, bytesOf(key, record)));
+    }
+}
+
+void JobResults::writePart(const std::string& target,
+                           std::span<const std::string_view> prefixes) const {
+    const std::lock_guard lock(*mutex_);
+    OutputFile part(target);
+    part.write(partHeadText(head()));
+    writeRecords(part, prefixes);
+    part.write(partRecordText(kEnd, ""));
+    part.commit();
+}
+
+void JobResults::finish() {
+    std::error_code ignored;
+    if (is_kept_) std::filesystem::remove(file(), ignored);
+    files_.front().open.close();
+}
+
+void JobResults::setInterval(double seconds) {
+    interval_ = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    next_ = Clock::now() + interval_;
+}
+
+bool JobResults::isDue() {
+    const std::lock_guard lock(*mutex_);
+    return is_kept_ && Clock::now() >= next_;
+}
+
+PartHead partHeadOf(const std::string& file) {
+    JobResults results;
+    results.addFile(file);
+    return results.head();
+}
+
+bool isPartOf(const std::string& file, const PartHead& head) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return false;
+    JobResults results;
+    try {
+        results.addFile(file);
+        for (const std::string& key : results.keys()) static_cast<void>(results.find(key));
+    } catch (const FormatError&) {
+        return false;
+    }
+    return results.files_.front().is_finished && results.head().shard == head.shard &&
+           results.head().job.differenceFrom(head.job).empty();
+}
 
 namespace {
 
@@ -283,10 +436,6 @@ std::string numberList(const std::vector<int>& numbers) {
     return text;
 }
 
-}  // namespace
-
-namespace {
-
 /// Each part stays open; as many files as the process may ask for, if fewer are allowed now.
 void allowFiles(std::size_t count) {
     constexpr rlim_t kOthers = 64;
@@ -297,62 +446,58 @@ void allowFiles(std::size_t count) {
     ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+/// What keeps a part from being merged with `first`, if there is one; "" if it fits.
+std::string mergeProblem(const PartHead& head, bool is_finished, std::string_view tool,
+                         const std::optional<PartHead>& first, const std::string& first_name) {
+    if (head.job.tool != tool)
+        return "a part of a job of " + head.job.tool + ": merge it with " + head.job.tool +
+               " --merge";
+    if (!is_finished)
+        return "shard " + head.shard.text() +
+               " was cut short: run it again, with --resume if it ran so before";
+    if (!first) return "";
+    if (head.shard.count != first->shard.count)
+        return "shard " + head.shard.text() + ", and " + first_name + " is shard " +
+               first->shard.text();
+    const std::string difference = head.job.differenceFrom(first->job);
+    if (difference.empty()) return "";
+    return "not of the same job as " + first_name + ": " + difference + " differs";
+}
+
 }  // namespace
 
-std::vector<PartFile> openParts(std::span<const std::string> files, std::string_view tool) {
-    std::vector<PartFile> parts;
+JobResults mergeParts(std::span<const std::string> files, std::string_view tool) {
+    JobResults merged;
+    merged.is_merge_ = true;
     Diagnostics findings;
     allowFiles(files.size());
-    for (const std::string& file : files) {
-        noteInput(file);
-        PartFile part(file);
-        const PartHead& head = part.head();
-        const PartFile* const first = parts.empty() ? nullptr : &parts.front();
-        std::string problem;
-        if (head.job.tool != tool)
-            problem = "a part of a job of " + head.job.tool + ": merge it with " + head.job.tool +
-                      " --merge";
-        else if (!part.isFinished())
-            problem = "shard " + head.shard.text() +
-                      " was cut short: run it again, with --resume if it ran so before";
-        else if (first != nullptr && head.shard.count != first->head().shard.count)
-            problem = "shard " + head.shard.text() + ", and " + first->file() + " is shard " +
-                      first->head().shard.text();
-        else if (first != nullptr)
-            if (const std::string difference = head.job.differenceFrom(first->head().job);
-                !difference.empty())
-                problem =
-                    "not of the same job as " + first->file() + ": " + difference + " differs";
-        if (!problem.empty()) {
-            findings.add({file, 0, 0, problem});
-            continue;
+    std::optional<PartHead> first;
+    std::map<int, std::string> names;  // by shard
+    for (const std::string& name : files) {
+        noteInput(name);
+        merged.addFile(name);
+        const JobResults::File& file = merged.files_.back();
+        const Shard& shard = file.head.shard;
+        std::string problem = mergeProblem(file.head, file.is_finished, tool, first,
+                                           names.empty() ? "" : names.begin()->second);
+        if (problem.empty()) {
+            first = file.head;
+            const auto [at, is_new] = names.emplace(shard.index, name);
+            if (!is_new)
+                problem = "shard " + shard.text() + " is given twice, as " + at->second + ", too";
         }
-        parts.push_back(std::move(part));
+        if (!problem.empty()) findings.add({name, 0, 0, problem});
     }
     findings.throwIfAny();
-    if (parts.empty()) return parts;
-    std::stable_sort(parts.begin(), parts.end(), [](const PartFile& a, const PartFile& b) {
-        return a.head().shard.index < b.head().shard.index;
-    });
-    const int count = parts.front().head().shard.count;
+    const int count = first ? first->shard.count : 0;
     std::vector<int> missing;
-    int next = 1;
-    for (const PartFile& part : parts) {
-        const int index = part.head().shard.index;
-        if (index < next)
-            findings.add({part.file(), 0, 0,
-                          "shard " + part.head().shard.text() + " is given twice, as " +
-                              (&part - 1)->file() + ", too"});
-        for (; next < index; ++next) missing.push_back(next);
-        next = std::max(next, index + 1);
-    }
-    for (; next <= count; ++next) missing.push_back(next);
+    for (int i = 1; i <= count; ++i)
+        if (!names.contains(i)) missing.push_back(i);
     if (!missing.empty())
-        findings.add({"", 0, 0,
-                      (missing.size() == 1 ? "missing shard " : "missing shards ") +
-                          numberList(missing) + " of " + std::to_string(count)});
-    findings.throwIfAny();
-    return parts;
+        throw FormatError({"", 0, 0,
+                           (missing.size() == 1 ? "missing shard " : "missing shards ") +
+                               numberList(missing) + " of " + std::to_string(count)});
+    return merged;
 }
 
 }  // namespace ispace

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What one shard of a job has done, or a job so far: the parts of --shard and the checkpoints of
-// --resume, of all tools.
+// Results of a job by key: what a shard writes as a part (--shard), what --resume keeps beside the
+// output, and what --merge reads.
 //
-// A text header, then records. The header is
-//     #part 1
+// A file of results is a text header, then records. The header is
+//     #part 2
 //     # scan room.glb --frames 100        the history of the product, a line each
 //     tool scan 0.1.0                     and its version
 //     room sha256:…                       digest of the environment
@@ -11,19 +11,21 @@
 //     seed 0
 //     form jsonl                          what the records hold
 //     shard 3/8
-//     units 100                           of the whole job; - if nobody knows
-// and a blank line. A record is a line `=NAME BYTES HASH`, so many bytes and a newline; the hash is
-// hashOf() the bytes, in hex. The last record of a finished part is `end`.
+//     units 100                           of the whole job; - where that is not known
+// and a blank line. A record is a line `=KEY BYTES HASH`, so many bytes and a newline; the hash is
+// hashOf() the bytes, in hex. A later record replaces an earlier one of its key. The last record of
+// a finished part is `end`.
 #pragma once
 
-#include <cstddef>
+#include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "base/file.h"
@@ -41,10 +43,10 @@ struct JobId {
     std::string inputs;  ///< digest of everything read
     std::uint64_t seed = 0;
     std::string form;                   ///< what the records hold: "jsonl"
-    std::optional<std::int64_t> units;  ///< of the whole job; none: nobody knows
+    std::optional<std::int64_t> units;  ///< of the whole job, where they can be counted
 
-    /// In what another differs, for people: "the room", "the version of ispace (0.1.0, 0.2.0)"; ""
-    /// if it is the same job.
+    /// The property in which another job differs, for messages: "the room", "the version of ispace
+    /// (0.1.0, 0.2.0)"; "" if it is the same job.
     [[nodiscard]] std::string differenceFrom(const JobId& other) const;
 };
 
@@ -53,84 +55,111 @@ struct PartHead {
     Shard shard;
 };
 
-/// A part or a checkpoint that is read. Records stay in the file until they are asked for.
-class PartFile {
+/// Results of a job by key. They stay in files until they are asked for; find() and store() may be
+/// called from any thread.
+class JobResults {
   public:
-    /// Reads the header and finds the records; a last record that is cut off does not count.
-    /// \throws FormatError if it is no part, std::system_error as readers do
-    explicit PartFile(const std::string& file);
+    /// The results of one shard of a job. With `is_kept` they go into keptFile() and outlive the
+    /// process, and those that an earlier run left there are found: a record that was cut off or
+    /// damaged is dropped, with all behind it. Otherwise they go into a file without a name in the
+    /// folder of `output`, or in TMPDIR if that is a stream.
+    /// \throws FormatError if the kept file is of another job, which is left alone, or if another
+    /// process has it open; std::system_error
+    JobResults(const std::string& output, const JobId& job, Shard shard, bool is_kept);
 
-    [[nodiscard]] const std::string& file() const { return file_; }
-    [[nodiscard]] const PartHead& head() const { return head_; }
-    /// False if its shard was cut short.
-    [[nodiscard]] bool isFinished() const { return is_finished_; }
+    /// The file beside an output that keeps results: OUTPUT.resume, in a folder its file `.resume`
+    /// or, of one shard of many, `.resume-2of3`.
+    static std::string keptFile(const std::string& output, const Shard& shard);
 
-    /// In the order of the file, without `end`.
-    [[nodiscard]] std::size_t records() const { return records_.size(); }
-    [[nodiscard]] const std::string& name(std::size_t record) const {
-        return records_[record].name;
-    }
-    /// \throws FormatError if the bytes are not those that were written
-    [[nodiscard]] std::string bytes(std::size_t record) const;
-    /// The last record of a name.
-    [[nodiscard]] std::optional<std::string> find(const std::string& name) const;
-    [[nodiscard]] bool has(const std::string& name) const { return by_name_.count(name) > 0; }
+    /// Of a merge that of the first part.
+    [[nodiscard]] const PartHead& head() const { return files_.front().head; }
+    [[nodiscard]] const std::string& file() const { return files_.front().name; }
+    /// In the order of their bytes.
+    [[nodiscard]] std::vector<std::string> keys() const;
+    /// \throws FormatError if the bytes are not those that were stored
+    [[nodiscard]] std::optional<std::string> find(const std::string& key) const;
+    /// Adds a result, or replaces that of the same key; a merge keeps none. The kept file is
+    /// written anew once it is mostly made of replaced results.
+    /// \pre the key has no blank or newline and is not `end`
+    /// \throws std::system_error if the disk is full: the file is then as it was
+    void store(const std::string& key, std::string_view bytes);
+    /// Writes the results as a finished part, in the order of their keys. \param prefixes of the
+    /// keys that the part has; none: all
+    void writePart(const std::string& target,
+                   std::span<const std::string_view> prefixes = {}) const;
+    /// The job is done: the kept file is removed.
+    void finish();
 
-    /// Where the last whole record ends.
-    [[nodiscard]] std::uint64_t end() const { return end_; }
-    /// Bytes of the records that no later one of their name replaces.
-    [[nodiscard]] std::uint64_t liveBytes() const { return live_; }
-    [[nodiscard]] bool isLast(std::size_t record) const {
-        return by_name_.at(records_[record].name) == record;
-    }
-    /// Drops the first record whose bytes are not what was written and all behind it. Reads all.
-    void dropDamaged();
-    /// A record that was written at end(), `written` bytes with its line.
-    void noteAdded(std::string_view name, std::string_view bytes, std::uint64_t written);
+    /// From now on a full disk drops results in place of being an error; trouble() says so.
+    void dropWithoutRoom() { is_optional_ = true; }
+    [[nodiscard]] const std::string& trouble() const { return trouble_; }
+
+    /// 1, 2, … each time that this kind of step is taken. From one thread, in the same order in
+    /// each run.
+    int numberOf(const std::string& step) { return ++steps_[step]; }
+    /// A key with that number: "tree1", "tree2", …
+    std::string keyFor(const std::string& step) { return step + std::to_string(numberOf(step)); }
+    /// True once results are kept and the interval has passed since the last store(), or the time
+    /// that makes storing a twentieth of all: state in the middle of a step is then worth storing.
+    [[nodiscard]] bool isDue();
+    void setInterval(double seconds);
 
   private:
-    struct Entry {
-        std::string name;
+    friend JobResults mergeParts(std::span<const std::string> files, std::string_view tool);
+    friend PartHead partHeadOf(const std::string& file);
+    friend bool isPartOf(const std::string& file, const PartHead& head);
+    using Clock = std::chrono::steady_clock;
+
+    struct Record {
+        std::size_t file = 0;
         std::uint64_t at = 0, size = 0, hash = 0;
     };
-    void readHead();
-    void findRecords(std::uint64_t size);
-    void add(Entry entry);
-    [[nodiscard]] bool readRecord(const Entry& entry, std::string& bytes) const;
-    [[nodiscard]] std::string read(std::uint64_t at, std::size_t size) const;
-    [[noreturn]] void refuse(const std::string& message, int line = 0) const;
+    struct File {
+        std::string name;
+        OpenFile open = OpenFile();
+        PartHead head = {};
+        std::uint64_t begin = 0, end = 0;  // of its whole records
+        bool is_finished = false;
 
-    std::string file_;
-    OpenFile open_;
-    PartHead head_;
-    std::vector<Entry> records_;
-    std::unordered_map<std::string, std::size_t> by_name_;
-    std::uint64_t begin_ = 0, end_ = 0, live_ = 0;
-    bool is_finished_ = false;
+        [[nodiscard]] std::string read(std::uint64_t at, std::size_t size) const;
+        [[noreturn]] void refuse(const std::string& message, int line = 0) const;
+        void readHead();
+    };
+
+    JobResults() = default;
+    void addFile(const std::string& name);
+    void readRecords(File& file, std::uint64_t size);
+    void keep(const std::string& key, const Record& record);
+    [[nodiscard]] bool readRecord(const Record& record, std::string& bytes) const;
+    [[nodiscard]] std::string bytesOf(const std::string& key, const Record& record) const;
+    void openKept(const PartHead& head);
+    void append(std::string_view bytes);
+    void writeRecords(OutputFile& to, std::span<const std::string_view> prefixes) const;
+
+    std::vector<File> files_;
+    std::map<std::string, Record, std::less<>> records_;
+    std::uint64_t live_ = 0;  // bytes of the records
+    bool is_kept_ = false, is_merge_ = false, is_optional_ = false;
+    std::string trouble_;
+    std::map<std::string, int> steps_;
+    Clock::duration interval_{};
+    Clock::time_point next_ = Clock::now();
+    std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  // it can be moved
 };
 
-/// Writes a part; it gets to its place once it is finished.
-class PartWriter {
-  public:
-    /// \throws as OutputFile
-    PartWriter(const std::string& target, const PartHead& head);
-    /// \pre the name has no blank or newline and is not `end`
-    void add(std::string_view name, std::string_view bytes);
-    /// \throws std::system_error, a full disk included
-    void finish();
-    /// The same, for a file that is not finished yet.
-    void leaveOpen();
+/// The results in the parts of all shards of one job.
+/// \throws FormatError with what is missing, doubled, unfinished, of another job or tool, or
+/// written by an ispace whose parts had another form
+JobResults mergeParts(std::span<const std::string> files, std::string_view tool);
 
-  private:
-    OutputFile file_;
-};
+/// True if `file` is a finished and undamaged part of this shard of this job.
+bool isPartOf(const std::string& file, const PartHead& head);
+
+/// The header of a part or of kept results. \throws FormatError, std::system_error
+PartHead partHeadOf(const std::string& file);
 
 /// The text of a header, and of a record.
 std::string partHeadText(const PartHead& head);
-std::string partRecordText(std::string_view name, std::string_view bytes);
-
-/// Opens the parts of one whole job, in the order of their shards.
-/// \throws FormatError with what is missing, doubled, unfinished, or of another job
-std::vector<PartFile> openParts(std::span<const std::string> files, std::string_view tool);
+std::string partRecordText(std::string_view key, std::string_view bytes);
 
 }  // namespace ispace

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 #include <system_error>
+#include <thread>
 
-#include "base/checkpoint.h"
 #include "base/file.h"
 #include "base/test_damage.h"
 #include "base/test_folder.h"
@@ -35,14 +35,14 @@ class PartFileTest : public ::testing::Test {
         PartHead own = like;
         own.shard = {index, count};
         const std::string file = path("s" + std::to_string(index) + "of" + std::to_string(count));
-        PartWriter writer(file, own);
-        writer.add("from", std::to_string(index));
-        writer.finish();
+        JobResults results(file, own.job, own.shard, false);
+        results.store("from", std::to_string(index));
+        results.writePart(file);
         return file;
     }
-    /// What opening parts of scan says, without the folder.
+    /// What merging parts of scan says, without the folder.
     std::string merging(std::vector<std::string> files) const {
-        std::string errors = errorsOf([&] { (void)openParts(files, "scan"); });
+        std::string errors = errorsOf([&] { (void)mergeParts(files, "scan"); });
         const std::string folder = folder_.path().string() + "/";
         for (std::size_t at = 0; (at = errors.find(folder)) != std::string::npos;)
             errors.erase(at, folder.size());
@@ -52,48 +52,93 @@ class PartFileTest : public ::testing::Test {
     testing::TestFolder folder_;
 };
 
-TEST_F(PartFileTest, HoldsWhatWasWritten) {
+TEST_F(PartFileTest, HoldsWhatWasStored) {
     std::string every(256, '\0');
     for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<char>(i);
-    PartWriter writer(path("a"), head(3, 8));
-    writer.add("some", every);
-    writer.add("none", "");
-    writer.add("some", "=end 0 0\n\n");
-    writer.finish();
-    const PartFile part(path("a"));
-    EXPECT_TRUE(part.isFinished());
+    JobResults results(path("a"), head().job, {}, false);
+    results.store("some", every);
+    results.store("none", "");
+    results.store("step/2", "=end 0 0\n\n");
+    results.store("some", "replaced" + every);
+    EXPECT_EQ(results.find("some"), "replaced" + every);
+    results.writePart(path("a"));
+    const std::string_view prefixes[] = {"none", "step/"};
+    results.writePart(path("b"), prefixes);
+    const JobResults part = mergeParts(std::vector{path("a")}, "scan");
     EXPECT_EQ(part.head().job.differenceFrom(head().job), "");
-    EXPECT_EQ(part.head().shard, (Shard{3, 8}));
-    ASSERT_EQ(part.records(), 3U);
-    EXPECT_EQ(part.name(1), "none");
-    EXPECT_EQ(part.bytes(0), every);
-    EXPECT_EQ(part.bytes(1), "");
-    EXPECT_EQ(part.find("some"), "=end 0 0\n\n");
+    EXPECT_EQ(part.keys(), (std::vector<std::string>{"none", "some", "step/2"}));
+    EXPECT_EQ(part.find("some"), "replaced" + every);
+    EXPECT_EQ(part.find("none"), "");
+    EXPECT_EQ(part.find("step/2"), "=end 0 0\n\n");
     EXPECT_EQ(part.find("other"), std::nullopt);
+    EXPECT_EQ(mergeParts(std::vector{path("b")}, "scan").keys(),
+              (std::vector<std::string>{"none", "step/2"}));
     EXPECT_TRUE(
-        readAll(path("a")).starts_with("#part 1\n# envc plan.yaml\n# scan room.glb --frames 10\n"
+        readAll(path("a")).starts_with("#part 2\n# envc plan.yaml\n# scan room.glb --frames 10\n"
                                        "tool scan "));
 }
 
-TEST_F(PartFileTest, NothingIsThereBeforeItIsFinished) {
+TEST_F(PartFileTest, APartHasTheSameBytesInWhateverOrderItIsStored) {
+    const auto bytes_of = [&](std::vector<std::string> keys, bool is_kept) {
+        JobResults results(path("a"), head().job, {}, is_kept);
+        std::vector<std::thread> threads;
+        for (const std::string& key : keys)
+            threads.emplace_back([&results, &key] { results.store(key, "of " + key); });
+        for (std::thread& thread : threads) thread.join();
+        results.writePart(path("a"));
+        results.finish();
+        return readAll(path("a"));
+    };
+    const std::string one = bytes_of({"a", "b", "c"}, false);
+    EXPECT_EQ(bytes_of({"c", "a", "b"}, false), one);
+    EXPECT_EQ(bytes_of({"b", "c", "a"}, true), one);
+}
+
+TEST_F(PartFileTest, NothingIsThereBeforeItIsWritten) {
     {
-        PartWriter writer(path("a"), head());
-        writer.add("some", "bytes");
+        JobResults results(path("a"), head().job, {}, false);
+        results.store("some", "bytes");
     }
-    EXPECT_FALSE(fs::exists(path("a")));
+    EXPECT_TRUE(fs::is_empty(folder_.path()));
+}
+
+TEST_F(PartFileTest, KeptFilesAreNamedAfterTheOutput) {
+    fs::create_directory(path("folder"));
+    EXPECT_EQ(JobResults::keptFile("a.jsonl", {2, 3}), "a.jsonl.resume");
+    EXPECT_EQ(JobResults::keptFile(path("folder"), {}), path("folder/.resume"));
+    EXPECT_EQ(JobResults::keptFile(path("folder") + "/", {2, 3}), path("folder/.resume-2of3"));
 }
 
 TEST_F(PartFileTest, SurvivesDamage) {
     const std::string good = readAll(part(2, 3));
     const auto read = [&](const std::string& bytes) {
         writeAll(path("bad"), bytes);
-        const PartFile part(path("bad"));
-        for (std::size_t i = 0; i < part.records(); ++i) (void)part.bytes(i);
+        (void)partHeadOf(path("bad"));
+        (void)isPartOf(path("bad"), head(2, 3));
+        writeAll(path("bad.resume"), bytes);
+        const JobResults results(path("bad"), head().job, {2, 3}, true);
+        for (const std::string& key : results.keys()) (void)results.find(key);
     };
+    EXPECT_TRUE(isPartOf(part(2, 3), head(2, 3)));
+    EXPECT_FALSE(isPartOf(part(2, 3), head(1, 3)));
     surviveDamage(good, read, 300);
     writeAll(path("room"), "#env 1\n");
     EXPECT_NE(merging({path("room")}).find("room: error: not a part of a job, as --shard writes"),
               std::string::npos);
+}
+
+TEST_F(PartFileTest, RefusesPartsOfOlderVersions) {
+    std::string old = readAll(part(1, 1));
+    old.replace(0, 7, "#part 1");
+    writeAll(path("old"), old);
+    const std::string hint =
+        "of another version of ispace, whose parts have another form: delete it and run its shard "
+        "again\n";
+    EXPECT_EQ(merging({path("old")}), "old: error: " + hint);
+    writeAll(path("old.resume"), old);
+    EXPECT_NE(errorsOf([&] { JobResults(path("old"), head().job, {}, true); }).find(hint),
+              std::string::npos);
+    EXPECT_EQ(readAll(path("old.resume")), old);
 }
 
 TEST_F(PartFileTest, RefusesNegativeFigures) {
@@ -113,10 +158,7 @@ TEST_F(PartFileTest, AMergeTakesAllShardsOnceAndInAnyOrder) {
     for (const int count : {1, 2, 7}) {
         std::vector<std::string> files;
         for (int i = count; i > 0; --i) files.push_back(part(i, count));
-        const std::vector<PartFile> parts = openParts(files, "scan");
-        ASSERT_EQ(parts.size(), static_cast<std::size_t>(count));
-        for (int i = 0; i < count; ++i)
-            EXPECT_EQ(parts[static_cast<std::size_t>(i)].head().shard.index, i + 1);
+        EXPECT_EQ(mergeParts(files, "scan").head().shard.count, count);
     }
 }
 
@@ -157,72 +199,73 @@ TEST_F(PartFileTest, AMergeRefusesPartsOfOtherJobs) {
 }
 
 TEST_F(PartFileTest, AMergeRefusesAnUnfinishedPart) {
-    PartWriter writer(path("a"), head());
-    writer.add("some", "bytes");
-    writer.leaveOpen();
+    writeAll(path("a"), partHeadText(head()) + partRecordText("some", "bytes"));
     EXPECT_EQ(
         merging({path("a")}),
         "a: error: shard 1/1 was cut short: run it again, with --resume if it ran so before\n");
 }
 
-TEST_F(PartFileTest, ACheckpointGoesOnWhereItWasCut) {
-    const std::string file = path("c");
+TEST_F(PartFileTest, KeptResultsGoOnWhereTheyWereCut) {
+    const std::string output = path("c"), file = output + ".resume";
     {
-        Checkpoint checkpoint(file, head());
-        EXPECT_EQ(checkpoint.part().records(), 0U);
-        checkpoint.add("a", "first");
-        checkpoint.add("b", "second");
-        EXPECT_EQ(checkpoint.part().find("a"), "first");
+        JobResults results(output, head().job, {}, true);
+        EXPECT_EQ(results.keys().size(), 0U);
+        results.store("a", "first");
+        results.store("b", "second");
+        EXPECT_EQ(results.find("a"), "first");
     }
     const std::string whole = readAll(file);
     const std::size_t first = whole.find("=a"), second = whole.find("=b");
     for (std::size_t size = first; size <= whole.size(); ++size) {
         writeAll(file, whole.substr(0, size));
-        Checkpoint checkpoint(file, head());
+        JobResults results(output, head().job, {}, true);
         const std::size_t kept = size == whole.size() ? 2 : size >= second ? 1 : 0;
-        EXPECT_EQ(checkpoint.part().records(), kept) << size;
-        checkpoint.add("c", "third");
-        EXPECT_EQ(PartFile(file).find("c"), "third") << size;
-        EXPECT_EQ(PartFile(file).records(), kept + 1) << size;
+        EXPECT_EQ(results.keys().size(), kept) << size;
+        results.store("c", "third");
+        EXPECT_EQ(results.find("c"), "third") << size;
+        EXPECT_EQ(results.keys().size(), kept + 1) << size;
     }
     // Damage in the middle: what is behind it goes, too.
     std::string bad = whole;
     bad[bad.find("first")] = 'F';
     writeAll(file, bad);
-    EXPECT_EQ(Checkpoint(file, head()).part().records(), 0U);
+    EXPECT_TRUE(JobResults(output, head().job, {}, true).keys().empty());
 }
 
-TEST_F(PartFileTest, ACheckpointOfAnotherJobIsLeftAlone) {
-    const std::string file = path("c");
-    Checkpoint(file, head()).add("a", "first");
+TEST_F(PartFileTest, KeptResultsOfAnotherJobAreLeftAlone) {
+    const std::string output = path("c"), file = output + ".resume";
+    JobResults(output, head().job, {}, true).store("a", "first");
     PartHead other = head();
     other.job.history.back() += " --noise";
-    EXPECT_NE(errorsOf([&] { Checkpoint(file, other); }).find("the command"), std::string::npos);
-    EXPECT_NE(errorsOf([&] { Checkpoint(file, head(2, 3)); }).find("the shard (1/1, 2/3)"),
+    EXPECT_NE(errorsOf([&] { JobResults(output, other.job, {}, true); }).find("the command"),
               std::string::npos);
-    writeAll(path("mine"), "my notes");
-    EXPECT_NE(errorsOf([&] { Checkpoint(path("mine"), head()); }).find("not a part"),
+    EXPECT_NE(errorsOf([&] {
+                  JobResults(output, head().job, {2, 3}, true);
+              }).find("the shard (1/1, 2/3)"),
               std::string::npos);
-    EXPECT_EQ(readAll(path("mine")), "my notes");
-    EXPECT_EQ(PartFile(file).find("a"), "first");
-    const Checkpoint held(file, head());
-    EXPECT_NE(errorsOf([&] { Checkpoint(file, head()); }).find("another process"),
+    writeAll(path("mine.resume"), "my notes");
+    EXPECT_NE(errorsOf([&] { JobResults(path("mine"), head().job, {}, true); }).find("not a part"),
+              std::string::npos);
+    EXPECT_EQ(readAll(path("mine.resume")), "my notes");
+    const JobResults held(output, head().job, {}, true);
+    EXPECT_EQ(held.find("a"), "first");
+    EXPECT_NE(errorsOf([&] { JobResults(output, head().job, {}, true); }).find("another process"),
               std::string::npos);
 }
 
-TEST_F(PartFileTest, ACheckpointDoesNotGrowByWhatIsReplaced) {
-    const std::string file = path("c");
-    Checkpoint checkpoint(file, head());
-    checkpoint.add("kept", "small");
+TEST_F(PartFileTest, KeptResultsDoNotGrowByThoseReplaced) {
+    const std::string output = path("c"), file = output + ".resume";
+    JobResults results(output, head().job, {}, true);
+    results.store("kept", "small");
     std::string state(1 << 20, 'x');
     for (int i = 0; i < 24; ++i) {
         state[0] = static_cast<char>('a' + i % 26);
-        checkpoint.add("state", state);
+        results.store("state", state);
         EXPECT_LT(fs::file_size(file), 20U << 20U);
     }
-    EXPECT_EQ(checkpoint.part().find("kept"), "small");
-    EXPECT_EQ(checkpoint.part().find("state"), state);
-    checkpoint.remove();
+    EXPECT_EQ(results.find("kept"), "small");
+    EXPECT_EQ(results.find("state"), state);
+    results.finish();
     EXPECT_FALSE(fs::exists(file));
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/batch_options.h"
 
-#include <filesystem>
-
 #include "base/error.h"
 #include "cli/outputs.h"
 
@@ -45,28 +43,6 @@ void checkBatchOptions(const CommandLine& line, const BatchOptions& options,
                          "not the default");
     if (options.resume && !OutputSet::of(common.output) && isStream(common.output))
         throw UsageError("--resume needs a file (-o): what went into a stream is gone");
-}
-
-std::string checkpointOf(const std::string& output) {
-    std::error_code ignored;
-    if (output.ends_with('/') || std::filesystem::is_directory(output, ignored))
-        return (std::filesystem::path(output) / ".resume").string();
-    return output + ".resume";
-}
-
-bool isDoneAlready(const std::string& file, const PartHead& head) {
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) return false;
-    try {
-        PartFile part(file);
-        if (!part.isFinished() || !part.head().job.differenceFrom(head.job).empty() ||
-            part.head().shard != head.shard)
-            return false;
-        for (std::size_t i = 0; i < part.records(); ++i) (void)part.bytes(i);
-        return true;
-    } catch (const FormatError&) {
-        return false;
-    }
 }
 
 }  // namespace ispace

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "base/part_file.h"
 #include "base/shard.h"
 #include "cli/command_line.h"
 #include "cli/common_options.h"
@@ -27,13 +26,5 @@ void addBatchOptions(CommandLine& line, BatchOptions& options, const std::string
 /// another suffix than .part; for --resume to stdout
 void checkBatchOptions(const CommandLine& line, const BatchOptions& options,
                        const CommonOptions& common, const std::vector<std::string>& operands);
-
-/// The file beside an output where --resume keeps what is done: OUTPUT.resume, in a folder of its
-/// own name `.resume`.
-std::string checkpointOf(const std::string& output);
-
-/// True if `file` is the finished part of this very shard: then --resume has nothing to do. A file
-/// that is no such part is about to be replaced.
-bool isDoneAlready(const std::string& file, const PartHead& head);
 
 }  // namespace ispace

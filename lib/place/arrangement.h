@@ -63,8 +63,8 @@ struct Arrangement {
 ///
 /// Makes candidates by options.strategy for each kind of sensor, weighs the target's cells by
 /// options.weights, then runs search() or minimumCostCover(), and refine() if asked. `mps`:
-/// receives the model before the search. A shard (options.search.share) keeps its steps in the
-/// ledger and returns an arrangement without sensors. \throws UnmetError if a kind has no valid
+/// receives the model before the search. A shard (options.search.share) stores its steps and
+/// returns an arrangement without sensors. \throws UnmetError if a kind has no valid
 /// place or nothing may be bought, UsageError if the candidates do not fit in memory
 Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
                     const ArrangeOptions& options, Progress& progress, std::ostream* mps = nullptr);

@@ -204,12 +204,12 @@ class Scanner {
         while (next < sites_.size() && !progress_.stopped()) {
             turns_.clear();
             for (; next < sites_.size() && turns_.size() < at_once_; ++next) turns_.push_back(next);
-            const int step = share_.ledger != nullptr ? share_.ledger->numberOf("views/") : 0;
+            const int step = share_.results != nullptr ? share_.results->numberOf("views/") : 0;
             const std::string name = "views/" + std::to_string(step);
             prepare();
             if (!recall(name) && !leaveToOthers(step)) {
                 look(added_ >= least_);
-                if (share_.ledger != nullptr && !progress_.stopped()) keep(name);
+                if (share_.results != nullptr && !progress_.stopped()) keep(name);
             }
             addSeen(max_bytes);
         }
@@ -265,7 +265,7 @@ class Scanner {
 
     /// Takes what an earlier run or another shard saw in this step.
     bool recall(const std::string& name) {
-        const auto bytes = share_.ledger != nullptr ? share_.ledger->find(name) : std::nullopt;
+        const auto bytes = share_.results != nullptr ? share_.results->find(name) : std::nullopt;
         if (!bytes) return false;
         Unpacker from(*bytes);
         for (std::size_t i = 0; i < turns_.size(); ++i) {
@@ -283,7 +283,7 @@ class Scanner {
             to.addAll(parts_[i].runs);
             to.addAll(parts_[i].first);
         }
-        share_.ledger->keep(name, to.bytes());
+        share_.results->store(name, to.bytes());
     }
     /// A step of another shard: nothing is seen.
     bool leaveToOthers(int step) {

@@ -92,8 +92,8 @@ constexpr std::size_t kMinPlaces = 64;
 /// `least` of the others, or all, spread over the plan; in order. \throws UsageError once
 /// set.bytes() is more than max_bytes
 ///
-/// With a ledger views that it has are taken from there, and others kept. A shard of the candidates
-/// looks from its own sites alone: its candidates elsewhere see nothing.
+/// With results of steps, views stored there are taken, and others stored. A shard of the
+/// candidates looks from its own sites alone: its candidates elsewhere see nothing.
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
                    std::size_t max_bytes, Progress& progress, std::size_t least = kMinPlaces,
                    const SearchShare& share = SearchShare());

@@ -202,8 +202,8 @@ class Tree {
           open_(max_bytes),
           share_(share) {
         result_.bound = std::min(result_.bound, bound.value);
-        if (share_.ledger != nullptr) {
-            name_ = share_.ledger->nameFor("tree");
+        if (share_.results != nullptr) {
+            name_ = share_.results->keyFor("tree");
             mark_ = markOf(bound);
             if (recall()) return;
         }
@@ -222,19 +222,19 @@ class Tree {
                 break;
             }
             deal();
-            if (share_.ledger != nullptr && share_.ledger->isDue()) keep();
+            if (share_.results != nullptr && share_.results->isDue()) keep();
             if (open_.empty()) break;
             std::vector<BranchNode> batch = open_.take(kBatch);
             // Whoever goes on with this tree takes the same steps, so none is left half done.
             std::vector<BranchNode> before;
-            if (share_.ledger != nullptr) before = batch;
+            if (share_.results != nullptr) before = batch;
             std::vector<BranchResult> results(batch.size());
             const std::uint64_t cut = this->cut();
             tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
                 results[i] = branch(problem_, batch[i], cut, progress);
                 batch[i] = BranchNode();
             });
-            if (share_.ledger != nullptr && progress.stopped()) {
+            if (share_.results != nullptr && progress.stopped()) {
                 open_.putBack(std::move(before));
                 continue;
             }
@@ -244,7 +244,7 @@ class Tree {
             noteProgress(problem_, result_, progress);
         }
         progress.end();
-        if (share_.ledger != nullptr) keep();
+        if (share_.results != nullptr) keep();
         return std::move(result_);
     }
 
@@ -276,10 +276,10 @@ class Tree {
         to.add(closed_);
         to.add(is_dealt_ ? 1 : 0);
         pack(to, open_.byAge());
-        share_.ledger->keep(name_, to.bytes());
+        share_.results->store(name_, to.bytes());
     }
     bool recall() {
-        const auto bytes = share_.ledger->find(name_);
+        const auto bytes = share_.results->find(name_);
         if (!bytes) return false;
         Unpacker from(*bytes);
         if (from.number() != mark_) return false;
@@ -321,7 +321,7 @@ class Tree {
     OpenNodes open_;
     const SearchShare& share_;
     bool is_dealt_ = false;
-    std::string name_;        // of the tree in the ledger
+    std::string name_;        // of the stored tree
     std::uint64_t mark_ = 0;  // of the search that it is of
 };
 

@@ -73,7 +73,8 @@ std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const 
 /// If a budget can be split in more ways than CountChoice lists (20'000) there is no tree: `known`
 /// is returned unchanged. known.best need not be a solution: only better values are searched.
 ///
-/// With a ledger it goes on from a tree kept there, and keeps its own now and then and at its end.
+/// With results of steps it goes on from a tree stored there, and stores its own now and then and
+/// at its end.
 SearchResult branchAndBound(const Problem& problem, const Bound& bound, SearchResult known,
                             double gap, Progress& progress,
                             std::uint64_t enough = std::numeric_limits<std::uint64_t>::max(),

@@ -77,15 +77,15 @@ Solution placeFeasibly(const Problem& problem, Progress& progress) {
 
 namespace {
 
-/// What the ledger has under a name for this very problem, or what `compute` returns, which is kept
+/// The result stored under a key for this very problem, or what `compute` returns, which is kept
 /// unless it was cut short.
 template <typename T, typename Compute>
 T recalled(const SearchShare& share, const Problem& problem, const std::string& step,
            T (*unpack)(Unpacker&, const Problem&), const Progress& progress, Compute compute) {
-    if (share.ledger == nullptr) return compute();
-    const std::string name = share.ledger->nameFor(step);
+    if (share.results == nullptr) return compute();
+    const std::string name = share.results->keyFor(step);
     const std::uint64_t mark = fingerprintOf(problem);
-    if (const auto bytes = share.ledger->find(name)) {
+    if (const auto bytes = share.results->find(name)) {
         Unpacker from(*bytes);
         if (from.number() == mark) return unpack(from, problem);
     }
@@ -94,7 +94,7 @@ T recalled(const SearchShare& share, const Problem& problem, const std::string& 
     Packer to;
     to.add(mark);
     pack(to, made);
-    share.ledger->keep(name, to.bytes());
+    share.results->store(name, to.bytes());
     return made;
 }
 
@@ -104,7 +104,7 @@ std::string proofName(int shard) { return "proof/" + std::to_string(shard); }
 SearchResult joinedProof(const Problem& problem, const SearchShare& share) {
     SearchResult all;
     for (int i = 1; i <= share.joined; ++i) {
-        const auto bytes = share.ledger->find(proofName(i));
+        const auto bytes = share.results->find(proofName(i));
         if (!bytes) Unpacker::refuse();
         Unpacker from(*bytes);
         if (from.number() != fingerprintOf(problem)) Unpacker::refuse();
@@ -241,7 +241,7 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
         Packer to;
         to.add(fingerprintOf(problem));
         pack(to, result);
-        share.ledger->keep(proofName(share.own->index), to.bytes());
+        share.results->store(proofName(share.own->index), to.bytes());
     }
     return result;
 }

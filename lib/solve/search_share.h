@@ -4,8 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "base/ledger.h"
-#include "base/shard.h"
+#include "base/part_file.h"
 
 namespace ispace {
 
@@ -22,9 +21,9 @@ std::string_view nameOf(Shared shared);
 /// How a search is shared out over processes that do not talk to each other, and goes on where
 /// another one ended.
 ///
-/// Shards differ in nothing but the steps that they take, and these are kept in a ledger; a merge
-/// is the same search over again, which finds the steps of all shards in its ledger, and takes
-/// itself what it does not find. So candidates and starts merge to the bytes of a single run.
+/// Shards differ in nothing but the steps that they take, and these are stored by key; a merge
+/// is the same search over again, which finds the steps of all shards, and takes itself what it
+/// does not find. So candidates and starts merge to the bytes of a single run.
 ///
 /// Of a proof all shards grow the same tree until it has enough open nodes, deal these out in turn
 /// by their bounds, and each goes on with its own. What a shard finds is the best of its subtrees,
@@ -33,9 +32,9 @@ std::string_view nameOf(Shared shared);
 /// layouts the merge may have another one.
 struct SearchShare {
     Shared what = Shared::Tree;
-    std::optional<Shard> own;  ///< take these steps only, and end
-    int joined = 0;            ///< of a merge: the shards in the ledger
-    Ledger* ledger = nullptr;  ///< null: keep nothing
+    std::optional<Shard> own;       ///< take these steps only, and end
+    int joined = 0;                 ///< of a merge: the number of shards
+    JobResults* results = nullptr;  ///< of steps; null: store none
 
     /// True for a shard that shares out this.
     [[nodiscard]] bool isOwn(Shared which) const { return own && what == which; }

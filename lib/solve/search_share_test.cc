@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-#include <mutex>
-
 #include "base/packed.h"
+#include "base/test_folder.h"
 #include "solve/packed_search.h"
 #include "solve/search.h"
 #include "solve/test_problems.h"
@@ -14,34 +12,27 @@
 namespace ispace {
 namespace {
 
-/// Keeps all in memory.
-class MemoryLedger final : public Ledger {
+/// Results in a folder of their own, kept or not.
+class TestResults {
   public:
-    [[nodiscard]] std::optional<std::string> find(const std::string& name) const override {
-        const std::lock_guard lock(mutex_);
-        const auto at = kept_.find(name);
-        return at == kept_.end() ? std::nullopt : std::optional(at->second);
-    }
-    void keep(const std::string& name, std::string_view bytes) override {
-        const std::lock_guard lock(mutex_);
-        kept_[name] = bytes;
-        ++times_;
-    }
-    [[nodiscard]] bool isDue() override { return is_due; }
+    explicit TestResults(bool is_kept = false)
+        : results_(folder_ / "results", jobOfTest(), {}, is_kept) {}
+    [[nodiscard]] JobResults* get() { return &results_; }
     /// What another process would find.
-    void takeFrom(const MemoryLedger& other, const std::string& prefix = "") {
-        for (const auto& [name, bytes] : other.kept_)
-            if (name.starts_with(prefix)) kept_[name] = bytes;
+    void takeFrom(const TestResults& other, const std::string& prefix = "") {
+        for (const std::string& key : other.results_.keys())
+            if (key.starts_with(prefix)) results_.store(key, other.results_.find(key).value());
     }
-    [[nodiscard]] std::size_t size() const { return kept_.size(); }
-    [[nodiscard]] int times() const { return times_; }
-
-    bool is_due = false;
+    [[nodiscard]] std::size_t size() const { return results_.keys().size(); }
 
   private:
-    mutable std::mutex mutex_;
-    std::map<std::string, std::string> kept_;
-    int times_ = 0;
+    static JobId jobOfTest() {
+        JobId job;
+        job.tool = "arrange";
+        return job;
+    }
+    testing::TestFolder folder_;
+    JobResults results_;
 };
 
 /// Large enough for a tree of some hundred nodes.
@@ -68,18 +59,18 @@ SearchOptions searchOptions(Optimizer optimizer) {
 /// The merge of so many shards.
 SearchResult inShards(const Problem& problem, const SearchOptions& options, Shared what,
                       int count) {
-    MemoryLedger all;
+    TestResults all;
     for (int i = 1; i <= count; ++i) {
         SilentProgress silent;
-        MemoryLedger own;
+        TestResults own;
         SearchOptions sharing = options;
-        sharing.share = {.what = what, .own = Shard{i, count}, .joined = 0, .ledger = &own};
+        sharing.share = {.what = what, .own = Shard{i, count}, .joined = 0, .results = own.get()};
         (void)search(problem, sharing, silent);
         all.takeFrom(own, what == Shared::Tree ? "proof/" : "start");
     }
     SilentProgress silent;
     SearchOptions merging = options;
-    merging.share = {.what = what, .own = {}, .joined = count, .ledger = &all};
+    merging.share = {.what = what, .own = {}, .joined = count, .results = all.get()};
     return search(problem, merging, silent);
 }
 
@@ -122,18 +113,18 @@ TEST(SearchShare, BoundsOfShardsThatAreCutShortHold) {
         SilentProgress silent;
         const SearchResult best = search(random.problem, options, silent);
         for (const int asking : {300, 1000, 3000, 10000}) {
-            MemoryLedger all;
+            TestResults all;
             for (int i = 1; i <= 3; ++i) {
                 SearchOptions sharing = options;
-                MemoryLedger own;
+                TestResults own;
                 sharing.share = {
-                    .what = Shared::Tree, .own = Shard{i, 3}, .joined = 0, .ledger = &own};
+                    .what = Shared::Tree, .own = Shard{i, 3}, .joined = 0, .results = own.get()};
                 StopWhen stopping(afterAsking(asking * i));
                 (void)search(random.problem, sharing, stopping);
                 all.takeFrom(own, "proof/");
             }
             SearchOptions merging = options;
-            merging.share = {.what = Shared::Tree, .own = {}, .joined = 3, .ledger = &all};
+            merging.share = {.what = Shared::Tree, .own = {}, .joined = 3, .results = all.get()};
             const SearchResult merged = search(random.problem, merging, silent);
             EXPECT_LE(merged.best.value, best.best.value);
             EXPECT_GE(merged.bound, best.best.value) << round << ' ' << asking;
@@ -152,16 +143,16 @@ TEST(SearchShare, ASearchGoesOnWhereItWasStopped) {
             const SearchOptions options = searchOptions(optimizer);
             SilentProgress silent;
             const SearchResult single = search(random.problem, options, silent);
-            MemoryLedger kept;
+            TestResults kept;
             SearchResult result;
             int runs = 0;
             for (int asking = 2;; asking += 1 + asking / 4) {
                 SearchOptions resuming = options;
                 // A new process counts anew, and finds what is kept.
-                MemoryLedger own;
+                TestResults own(true);
                 own.takeFrom(kept);
-                own.is_due = runs++ % 2 == 0;
-                resuming.share.ledger = &own;
+                own.get()->setInterval(runs++ % 2 == 0 ? 0 : 1e6);
+                resuming.share.results = own.get();
                 StopWhen stopping(afterAsking(asking));
                 result = search(random.problem, resuming, stopping);
                 kept.takeFrom(own);
@@ -181,13 +172,13 @@ TEST(SearchShare, StepsOfAnotherProblemAreNotTaken) {
     const SearchOptions options = searchOptions(Optimizer::Exact);
     SilentProgress silent;
     const SearchResult single = search(other.problem, options, silent);
-    MemoryLedger kept, again;
+    TestResults kept, again;
     SearchOptions keeping = options;
-    keeping.share.ledger = &kept;
+    keeping.share.results = kept.get();
     (void)search(one.problem, keeping, silent);
     EXPECT_GT(kept.size(), 5U);
     again.takeFrom(kept);
-    keeping.share.ledger = &again;
+    keeping.share.results = again.get();
     const SearchResult result = search(other.problem, keeping, silent);
     EXPECT_EQ(result.best.chosen, single.best.chosen);
     EXPECT_EQ(result.bound, single.bound);

@@ -120,31 +120,31 @@ class KeptEnds {
   public:
     KeptEnds(const SearchShare* share, const Problem& problem, std::uint64_t enough,
              const std::vector<Choice>& given)
-        : ledger_(share != nullptr ? share->ledger : nullptr), problem_(problem) {
-        if (ledger_ == nullptr) return;
-        name_ = ledger_->nameFor("start") + '/';
+        : results_(share != nullptr ? share->results : nullptr), problem_(problem) {
+        if (results_ == nullptr) return;
+        name_ = results_->keyFor("start") + '/';
         mark_ = mixedBits(fingerprintOf(problem) ^ mixedBits(enough));
         for (const Choice& choice : given)
             mark_ = mixedBits(mark_ ^ mixedBits(choice.kind) ^ choice.candidate);
     }
     [[nodiscard]] std::optional<std::vector<Choice>> find(std::size_t start) const {
         const auto bytes =
-            ledger_ == nullptr ? std::nullopt : ledger_->find(name_ + std::to_string(start));
+            results_ == nullptr ? std::nullopt : results_->find(name_ + std::to_string(start));
         if (!bytes) return std::nullopt;
         Unpacker from(*bytes);
         if (from.number() != mark_) return std::nullopt;
         return unpackChoices(from, problem_);
     }
     void keep(std::size_t start, const std::vector<Choice>& chosen) {
-        if (ledger_ == nullptr) return;
+        if (results_ == nullptr) return;
         Packer to;
         to.add(mark_);
         pack(to, chosen);
-        ledger_->keep(name_ + std::to_string(start), to.bytes());
+        results_->store(name_ + std::to_string(start), to.bytes());
     }
 
   private:
-    Ledger* ledger_;
+    JobResults* results_;
     const Problem& problem_;
     std::string name_;
     std::uint64_t mark_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of shared jobs and checkpoints: whole files, or a header and records, with lines `---`
+// Parts of shared jobs and kept results: whole files, or a header and records, with lines `---`
 // between, which get their hashes here. A record begins with a line of its name. A part of arrange
 // holds a command line, which its merge parses.
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace ispace;
 
-constexpr std::string_view kMagic = "#part 1\n";
+constexpr std::string_view kMagic = "#part 2\n";
 
 std::string fileOf(std::string_view bytes) {
     if (bytes.starts_with(kMagic)) return std::string(bytes);
@@ -27,23 +27,28 @@ std::string fileOf(std::string_view bytes) {
 }
 
 /// The header as the tools write it, and as they read that.
-void checkHead(const PartFile& part, const std::string& path) {
-    const std::string head = partHeadText(part.head());
+void checkHead(const PartHead& part, const std::string& path) {
+    const std::string head = partHeadText(part);
     fuzz::writeFile(path, head);
-    const PartFile again = fuzz::readBack([&] { return PartFile(path); });
-    fuzz::require(partHeadText(again.head()) == head, "another header after writing it");
+    const PartHead again = fuzz::readBack([&] { return partHeadOf(path); });
+    fuzz::require(partHeadText(again) == head, "another header after writing it");
 }
 
-void checkRecords(const std::string& path) {
-    PartFile part(path);
-    part.dropDamaged();
-    for (std::size_t i = 0; i < part.records(); ++i)
-        fuzz::require(part.bytes(i).size() <= part.end(), "a record longer than its file");
-    fuzz::require(part.liveBytes() <= part.end(), "more live bytes than the file has");
+/// Kept results, to which others are added; a part of them has all.
+void checkRecords(const std::string& bytes, const PartHead& head, const std::string& path) {
+    fuzz::writeFile(JobResults::keptFile(path, head.shard), bytes);
+    JobResults results(path, head.job, head.shard, true);
+    results.store("added", "bytes");
+    results.writePart(path);
+    for (const std::string& key : results.keys())
+        fuzz::require(results.find(key)->size() <= bytes.size() + 5,
+                      "a record longer than its file");
+    fuzz::require(isPartOf(path, head), "a part that is not read again");
+    results.finish();
 }
 
 void tryMerge(const std::string& path) {
-    const std::vector<PartFile> parts = openParts(std::vector{path}, "arrange");
+    const JobResults parts = mergeParts(std::vector{path}, "arrange");
     try {
         (void)commandOf(parts, {});
     } catch (const UsageError&) {
@@ -56,9 +61,10 @@ void tryMerge(const std::string& path) {
 }  // namespace
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
-    const std::string path = scratchFolder() + "/a.part";
-    writeFile(path, fileOf(bytes));
-    checkHead(PartFile(path), scratchFolder() + "/head.part");
-    checkRecords(path);
+    const std::string path = scratchFolder() + "/a.part", file = fileOf(bytes);
+    writeFile(path, file);
+    const PartHead head = partHeadOf(path);
+    checkHead(head, scratchFolder() + "/head.part");
+    checkRecords(file, head, scratchFolder() + "/kept.part");
     tryMerge(path);
 }

@@ -86,7 +86,8 @@ Arrangement search(const ArrangeToolOptions& options, const ArrangeWork& work, S
     return arrangement;
 }
 
-void runCommand(const ArrangeCommand& command, const std::vector<PartFile>& parts) {
+/// \param parts those of a merge, or null
+void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts) {
     const ArrangeToolOptions& options = command.options();
     const std::optional<Shard>& shard = options.batch.shard;
     limitThreads(options.common.threads);
@@ -100,9 +101,9 @@ void runCommand(const ArrangeCommand& command, const std::vector<PartFile>& part
         mustBeWritable(*file);
     warnOfSearch(options, work);
     bool is_done = false;
-    const auto ledger = ledgerOf(command, work, parts, is_done);
+    const auto results = resultsOf(command, work, std::move(parts), is_done);
     if (is_done) return talk(options.common, "arrange", options.common.output + " is done already");
-    work.how.search.share.ledger = ledger.get();
+    work.how.search.share.results = results.get();
     int signal = 0;
     Arrangement arrangement;
     {
@@ -110,14 +111,14 @@ void runCommand(const ArrangeCommand& command, const std::vector<PartFile>& part
                           options.time_limit);
         arrangement = search(options, work, watch);
         if (shard)
-            ledger->writePart();
+            writePart(command, *results);
         else
             writeLayout(command, work, arrangement);
-        if (ledger && (shard || arrangement.is_complete)) ledger->removeCheckpoint();
+        if (results && (shard || arrangement.is_complete)) results->finish();
         signal = watch.signal();
     }
-    if (ledger && !ledger->trouble().empty())
-        warn(options.common, "arrange", "what was done could not be kept: " + ledger->trouble());
+    if (results && !results->trouble().empty())
+        warn(options.common, "arrange", "what was done could not be kept: " + results->trouble());
     if (shard)
         writeDependencies(options.common, work.files);
     else
@@ -131,9 +132,10 @@ void runCommand(const ArrangeCommand& command, const std::vector<PartFile>& part
 
 void arrangeSensors(const ArrangeCommand& command) {
     const ArrangeToolOptions& options = command.options();
-    if (!options.batch.merge) return runCommand(command, {});
-    const std::vector<PartFile> parts = openParts(options.operands, "arrange");
-    runCommand(*commandOf(parts, options), parts);
+    if (!options.batch.merge) return runCommand(command, nullptr);
+    auto parts = std::make_unique<JobResults>(mergeParts(options.operands, "arrange"));
+    const auto made_by = commandOf(*parts, options);
+    runCommand(*made_by, std::move(parts));
 }
 
 }  // namespace

@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "base/checkpoint.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
+#include "base/part_file.h"
 #include "base/program.h"
 #include "base/run_files.h"
 #include "cli/batch_list.h"
@@ -126,83 +126,45 @@ class BatchWriter {
     std::size_t failed_ = 0, unmet_ = 0;
 };
 
-/// The jobs of a list that are this process' share, and what it has done of them before.
-class Share {
-  public:
-    explicit Share(const CoverageToolOptions& options)
-        : options_(options),
-          list_(options.batch == "-" ? readStdin() : readAll(options.batch)),
-          jobs_(readBatchList(list_, displayName(options.batch))) {
-        const auto [first, end] = options.shard.blockOf(static_cast<std::int64_t>(jobs_.size()));
-        first_ = static_cast<std::size_t>(first);
-        count_ = static_cast<std::size_t>(end - first);
-        if (options.resume) goOn();
-    }
-
-    [[nodiscard]] std::size_t size() const { return count_; }
-    [[nodiscard]] const BatchJob& job(std::size_t i) const { return jobs_[first_ + i]; }
-    [[nodiscard]] bool isDone(std::size_t i) const { return i < done_.size() && done_[i]; }
-
-    /// What became of it before. \pre isDone()
-    [[nodiscard]] SceneOutcome outcome(std::size_t i) const {
-        return SceneOutcome::fromText(checkpoint_->part().find(nameOf(i)).value());
-    }
-    /// Keeps what becomes of it now.
-    void keep(std::size_t i, const SceneOutcome& outcome) {
-        if (checkpoint_) checkpoint_->add(nameOf(i), outcome.text());
-    }
-    void finish() {
-        if (checkpoint_) checkpoint_->remove();
-    }
-
-  private:
-    [[nodiscard]] std::string nameOf(std::size_t i) const { return std::to_string(first_ + i + 1); }
-
-    void goOn() {
-        JobId id;
-        id.tool = "coverage";
-        id.history = {options_.command};
-        id.inputs = sha256(list_);
-        id.form = "jsonl";
-        id.units = static_cast<std::int64_t>(jobs_.size());
-        checkpoint_.emplace(checkpointOf(options_.common.output), PartHead{id, options_.shard});
-        for (std::size_t i = 0; i < count_; ++i)
-            done_.push_back(checkpoint_->part().has(nameOf(i)));
-    }
-
-    const CoverageToolOptions& options_;
-    std::string list_;
-    std::vector<BatchJob> jobs_;
-    std::size_t first_ = 0, count_ = 0;
-    std::vector<bool> done_;
-    std::optional<Checkpoint> checkpoint_;
-};
-
-}  // namespace
-
-namespace {
+/// What identifies the results of a list. \param list its bytes
+JobId jobOf(const CoverageToolOptions& options, const std::string& list, std::size_t jobs) {
+    JobId id;
+    id.tool = "coverage";
+    id.history = {options.command};
+    id.inputs = sha256(list);
+    id.form = "jsonl";
+    id.units = static_cast<std::int64_t>(jobs);
+    return id;
+}
 
 void runShare(const CoverageToolOptions& options, JunitFile& junit) {
-    Share share(options);
+    const std::string list = options.batch == "-" ? readStdin() : readAll(options.batch);
+    const std::vector<BatchJob> jobs = readBatchList(list, displayName(options.batch));
+    const auto [first, end] = options.shard.blockOf(static_cast<std::int64_t>(jobs.size()));
+    const auto count = static_cast<std::size_t>(end - first);
+    std::optional<JobResults> results;
+    if (options.resume)
+        results.emplace(options.common.output, jobOf(options, list, jobs.size()), options.shard,
+                        true);
     const BatchWorker worker(options);
     BatchWriter writer(options, junit);
     const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
-    progress->begin("scenes", static_cast<std::int64_t>(share.size()));
-    const auto finish = [&](std::size_t i, const SceneOutcome& outcome) {
-        writer.take(share.job(i), outcome);
-        progress->advance(1);
-    };
-    runInOrder(share.size(), [&](std::size_t i) -> std::function<void()> {
-        if (share.isDone(i)) return [&, i] { finish(i, share.outcome(i)); };
-        return [&, i, outcome = worker.run(share.job(i))] {
-            share.keep(i, outcome);
-            finish(i, outcome);
+    progress->begin("scenes", static_cast<std::int64_t>(count));
+    runInOrder(count, [&, first = static_cast<std::size_t>(first)](std::size_t i) {
+        const BatchJob& job = jobs[first + i];
+        const std::string key = std::to_string(first + i + 1);
+        const auto done = results ? results->find(key) : std::nullopt;
+        return [&, key, is_new = !done,
+                outcome = done ? SceneOutcome::fromText(*done) : worker.run(job)] {
+            if (results && is_new) results->store(key, outcome.text());
+            writer.take(job, outcome);
+            progress->advance(1);
         };
     });
     progress->end();
     writer.commit();
-    share.finish();
-    writer.conclude(share.size());
+    if (results) results->finish();
+    writer.conclude(count);
 }
 
 }  // namespace

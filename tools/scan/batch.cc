@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scan/batch.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
@@ -19,10 +19,11 @@ namespace ispace {
 
 namespace {
 
-// Records of a part: what stands before all readings of a stream, and readings, whose first and
-// number are in the name: readings:26+13. Of files there is but the name.
-constexpr std::string_view kHeader = "header",
-                           kReadings = "readings:", kClouds = "clouds:", kFiles = "files:";
+// Keys of results: what stands before all readings of a stream, and readings, with the number of
+// the first of the job and how many they are: 000000000026+13. Of files there is but the key.
+constexpr std::string_view kHeader = "header";
+/// Ends the form of parts that hold clouds of points in place of text.
+constexpr std::string_view kClouds = " clouds";
 
 static_assert(std::endian::native == std::endian::little, "clouds are kept in little-endian order");
 
@@ -57,157 +58,117 @@ std::optional<PointCloud> takeCloud(std::string_view& bytes) {
     return cloud;
 }
 
-/// Readings in a record; 0 for a header.
-std::int64_t readingsIn(const PartFile& part, std::size_t record) {
-    const std::string& name = part.name(record);
-    for (const std::string_view prefix : {kReadings, kClouds, kFiles})
-        if (name.starts_with(prefix))
-            if (const auto count = parseInteger(name.substr(name.find('+') + 1))) return *count;
-    if (name == kHeader) return 0;
-    throw FormatError({part.file(), 0, 0, "no record of readings: " + name});
+std::string keyOf(std::int64_t first, std::size_t count) {
+    constexpr std::size_t kDigits = 12;
+    std::string key = std::to_string(first);
+    key.insert(0, kDigits - std::min(kDigits, key.size()), '0');
+    return key + '+' + std::to_string(count);
 }
 
-std::int64_t readingsIn(const PartFile& part) {
-    std::int64_t count = 0;
-    for (std::size_t i = 0; i < part.records(); ++i) count += readingsIn(part, i);
-    return count;
+/// Where the readings from `first` on that are there end. \throws FormatError for a foreign key
+std::int64_t endOfReadings(const JobResults& results, std::int64_t first) {
+    for (const std::string& key : results.keys()) {
+        if (key == kHeader) continue;
+        const std::size_t plus = key.find('+');
+        const auto at = parseInteger(key.substr(0, plus));
+        const auto count =
+            plus == std::string::npos ? std::nullopt : parseInteger(key.substr(plus + 1));
+        if (!at || !count || *count < 0 ||
+            *count > std::numeric_limits<std::int64_t>::max() - first)
+            throw FormatError({results.file(), 0, 0, "no key of readings: " + key});
+        if (*at != first) break;
+        first += *count;
+    }
+    return first;
 }
 
-/// Counts on from `done`.
-std::string recordName(std::string_view what, const Readings& readings, std::int64_t& done) {
-    const auto count = static_cast<std::int64_t>(readings.jobs.size());
-    std::string name(what);
-    name += std::to_string(done) + '+' + std::to_string(count);
-    done += count;
-    return name;
+/// Calls visit(bytes) for each block of readings in order.
+template <typename Visit>
+void forEachBlock(const JobResults& results, Visit visit) {
+    for (const std::string& key : results.keys())
+        if (key != kHeader) visit(results.find(key).value());
 }
 
-/// Rows of all clouds in parts, whose records are read and checked.
-CloudRows rowsIn(std::span<const PartFile> parts) {
+/// Rows of all clouds in results, which are read and checked.
+CloudRows rowsIn(const JobResults& results) {
     CloudRows rows;
-    for (const PartFile& part : parts)
-        for (std::size_t i = 0; i < part.records(); ++i) {
-            const std::string bytes = part.bytes(i);
-            if (!part.name(i).starts_with(kClouds)) continue;
-            for (std::string_view left = bytes; !left.empty();) {
-                const auto cloud = takeCloud(left);
-                if (!cloud)
-                    throw FormatError({part.file(), 0, 0, "a cloud of points is not whole"});
-                rows.add(cloud->width, cloud->height);
-            }
+    forEachBlock(results, [&](const std::string& bytes) {
+        if (!results.head().job.form.ends_with(kClouds)) return;
+        for (std::string_view left = bytes; !left.empty();) {
+            const auto cloud = takeCloud(left);
+            if (!cloud) throw FormatError({results.file(), 0, 0, "a cloud of points is not whole"});
+            rows.add(cloud->width, cloud->height);
         }
+    });
     return rows;
 }
 
-/// The readings of parts, in their order, as one file.
-class Joiner {
+/// Writes the readings of a job as one file. Damage is found before anything goes into a stream.
+void writeReadings(const JobResults& results, const std::string& target) {
+    const std::string_view form = results.head().job.form;
+    const CloudRows rows = rowsIn(results);
+    checkPoints(rows.points);
+    OutputFile file(target);
+    if (!form.ends_with(kClouds)) {
+        file.write(results.find(std::string(kHeader)).value_or(""));
+        forEachBlock(results, [&](const std::string& bytes) { file.write(bytes); });
+        return file.commit();
+    }
+    const auto format = cloudFormatOf(form.substr(0, form.find(' ')));
+    if (!format)
+        throw FormatError({results.file(), 0, 0, "no clouds: it holds " + std::string(form)});
+    const bool is_text = form.find(" text") != std::string_view::npos;
+    CloudStream clouds(*format, is_text ? Encoding::Ascii : Encoding::Binary, rows.width,
+                       rows.count, [&file](auto bytes) { file.write(bytes); });
+    forEachBlock(results, [&](std::string_view bytes) {
+        while (const auto cloud = takeCloud(bytes)) clouds.add(*cloud);
+    });
+    clouds.finish();
+    file.commit();
+}
+
+/// Readings as results of a job; the product, or a part of it, is made of them in the end.
+class StoredReadings final : public Delivery {
   public:
-    /// Damage is told before anything goes into a stream.
-    Joiner(std::span<const PartFile> parts, const std::string& target)
-        : parts_(parts), file_(target) {
-        const std::string_view form = parts.front().head().job.form;
-        const CloudRows rows = rowsIn(parts);
-        checkPoints(rows.points);
-        if (const auto format = cloudFormatOf(form.substr(0, form.find(' '))))
-            clouds_.emplace(*format, form.ends_with("text") ? Encoding::Ascii : Encoding::Binary,
-                            rows.width, rows.count, [this](auto bytes) { file_.write(bytes); });
-    }
-    void write() {
-        for (const PartFile& part : parts_)
-            for (std::size_t i = 0; i < part.records(); ++i) add(part.name(i), part.bytes(i));
-        if (clouds_) clouds_->finish();
-        file_.commit();
-    }
-
-  private:
-    void add(const std::string& name, std::string_view bytes) {
-        if (name == kHeader) {
-            if (!std::exchange(has_header_, true)) file_.write(bytes);
-        } else if (name.starts_with(kReadings)) {
-            file_.write(bytes);
-        } else if (name.starts_with(kClouds)) {
-            while (const auto cloud = takeCloud(bytes)) clouds_->add(*cloud);
-        }
-    }
-
-    std::span<const PartFile> parts_;
-    OutputFile file_;
-    bool has_header_ = false;
-    std::optional<CloudStream> clouds_;
-};
-
-/// Readings as records: of a part, of a checkpoint, or of a checkpoint that becomes a part.
-class RecordDelivery final : public Delivery {
-  public:
-    /// \param checkpoint null without --resume
-    RecordDelivery(const ScanToolOptions& options, PartHead head, const ReadingFormat& format,
-                   std::unique_ptr<Checkpoint> checkpoint)
-        : options_(options), head_(std::move(head)), checkpoint_(std::move(checkpoint)) {
-        if (checkpoint_) done_ = readingsIn(checkpoint_->part());
-        if (!checkpoint_) writer_.emplace(options.common.output, head_);
+    /// \param first reading that is still to be taken
+    /// \param files files of one reading each, which get the readings; null: the results do
+    StoredReadings(const ScanToolOptions& options, const ReadingFormat& format, JobResults results,
+                   std::int64_t first, std::unique_ptr<Delivery> files)
+        : options_(options), results_(std::move(results)), next_(first), files_(std::move(files)) {
         const std::string header = how() == Packing::Stream ? format.header() : "";
-        const bool is_begun = checkpoint_ && checkpoint_->part().records() > 0;
-        if (!header.empty() && !is_begun) keep(std::string(kHeader), header);
+        if (!files_ && !header.empty() && !results_.find(std::string(kHeader)))
+            results_.store(std::string(kHeader), header);
     }
     [[nodiscard]] Packing how() const override {
+        if (files_) return files_->how();
         return isOneCloud(options_) ? Packing::Clouds : Packing::Stream;
     }
     void write(Readings& readings) override {
-        if (how() == Packing::Stream)
-            return keep(recordName(kReadings, readings, done_), readings.text);
-        std::string bytes;
-        for (const PointCloud& cloud : readings.clouds) appendCloud(bytes, cloud);
-        keep(recordName(kClouds, readings, done_), bytes);
+        if (files_) files_->write(readings);
+        std::string clouds;
+        for (const PointCloud& cloud : files_ ? std::vector<PointCloud>() : readings.clouds)
+            appendCloud(clouds, cloud);
+        const std::string_view bytes = files_                     ? std::string_view()
+                                       : how() == Packing::Stream ? readings.text
+                                                                  : std::string_view(clouds);
+        results_.store(keyOf(next_, readings.jobs.size()), bytes);
+        next_ += static_cast<std::int64_t>(readings.jobs.size());
     }
     void commit() override {
-        if (writer_) return writer_->finish();
-        const PartFile& done = checkpoint_->part();
-        if (options_.batch.shard) {
-            PartWriter part(options_.common.output, head_);
-            for (std::size_t i = 0; i < done.records(); ++i) part.add(done.name(i), done.bytes(i));
-            part.finish();
-        } else {
-            Joiner({&done, 1}, options_.common.output).write();
-        }
-        checkpoint_->remove();
-    }
-
-  private:
-    void keep(const std::string& name, std::string_view bytes) {
-        if (checkpoint_)
-            checkpoint_->add(name, bytes);
+        if (files_)
+            files_->commit();
+        else if (options_.batch.shard)
+            results_.writePart(options_.common.output);
         else
-            writer_->add(name, bytes);
-    }
-
-    const ScanToolOptions& options_;
-    PartHead head_;
-    std::unique_ptr<Checkpoint> checkpoint_;
-    std::optional<PartWriter> writer_;
-    std::int64_t done_ = 0;  // readings of this shard
-};
-
-/// Files of one reading each, and how many are written.
-class CountedFiles final : public Delivery {
-  public:
-    CountedFiles(std::unique_ptr<Delivery> files, std::unique_ptr<Checkpoint> checkpoint)
-        : files_(std::move(files)), checkpoint_(std::move(checkpoint)) {
-        if (checkpoint_) done_ = readingsIn(checkpoint_->part());
-    }
-    [[nodiscard]] Packing how() const override { return files_->how(); }
-    void write(Readings& readings) override {
-        files_->write(readings);
-        if (checkpoint_) checkpoint_->add(recordName(kFiles, readings, done_), "");
-    }
-    void commit() override {
-        files_->commit();
-        if (checkpoint_) checkpoint_->remove();
+            writeReadings(results_, options_.common.output);
+        results_.finish();
     }
 
   private:
+    const ScanToolOptions& options_;
+    JobResults results_;
+    std::int64_t next_;
     std::unique_ptr<Delivery> files_;
-    std::unique_ptr<Checkpoint> checkpoint_;
-    std::int64_t done_ = 0;  // readings of this shard
 };
 
 }  // namespace
@@ -228,6 +189,7 @@ JobId readingsJob(const ScanCommand& command, const SceneInput& input, const Rea
     job.inputs = sha256(all + poses);
     job.seed = options.common.seed;
     job.form = options.format + (format.isBinary() ? " binary" : " text");
+    if (isOneCloud(options)) job.form += kClouds;
     job.units = units;
     return job;
 }
@@ -255,51 +217,32 @@ OwnReadings ownReadings(const ScanToolOptions& options, const JobId& job, const 
                          " is made as a whole: name a folder (-o DIR/) for a file each reading, or "
                          "take jsonl, csv, raw or pcd");
     if (!names && format.isStream()) format.checkStream();
-    if (!names && options.batch.shard && options.batch.resume && isDoneAlready(output, head))
-        return own;
+    if (!names && options.batch.shard && options.batch.resume && isPartOf(output, head)) return own;
     std::unique_ptr<Delivery> files;  // makes the folder, in which the checkpoint is
     if (names)
         files = makeDelivery(options, sensors, format, options.poses.empty() ? *job.units : -1);
-    std::unique_ptr<Checkpoint> checkpoint;
-    if (options.batch.resume) {
-        std::string file = checkpointOf(output);
-        // Shards write into one folder.
-        if (names && options.batch.shard)
-            file +=
-                '-' + std::to_string(head.shard.index) + "of" + std::to_string(head.shard.count);
-        checkpoint = std::make_unique<Checkpoint>(file, head);
-        own.block.first += readingsIn(checkpoint->part());
-    }
-    if (names)
-        own.delivery = std::make_unique<CountedFiles>(std::move(files), std::move(checkpoint));
-    else
-        own.delivery =
-            std::make_unique<RecordDelivery>(options, head, format, std::move(checkpoint));
+    JobResults results(output, job, head.shard, options.batch.resume);
+    own.block.first = endOfReadings(results, own.block.first);
+    own.delivery = std::make_unique<StoredReadings>(options, format, std::move(results),
+                                                    own.block.first, std::move(files));
     return own;
 }
 
 void mergeReadings(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
-    const std::vector<PartFile> parts = openParts(options.operands, "scan");
-    const JobId& job = parts.front().head().job;
+    const JobResults parts = mergeParts(options.operands, "scan");
+    const JobId& job = parts.head().job;
     const std::string format = job.form.substr(0, job.form.find(' '));
     const std::string& output = options.common.output;
     if (!suffixOf(output).empty() && options.format != format)
         throw UsageError(output + ": the parts hold " + format + "; name the file so");
-    if (job.form.ends_with(" binary")) refuseTerminal(output, format);
-    std::int64_t count = 0;
-    for (const PartFile& part : parts) {
-        const Shard::Block block = part.head().shard.blockOf(job.units.value_or(0));
-        const std::int64_t found = readingsIn(part);
-        if (found != block.end - block.first)
-            throw FormatError({part.file(), 0, 0,
-                               "holds " + std::to_string(found) + " readings, and shard " +
-                                   part.head().shard.text() + " of " +
-                                   std::to_string(job.units.value_or(0)) + " has " +
-                                   std::to_string(block.end - block.first)});
-        count += found;
-    }
-    Joiner(parts, output).write();
+    if (job.form.find(" binary") != std::string::npos) refuseTerminal(output, format);
+    const std::int64_t count = endOfReadings(parts, 0);
+    if (count != job.units)
+        throw FormatError({parts.file(), 0, 0,
+                           "the parts lack reading " + std::to_string(count + 1) + " of " +
+                               std::to_string(job.units.value_or(0))});
+    writeReadings(parts, output);
     writeDependencies(options.common, options.operands);
     talk(options.common, "scan",
          std::to_string(count) + (count == 1 ? " reading" : " readings") + " joined");

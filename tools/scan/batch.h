@@ -25,7 +25,7 @@ struct OwnReadings {
     std::unique_ptr<Delivery> delivery;  ///< null: the part is there already
 };
 /// The share of --shard, without what --resume finds done. \pre isBatch()
-/// \throws UsageError where readings cannot be joined; as Checkpoint
+/// \throws UsageError where readings cannot be joined; as JobResults
 OwnReadings ownReadings(const ScanToolOptions& options, const JobId& job, const Sensors& sensors,
                         const ReadingFormat& format);
 
