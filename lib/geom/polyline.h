@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geom/point.h"
+#include "geom/polygon.h"
 
 namespace ispace {
 
