@@ -27,7 +27,6 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "base/program.h"
 
 namespace ispace {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/cpu_quota.h"
+#include "base/parallel.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "base/test_folder.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {

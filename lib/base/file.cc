@@ -18,8 +18,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/held_signals.h"
-#include "base/read_fence.h"
 #include "base/run_files.h"
 
 namespace ispace {

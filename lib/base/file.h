@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace ispace {
 
@@ -119,5 +122,15 @@ std::string withSuffix(const std::string& file, const char* suffix);
 bool isTerminalOutput(const std::string& target);
 /// True if standard input is a terminal.
 bool isTerminalInput();
+
+/// Takes bytes as they come, in order.
+using ByteSink = std::function<void(std::string_view)>;
+
+/// Appends the bytes of a number as binary formats have it, little-endian.
+template <typename Number>
+void appendLittle(std::string& out, Number value) {
+    static_assert(std::is_arithmetic_v<Number> && std::endian::native == std::endian::little);
+    out.append(reinterpret_cast<const char*>(&value), sizeof(value));
+}
 
 }  // namespace ispace

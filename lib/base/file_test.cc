@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/test_folder.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/json_difference.h"
+#include "base/json_writer.h"
 
 #include <gtest/gtest.h>
 

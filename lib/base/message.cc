@@ -2,6 +2,12 @@
 #include "base/message.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
+
+#include "base/json_writer.h"
 
 namespace ispace {
 
@@ -101,6 +107,60 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& k
 std::string didYouMean(std::string_view word, const std::vector<std::string>& known) {
     const std::string best = nearestWord(word, known);
     return best.empty() ? "" : ", did you mean `" + best + "`?";
+}
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t group = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            group = group << 8U |
+                    (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+        for (unsigned k = 0; k < 4; ++k)
+            out += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63U];
+    }
+    return out;
+}
+
+std::string programPrefix() {
+    std::error_code error;
+    const auto folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    auto prefix = folder.parent_path();
+    // Where a package keeps the tools apart from other programs of the same names.
+    if (folder.string().ends_with("/lib/ispace/bin")) prefix = prefix.parent_path().parent_path();
+    return prefix.string();
+}
+
+std::string_view version() { return ISPACE_VERSION; }
+
+JsonWriter& beginReport(JsonWriter& json, std::string_view schema, std::string_view tool) {
+    json.beginObject().key("schema").value(schema);
+    return json.key("tool").value(tool).key("version").value(version());
+}
+
+std::string shellQuote(std::string_view word) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,=%+@";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos)
+        return std::string(word);
+    std::string quoted = "'";
+    for (const char c : printable(word)) {
+        if (c == '\'')
+            quoted += "'\\''";
+        else
+            quoted += c;
+    }
+    return quoted + '\'';
+}
+
+std::string baseName(std::string_view operand) {
+    while (operand.size() > 1 && operand.ends_with('/')) operand.remove_suffix(1);
+    const auto slash = operand.rfind('/');
+    return std::string(slash == std::string_view::npos || operand.size() == 1
+                           ? operand
+                           : operand.substr(slash + 1));
 }
 
 }  // namespace ispace

@@ -29,7 +29,7 @@
 #include <vector>
 
 #include "base/file.h"
-#include "base/program.h"
+#include "base/message.h"
 #include "base/shard.h"
 
 namespace ispace {

@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "base/file.h"
-#include "base/test_damage.h"
-#include "base/test_folder.h"
+#include "support/test_damage.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {

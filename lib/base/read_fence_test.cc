@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/read_fence.h"
+#include "base/run_files.h"
 
 #include <gtest/gtest.h>
 

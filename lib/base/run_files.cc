@@ -3,10 +3,12 @@
 
 #include <sys/stat.h>
 #include <unistd.h>
-
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <compare>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -197,6 +199,94 @@ std::string followLinks(const std::string& target) {
     if (fs::is_symlink(path, error))
         throw std::system_error(ELOOP, std::generic_category(), displayName(target));
     return path.string();
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::mutex fence_guard;
+std::optional<std::vector<std::string>> fenced;  // guarded
+
+}  // namespace
+
+ReadFence::ReadFence(const std::vector<std::string>& folders) {
+    std::vector<std::string> places;
+    for (const std::string& folder : folders) {
+        std::error_code error;
+        places.push_back(fs::canonical(folder, error).string());
+        if (error) throw std::system_error(error, folder);
+    }
+    const std::lock_guard lock(fence_guard);
+    fenced = std::move(places);
+}
+
+ReadFence::~ReadFence() {
+    const std::lock_guard lock(fence_guard);
+    fenced.reset();
+}
+
+bool mayBeRead(const std::string& name) {
+    const std::lock_guard lock(fence_guard);
+    return !fenced || std::any_of(fenced->begin(), fenced->end(), [&](const std::string& folder) {
+        return liesOpenlyIn(folder, name);
+    });
+}
+
+void mustBeReadable(const std::string& name) {
+    if (!mayBeRead(name))
+        throw std::system_error(ENOENT, std::generic_category(), displayName(name));
+}
+
+bool liesIn(const fs::path& folder, const fs::path& file) {
+    return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
+           folder.end();
+}
+
+bool liesOpenlyIn(const std::string& folder, const std::string& name) {
+    std::error_code error;
+    const fs::path within = fs::canonical(folder, error);
+    if (error) return false;
+    const fs::path file = fs::canonical(name, error);
+    if (error || !fs::is_regular_file(file, error)) return false;
+    if (!liesIn(within, file)) return false;
+    const auto below = std::next(file.begin(), std::distance(within.begin(), within.end()));
+    return std::none_of(below, file.end(),
+                        [](const fs::path& part) { return part.string().starts_with('.'); });
+}
+
+namespace {
+
+std::mutex signals_guard;
+
+/// How often each has come; a handler reaches nothing but what is global.
+std::atomic<int> came[NSIG];
+static_assert(std::atomic<int>::is_always_lock_free);
+
+void note(int signal) { ++came[signal]; }
+
+bool isIgnored(const struct sigaction& action) {
+    return (action.sa_flags & SA_SIGINFO) == 0 && action.sa_handler == SIG_IGN;
+}
+
+}  // namespace
+
+HeldSignals::HeldSignals() : one_at_a_time_(signals_guard) {
+    // To block them would hold them up in one thread only; the others would take them.
+    struct sigaction noting = {};
+    noting.sa_handler = note;
+    noting.sa_flags = SA_RESTART;
+    for (std::size_t i = 0; i < std::size(kSignals); ++i) {
+        ::sigaction(kSignals[i], nullptr, &before_[i]);
+        if (!isIgnored(before_[i])) ::sigaction(kSignals[i], &noting, &before_[i]);
+    }
+}
+
+HeldSignals::~HeldSignals() {
+    for (std::size_t i = 0; i < std::size(kSignals); ++i)
+        if (!isIgnored(before_[i])) ::sigaction(kSignals[i], &before_[i], nullptr);
+    for (const int signal : kSignals)
+        for (int times = came[signal].exchange(0); times > 0; --times) ::kill(::getpid(), signal);
 }
 
 }  // namespace ispace

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <csignal>
+#include <filesystem>
+#include <mutex>
 #include <string>
+#include <vector>
 
 namespace ispace {
 
@@ -58,5 +62,49 @@ class OpenOutput {
 /// The file at the end of a chain of links; it need not exist. Relative paths stay relative.
 /// \throws std::system_error for a circle of links
 std::string followLinks(const std::string& target);
+
+/// While this lives, readers of inputs (readAll, InputFile, openRegular, includes) find only
+/// regular files in these folders and below, links followed, and none that is hidden (`.name`) or
+/// below a hidden folder there; others seem not to exist.
+///
+/// One at a time per process. It is global on purpose, as RunFiles is, so that no reader can forget
+/// it.
+class ReadFence {
+  public:
+    /// \throws std::system_error if one of the folders is not there
+    explicit ReadFence(const std::vector<std::string>& folders);
+    ~ReadFence();
+    ReadFence(const ReadFence&) = delete;
+    ReadFence& operator=(const ReadFence&) = delete;
+};
+
+/// True if no fence keeps this file from being read; call it before opening the file.
+bool mayBeRead(const std::string& name);
+/// \throws std::system_error, as for a missing file, if it may not be read
+void mustBeReadable(const std::string& name);
+
+/// True if the file lies in the folder or below. \pre both are canonical
+bool liesIn(const std::filesystem::path& folder, const std::filesystem::path& file);
+
+/// True if `name` leads, links followed, to a regular file in this folder or below, and no part of
+/// the way below it is hidden.
+bool liesOpenlyIn(const std::string& folder, const std::string& name);
+
+/// Delays TERM, INT and HUP, whichever thread they reach, until its end: for the few system calls
+/// between which a process must not end. Handlers then get their signals; ignored signals stay
+/// ignored. One lives at a time; others wait.
+class HeldSignals {
+  public:
+    HeldSignals();
+    ~HeldSignals();
+    HeldSignals(const HeldSignals&) = delete;
+    HeldSignals& operator=(const HeldSignals&) = delete;
+
+  private:
+    static constexpr int kSignals[] = {SIGTERM, SIGINT, SIGHUP};
+
+    std::lock_guard<std::mutex> one_at_a_time_;
+    struct sigaction before_[std::size(kSignals)] = {};
+};
 
 }  // namespace ispace

@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/test_folder.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {

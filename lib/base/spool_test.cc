@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/spool.h"
+#include "base/numpy_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,8 +8,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
-
-#include "base/numpy_file.h"
 
 namespace ispace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/batch_list.h"
+#include "cli/batch.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reading a command line, and what is wrong with one.
+// A command line as text: for --help, for the history of what it made, and for those who run it
+// again.
 #include "cli/command_line.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <sstream>
 #include <utility>
 
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "cli/command_line_data.h"
 #include "cli/outputs.h"
+#include "cli/run_tool.h"
 #include "record/schema.h"
 
 namespace ispace {
@@ -201,5 +206,189 @@ void CommandLine::operands(std::vector<std::string>& variable, std::size_t most)
 void CommandLine::manyOperandsWith(const bool& flag) { data_->many = &flag; }
 
 bool CommandLine::given(const std::string& name) const { return data_->app.count(name) > 0; }
+
+namespace {
+
+/// Turns -MD, -MF FILE and -MFFILE into what CLI11 can parse.
+void rewriteCompilerNames(std::vector<std::string>& words) {
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (!words[i].starts_with("-M") || !isCompilerName(words[i].substr(1, 2))) continue;
+        const std::string joined = words[i].substr(3);
+        words[i] = "-" + words[i].substr(0, 3);
+        if (!joined.empty()) words[i] += '=' + joined;
+    }
+}
+
+}  // namespace
+
+std::string CommandLine::Data::hintFor(const std::string& unknown) const {
+    if (const auto hint = renamed.find(unknown); hint != renamed.end()) return ": " + hint->second;
+    std::vector<std::string> known;
+    for (const Entry& entry : entries)
+        for (const std::string& name : entry.option->get_lnames()) known.push_back("--" + name);
+    return didYouMean(unknown, known);
+}
+
+void CommandLine::Data::explain(const std::string& mismatch) const {
+    for (const Entry& entry : entries) {
+        const CLI::Option& option = *entry.option;
+        if (!mismatch.starts_with(option.get_name() + ": ")) continue;
+        if (option.count() > 1)
+            usage(nameOf(option) + ": may be given once, and is given " +
+                  std::to_string(option.count()) + " times");
+        usage(nameOf(option) + ' ' + entry.value + ": the value is missing");
+    }
+}
+
+void CommandLine::Data::sortOut(const std::vector<std::string>& words) {
+    bool options_ended = false;
+    for (const std::string& word : words) {
+        if (!options_ended && word == "--") {
+            options_ended = true;
+        } else if (!options_ended && word.size() > 1 && word.starts_with('-')) {
+            usage("unknown option " + shellQuote(word) + hintFor(word.substr(0, word.find('='))));
+        } else if (word.empty()) {
+            usage("an operand is empty");
+        } else {
+            operands->push_back(word);
+        }
+    }
+    const bool takes_many = many != nullptr && *many;
+    if (operands->size() > max_operands && !takes_many)
+        usage("too many operands: " + shellQuote((*operands)[max_operands]));
+}
+
+void CommandLine::parse(int argc, const char* const* argv) {
+    Data& d = *data_;
+    std::vector<std::string> words(argv + 1, argv + argc);
+    // CLI11 takes words from the back; what follows "--" is kept from it and put behind.
+    const auto end = std::find(words.begin(), words.end(), "--");
+    const std::vector<std::string> tail(end, words.end());
+    words.erase(end, words.end());
+    rewriteCompilerNames(words);
+    std::reverse(words.begin(), words.end());
+    try {
+        d.app.parse(words);
+    } catch (const CLI::ArgumentMismatch& error) {
+        d.explain(error.what());
+        d.usage(error.what());
+    } catch (const CLI::ParseError& error) {
+        d.usage(error.what());
+    }
+    if (d.help) throw TextRequested{helpText()};
+    if (d.version)
+        throw TextRequested{d.tool + " (ispace) " + std::string(version()) +
+                            "\nLicence GPL-3.0-or-later; there is no warranty.\n"};
+    d.forEachOrdered([](const Data::Entry& entry, const std::string& text) { entry.take(text); });
+    std::vector<std::string> rest = d.app.remaining();
+    rest.insert(rest.end(), tail.begin(), tail.end());
+    d.sortOut(rest);
+    d.check();
+}
+
+namespace {
+
+constexpr std::size_t kHelpWidth = 79, kHelpColumn = 26;
+
+/// "-o, --output FILE"
+std::string signature(const CLI::Option& option, const std::string& value) {
+    std::string names;
+    for (const std::string& name : option.get_snames()) names += "-" + name + ", ";
+    for (const std::string& name : option.get_lnames())
+        names += (isCompilerName(name) ? "-" : "--") + name + ", ";
+    names.resize(names.size() - 2);
+    return value.empty() ? names : names + ' ' + value;
+}
+
+/// Appends `text` wrapped to kHelpWidth, its lines beginning at `column`; the first line is
+/// `used` characters long already.
+void appendWrapped(std::string& out, const std::string& text, std::size_t used,
+                   std::size_t column) {
+    std::istringstream words(text);
+    bool fresh = true;
+    for (std::string word; words >> word; fresh = false) {
+        if (!fresh && used + 1 + word.size() > kHelpWidth) {
+            out += '\n' + std::string(column, ' ');
+            used = column;
+            fresh = true;
+        }
+        if (!fresh) out += ' ';
+        out += word;
+        used += word.size() + (fresh ? 0 : 1);
+    }
+    out += '\n';
+}
+
+std::string fileInHistory(const std::string& operand) {
+    const bool is_folder = std::filesystem::is_directory(operand);
+    return isStream(operand) && !is_folder ? "-" : shellQuote(baseName(operand));
+}
+
+}  // namespace
+
+template <typename Visit>
+void CommandLine::Data::forEachResult(Visit visit) const {
+    bool ordered_done = false;
+    for (const Entry& entry : entries) {
+        const CLI::Option& option = *entry.option;
+        if (entry.enters == Enters::Nothing || option.count() == 0) continue;
+        if (entry.take) {
+            // Where the first of them stands in the man page they all follow, as they came.
+            if (!std::exchange(ordered_done, true))
+                forEachOrdered([&](const Entry& one, const std::string& text) {
+                    visit(nameOf(*one.option), &text, one);
+                });
+        } else if (entry.value.empty()) {
+            visit(nameOf(option), nullptr, entry);
+        } else {
+            for (const std::string& value : option.results()) visit(nameOf(option), &value, entry);
+        }
+    }
+}
+
+std::string CommandLine::historyLine(const std::vector<std::string>& operands) const {
+    std::string line = data_->tool;
+    for (const std::string& operand : operands) line += ' ' + fileInHistory(operand);
+    data_->forEachResult(
+        [&line](const std::string& name, const std::string* value, const Data::Entry& entry) {
+            line += ' ' + name;
+            if (value == nullptr) return;
+            line += ' ';
+            line += entry.enters == Enters::BaseName ? fileInHistory(*value) : shellQuote(*value);
+        });
+    return line;
+}
+
+std::vector<std::string> CommandLine::resultWords() const {
+    std::vector<std::string> words = {data_->tool};
+    data_->forEachResult(
+        [&words](const std::string& name, const std::string* value, const Data::Entry&) {
+            // A value may begin with a minus.
+            const bool is_long = value != nullptr && name.starts_with("--");
+            words.push_back(is_long ? name + '=' + *value : name);
+            if (value != nullptr && !is_long) words.push_back(*value);
+        });
+    words.emplace_back("--");
+    words.insert(words.end(), data_->operands->begin(), data_->operands->end());
+    return words;
+}
+
+std::string CommandLine::helpText() const {
+    std::string out = "Usage: " + data_->tool + " [OPTION]... " + data_->synopsis + "\n";
+    appendWrapped(out, data_->summary, 0, 0);
+    out += "\nOptions:\n";
+    for (const Data::Entry& entry : data_->entries) {
+        const std::string name = "  " + signature(*entry.option, entry.value);
+        out += name;
+        if (name.size() + 2 > kHelpColumn)
+            out += '\n' + std::string(kHelpColumn, ' ');
+        else
+            out += std::string(kHelpColumn - name.size(), ' ');
+        appendWrapped(out, entry.help, kHelpColumn, kHelpColumn);
+    }
+    out += "\nExit status: " + data_->statuses + ".\n";
+    out += "Details: man " + data_->tool + "\n";
+    return out;
+}
 
 }  // namespace ispace

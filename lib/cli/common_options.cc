@@ -16,14 +16,13 @@
 #include <utility>
 #include <vector>
 
-#include "base/cpu_quota.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "base/program.h"
-#include "sensor/camera.h"
-#include "sensor/kind.h"
+#include "base/parallel.h"
+#include "scene/sensor/camera.h"
+#include "scene/sensor/sensor.h"
 
 namespace ispace {
 

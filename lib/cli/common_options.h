@@ -10,9 +10,9 @@
 
 #include "base/error.h"
 #include "cli/command_line.h"
-#include "cli/scene_rules.h"
-#include "cover/target.h"
-#include "layout/devices.h"
+#include "cli/operands.h"
+#include "coverage/target.h"
+#include "scene/devices.h"
 
 namespace ispace {
 

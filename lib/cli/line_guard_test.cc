@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/line_guard.h"
+#include "cli/run_tool.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -12,16 +12,16 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
-#include "base/read_fence.h"
+#include "base/run_files.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
-#include "env/door_zones.h"
 #include "env/walls.h"
-#include "io/input.h"
-#include "io/side_files.h"
-#include "layout/scene.h"
-#include "layout/schemas.h"
+#include "env/zone.h"
+#include "io/exporters.h"
+#include "io/importers.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
+#include "scene/scene.h"
 
 namespace ispace {
 

@@ -1,18 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
-#include "cli/scene_rules.h"
-#include "io/input.h"
-#include "layout/scene.h"
+#include "io/importers.h"
 #include "record/record.h"
+#include "record/yaml/yaml.h"
+#include "scene/run/run_changes.h"
+#include "scene/scene.h"
 
 namespace ispace {
+
+/// How tools take what the files of a scene say of other files.
+struct SceneRules {
+    /// If a layout records another digest than that of the environment: an error (true) or accepted
+    /// (false). Unset: a warning if the environment is an operand, an error if the layout's record
+    /// names it.
+    std::optional<bool> same_environment = {};
+    IncludeFiles includes = IncludeFiles::InFolder;
+    std::optional<std::uint64_t> max_work = {};  ///< of each input, see Budget; unset: by its size
+};
+
+/// The changes that clients made to the world of a recorded run, which began in a scene.
+/// \throws FormatError if events.csv holds no events
+RunChanges changesOfRun(const std::string& folder, const Scene& start);
 
 struct CommonOptions;
 

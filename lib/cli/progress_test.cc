@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/progress.h"
+#include "cli/progress_bar.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/recorded_changes.h"
+#include "cli/operands.h"
 
 #include "cli/common_options.h"
-#include "cli/operands.h"
 
 namespace ispace {
 

@@ -10,9 +10,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/read_fence.h"
+#include "base/run_files.h"
 #include "cli/common_options.h"
-#include "io/input.h"
+#include "io/importers.h"
 #include "record/text.h"
 
 namespace ispace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cli/operands.h"
-#include "layout/devices.h"
+#include "scene/devices.h"
 #include "sim/world_editor.h"
 
 namespace ispace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "env/test_scene.h"
 #include "geom/pose.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

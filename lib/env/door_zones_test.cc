@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "env/door_zones.h"
+#include "env/zone.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "env/schemas.h"
+#include "env/element_schemas.h"
 #include "record/text.h"
 
 namespace ispace {

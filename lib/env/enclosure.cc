@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "env/info.h"
+#include "env/environment.h"
 #include "geom/predicates.h"
 
 namespace ispace {

@@ -8,9 +8,9 @@
 #include <random>
 
 #include "env/level.h"
-#include "env/test_scene.h"
 #include "geom/predicates.h"
-#include "record/yaml.h"
+#include "record/yaml/yaml.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

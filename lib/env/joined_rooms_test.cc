@@ -8,9 +8,9 @@
 
 #include "base/number.h"
 #include "env/level.h"
-#include "env/test_plans.h"
-#include "env/test_scene.h"
-#include "geom/boolean.h"
+#include "geom/arrangement.h"
+#include "support/test_floor_plans.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <string>
 
+#include "base/parallel.h"
 #include "env/environment.h"
-#include "env/test_plans.h"
-#include "env/test_scene.h"
-#include "record/at_once.h"
+#include "support/test_floor_plans.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

@@ -7,9 +7,8 @@
 #include <cassert>
 #include <utility>
 
-#include "geom/boolean.h"
+#include "geom/arrangement.h"
 #include "geom/predicates.h"
-#include "geom/uncancelled.h"
 
 namespace ispace {
 

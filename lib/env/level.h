@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "base/lazy.h"
+#include "base/parallel.h"
 #include "env/environment.h"
 #include "env/point_location.h"
-#include "geom/visibility.h"
+#include "geom/visibility/visibility.h"
 
 namespace ispace {
 

@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "env/test_scene.h"
 #include "geom/predicates.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

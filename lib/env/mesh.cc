@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "env/body.h"
+#include "geom/planar_map.h"
 #include "geom/polygon.h"
 #include "geom/pose.h"
-#include "geom/weld.h"
 
 namespace ispace {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "env/body.h"
-#include "env/mesh_loops.h"
+#include "env/mesh.h"
 
 namespace ispace {
 

@@ -9,9 +9,9 @@
 #include <random>
 
 #include "env/body.h"
-#include "env/test_mesh.h"
-#include "env/test_scene.h"
 #include "geom/predicates.h"
+#include "support/test_mesh.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "env/mesh_loops.h"
+#include "env/mesh.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -8,9 +8,9 @@
 
 #include "env/body.h"
 #include "env/slice.h"
-#include "env/test_mesh.h"
-#include "env/test_scene.h"
-#include "geom/boolean.h"
+#include "geom/arrangement.h"
+#include "support/test_mesh.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

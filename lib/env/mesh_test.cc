@@ -8,8 +8,8 @@
 #include <limits>
 #include <map>
 
-#include "env/test_mesh.h"
-#include "env/test_scene.h"
+#include "support/test_mesh.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "env/info.h"
+#include "env/environment.h"
 #include "env/openings.h"
 #include "geom/spatial_index.h"
 

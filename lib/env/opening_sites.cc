@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "base/message.h"
-#include "env/info.h"
+#include "env/environment.h"
 #include "env/openings.h"
 #include "geom/predicates.h"
 

@@ -12,7 +12,7 @@
 #include "env/environment.h"
 #include "env/walls.h"
 #include "geom/spatial_index.h"
-#include "record/id_table.h"
+#include "record/record.h"
 
 namespace ispace {
 

@@ -2,7 +2,7 @@
 // What is said about doors and windows that are in no wall. Where the others stand: openings_test.
 #include <gtest/gtest.h>
 
-#include "env/test_scene.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "env/info.h"
+#include "env/environment.h"
 #include "env/opening_sites.h"
 
 namespace ispace {

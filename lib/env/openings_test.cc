@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "base/number.h"
-#include "env/info.h"
+#include "env/environment.h"
 #include "env/level.h"
-#include "env/test_scene.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

@@ -6,12 +6,12 @@
 #include <iterator>
 #include <utility>
 
+#include "base/parallel.h"
 #include "env/enclosure.h"
-#include "env/info.h"
+#include "env/environment.h"
 #include "env/openings.h"
 #include "env/walls.h"
 #include "geom/planar_map.h"
-#include "record/at_once.h"
 
 namespace ispace {
 

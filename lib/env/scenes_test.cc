@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "base/file.h"
-#include "base/test_paths.h"
-#include "env/test_scene.h"
 #include "geom/predicates.h"
-#include "record/yaml.h"
+#include "record/yaml/yaml.h"
+#include "support/test_paths.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

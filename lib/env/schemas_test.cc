@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "env/schemas.h"
+#include "env/element_schemas.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "env/test_scene.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

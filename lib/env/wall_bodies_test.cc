@@ -7,11 +7,11 @@
 #include <random>
 
 #include "base/number.h"
-#include "env/test_plans.h"
-#include "env/test_scene.h"
 #include "env/walls.h"
 #include "geom/pose.h"
 #include "geom/predicates.h"
+#include "support/test_floor_plans.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

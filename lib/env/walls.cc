@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/number.h"
+#include "env/element_schemas.h"
 #include "env/environment.h"
-#include "env/standing.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 

@@ -8,10 +8,10 @@
 
 #include "base/number.h"
 #include "env/level.h"
-#include "env/test_plans.h"
-#include "env/test_scene.h"
 #include "geom/pose.h"
 #include "geom/predicates.h"
+#include "support/test_floor_plans.h"
+#include "support/test_scene.h"
 
 namespace ispace {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "env/schemas.h"
+#include "env/element_schemas.h"
 #include "record/text.h"
 
 namespace ispace {

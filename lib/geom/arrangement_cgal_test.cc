@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "geom/arrangement.h"
-#include "geom/test_curves.h"
+#include "support/test_curves.h"
 
 namespace ispace {
 

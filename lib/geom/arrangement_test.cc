@@ -7,11 +7,10 @@
 #include <random>
 #include <utility>
 
-#include "geom/boolean.h"
 #include "geom/planar_map.h"
 #include "geom/pose.h"
 #include "geom/predicates.h"
-#include "geom/test_curves.h"
+#include "support/test_curves.h"
 
 namespace ispace {
 namespace {

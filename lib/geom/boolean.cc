@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/boolean.h"
+#include "geom/arrangement.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "geom/arrangement.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/box_order.h"
+#include "geom/spatial_index.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "base/lazy.h"
+#include "base/parallel.h"
 
 namespace ispace {
 

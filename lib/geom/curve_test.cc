@@ -8,7 +8,7 @@
 #include <random>
 
 #include "geom/predicates.h"
-#include "geom/test_curves.h"
+#include "support/test_curves.h"
 
 namespace ispace {
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <random>
 
-#include "geom/boolean.h"
-#include "geom/test_overlay.h"
+#include "geom/arrangement.h"
+#include "support/test_overlay.h"
 
 namespace ispace {
 namespace {

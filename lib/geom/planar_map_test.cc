@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "geom/boolean.h"
+#include "geom/arrangement.h"
 #include "geom/predicates.h"
-#include "geom/test_curves.h"
+#include "support/test_curves.h"
 
 namespace ispace {
 namespace {

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <set>
 
-#include "geom/overlay_lattice.h"
+#include "geom/overlay/overlay_lattice.h"
 #include "geom/predicates.h"
 
 namespace ispace {

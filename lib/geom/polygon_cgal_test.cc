@@ -9,7 +9,7 @@
 #include "geom/planar_map.h"
 #include "geom/polygon.h"
 #include "geom/predicates.h"
-#include "geom/test_curves.h"
+#include "support/test_curves.h"
 
 namespace ispace {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "geom/predicates.h"
-#include "geom/test_curves.h"
+#include "support/test_curves.h"
 
 namespace ispace {
 namespace {

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geom/rotation.h"
-
 namespace ispace {
 
 Point2 Pose2::operator*(Point2 local) const { return position + *this * Vec2{local.x, local.y}; }

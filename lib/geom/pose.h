@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Poses as Eigen's transforms. Not in pose.h, which everything includes: <Eigen/Geometry> takes
+// most of a second to compile.
 #pragma once
+
+#include <Eigen/Geometry>
 
 #include "geom/point.h"
 
@@ -51,5 +55,20 @@ struct Frame3 {
         return {dot(way, forward), dot(way, left), dot(way, up)};
     }
 };
+
+/// Maps points of the pose's frame to the outer frame; exact where angles are multiples of 90
+/// degrees.
+Eigen::Isometry3d isometryOf(const Pose3& pose);
+/// A unit quaternion; exact at multiples of 180 degrees.
+Eigen::Quaterniond quaternionOf(const Pose3& pose);
+/// A turn about one of the axes 0 (x), 1 (y), 2 (z).
+Eigen::Quaterniond turnAbout(int axis, Angle angle);
+
+/// The pose at `position` with this rotation, which is not 0 and need not be normalised. Exactly
+/// level if its x and y parts are 0.
+Pose3 poseOf(Point3 position, const Eigen::Quaterniond& rotation);
+
+inline Eigen::Vector3d vectorOf(Vec3 v) { return {v.x, v.y, v.z}; }
+inline Vec3 vecOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace ispace

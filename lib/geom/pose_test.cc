@@ -8,7 +8,6 @@
 #include <random>
 
 #include "geom/point.h"
-#include "geom/rotation.h"
 
 namespace ispace {
 namespace {

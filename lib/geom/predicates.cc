@@ -2,6 +2,7 @@
 #include "geom/predicates.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 
@@ -78,6 +79,12 @@ bool insideByParity(Point2 p, Point2 known_inside, std::span<const Segment2> wal
         if (crosses(path, wall)) inside = !inside;
     }
     return inside;
+}
+
+void runUncancelled(const std::function<void()>& work) {
+    tbb::task_group_context context(tbb::task_group_context::isolated);
+    tbb::task_group group(context);
+    group.run_and_wait(work);
 }
 
 }  // namespace ispace

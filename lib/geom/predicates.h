@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/geom: the sign of the in-circle determinant, where pairs of doubles can tell it.
 #pragma once
 
+#include <cmath>
+#include <functional>
+#include <optional>
 #include <span>
+#include <utility>
 
+#include "geom/point.h"
 #include "geom/polygon.h"
 
 namespace ispace {
@@ -31,5 +37,88 @@ Point2 nearestPoint(const Segment2& s, Point2 p);
 /// test where wall lines are simple closed curves; unlike that, it errs if a free-standing wall
 /// lies between p and the known point. O(n).
 bool insideByParity(Point2 p, Point2 known_inside, std::span<const Segment2> walls);
+
+/// An unevaluated sum of two doubles, the second at most half a unit in the last place of the
+/// first (Dekker 1971). A product or sum errs by at most 2^-102 of its operands' magnitudes.
+struct DoublePair {
+    double high = 0, low = 0;
+
+    /// Exact, unless it overflows.
+    static DoublePair differenceOf(double a, double b) {
+        const double high = a - b, taken = a - high;
+        return {high, (a - (high + taken)) + (taken - b)};
+    }
+    friend DoublePair operator+(DoublePair a, DoublePair b) {
+        const double sum = a.high + b.high, part = sum - a.high;
+        const double rest = ((a.high - (sum - part)) + (b.high - part)) + (a.low + b.low);
+        const double high = sum + rest;
+        return {high, rest - (high - sum)};
+    }
+    friend DoublePair operator-(DoublePair a) { return {-a.high, -a.low}; }
+    friend DoublePair operator*(DoublePair a, DoublePair b) {
+        const double product = a.high * b.high;
+        const double rest = std::fma(a.high, b.high, -product) + (a.high * b.low + a.low * b.high);
+        const double high = product + rest;
+        return {high, rest - (high - product)};
+    }
+};
+
+/// surelyInCircle() as far as doubles can tell, with the bound of Shewchuk (1997).
+inline int roughlyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
+    const Vec2 u = a - d, v = b - d, w = c - d;
+    const double vw = v.x * w.y, wv = w.x * v.y, wu = w.x * u.y, uw = u.x * w.y;
+    const double uv = u.x * v.y, vu = v.x * u.y;
+    const double u_lift = dot(u, u), v_lift = dot(v, v), w_lift = dot(w, w);
+    const double det = u_lift * (vw - wv) + v_lift * (wu - uw) + w_lift * (uv - vu);
+    const double all = (std::abs(vw) + std::abs(wv)) * u_lift +
+                       (std::abs(wu) + std::abs(uw)) * v_lift +
+                       (std::abs(uv) + std::abs(vu)) * w_lift;
+    constexpr double kError = 12 * 0x1p-53, kLeast = 0x1p-600, kMost = 0x1p1000;
+    if (!(all > kLeast && all < kMost)) return 0;
+    return det > kError * all ? 1 : det < -kError * all ? -1 : 0;
+}
+
+/// Positive if d surely lies within the circle through a, b, c (counter-clockwise), negative if
+/// surely outside, 0 if it may lie on it: nearer than some 2^-90 of the extent, or where numbers
+/// are so large or small that products leave the range of doubles.
+inline int surelyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
+    if (const int side = roughlyInCircle(a, b, c, d); side != 0) return side;
+    using Pair = DoublePair;
+    const Pair ax = Pair::differenceOf(a.x, d.x), ay = Pair::differenceOf(a.y, d.y);
+    const Pair bx = Pair::differenceOf(b.x, d.x), by = Pair::differenceOf(b.y, d.y);
+    const Pair cx = Pair::differenceOf(c.x, d.x), cy = Pair::differenceOf(c.y, d.y);
+    const auto lift = [](Pair x, Pair y) { return x * x + y * y; };
+    const auto turn = [](Pair x, Pair y, Pair u, Pair v) { return x * v + -(y * u); };
+    const Pair a_lift = lift(ax, ay), b_lift = lift(bx, by), c_lift = lift(cx, cy);
+    const Pair det = a_lift * turn(bx, by, cx, cy) +
+                     (b_lift * turn(cx, cy, ax, ay) + c_lift * turn(ax, ay, bx, by));
+    const auto most = [](Pair x, Pair y, Pair u, Pair v) {
+        return std::abs(x.high * v.high) + std::abs(y.high * u.high);
+    };
+    const double all = a_lift.high * most(bx, by, cx, cy) + b_lift.high * most(cx, cy, ax, ay) +
+                       c_lift.high * most(ax, ay, bx, by);
+    // Some 20 roundings, each off by 2^-102 of its operands at most. What products lose that are
+    // too small for doubles is far less: `all` is above kLeast.
+    constexpr double kError = 0x1p-92, kLeast = 0x1p-600, kMost = 0x1p1000;
+    if (!(all > kLeast && all < kMost)) return 0;
+    const double error = kError * all;
+    return det.high > error ? 1 : det.high < -error ? -1 : 0;
+}
+
+/// Runs work() apart from the parallel loop around it, whose end by an exception does not reach
+/// loops within work().
+/// \throws what work() throws
+void runUncancelled(const std::function<void()>& work);
+
+/// The value of work(), for values that outlive the parallel loop in which they are first asked
+/// for. Once a task of that loop throws, oneTBB leaves out all loops within its other tasks without
+/// a word, and a value made by them would be kept half made. Loops within work() run to their end.
+/// \throws what work() throws
+template <typename Work>
+auto uncancelled(Work work) {
+    std::optional<decltype(work())> value;
+    runUncancelled([&] { value.emplace(work()); });
+    return *std::move(value);
+}
 
 }  // namespace ispace

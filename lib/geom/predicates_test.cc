@@ -7,7 +7,7 @@
 #include <random>
 
 #include "geom/planar_map.h"
-#include "geom/test_curves.h"
+#include "support/test_curves.h"
 
 namespace ispace {
 

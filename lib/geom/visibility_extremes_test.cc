@@ -11,10 +11,10 @@
 #include "base/error.h"
 #include "geom/pose.h"
 #include "geom/predicates.h"
-#include "geom/test_curves.h"
-#include "geom/test_plans.h"
-#include "geom/test_visibility.h"
-#include "geom/visibility.h"
+#include "geom/visibility/visibility.h"
+#include "support/test_curves.h"
+#include "support/test_plans.h"
+#include "support/test_visibility.h"
 
 namespace ispace {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geom/point.h"
-#include "geom/test_plans.h"
+#include "support/test_plans.h"
 
 namespace ispace::test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/test_plans.h"
+#include "support/test_plans.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <random>
 
 #include "geom/predicates.h"
-#include "geom/test_curves.h"
-#include "geom/visibility.h"
+#include "geom/visibility/visibility.h"
+#include "support/test_curves.h"
 
 namespace ispace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/weld.h"
+#include "geom/planar_map.h"
 
 #include <gtest/gtest.h>
 

@@ -15,8 +15,8 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "io/side_files.h"
-#include "sensor/kind.h"
+#include "io/exporters.h"
+#include "scene/sensor/sensor.h"
 
 namespace ispace {
 

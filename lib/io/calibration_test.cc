@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "base/file.h"
-#include "base/test_paths.h"
-#include "io/input.h"
-#include "io/test_import.h"
+#include "io/importers.h"
+#include "support/test_import.h"
+#include "support/test_paths.h"
 
 namespace ispace {
 namespace {

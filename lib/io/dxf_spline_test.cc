@@ -3,10 +3,10 @@
 #include <numbers>
 
 #include "geom/predicates.h"
-#include "io/curves.h"
 #include "io/importers.h"
-#include "io/test_dxf.h"
-#include "io/test_import.h"
+#include "io/plan/curves.h"
+#include "support/test_dxf.h"
+#include "support/test_import.h"
 
 namespace ispace {
 namespace {

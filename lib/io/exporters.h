@@ -10,11 +10,12 @@
 #include <string_view>
 #include <vector>
 
-#include "layout/scene.h"
-#include "model/glb_write.h"
-#include "plan/found_rooms.h"
+#include "base/file.h"
+#include "drawing/plan/found_rooms.h"
+#include "io/glb/glb_write.h"
 #include "raster/grid.h"
 #include "record/record.h"
+#include "scene/scene.h"
 
 namespace ispace {
 
@@ -160,5 +161,15 @@ Grid rosMapCells(const Box2& box, double resolution);
 /// \throws UsageError as readZone() and writeRosMap(), and for a zone beside the map
 ExportedFiles writeKeepoutMask(const Scene& scene, const std::vector<std::string>& zones,
                                double resolution, const std::string& image_name);
+
+/// The file that `path` names, relative to its folder; nothing if it does not exist. \param
+/// anywhere false: it must lie in that folder, or in one of `others` (relative to it), or below,
+/// links followed \throws FormatError for `path` if the file may not lie there or is not regular
+std::optional<RegularFile> openSideFile(const std::string& path, const std::string& name,
+                                        bool anywhere, std::span<const std::string> others = {});
+
+/// The path that openSideFile() opens: `name` is relative to the folder of `path`, for "-" to the
+/// current one.
+std::string sideFilePath(const std::string& path, const std::string& name);
 
 }  // namespace ispace

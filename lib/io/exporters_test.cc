@@ -5,8 +5,8 @@
 
 #include <set>
 
-#include "layout/schemas.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
 
 namespace ispace {
 

@@ -8,10 +8,10 @@
 #include <numbers>
 #include <set>
 
+#include "drawing/plan/elements.h"
 #include "env/level.h"
-#include "geom/boolean.h"
-#include "layout/test_layout.h"
-#include "plan/elements.h"
+#include "geom/arrangement.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

@@ -10,12 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "io/glb.h"
-#include "io/test_glb.h"
-#include "layout/schemas.h"
-#include "model/glb_file.h"
-#include "model/model.h"
+#include "io/glb/glb_file.h"
+#include "io/glb/glb_read.h"
+#include "io/glb/glb_write.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
+#include "support/test_glb.h"
 
 namespace ispace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/input.h"
+#include "io/importers.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/test_paths.h"
-#include "io/test_dxf.h"
-#include "layout/schemas.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
+#include "support/test_dxf.h"
+#include "support/test_paths.h"
 
 namespace ispace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/recorded_scans.h"
+#include "io/import_records.h"
 
 #include <gtest/gtest.h>
 

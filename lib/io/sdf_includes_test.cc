@@ -9,9 +9,9 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "io/importers.h"
-#include "io/sdf_files.h"
-#include "layout/schemas.h"
+#include "io/sdf/sdf_files.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
 
 namespace ispace {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "raster/test_cells.h"
+#include "support/test_cells.h"
 
 namespace ispace {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "geom/predicates.h"
-#include "raster/test_cells.h"
+#include "support/test_cells.h"
 
 namespace ispace {
 namespace {

@@ -14,9 +14,8 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "raster/encode.h"
+#include "raster/codec.h"
 #include "raster/module/decoded_picture.h"
-#include "raster/module_symbol.h"
 
 namespace ispace {
 

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "base/file.h"
-#include "base/test_damage.h"
-#include "base/test_paths.h"
 #include "raster/picture.h"
-#include "raster/test_cells.h"
+#include "support/test_cells.h"
+#include "support/test_damage.h"
+#include "support/test_paths.h"
 
 namespace ispace {
 

@@ -7,8 +7,8 @@
 
 #include "base/confined.h"
 #include "base/error.h"
-#include "raster/encode.h"
-#include "raster/test_png.h"
+#include "raster/codec.h"
+#include "support/test_png.h"
 
 namespace ispace {
 namespace {

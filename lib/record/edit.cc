@@ -10,7 +10,6 @@
 #include "base/message.h"
 #include "geom/point.h"
 #include "geom/pose.h"
-#include "record/placing.h"
 #include "record/text.h"
 
 namespace ispace {

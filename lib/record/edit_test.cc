@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "record/test_schemas.h"
 #include "record/text.h"
+#include "support/test_schemas.h"
 
 namespace ispace {
 namespace {

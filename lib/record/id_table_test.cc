@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "record/id_table.h"
+#include "record/record.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "record/placing.h"
+#include "record/edit.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <random>
 
-#include "record/test_random_records.h"
-#include "record/test_schemas.h"
 #include "record/text.h"
+#include "support/test_random_records.h"
+#include "support/test_schemas.h"
 
 namespace ispace {
 namespace {

@@ -9,8 +9,8 @@
 #include <thread>
 #include <utility>
 
-#include "record/test_schemas.h"
 #include "record/text.h"
+#include "support/test_schemas.h"
 
 namespace ispace {
 

@@ -2,10 +2,10 @@
 // Random documents are written and read back.
 #include <gtest/gtest.h>
 
-#include "record/test_random_records.h"
-#include "record/test_schemas.h"
 #include "record/text.h"
-#include "record/yaml.h"
+#include "record/yaml/yaml.h"
+#include "support/test_random_records.h"
+#include "support/test_schemas.h"
 
 namespace ispace {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "record/test_schemas.h"
+#include "support/test_schemas.h"
 
 namespace ispace {
 

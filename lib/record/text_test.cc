@@ -6,7 +6,7 @@
 #include <chrono>
 #include <random>
 
-#include "record/test_schemas.h"
+#include "support/test_schemas.h"
 
 namespace ispace {
 

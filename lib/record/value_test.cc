@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "record/schema.h"
-#include "record/test_schemas.h"
+#include "support/test_schemas.h"
 
 namespace {
 

@@ -5,10 +5,9 @@
 #include <ctime>
 #include <random>
 
-#include "record/test_schemas.h"
 #include "record/text.h"
-#include "record/yaml.h"
-#include "record/yaml_stages.h"
+#include "record/yaml/yaml.h"
+#include "support/test_schemas.h"
 
 namespace ispace {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "sense/test_readings.h"
+#include "support/test_readings.h"
 
 namespace ispace {
 

@@ -5,7 +5,7 @@
 
 #include "base/simd.h"
 #include "sense/noise.h"
-#include "sense/sensors.h"
+#include "sense/selection.h"
 #include "trace/rays.h"
 
 namespace ispace {

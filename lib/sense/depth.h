@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "scene/sensor/sensor.h"
 #include "sense/scan.h"
-#include "sensor/sensor.h"
 
 namespace ispace {
 

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "base/number.h"
-#include "sense/test_readings.h"
+#include "support/test_readings.h"
 
 namespace ispace {
 

@@ -24,8 +24,6 @@ constexpr double kLine = 1e-6;
 /// it by linear equations.
 constexpr double kPlane = 1e-5;
 
-Vector3d vectorOf(Vec3 v) { return {v.x, v.y, v.z}; }
-
 /// Receivers about their middle, with the axes along which they spread.
 struct Layout {
     Point3 middle;

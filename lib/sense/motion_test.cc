@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sense/test_readings.h"
+#include "support/test_readings.h"
 
 namespace ispace {
 

@@ -10,7 +10,7 @@
 
 #include "base/random.h"
 #include "base/simd.h"
-#include "sensor/noise.h"
+#include "scene/sensor/sensor_keys.h"
 
 namespace ispace {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <random>
 
-#include "layout/bodies.h"
-#include "render/render.h"
-#include "sense/sensors.h"
-#include "sense/test_readings.h"
+#include "scene/bodies.h"
+#include "sense/selection.h"
+#include "support/test_readings.h"
+#include "trace/render/render.h"
 
 namespace ispace {
 namespace {

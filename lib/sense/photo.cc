@@ -13,7 +13,7 @@
 #include <span>
 
 #include "base/random.h"
-#include "render/bands.h"
+#include "trace/render/render.h"
 
 namespace ispace {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "render/render.h"
-#include "sense/sensors.h"
+#include "sense/selection.h"
+#include "trace/render/render.h"
 
 namespace ispace {
 

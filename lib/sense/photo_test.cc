@@ -8,9 +8,9 @@
 #include <numeric>
 #include <sstream>
 
-#include "sense/reading_format.h"
-#include "sense/reading_picture.h"
-#include "sense/test_readings.h"
+#include "sense/formats/reading_format.h"
+#include "sense/formats/reading_picture.h"
+#include "support/test_readings.h"
 
 namespace ispace {
 namespace {

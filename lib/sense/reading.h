@@ -11,7 +11,7 @@
 #include "sense/depth.h"
 #include "sense/photo.h"
 #include "sense/scan.h"
-#include "sense/sensors.h"
+#include "sense/selection.h"
 #include "sense/trajectory.h"
 #include "sense/ultrasound.h"
 

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/error.h"
+#include "sense/formats/reading_format.h"
 #include "sense/reading.h"
-#include "sense/reading_format.h"
 
 namespace ispace {
 

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "sense/test_readings.h"
+#include "support/test_readings.h"
 
 namespace ispace {
 

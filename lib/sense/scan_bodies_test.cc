@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "layout/test_layout.h"
-#include "sense/sensors.h"
-#include "sense/test_readings.h"
+#include "sense/selection.h"
+#include "support/test_layout.h"
+#include "support/test_readings.h"
 
 namespace ispace {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/scan.h"
-#include "sense/test_readings.h"
+#include "support/test_readings.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -12,7 +12,7 @@
 #include <string>
 
 #include "base/number.h"
-#include "layout/test_layout.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "geom/rotation.h"
+#include "geom/pose.h"
 
 namespace ispace {
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "geom/rotation.h"
+#include "geom/pose.h"
 
 namespace ispace {
 

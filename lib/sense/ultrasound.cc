@@ -10,7 +10,7 @@
 #include "base/random.h"
 #include "geom/tolerance.h"
 #include "sense/noise.h"
-#include "sense/sensors.h"
+#include "sense/selection.h"
 
 namespace ispace {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "sensor/sensor.h"
+#include "scene/sensor/sensor.h"
 #include "trace/moving_bodies.h"
 #include "trace/ray_world.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "layout/test_layout.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

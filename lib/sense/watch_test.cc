@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/watch.h"
+#include "sense/detection.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "base/number.h"
-#include "layout/test_layout.h"
-#include "sense/sensors.h"
+#include "sense/selection.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

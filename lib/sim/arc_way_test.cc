@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/arc_way.h"
+#include "sim/odometry.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "sensor/sensor.h"
+#include "scene/sensor/sensor.h"
 
 namespace ispace {
 namespace {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <utility>
 
-#include "layout/test_layout.h"
 #include "sim/world.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

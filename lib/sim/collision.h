@@ -17,7 +17,7 @@
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 #include "sim/motion.h"
-#include "sim/people.h"
+#include "sim/mover.h"
 #include "trace/moving_bodies.h"
 
 namespace ispace {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "layout/robot.h"
 #include "record/text.h"
+#include "scene/robot.h"
 #include "sim/sim_time.h"
 
 namespace ispace {

@@ -7,8 +7,8 @@
 #include <random>
 
 #include "base/number.h"
-#include "layout/test_layout.h"
 #include "sim/world.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 

@@ -15,9 +15,9 @@
 
 #include "base/number.h"
 #include "env/body.h"
-#include "sense/reading_text.h"
-#include "sense/sensors.h"
-#include "sense/watch.h"
+#include "sense/detection.h"
+#include "sense/formats/reading_text.h"
+#include "sense/selection.h"
 #include "sim/world.h"
 
 namespace ispace {

@@ -51,7 +51,7 @@ void appendEventRow(std::string& out, const Event& event);
 
 /// Watches a world step by step and says what happened.
 ///
-/// Seen and Lost are as class Watch (sense/watch.h) defines them, ten times a second.
+/// Seen and Lost are as class Watch (sense/detection.h) defines them, ten times a second.
 ///
 /// Only kinds that somebody wants are looked for. Watching begins with nobody in a zone, on a mat
 /// or in sight: whoever is enters, steps on it, is seen at the next step. Events of one step are in

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "layout/test_layout.h"
 #include "sim/simulation.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

@@ -9,10 +9,10 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "env/door_zones.h"
+#include "env/zone.h"
 #include "geom/polygon.h"
-#include "sense/sensors.h"
-#include "sense/watch.h"
+#include "sense/detection.h"
+#include "sense/selection.h"
 
 namespace ispace {
 

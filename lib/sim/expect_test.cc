@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "layout/test_layout.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

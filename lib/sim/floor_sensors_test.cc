@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/floor_sensors.h"
+#include "sim/robot_sensors.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "layout/test_layout.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <map>
 
-#include "layout/test_layout.h"
 #include "sense/reading.h"
 #include "sim/world.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

@@ -6,8 +6,8 @@
 #include <ctime>
 #include <thread>
 
-#include "layout/test_layout.h"
 #include "sim/simulation.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
-#include "layout/test_layout.h"
 #include "sim/world.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

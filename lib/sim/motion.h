@@ -6,7 +6,7 @@
 
 #include "env/environment.h"
 #include "geom/pose.h"
-#include "layout/robot.h"
+#include "scene/robot.h"
 #include "sim/command.h"
 
 namespace ispace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/motion_noise.h"
+#include "sim/odometry.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "layout/test_layout.h"
-#include "sim/start_warnings.h"
 #include "sim/world.h"
+#include "sim/world_state.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

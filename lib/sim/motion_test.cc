@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "layout/test_layout.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 

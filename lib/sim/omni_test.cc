@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "layout/test_layout.h"
 #include "sim/motion.h"
 #include "sim/world.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/people.h"
+#include "sim/mover.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "layout/bodies.h"
-#include "layout/test_layout.h"
+#include "scene/bodies.h"
 #include "sim/world.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

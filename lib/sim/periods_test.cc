@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/periods.h"
+#include "sim/sensor_reading.h"
 
 #include <gtest/gtest.h>
 

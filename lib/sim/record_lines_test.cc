@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/record_lines.h"
+#include "sim/record_files.h"
 
 #include <gtest/gtest.h>
 
@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "base/file.h"
-#include "base/test_folder.h"
-#include "layout/test_layout.h"
 #include "sense/ultrasound.h"
-#include "sim/record_files.h"
 #include "sim/recorder.h"
+#include "support/test_folder.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

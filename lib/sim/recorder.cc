@@ -13,10 +13,9 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "sense/reading_text.h"
-#include "sim/periods.h"
+#include "sense/formats/reading_text.h"
 #include "sim/record_files.h"
-#include "sim/record_lines.h"
+#include "sim/sensor_reading.h"
 
 namespace ispace {
 

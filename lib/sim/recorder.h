@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "base/program.h"
+#include "base/message.h"
 #include "sim/events.h"
 #include "sim/world.h"
 

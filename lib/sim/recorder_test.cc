@@ -11,9 +11,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/test_folder.h"
-#include "layout/test_layout.h"
-#include "sense/reading_text.h"
+#include "sense/formats/reading_text.h"
+#include "support/test_folder.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

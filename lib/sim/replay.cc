@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "sim/change.h"
+#include "sim/world_state.h"
 
 namespace ispace {
 

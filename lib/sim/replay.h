@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "layout/run_changes.h"
-#include "layout/run_reader.h"
+#include "scene/run/run_changes.h"
+#include "scene/run/run_reader.h"
 #include "sim/motion.h"
 #include "sim/sim_time.h"
 #include "sim/world.h"

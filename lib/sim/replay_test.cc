@@ -9,9 +9,9 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "base/test_folder.h"
-#include "layout/test_layout.h"
 #include "sim/simulation.h"
+#include "support/test_folder.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

@@ -2,10 +2,14 @@
 #include "sim/robot_sensors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "geom/predicates.h"
+#include "scene/bodies.h"
+#include "sense/selection.h"
 #include "sim/collision.h"
 
 namespace ispace {
@@ -82,6 +86,161 @@ std::vector<bool> pressedBumpers(
         pressed.push_back(hit);
     }
     return pressed;
+}
+
+namespace {
+
+/// A rectangle on the floor.
+struct Area {
+    Pose2 pose;
+    double half_length, half_width;
+
+    [[nodiscard]] Vec2 toLocal(Point2 p) const {
+        const Vec2 way = p - pose.position, along = unitVector(pose.heading);
+        return {dot(way, along), cross(along, way)};
+    }
+    [[nodiscard]] double reach() const { return std::hypot(half_length, half_width); }
+};
+
+bool touchesDisc(const Area& area, Point2 center, double radius) {
+    const Vec2 local = area.toLocal(center);
+    const double x = std::max(0.0, std::fabs(local.x) - area.half_length);
+    const double y = std::max(0.0, std::fabs(local.y) - area.half_width);
+    return std::hypot(x, y) <= radius;
+}
+
+/// True if an axis of `area` keeps the two apart.
+bool isApart(const Area& area, const Area& other) {
+    const Vec2 middle = area.toLocal(other.pose.position);
+    const Vec2 along = unitVector(other.pose.heading - area.pose.heading);
+    const double x = other.half_length * std::fabs(along.x) + other.half_width * std::fabs(along.y);
+    const double y = other.half_length * std::fabs(along.y) + other.half_width * std::fabs(along.x);
+    return std::fabs(middle.x) > area.half_length + x || std::fabs(middle.y) > area.half_width + y;
+}
+
+/// \pre the body is upright
+bool touches(const Area& area, const MovingBody& body) {
+    if (body.radius > 0) return touchesDisc(area, body.pose.position, body.radius);
+    const Area other{body.pose, body.half_length, body.half_width};
+    return !isApart(area, other) && !isApart(other, area);
+}
+
+/// What of a mover is on the floor, or in the way of beams.
+std::vector<MovingBody> bodiesOfMover(const MoverShape& shape, const Pose2& pose, Angle swing) {
+    if (shape.is_person) return humanBodies(shape.height, pose, 0, swing);
+    return {robotBody(shape.model, pose, 0)};
+}
+
+bool standsIn(const MovingBody& body, const Gate& gate) {
+    if (gate.height < body.bottom || gate.height > body.top) return false;
+    const Segment2 beam = gate.beam();
+    const Vec2 way = beam.b - beam.a;
+    // A sheet between the posts, which a box or a disc may touch.
+    const Area sheet{{gate.pose.position, gate.pose.heading}, 0, length(way) / 2};
+    return touches(sheet, body.cutAt(gate.height));
+}
+
+}  // namespace
+
+Segment2 Gate::beam() const {
+    return {pose * Point2{0, half_width}, pose * Point2{0, -half_width}};
+}
+
+std::vector<MoverShape> moverShapes(const Scene& scene) {
+    std::vector<MoverShape> shapes;
+    for (const PlacedRobot& robot : scene.robots) {
+        const RobotModel& m = robot.model;
+        const double body =
+            m.length > 0 ? std::fabs(m.center) + std::hypot(m.length / 2, m.width / 2) : m.radius;
+        shapes.push_back({robot.id, false, std::max(m.radius, body), m.height, m});
+    }
+    for (const Placed& placed : scene.placed) {
+        const Record& record = scene.records[placed.record];
+        if (record.keyword() != "human") continue;
+        const double height = record.number("height");
+        shapes.push_back({scene.ids[placed.record], true, humanRadius(height), height, {}});
+    }
+    return shapes;
+}
+
+FloorSensors::FloorSensors(const Scene& scene) : movers_(moverShapes(scene)) {
+    for (const Placed& placed : scene.placed) {
+        const Record& record = scene.records[placed.record];
+        const Pose2 pose{placed.pose.position.onFloor(), placed.pose.heading};
+        if (record.keyword() == "mat") {
+            const Tuple& size = record.tuple("size");
+            mats_.push_back({pose, size[0] / 2, size[1] / 2, record.number("rate")});
+            mat_ids_.push_back(scene.ids[placed.record]);
+        } else if (record.keyword() == "gate") {
+            gates_.push_back(
+                {pose, record.number("width") / 2, record.number("height"), record.number("rate")});
+            gate_ids_.push_back(scene.ids[placed.record]);
+        }
+    }
+    mat_states_.resize(mats_.size());
+    gate_states_.resize(gates_.size());
+}
+
+void FloorSensors::follow(const Movers& movers) {
+    passages_.clear();
+    if (empty()) return;
+    for (MatState& state : mat_states_) state.on.clear();
+    for (GateState& state : gate_states_) state.broken = false;
+    const bool has_places = places_.size() == movers_.size();
+    places_.resize(movers_.size());
+    for (std::size_t i = 0; i < movers_.size(); ++i) {
+        const std::size_t count = movers.robots.size();
+        const bool is_robot = i < count;
+        const Pose2& pose = (is_robot ? movers.robots[i] : movers.people[i - count]).pose;
+        if (has_places && places_[i] != pose.position) pass(i, places_[i], pose.position);
+        places_[i] = pose.position;
+        look(i, pose, is_robot ? Angle() : movers.swings[i - count]);
+    }
+}
+
+/// What notices a mover where it is.
+void FloorSensors::look(std::size_t mover, const Pose2& pose, Angle swing) {
+    const MoverShape& shape = movers_[mover];
+    std::vector<MovingBody> bodies;  // made when something is near
+    const auto any = [&](const Area& area, auto test) {
+        if (distance(area.pose.position, pose.position) > area.reach() + shape.radius) return false;
+        if (bodies.empty()) bodies = bodiesOfMover(shape, pose, swing);
+        return std::any_of(bodies.begin(), bodies.end(), test);
+    };
+    for (std::size_t k = 0; k < mats_.size(); ++k) {
+        const Area area{mats_[k].pose, mats_[k].half_length, mats_[k].half_width};
+        const auto presses = [&](const MovingBody& body) {
+            return body.bottom <= 0 && touches(area, body.cutAt(0));
+        };
+        if (any(area, presses)) mat_states_[k].on.push_back(shape.id);
+    }
+    for (std::size_t k = 0; k < gates_.size(); ++k) {
+        const Gate& gate = gates_[k];
+        const auto breaks = [&](const MovingBody& body) { return standsIn(body, gate); };
+        if (any({gate.pose, 0, gate.half_width}, breaks)) gate_states_[k].broken = true;
+    }
+}
+
+/// Counts the gates on the way. What is on a gate's line is before it, so that a way of many steps
+/// crosses it as often as it changes sides.
+void FloorSensors::pass(std::size_t mover, Point2 from, Point2 to) {
+    const MoverShape& shape = movers_[mover];
+    for (std::size_t k = 0; k < gates_.size(); ++k) {
+        if (shape.height < gates_[k].height) continue;
+        const auto [left, right] = gates_[k].beam();
+        const bool was_behind = orientation(left, right, from) == Turn::Right;
+        const bool is_behind = orientation(left, right, to) == Turn::Right;
+        if (was_behind == is_behind) continue;
+        const Turn of_left = orientation(from, to, left), of_right = orientation(from, to, right);
+        const bool between = was_behind ? of_left != Turn::Right && of_right != Turn::Left
+                                        : of_left != Turn::Left && of_right != Turn::Right;
+        if (!between) continue;
+        GateState& state = gate_states_[k];
+        ++(was_behind ? state.in : state.out);
+        state.last = shape.id;
+        state.last_in = was_behind;
+        passages_.push_back({k, shape.id, was_behind});
+    }
 }
 
 }  // namespace ispace

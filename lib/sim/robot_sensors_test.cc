@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "layout/test_layout.h"
 #include "sim/world.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "layout/scene.h"
+#include "scene/scene.h"
 #include "sim/recorder.h"
 
 namespace ispace {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "sim/test_source.h"
+#include "support/test_source.h"
 
 namespace ispace {
 namespace {

@@ -1,9 +1,50 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/sensor_reading.h"
 
-#include "sensor/kind.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scene/sensor/sensor.h"
 
 namespace ispace {
+
+namespace {
+
+constexpr __int128 kSecond = 1'000'000'000;
+
+}  // namespace
+
+Periods::Periods(double rate) {
+    constexpr double kDecimals = 1e9;
+    // Slower than a period in three hundred years.
+    if (rate < 1e-10) return;
+    const auto decimal = static_cast<std::int64_t>(std::llround(rate * kDecimals));
+    if (static_cast<double>(decimal) / kDecimals == rate) {
+        numerator_ = decimal;
+        denominator_ = kSecond * kSecond;
+        return;
+    }
+    int exponent = 0;
+    const double mantissa = std::frexp(rate, &exponent);
+    constexpr int kBits = std::numeric_limits<double>::digits;
+    numerator_ = static_cast<std::int64_t>(std::ldexp(mantissa, kBits));
+    denominator_ = kSecond;
+    // Up to 2^53 every fraction of two has its shift to the right.
+    denominator_ <<= std::max(0, kBits - exponent);
+    numerator_ <<= std::max(0, exponent - kBits);
+}
+
+std::int64_t Periods::newest(SimTime time) const {
+    return static_cast<std::int64_t>(time.count() * numerator_ / denominator_);
+}
+
+SimTime Periods::begin(std::int64_t k) const {
+    if (numerator_ == 0) return k == 0 ? SimTime(0) : SimTime::max();
+    const __int128 begin = (k * denominator_ + numerator_ - 1) / numerator_;
+    constexpr __int128 kMax = std::numeric_limits<SimTime::rep>::max();
+    return SimTime(static_cast<SimTime::rep>(std::min(begin, kMax)));
+}
 
 std::string_view RunSensor::keyword() const {
     if (const Sensor* placed = sensor()) return kindOf(placed->model).keyword;

@@ -9,15 +9,31 @@
 #include <variant>
 #include <vector>
 
+#include "scene/sensor/sensor.h"
 #include "sense/depth.h"
 #include "sense/photo.h"
 #include "sense/scan.h"
 #include "sense/ultrasound.h"
-#include "sensor/sensor.h"
-#include "sim/floor_sensors.h"
+#include "sim/robot_sensors.h"
 #include "sim/sim_time.h"
 
 namespace ispace {
+
+/// When the periods of a sensor begin: period k at k / rate seconds, in exact arithmetic. A rate
+/// with up to nine decimals counts as written, any other as the double it is.
+class Periods {
+  public:
+    /// \pre rate > 0
+    explicit Periods(double rate);
+    /// The latest period that has begun.
+    [[nodiscard]] std::int64_t newest(SimTime time) const;
+    /// The first nanosecond of period k; a time beyond any run if that is after a hundred years.
+    [[nodiscard]] SimTime begin(std::int64_t k) const;
+
+  private:
+    // Periods a nanosecond, as a fraction; a numerator of 0: never again.
+    __int128 numerator_ = 0, denominator_ = 1;
+};
 
 /// What a run reads: a sensor (tags too, whose bursts receivers hear), a mat or a gate, where it
 /// is at the start.

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "sim/arc_way.h"
-#include "sim/sensors.h"
+#include "sim/odometry.h"
+#include "sim/sensor_scheduler.h"
 
 namespace ispace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/sensors.h"
+#include "sim/sensor_scheduler.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <memory>
 #include <random>
 
-#include "layout/test_layout.h"
-#include "sim/setting.h"
 #include "sim/world.h"
+#include "sim/world_state.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/test_folder.h"
-#include "layout/test_layout.h"
+#include "support/test_folder.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

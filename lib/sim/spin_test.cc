@@ -7,10 +7,10 @@
 #include <cmath>
 #include <map>
 
-#include "layout/test_layout.h"
-#include "sim/arc_way.h"
-#include "sim/trail.h"
+#include "sim/mover.h"
+#include "sim/odometry.h"
 #include "sim/world.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "sim/collision.h"
 #include "sim/motion.h"
-#include "sim/people.h"
+#include "sim/mover.h"
 #include "sim/sim_time.h"
 
 namespace ispace {

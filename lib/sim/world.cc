@@ -8,9 +8,8 @@
 #include <utility>
 
 #include "base/number.h"
-#include "sim/change.h"
 #include "sim/robot_sensors.h"
-#include "sim/world_data.h"
+#include "sim/world_state.h"
 
 namespace ispace {
 

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "layout/scene.h"
+#include "scene/scene.h"
 #include "sim/command.h"
-#include "sim/people.h"
+#include "sim/mover.h"
 #include "sim/sensor_reading.h"
 #include "sim/sim_time.h"
 

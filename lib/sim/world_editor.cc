@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "layout/scene_edit.h"
+#include "scene/scene.h"
 #include "sim/run_limits.h"
 
 namespace ispace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "layout/scene.h"
 #include "record/edit.h"
+#include "scene/scene.h"
 #include "sim/simulation.h"
 
 namespace ispace {

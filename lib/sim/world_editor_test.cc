@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/test_source.h"
+#include "support/test_source.h"
 
 namespace ispace {
 namespace {

@@ -7,11 +7,11 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "base/test_paths.h"
 #include "geom/predicates.h"
-#include "layout/test_layout.h"
 #include "sim/collision.h"
 #include "sim/world.h"
+#include "support/test_layout.h"
+#include "support/test_paths.h"
 
 namespace ispace {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/world_data.h"
+#include "sim/world_state.h"
 
 namespace ispace {
 

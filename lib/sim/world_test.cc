@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "layout/test_layout.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trace/body_rays.h"
+#include "trace/body_scan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/trace and lib/render: moving bodies in Embree.
+// Private to lib/trace and lib/trace/render: moving bodies in Embree.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "trace/body_rays.h"
+#include "trace/body_scan.h"
 #include "trace/embree_device.h"
 #include "trace/embree_query.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How lib/trace and lib/render set Embree up.
+// How lib/trace and lib/trace/render set Embree up.
 #pragma once
 
 #include <cstddef>

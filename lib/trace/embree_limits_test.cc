@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "support/test_triangles.h"
 #include "trace/embree_scene.h"
-#include "trace/test_triangles.h"
 
 namespace ispace {
 

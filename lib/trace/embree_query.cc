@@ -146,7 +146,7 @@ ISPACE_SIMD_CLONES void roundReach(const RayPacket& packet, double tail,
                                    std::array<float, kLanes>& far) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const double reach = packet.reach[lane] * kFar + tail;
-        far[lane] = static_cast<float>(reach < kFarthest ? reach : kFarthest);
+        far[lane] = static_cast<float>(reach < kMaxRayReach ? reach : kMaxRayReach);
     }
 }
 

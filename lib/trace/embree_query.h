@@ -91,7 +91,7 @@ EmbreeSceneHandle buildScene(RTCDevice device, RTCGeometryType type, std::size_t
 }
 
 /// As far as Embree traces.
-constexpr double kFarthest = 1e30;
+constexpr double kMaxRayReach = 1e30;
 
 /// Packets are made and read in this many lanes, however many Embree traces together.
 constexpr std::size_t kLanes = 16;

@@ -89,7 +89,7 @@ struct EmbreeScene::Caster {
 
     /// Lengths of the rays' directions.
     void setLengths(double shortest, double longest) {
-        tail = shortest > 0 ? tail / shortest : kFarthest;
+        tail = shortest > 0 ? tail / shortest : kMaxRayReach;
         sure.longest = longest * (1 + kFarSlack);
         roundReach(packet, tail, far);
     }
@@ -198,7 +198,7 @@ struct EmbreeScene::Caster {
         one.ray.dir_y = hits.ray.dir_y[lane];
         one.ray.dir_z = hits.ray.dir_z[lane];
         const double reach = ray.reach * (1 + kFarSlack) + tail;
-        one.ray.tfar = static_cast<float>(std::min(reach, kFarthest));
+        one.ray.tfar = static_cast<float>(std::min(reach, kMaxRayReach));
         one.ray.mask = ~0U;
         one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;

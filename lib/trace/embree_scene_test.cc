@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "trace/test_triangles.h"
+#include "support/test_triangles.h"
 
 namespace ispace {
 

@@ -12,7 +12,7 @@
 
 #include "base/simd.h"
 #include "geom/point.h"
-#include "trace/flat_tree.h"
+#include "trace/flat_world.h"
 #include "trace/rays.h"
 
 namespace ispace {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "geom/pose.h"
-#include "trace/test_scans.h"
+#include "support/test_scans.h"
 
 namespace ispace {
 

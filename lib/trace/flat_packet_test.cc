@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "geom/pose.h"
-#include "trace/test_scans.h"
+#include "support/test_scans.h"
 
 namespace ispace {
 

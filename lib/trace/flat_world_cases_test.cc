@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "geom/pose.h"
+#include "support/test_scans.h"
 #include "trace/flat_world.h"
-#include "trace/test_scans.h"
 
 namespace ispace {
 

@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "base/file.h"
-#include "base/test_paths.h"
 #include "geom/point.h"
-#include "layout/test_layout.h"
-#include "trace/flat_tree.h"
-#include "trace/test_scans.h"
+#include "support/test_layout.h"
+#include "support/test_paths.h"
+#include "support/test_scans.h"
 
 namespace ispace {
 

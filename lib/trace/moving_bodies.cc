@@ -6,8 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "trace/body_arc.h"
-#include "trace/body_rays.h"
+#include "trace/body_scan.h"
 #include "trace/rays.h"
 
 namespace ispace {

@@ -10,7 +10,7 @@
 
 #include "geom/point.h"
 #include "geom/pose.h"
-#include "layout/bodies.h"
+#include "scene/bodies.h"
 #include "trace/rays.h"
 
 namespace ispace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "trace/body_rays.h"
+#include "trace/body_scan.h"
 
 namespace ispace {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "geom/predicates.h"
+#include "support/test_triangles.h"
 #include "trace/ray_world.h"
-#include "trace/test_triangles.h"
 
 namespace ispace {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "geom/pose.h"
-#include "trace/test_triangles.h"
+#include "support/test_triangles.h"
 
 namespace ispace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trace/triangle_lanes.h"
+#include "trace/triangle_set.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,6 @@
 #include <cmath>
 #include <random>
 #include <vector>
-
-#include "trace/triangle_set.h"
 
 namespace ispace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trace/worlds.h"
+#include "trace/ray_world.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/number.h"
-#include "layout/test_layout.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 

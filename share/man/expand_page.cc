@@ -7,8 +7,8 @@
 #include "base/file.h"
 #include "cli/run_tool.h"
 #include "io/exporters.h"
-#include "layout/schemas.h"
 #include "record/schema.h"
+#include "scene/placement_schemas.h"
 
 namespace {
 

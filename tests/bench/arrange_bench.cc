@@ -11,14 +11,14 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "arrange/arrange.h"
 #include "base/number.h"
 #include "bench_scenes.h"
 #include "bench_table.h"
-#include "cover/coverage.h"
-#include "layout/schemas.h"
-#include "place/arrangement.h"
+#include "coverage/coverage.h"
 #include "random_plan.h"
-#include "sensor/kind.h"
+#include "scene/placement_schemas.h"
+#include "scene/sensor/sensor.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench_scenes.h"
-#include "base/test_paths.h"
+#include "support/test_paths.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -8,12 +8,11 @@
 #include <numbers>
 #include <random>
 
+#include "arrange/placement_rules.h"
 #include "base/number.h"
-#include "io/input.h"
-#include "layout/schemas.h"
-#include "layout/sensor_spec.h"
-#include "place/sites.h"
+#include "io/importers.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
 
 namespace ispace::bench {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "layout/scene.h"
+#include "scene/scene.h"
 
 namespace ispace::bench {
 

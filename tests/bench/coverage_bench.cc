@@ -9,12 +9,12 @@
 #include "base/number.h"
 #include "bench_scenes.h"
 #include "bench_table.h"
-#include "cover/map.h"
-#include "cover/sight.h"
-#include "geom/overlay.h"
-#include "io/glb.h"
-#include "layout/schemas.h"
+#include "coverage/visible_area.h"
+#include "geom/overlay/overlay.h"
+#include "io/glb/glb_read.h"
 #include "record/text.h"
+#include "report/map/map.h"
+#include "scene/placement_schemas.h"
 #include "tool_run.h"
 
 namespace {

@@ -11,8 +11,8 @@
 
 #include "env/environment.h"
 #include "env/slice.h"
-#include "sensor/laser.h"
-#include "sensor/sensor.h"
+#include "scene/sensor/laser.h"
+#include "scene/sensor/sensor.h"
 #include "trace/rays.h"
 
 namespace ispace::bench {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "base/simd.h"
-#include "trace/flat_tree.h"
+#include "trace/flat_world.h"
 
 namespace ispace::bench {
 

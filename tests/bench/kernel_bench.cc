@@ -18,17 +18,17 @@
 #include "base/random.h"
 #include "bench_scenes.h"
 #include "bench_table.h"
-#include "cover/map.h"
 #include "embree_raw.h"
 #include "fan_prototype.h"
-#include "geom/weld.h"
-#include "raster/encode.h"
-#include "render/render.h"
+#include "geom/planar_map.h"
+#include "raster/codec.h"
+#include "report/map/map.h"
 #include "sense/depth.h"
+#include "sense/formats/reading_picture.h"
 #include "sense/photo.h"
-#include "sense/reading_picture.h"
 #include "sense/scan.h"
 #include "trace/flat_world.h"
+#include "trace/render/render.h"
 
 namespace {
 

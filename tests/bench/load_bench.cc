@@ -19,10 +19,10 @@
 #include "base/number.h"
 #include "bench_scenes.h"
 #include "embree_raw.h"
-#include "io/glb.h"
-#include "io/input.h"
-#include "layout/schemas.h"
+#include "io/glb/glb_read.h"
+#include "io/importers.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
 #include "trace/ray_world.h"
 
 namespace {

@@ -16,9 +16,9 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "bench_scenes.h"
-#include "io/glb.h"
-#include "io/input.h"
-#include "layout/schemas.h"
+#include "io/glb/glb_read.h"
+#include "io/importers.h"
+#include "scene/placement_schemas.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include "bench_scenes.h"
 #include "bench_table.h"
 #include "embree_raw.h"
-#include "render/render.h"
+#include "trace/render/render.h"
 
 namespace {
 

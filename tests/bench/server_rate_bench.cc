@@ -25,7 +25,7 @@
 #include "base/number.h"
 #include "bench_scenes.h"
 #include "crowd.h"
-#include "net/server.h"
+#include "server/server.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include "base/simd.h"
 #include "bench_scenes.h"
 #include "bench_table.h"
-#include "geom/visibility.h"
+#include "geom/visibility/visibility.h"
 #include "sense/scan.h"
 #include "trace/flat_kernels.h"
 #include "trace/flat_world.h"

@@ -16,8 +16,8 @@
 #include "base/number.h"
 #include "bench_scenes.h"
 #include "crowd.h"
-#include "layout/schemas.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
 
 namespace {
 

@@ -27,8 +27,8 @@
 #include "base/number.h"
 #include "bench_scenes.h"
 #include "bench_table.h"
-#include "geom/overlay.h"
-#include "geom/visibility.h"
+#include "geom/overlay/overlay.h"
+#include "geom/visibility/visibility.h"
 
 namespace {
 

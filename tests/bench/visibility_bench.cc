@@ -22,8 +22,8 @@
 #include "bench_scenes.h"
 #include "bench_table.h"
 #include "geom/predicates.h"
-#include "geom/test_plans.h"
-#include "geom/visibility.h"
+#include "geom/visibility/visibility.h"
+#include "support/test_plans.h"
 
 namespace {
 

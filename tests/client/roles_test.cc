@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/test_paths.h"
+#include "support/test_paths.h"
 #include "test_server.h"
 
 namespace ispace {

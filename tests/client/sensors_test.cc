@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/test_paths.h"
+#include "support/test_paths.h"
 #include "test_server.h"
 
 namespace ispace {

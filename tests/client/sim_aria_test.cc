@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "base/test_paths.h"
+#include "support/test_paths.h"
 #include "test_server.h"
 
 namespace {

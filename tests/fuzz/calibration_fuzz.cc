@@ -3,8 +3,8 @@
 // camera and for one of another size.
 #include "fuzz.h"
 #include "io/calibration.h"
-#include "layout/schemas.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
 
 namespace {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "fuzz.h"
-#include "io/cloud_file.h"
 #include "io/importers.h"
+#include "io/mesh/cloud_file.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     if (!isPointCloud(bytes)) return;

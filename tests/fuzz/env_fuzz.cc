@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // .env and .3dm.
 #include "fuzz.h"
-#include "layout/schemas.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     const Document document = readRecordText(bytes, "room.env", sceneSchemas());

@@ -9,10 +9,10 @@
 
 #include "env/level.h"
 #include "env/slice.h"
-#include "io/glb.h"
-#include "layout/scene.h"
-#include "layout/schemas.h"
+#include "io/glb/glb_read.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
+#include "scene/scene.h"
 
 namespace ispace::fuzz {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "io/input.h"
+#include "io/importers.h"
 #include "record/record.h"
 
 namespace ispace::fuzz {

@@ -4,9 +4,9 @@
 #include <array>
 
 #include "fuzz.h"
-#include "io/glb.h"
-#include "layout/schemas.h"
-#include "model/glb_file.h"
+#include "io/glb/glb_file.h"
+#include "io/glb/glb_read.h"
+#include "scene/placement_schemas.h"
 
 namespace {
 

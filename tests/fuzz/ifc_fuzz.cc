@@ -3,9 +3,9 @@
 #include "fuzz.h"
 
 #include "io/ifc/building.h"
-#include "io/ifc/storey_choice.h"
+#include "io/ifc/ifc_import.h"
 #include "io/ifc/storey_import.h"
-#include "layout/schemas.h"
+#include "scene/placement_schemas.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     Building building;

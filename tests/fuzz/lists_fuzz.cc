@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lists: jobs of `coverage --batch` and sites of `arrange --places`.
-#include "cli/batch_list.h"
+#include "arrange/placement_rules.h"
+#include "cli/batch.h"
 #include "fuzz.h"
-#include "place/sites.h"
 
 namespace {
 

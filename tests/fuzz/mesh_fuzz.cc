@@ -10,8 +10,8 @@
 #include <iterator>
 
 #include "fuzz.h"
-#include "io/mesh_file.h"
-#include "io/mesh_parts.h"
+#include "io/mesh/mesh_file.h"
+#include "io/mesh/mesh_parts.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "fuzz.h"
-#include "wire/mjpeg_session.h"
+#include "server/device/mjpeg_session.h"
 #include "wire_host.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {

@@ -4,7 +4,7 @@
 // holds a command line, which its merge parses.
 #include <algorithm>
 
-#include "arrange/batch.h"
+#include "arrange/arrange_batch.h"
 #include "base/part_file.h"
 #include "cli/run_tool.h"
 #include "fuzz.h"

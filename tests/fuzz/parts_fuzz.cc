@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fuzz.h"
-#include "io/mesh_parts.h"
+#include "io/mesh/mesh_parts.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     const TriangleMesh mesh = unpackedMesh(bytes, "mesh");

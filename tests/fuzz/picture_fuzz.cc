@@ -5,7 +5,7 @@
 
 #include "base/confined.h"
 #include "fuzz.h"
-#include "raster/encode.h"
+#include "raster/codec.h"
 #include "raster/picture.h"
 
 namespace {

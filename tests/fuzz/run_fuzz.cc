@@ -5,11 +5,10 @@
 #include <filesystem>
 
 #include "fuzz.h"
-#include "layout/run_changes.h"
-#include "layout/run_info.h"
-#include "layout/run_reader.h"
-#include "layout/schemas.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
+#include "scene/run/run_changes.h"
+#include "scene/run/run_reader.h"
 #include "sim/replay.h"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "fuzz.h"
-#include "io/recorded_scans.h"
+#include "io/import_records.h"
 
 namespace {
 

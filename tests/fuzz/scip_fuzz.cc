@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "fuzz.h"
-#include "wire/scip_session.h"
+#include "server/device/scip.h"
 #include "wire_host.h"
 
 namespace {

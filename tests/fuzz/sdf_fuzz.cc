@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "io/importers.h"
-#include "layout/schemas.h"
+#include "scene/placement_schemas.h"
 
 namespace {
 

@@ -8,10 +8,10 @@
 #include <string>
 
 #include "base/file.h"
-#include "io/glb.h"
-#include "io/input.h"
-#include "layout/schemas.h"
+#include "io/glb/glb_read.h"
+#include "io/importers.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "fuzz.h"
-#include "net/server_state.h"
+#include "server/server_state.h"
 #include "wire_host.h"
 
 namespace ispace::fuzz {

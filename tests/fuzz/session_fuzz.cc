@@ -6,9 +6,9 @@
 
 #include "base/number.h"
 #include "fuzz.h"
-#include "net/connection.h"
-#include "net/session.h"
 #include "served_room.h"
+#include "server/client_connection.h"
+#include "server/session.h"
 #include "sim/command.h"
 
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Traces of arrange: writes a trace that it has read, and reads the same back, up to last bits of
 // angles.
-#include "cover/trace_file.h"
 #include "fuzz.h"
+#include "report/trace_file.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     const TraceFile trace = readTrace(std::string(bytes), "trace.jsonl");

@@ -11,8 +11,8 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "fuzz.h"
-#include "net/web_connection.h"
 #include "served_room.h"
+#include "server/web/web_connection.h"
 
 namespace {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The YAML form of records, in a folder with two files that include each other.
 #include "fuzz.h"
-#include "layout/schemas.h"
-#include "record/yaml.h"
+#include "record/yaml/yaml.h"
+#include "scene/placement_schemas.h"
 
 namespace {
 

@@ -33,7 +33,7 @@
 #include <vector>
 
 #include "base/golden.h"
-#include "draw/picture_difference.h"
+#include "drawing/picture_difference.h"
 #include "rows.h"
 
 namespace fs = std::filesystem;

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "env/element_schemas.h"
 #include "env/environment.h"
-#include "env/schemas.h"
 #include "record/text.h"
 
 namespace ispace::testing {

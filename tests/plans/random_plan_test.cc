@@ -7,7 +7,7 @@
 #include <map>
 
 #include "env/level.h"
-#include "geom/boolean.h"
+#include "geom/arrangement.h"
 #include "plan_scene.h"
 
 namespace ispace::testing {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Properties of candidates in any plan.
-#include "place/sites.h"
+#include "arrange/placement_rules.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "geom/predicates.h"
 #include "plan_scene.h"
 #include "random_plan.h"
-#include "record/placing.h"
+#include "record/edit.h"
 
 namespace ispace::testing {
 namespace {

@@ -15,8 +15,8 @@
 #include <thread>
 #include <vector>
 
-#include "net/test_world.h"
-#include "record/at_once.h"
+#include "base/parallel.h"
+#include "support/test_world.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "layout/bodies.h"
+#include "scene/bodies.h"
 
 namespace ispace::testing {
 

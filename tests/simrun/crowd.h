@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "layout/scene.h"
+#include "scene/scene.h"
 #include "sim/world.h"
 
 namespace ispace::testing {

@@ -3,7 +3,7 @@
 // another. Judged by brute force over buckets, independent of the tested code. ISPACE_CROWD=10000
 // in the environment sets their number, for ten simulated minutes.
 #include "crowd.h"
-#include "base/test_paths.h"
+#include "support/test_paths.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@
 #include <utility>
 
 #include "base/file.h"
-#include "io/input.h"
-#include "layout/schemas.h"
+#include "io/importers.h"
+#include "scene/placement_schemas.h"
 
 namespace ispace {
 

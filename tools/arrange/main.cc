@@ -2,23 +2,21 @@
 // arrange: places sensors in a room and writes the layout.
 #include <iostream>
 
-#include "arrange/batch.h"
-#include "arrange/goals.h"
-#include "arrange/options.h"
-#include "arrange/report.h"
-#include "arrange/work.h"
+#include "arrange/arrange.h"
+#include "arrange/arrange_batch.h"
+#include "arrange/arrange_options.h"
+#include "arrange/arrange_run.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/run_files.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
-#include "cli/progress.h"
+#include "cli/progress_bar.h"
 #include "cli/run_tool.h"
-#include "cover/trace_file.h"
-#include "place/arrangement.h"
-#include "place/curve.h"
 #include "record/text.h"
+#include "report/curve_chart.h"
+#include "report/trace_file.h"
 
 namespace {
 

@@ -8,11 +8,11 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/golden.h"
-#include "base/json_difference.h"
+#include "base/json_writer.h"
 #include "base/number.h"
 #include "cli/command_line.h"
 #include "cli/run_tool.h"
-#include "draw/picture_difference.h"
+#include "drawing/picture_difference.h"
 
 namespace {
 

@@ -14,7 +14,6 @@
 
 #include "base/error.h"
 #include "base/message.h"
-#include "base/program.h"
 #include "cli/run_tool.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scan/recorded.h"
+#include "scan/scan_run.h"
 
 #include <algorithm>
 #include <deque>
@@ -13,11 +13,10 @@
 #include "base/file.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
-#include "io/recorded_scans.h"
-#include "layout/run_reader.h"
-#include "scan/readings.h"
-#include "sense/reading_format.h"
-#include "sense/sensors.h"
+#include "io/import_records.h"
+#include "scene/run/run_reader.h"
+#include "sense/formats/reading_format.h"
+#include "sense/selection.h"
 
 namespace ispace {
 

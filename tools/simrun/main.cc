@@ -10,16 +10,11 @@
 #include "base/run_files.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
-#include "layout/check_scene.h"
-#include "net/server.h"
-#include "sim/start_warnings.h"
-#include "simrun/drawing.h"
-#include "simrun/inputs.h"
-#include "simrun/options.h"
-#include "simrun/outcome.h"
-#include "simrun/record.h"
-#include "simrun/serving.h"
-#include "simrun/warnings.h"
+#include "scene/findings/findings.h"
+#include "server/server.h"
+#include "sim/world_state.h"
+#include "simrun/simrun_options.h"
+#include "simrun/simrun_run.h"
 
 namespace {
 

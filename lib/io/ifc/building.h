@@ -104,4 +104,9 @@ std::string packedBuilding(const Building& building);
 /// other bytes than packedBuilding() writes
 Building unpackedBuilding(std::string_view bytes);
 
+/// readBuilding() in lib/ispace/read-mesh, confined as meshes are: bounds on memory and time, no
+/// files, no rights. \param name of the file, for messages \throws FormatError
+Building readBuildingInChild(std::string_view bytes, const std::string& name,
+                             std::optional<double> slice);
+
 }  // namespace ispace

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "io/ifc/building.h"
+#include "io/ifc/ifc_frames.h"
 #include "io/ifc/ifc_sections.h"
-#include "io/ifc/ifc_tree.h"
 
 namespace ispace {
 

@@ -9,12 +9,12 @@
 #include <limits>
 #include <stdexcept>
 
-#include "base/test_damage.h"
-#include "geom/boolean.h"
+#include "geom/arrangement.h"
+#include "io/ifc/ifc_import.h"
 #include "io/ifc/ifc_mesh.h"
-#include "io/ifc/storey_choice.h"
 #include "io/ifc/storey_plan.h"
-#include "io/ifc/test_ifc.h"
+#include "support/test_damage.h"
+#include "support/test_ifc.h"
 
 namespace ispace {
 namespace {

@@ -2,11 +2,11 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "geom/boolean.h"
+#include "geom/arrangement.h"
 #include "io/ifc/storey_plan.h"
-#include "io/ifc/test_ifc.h"
 #include "io/importers.h"
-#include "io/test_import.h"
+#include "support/test_ifc.h"
+#include "support/test_import.h"
 
 namespace ispace {
 namespace {

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Items of geometry as plane faces.
 #include "io/ifc/ifc_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include "io/ifc/ifc_shapes.h"
-#include "io/mesh_parts.h"
+#include "io/mesh/mesh_parts.h"
 
 namespace ispace {
 
@@ -139,6 +142,246 @@ TriangleMesh ifcMesh(std::string_view bytes) {
         }
     }
     return triangles.take();
+}
+
+namespace {
+
+constexpr double kFootprintHeight = 2.5;  // metres
+
+/// The surface that a profile sweeps through frames, which map its plane into space; closed at both
+/// ends, or without ends where it comes back to the first frame.
+IfcFaces swept(const IfcArea& area, std::span<const IfcFrame> frames, bool comes_back) {
+    IfcFaces faces;
+    const auto loop_in = [](const Polygon& polygon, const IfcFrame& frame) {
+        std::vector<Point3> loop;
+        loop.reserve(polygon.size());
+        for (const Point2 p : polygon) loop.push_back(frame.at({p.x, p.y, 0}));
+        return loop;
+    };
+    const auto add_cap = [&](const IfcFrame& frame) {
+        for (const Polygon& polygon : area) faces.addLoop(loop_in(polygon, frame));
+        faces.endFace();
+    };
+    for (std::size_t k = 1; k < frames.size(); ++k)
+        for (const Polygon& polygon : area) {
+            const std::vector<Point3> low = loop_in(polygon, frames[k - 1]);
+            const std::vector<Point3> high = loop_in(polygon, frames[k]);
+            for (std::size_t i = 0, j = low.size() - 1; i < low.size(); j = i++) {
+                faces.addLoop(std::array{low[j], low[i], high[i], high[j]});
+                faces.endFace();
+            }
+        }
+    if (!comes_back) {
+        add_cap(frames.front());
+        add_cap(frames.back());
+    }
+    return faces;
+}
+
+IfcArea checkedArea(const IfcFrames& frames, StepId profile) {
+    IfcArea area = ifcProfile(frames, profile);
+    std::erase_if(area, [](const Polygon& polygon) { return polygon.empty(); });
+    if (area.empty()) throw UnreadGeometry("a profile without area");
+    return area;
+}
+
+IfcFaces extruded(const IfcArea& area, const IfcFrame& position, Vec3 by) {
+    IfcFrame end = position;
+    end.origin = position.at({by.x, by.y, by.z});
+    return swept(area, std::array{position, end}, false);
+}
+
+IfcFaces extrusion(const IfcFrames& frames, const StepInstance& solid) {
+    const Vec3 unit = unitOf(frames.direction(solid[2].reference(), {0, 0, 1}));
+    return extruded(checkedArea(frames, solid[0].reference()), frames.axes(solid[1].reference()),
+                    frames.length(solid[3]) * unit);
+}
+
+IfcFaces revolution(const IfcFrames& frames, const StepInstance& solid) {
+    constexpr int kSteps = 48;  // of a full turn
+    const IfcFrame position = frames.axes(solid[1].reference());
+    const StepInstance axis = frames.file().read(solid[2].reference());
+    const Point3 foot = frames.point(axis[0].reference());
+    const Vec3 unit = unitOf(frames.direction(axis[1].reference(), {0, 0, 1}));
+    const double angle = solid[3].number().value_or(0) * frames.units().angle;
+    if (!std::isfinite(angle)) throw UnreadGeometry("IFCREVOLVEDAREASOLID");
+    const double share = std::min(1.0, std::abs(angle) / (2 * std::numbers::pi));
+    const int steps = std::max(1, static_cast<int>(std::ceil(share * kSteps)));
+    std::vector<IfcFrame> stops;
+    for (int i = 0; i <= steps; ++i) {
+        const double a = angle * i / steps, c = std::cos(a), s = std::sin(a);
+        const auto turned = [&](Vec3 v) {
+            return c * v + s * cross(unit, v) + (1 - c) * dot(unit, v) * unit;
+        };
+        IfcFrame turn{turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1}), {}};
+        turn.origin = foot + turned({-foot.x, -foot.y, -foot.z});
+        stops.push_back(position * turn);
+    }
+    return swept(checkedArea(frames, solid[0].reference()), stops, share > 1 - 1e-9);
+}
+
+Point3 vertexPoint(const IfcFrames& frames, StepId vertex) {
+    return frames.point(frames.file().read(vertex)[0].reference());
+}
+
+/// An edge without its last point; straight unless its curve is a circle or an ellipse.
+std::vector<Point3> edgePoints(const IfcFrames& frames, StepId oriented) {
+    const StepInstance use = frames.file().read(oriented);
+    const StepInstance edge = frames.file().read(use[2].reference());
+    const bool forward = use[3].word() != "F";
+    const Point3 start = vertexPoint(frames, edge[0].reference());
+    const Point3 end = vertexPoint(frames, edge[1].reference());
+    std::vector<Point3> points{start, end};
+    const StepInstance conic = frames.file().read(edge[2].reference());
+    if (conic.type == "IFCCIRCLE" || conic.type == "IFCELLIPSE") {
+        const IfcFrame frame = frames.axes(conic[0].reference());
+        const double x = frames.length(conic[1]);
+        const double y = conic.type == "IFCELLIPSE" ? frames.length(conic[2]) : x;
+        const auto angle = [&](Point3 p) {
+            return std::atan2(dot(p - frame.origin, frame.y) / y,
+                              dot(p - frame.origin, frame.x) / x);
+        };
+        constexpr double kTurn = 2 * std::numbers::pi;
+        const bool same = edge[3].word() != "F";
+        const double from = angle(start);
+        double span = (same ? 1 : -1) * (angle(end) - from);
+        if (span <= 1e-9) span += kTurn;
+        points = ifcArc(frame, x, y, from, from + (same ? span : -span));
+        points.front() = start;
+        points.back() = end;
+    }
+    if (!forward) std::reverse(points.begin(), points.end());
+    points.pop_back();
+    return points;
+}
+
+std::vector<Point3> loopPoints(const IfcFrames& frames, StepId id) {
+    const StepInstance loop = frames.file().read(id);
+    std::vector<Point3> points;
+    if (loop.type == "IFCPOLYLOOP") {
+        for (const StepValue& value : loop[0].list())
+            points.push_back(frames.point(value.reference()));
+    } else if (loop.type == "IFCEDGELOOP") {
+        for (const StepValue& value : loop[0].list())
+            for (const Point3& p : edgePoints(frames, value.reference())) points.push_back(p);
+    } else {
+        throw UnreadGeometry(loop.type.empty() ? "a missing instance" : std::string(loop.type));
+    }
+    return points;
+}
+
+void addShell(const IfcFrames& frames, StepId shell, IfcFaces& faces) {
+    for (const StepValue& face : frames.file().read(shell)[0].list()) {
+        for (const StepValue& bound : frames.file().read(face.reference())[0].list())
+            faces.addLoop(loopPoints(frames, frames.file().read(bound.reference())[0].reference()));
+        faces.endFace();
+    }
+}
+
+IfcFaces shells(const IfcFrames& frames, std::span<const StepValue> ids) {
+    IfcFaces faces;
+    for (const StepValue& id : ids) addShell(frames, id.reference(), faces);
+    return faces;
+}
+
+/// IfcTriangulatedFaceSet and IfcPolygonalFaceSet.
+IfcFaces faceSet(const IfcFrames& frames, const StepInstance& set) {
+    std::vector<Point3> points;
+    for (const StepValue& p : frames.file().read(set[0].reference())[0].list())
+        points.push_back(frames.coordinates(p));
+    IfcFaces faces;
+    const auto add_loop = [&](const StepValue& indices) {
+        std::vector<Point3> loop;
+        for (const StepValue& value : indices.list()) {
+            const double index = value.number().value_or(0);
+            if (!(index >= 1 && index <= static_cast<double>(points.size())))
+                throw UnreadGeometry("an index out of its list");
+            loop.push_back(points[static_cast<std::size_t>(index) - 1]);
+        }
+        faces.addLoop(loop);
+    };
+    if (set.type != "IFCPOLYGONALFACESET") {
+        for (const StepValue& triangle : set[3].list()) {
+            add_loop(triangle);
+            faces.endFace();
+        }
+        return faces;
+    }
+    for (const StepValue& value : set[2].list()) {
+        const StepInstance face = frames.file().read(value.reference());
+        add_loop(face[0]);
+        for (const StepValue& hole : face[1].list()) add_loop(hole);
+        faces.endFace();
+    }
+    return faces;
+}
+
+Polygon rectangleTo(double x, double y) { return {{0, 0}, {x, 0}, {x, y}, {0, y}}; }
+
+IfcFaces primitive(const IfcFrames& frames, const StepInstance& item) {
+    if (item.type == "IFCBOUNDINGBOX") {
+        IfcFrame frame;
+        frame.origin = frames.point(item[0].reference());
+        return extruded({rectangleTo(frames.length(item[1]), frames.length(item[2]))}, frame,
+                        {0, 0, frames.length(item[3])});
+    }
+    const IfcFrame frame = frames.axes(item[0].reference());
+    if (item.type == "IFCBLOCK")
+        return extruded({rectangleTo(frames.length(item[1]), frames.length(item[2]))}, frame,
+                        {0, 0, frames.length(item[3])});
+    const double radius = frames.length(item[2]);
+    return extruded({ifcPolygon(ifcArc({}, radius, radius, 0, 2 * std::numbers::pi))}, frame,
+                    {0, 0, frames.length(item[1])});
+}
+
+/// The closed curves of a footprint.
+IfcFaces footprint(const IfcFrames& frames, const StepInstance& set) {
+    IfcArea area;
+    IfcFrame floor;
+    for (const StepValue& element : set[0].list()) {
+        const std::vector<Point3> curve = ifcCurve(frames, element.reference());
+        if (curve.empty()) continue;
+        floor.origin.z = curve.front().z;
+        if (Polygon polygon = ifcPolygon(curve); !polygon.empty()) area.push_back(polygon);
+    }
+    if (area.empty()) throw UnreadGeometry(std::string(set.type));
+    return extruded(area, floor, {0, 0, kFootprintHeight});
+}
+
+}  // namespace
+
+void IfcFaces::addLoop(std::span<const Point3> loop) {
+    corners.insert(corners.end(), loop.begin(), loop.end());
+    if (corners.size() > IfcShapes::kMaxCorners)
+        throw std::runtime_error("a shape of more than 20 million corners");
+    loop_ends.push_back(static_cast<std::uint32_t>(corners.size()));
+}
+
+void IfcFaces::move(const IfcFrame& frame) {
+    for (Point3& corner : corners) corner = frame.at(corner);
+}
+
+IfcFaces ifcFaces(const IfcFrames& frames, const StepInstance& item) {
+    const std::string_view type = item.type;
+    if (type == "IFCEXTRUDEDAREASOLID" || type == "IFCEXTRUDEDAREASOLIDTAPERED")
+        return extrusion(frames, item);
+    if (type == "IFCREVOLVEDAREASOLID") return revolution(frames, item);
+    if (type == "IFCSHELLBASEDSURFACEMODEL" || type == "IFCFACEBASEDSURFACEMODEL")
+        return shells(frames, item[0].list());
+    if (type == "IFCFACETEDBREP" || type == "IFCFACETEDBREPWITHVOIDS" ||
+        type == "IFCADVANCEDBREP" || type == "IFCADVANCEDBREPWITHVOIDS") {
+        IfcFaces faces;
+        addShell(frames, item[0].reference(), faces);
+        for (const StepValue& hollow : item[1].list()) addShell(frames, hollow.reference(), faces);
+        return faces;
+    }
+    if (type == "IFCTRIANGULATEDFACESET" || type == "IFCTRIANGULATEDIRREGULARNETWORK" ||
+        type == "IFCPOLYGONALFACESET")
+        return faceSet(frames, item);
+    if (type == "IFCBOUNDINGBOX" || type == "IFCBLOCK" || type == "IFCRIGHTCIRCULARCYLINDER")
+        return primitive(frames, item);
+    if (type == "IFCGEOMETRICCURVESET" || type == "IFCGEOMETRICSET") return footprint(frames, item);
+    throw UnreadGeometry(type.empty() ? "a missing instance" : std::string(type));
 }
 
 }  // namespace ispace

@@ -5,10 +5,10 @@
 
 #include <numbers>
 
-#include "geom/boolean.h"
+#include "geom/arrangement.h"
 #include "io/ifc/ifc_sections.h"
 #include "io/ifc/storey_plan.h"
-#include "io/ifc/test_ifc.h"
+#include "support/test_ifc.h"
 
 namespace ispace {
 namespace {

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <numbers>
 
+#include "base/message.h"
 #include "base/number.h"
-#include "base/program.h"
 #include "record/text.h"
 
 namespace ispace {

@@ -14,7 +14,7 @@
 #include "env/mesh.h"
 #include "geom/polygon.h"
 #include "geom/pose.h"
-#include "io/sdf_parts.h"
+#include "io/sdf/sdf_parts.h"
 
 namespace ispace {
 

@@ -5,8 +5,8 @@
 
 #include "io/exporters.h"
 #include "io/ifc/ifc_write_model.h"
-#include "layout/schemas.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
 
 namespace ispace {
 

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "base/number.h"
-#include "io/ifc/storey_choice.h"
+#include "io/ifc/ifc_import.h"
 #include "io/ifc/storey_plan.h"
-#include "io/plan_rooms.h"
+#include "io/plan/plan_rooms.h"
 
 namespace ispace {
 

@@ -5,7 +5,7 @@
 
 #include "io/ifc/building.h"
 #include "io/import_records.h"
-#include "io/input.h"
+#include "io/importers.h"
 
 namespace ispace {
 

@@ -9,7 +9,7 @@
 
 #include "geom/polygon.h"
 #include "io/ifc/building.h"
-#include "io/plan_lines.h"
+#include "io/plan/plan_lines.h"
 
 namespace ispace {
 

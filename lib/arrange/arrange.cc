@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/arrange.h"
+
+#include <algorithm>
+#include <set>
+#include <span>
+
+#include "arrange/measured_scene.h"
+#include "arrange/objective.h"
+#include "arrange/refine.h"
+#include "arrange/search/greedy_search.h"
+#include "arrange/search/problem.h"
+#include "base/error.h"
+#include "base/number.h"
+#include "coverage/coverage.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace {
+
+namespace {
+
+/// A row for each cell that a candidate sees: some 30 bytes each.
+void mustFitInModel(const Problem& problem) {
+    constexpr double kMaxEntries = 1e8;
+    double entries = 0;
+    const std::vector<std::uint32_t> ones(problem.cells(), 1);
+    for (const Kind& kind : problem.kinds) {
+        std::vector<std::uint32_t> counts(kind.candidates->size());
+        kind.candidates->weighAll(WeightSums(ones), counts);
+        for (const std::uint32_t count : counts) entries += count;
+    }
+    if (entries > kMaxEntries)
+        throw UsageError("--export-mps: the model has " + formatFixed(entries / 1e6, 0) +
+                         " million entries, more than " + formatFixed(kMaxEntries / 1e6, 0) +
+                         ": use fewer candidates (--candidates) or larger cells (--cell)");
+}
+
+void writeModel(const SceneProblem& model, std::ostream& mps) {
+    mustFitInModel(model.problem());
+    std::vector<std::string> names;
+    names.reserve(model.kinds().size());
+    for (const SensorClass& kind : model.kinds()) names.push_back(kind.id);
+    const auto pose_text = [&model](const Choice& choice) {
+        const Pose3 pose = model.poseOf(choice);
+        std::string text;
+        for (const double number : {pose.position.x, pose.position.y, pose.position.z,
+                                    pose.heading.degrees(), pose.tilt.degrees()})
+            text.append(text.empty() ? "" : " ").append(formatDouble(number));
+        return text;
+    };
+    writeMps(model.problem(), names, "x y z (m) heading tilt (degrees)", pose_text, mps);
+}
+
+SearchResult find(const SceneProblem& model, Arrangement& result, Progress& progress) {
+    const ArrangeOptions& options = model.options();
+    if (!options.target) return search(model.problem(), model.searchOptions(), progress);
+    MinimumCostCover cover = minimumCostCover(model.problem(), model.valueFor(*options.target),
+                                              model.searchOptions(), progress);
+    result.is_reached = cover.is_reached;
+    result.is_exhausted = cover.is_all;
+    if (cover.is_reached) result.least = cover.cost_bound;
+    return cover.result;
+}
+
+/// With fewer candidates than sensors a search chooses some twice, which adds nothing; two sensors
+/// cannot stand in one place.
+void takeEachOnce(std::vector<Choice>& chosen) {
+    std::set<Choice> taken;
+    std::erase_if(chosen, [&taken](const Choice& choice) { return !taken.insert(choice).second; });
+}
+
+/// Bound over all places: for any sensors a budget buys, else for the number of each kind found.
+double boundOfAnyPlace(const SceneProblem& model, const std::vector<Placement>& placements) {
+    const bool buys = model.options().budget.has_value();
+    std::vector<int> most(model.kinds().size());
+    for (std::size_t k = 0; k < most.size(); ++k)
+        if (buys) most[k] = model.kinds()[k].most;
+    if (!buys)
+        for (const Placement& placement : placements) ++most[placement.kind];
+    return model.share(model.maxFromAnyPlace(most));
+}
+
+/// If some candidates were not made, nothing bounds the value.
+double boundOf(const SearchResult& result, const SceneProblem& model) {
+    return model.isComplete() ? model.share(result.bound) : 1;
+}
+
+void refineIn(Arrangement& result, SceneProblem& model, std::uint64_t before, Progress& progress) {
+    const Refined refined = refine(model, result.sensors, before, progress);
+    result.is_refined = true;
+    result.refined_before = refined.before;
+    result.refined_after = refined.after;
+    result.is_complete = result.is_complete && !progress.stopped();
+    if (!(refined.after > refined.before)) return;  // all stand on candidates
+    for (std::size_t i = 0; i < refined.poses.size(); ++i)
+        result.sensors[i].pose = refined.poses[i];
+    result.bound = boundOfAnyPlace(model, result.sensors);
+}
+
+void measure(Arrangement& result, SceneProblem& model) {
+    const ArrangeOptions& options = model.options();
+    const CoverageOptions usual{.plane = options.plane, .exact = false};
+    const Scene whole = withPlaced(model.scene(), model.groups(), result.sensors);
+    const Coverage measured = measureCoverage(whole, model.worlds(), usual);
+    const CoverageReport& report = measured.report;
+    result.coverage = report.coverage.grid.value_or(0);
+    result.area = report.total_effective_area.grid.value_or(0);
+    const std::vector<CountedView> views =
+        model.viewsOf(std::span(whole.sensors).subspan(model.scene().sensors.size()));
+    if (!options.judges_inside || !(model.target().grid == measured.target.grid))
+        result.value = model.share(model.valueOf(views));
+    for (const Objective& row : objectives())
+        if (row.report != nullptr && row.is_asked(options)) row.report(model, views, result);
+    if (options.beam_step) result.value = result.candidate_value;
+    for (const std::size_t i : idleViews(model, views))
+        result.idle.push_back(result.sensors[i].sensor);
+}
+
+/// [n]: value of the best n of these sensors, chosen greedily. If coverage must be connected, a
+/// subset may not be: then only all of them count. O(n^2 * runs)
+std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Choice> chosen) {
+    const std::vector<std::uint32_t> partial_weights = partialWeights(problem);
+    CoverageState state(problem, partial_weights);
+    std::vector<std::uint64_t> values(chosen.size() + 1, state.value());
+    values.back() = valueOf(problem, chosen);
+    if (problem.is_connected) return values;
+    for (std::size_t n = 1; !chosen.empty(); ++n) {
+        std::uint64_t best = 0;
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            state.add(chosen[i]);
+            if (state.value() > best) {
+                best = state.value();
+                next = i;
+            }
+            state.removeAt(n - 1);
+        }
+        state.add(chosen[next]);
+        chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(next));
+        values[n] = state.value();
+    }
+    return values;
+}
+
+/// Points of a curve up to this number of sensors are searched even if no time is left: greedy
+/// search and a quick bound take time in proportion to the candidates' size.
+std::size_t quickPoints(const SceneProblem& model) {
+    constexpr std::size_t kMaxBytes = std::size_t{64} << 20U;
+    constexpr std::size_t kBytesPerCell = 8;
+    return kMaxBytes / (model.bytes() + kBytesPerCell * model.problem().cells() + 1);
+}
+
+/// True if the search had only the number of sensors as its limit.
+bool isByNumber(const SceneProblem& model) {
+    if (!model.options().budget && !model.options().target) return true;
+    const std::vector<Kind>& kinds = model.problem().kinds;
+    return std::all_of(kinds.begin(), kinds.end(),
+                       [&](const Kind& kind) { return kind.cost == kinds[0].cost; });
+}
+
+/// Value of 1, 2, ... sensors of these kinds, whatever they cost, with bounds. Where no time is
+/// left to search: the value of that many of the sensors found, without a bound.
+std::vector<SearchResult> searchByNumber(const SearchResult& found, const SceneProblem& model,
+                                         Progress& progress) {
+    const std::vector<std::uint64_t> part = valuesOfFirst(model.problem(), found.best.chosen);
+    const std::size_t last = part.size() - 1, quick = quickPoints(model);
+    Problem fewer = model.problem();
+    fewer.order.clear();
+    for (Kind& kind : fewer.kinds) kind.cost = 1;
+    std::vector<SearchResult> results;
+    results.reserve(last);
+    for (std::size_t n = 1; n <= last; ++n) {
+        fewer.budget = static_cast<double>(n);
+        SearchResult result;
+        result.bound = fewer.totalWeight();
+        if (n == last && isByNumber(model))
+            result = found;
+        else if (n <= quick || !progress.stopped())
+            result = search(fewer, model.searchOptions(), progress);
+        result.best.value = std::max(result.best.value, part[n]);
+        results.push_back(std::move(result));
+    }
+    return results;
+}
+
+std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& model,
+                                Progress& progress) {
+    std::vector<SearchResult> results = searchByNumber(found, model, progress);
+    // One more sensor never covers less; what more sensors cannot cover, fewer cannot.
+    for (std::size_t i = 1; i < results.size(); ++i)
+        results[i].best.value = std::max(results[i].best.value, results[i - 1].best.value);
+    for (std::size_t i = results.size(); i-- > 1;)
+        results[i - 1].bound = std::min(results[i - 1].bound, results[i].bound);
+    std::vector<CurvePoint> curve;
+    curve.reserve(results.size());
+    for (const SearchResult& result : results)
+        curve.push_back({static_cast<int>(curve.size()) + 1, model.share(result.best.value),
+                         boundOf(result, model)});
+    return curve;
+}
+
+Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& groups,
+                           const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
+    SceneProblem model(scene, groups, options, progress);
+    const Problem& problem = model.problem();
+    if (mps != nullptr) writeModel(model, *mps);
+
+    Arrangement result;
+    result.is_complete = model.isComplete();
+    const SearchShare& share = options.search.share;
+    if (share.own && !model.isComplete())
+        throw UnmetError("stopped before all candidates were made: there is nothing to share");
+    if (share.isOwn(Shared::Candidates)) return result;
+    SearchResult found = find(model, result, progress);
+    if (share.own) return result;
+    std::vector<Choice>& chosen = found.best.chosen;
+    takeEachOnce(chosen);
+    if (found.best.value > 0) {
+        model.spreadIdle(chosen);
+        found.best.value = ispace::valueOf(problem, chosen);
+    }
+    result.is_complete = model.isComplete() && found.is_complete;
+    result.candidates = model.candidates();
+    result.bytes = model.bytes();
+    result.grid = model.target().grid;
+    if (!options.target && !options.budget) result.unplaced = problem.order.size() - chosen.size();
+    result.candidate_value = model.share(found.best.value);
+    result.candidate_bound = boundOf(found, model);
+    result.bound = result.candidate_bound;
+    result.sensors = model.placementsOf(chosen);
+    if (options.refine) refineIn(result, model, found.best.value, progress);
+    measure(result, model);
+    if (options.wants_curve) {
+        result.curve = curveTo(found, model, progress);
+        result.is_complete = result.is_complete && !progress.stopped();
+    }
+    if (options.wants_trace) result.tried = model.triedPoses(chosen);
+    return result;
+}
+
+}  // namespace
+
+Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
+                    const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
+    // Candidates, bounds and all measures are those of sensors that cover no more.
+    Scene limited = scene;
+    for (Sensor& sensor : limited.sensors) limitCovered(sensor.model, options);
+    std::vector<SensorGroup> limited_groups = groups;
+    for (SensorGroup& group : limited_groups) limitCovered(group.model, options);
+    return arrangeLimited(limited, limited_groups, options, progress, mps);
+}
+
+namespace {
+
+Record resultRecord(const LayoutParts& parts, const Arrangement& arrangement) {
+    Record result(*sceneSchemas().find("result"));
+    result.set("coverage", Value(roundSignificant(arrangement.coverage)));
+    result.set("area", Value(roundSignificant(arrangement.area)));
+    if (arrangement.value) result.set("value", Value(roundSignificant(*arrangement.value)));
+    result.set("bound", Value(roundSignificant(arrangement.bound)));
+    if (arrangement.is_refined)
+        result.set("candidates_bound", Value(roundSignificant(arrangement.candidate_bound)));
+    result.set("strategy", Value(parts.strategy));
+    result.set("optimize", Value(parts.optimize));
+    result.set("candidates", Value(static_cast<double>(arrangement.candidates)));
+    if (arrangement.least) result.set("least", Value(*arrangement.least));
+    if (!arrangement.is_complete) result.set("complete", Value(false));
+    return result;
+}
+
+}  // namespace
+
+Document layoutDocument(const LayoutParts& parts, const Document* before,
+                        const std::vector<SensorGroup>& groups, const Arrangement& arrangement) {
+    Document document{DocumentKind::Layout, parts.history, {}};
+    Record environment(*sceneSchemas().find("environment"));
+    if (!parts.environment_file.empty()) environment.set("file", Value(parts.environment_file));
+    environment.set("digest", Value(parts.environment_digest));
+    document.records.push_back(environment);
+
+    const std::vector<Placement>& sensors = arrangement.sensors;
+    std::vector<bool> is_written(sensors.size());
+    const auto write = [&](std::size_t i) {
+        document.records.push_back(placedRecord(groups[sensors[i].group], sensors[i]));
+        is_written[i] = true;
+    };
+    const auto place_of = [&](const Record& record) {
+        std::size_t i = 0;
+        while (i < sensors.size() && (is_written[i] || !groups[sensors[i].group].is_pending ||
+                                      !(groups[sensors[i].group].record == record)))
+            ++i;
+        return i;
+    };
+    if (before != nullptr) {
+        for (const Record& record : before->records) {
+            if (record.schema().type == RecordType::Meta) continue;
+            if (const std::size_t i = place_of(record); i < sensors.size())
+                write(i);
+            else
+                document.records.push_back(record);
+        }
+    }
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+        if (!is_written[i]) write(i);
+    document.records.push_back(resultRecord(parts, arrangement));
+    return document;
+}
+
+}  // namespace ispace

@@ -1,0 +1,419 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/candidate.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "arrange/sensor_group.h"
+#include "base/error.h"
+#include "base/number.h"
+#include "base/packed.h"
+#include "coverage/plane_cells.h"
+#include "coverage/sector_cells.h"
+#include "geom/spatial_index.h"
+#include "sense/scan.h"
+
+namespace ispace {
+
+namespace {
+
+/// The sectors of a level laser at one place, by their limits.
+struct Sectors {
+    std::vector<Angle> headings;
+    std::vector<Angle> limits;                    // none: it sees all around
+    std::vector<CandidateSet::PartRange> ranges;  // by heading
+
+    Sectors(const Laser& laser, std::span<const Angle> of) : headings(of.begin(), of.end()) {
+        ranges.resize(headings.size());
+        std::vector<Sector> sectors;
+        sectors.reserve(headings.size());
+        for (const Angle heading : headings)
+            if (const auto sector = sectorOf(laser, heading)) sectors.push_back(*sector);
+        for (const Sector& sector : sectors)
+            limits.insert(limits.end(), {sector.first, sector.beyond});
+        std::sort(limits.begin(), limits.end());
+        limits.erase(std::unique(limits.begin(), limits.end()), limits.end());
+        const auto directed = static_cast<std::uint32_t>(limits.size());
+        for (std::size_t k = 0; k < sectors.size(); ++k) {
+            const std::uint32_t begin = indexOf(sectors[k].first);
+            ranges[k] = {begin, (indexOf(sectors[k].beyond) + directed - begin) % directed};
+        }
+    }
+
+  private:
+    [[nodiscard]] std::uint32_t indexOf(Angle limit) const {
+        return static_cast<std::uint32_t>(std::lower_bound(limits.begin(), limits.end(), limit) -
+                                          limits.begin());
+    }
+};
+
+/// Leaves out runs of cells that are not counted.
+class Counted {
+  public:
+    explicit Counted(const CellSet& cells) : next_(cells.size() + 1), end_(cells.size() + 1) {
+        const auto size = static_cast<std::uint32_t>(cells.size());
+        next_[size] = size;
+        for (std::uint32_t i = size; i-- > 0;) next_[i] = cells.test(i) ? i : next_[i + 1];
+        end_[0] = 0;
+        for (std::uint32_t i = 0; i < size; ++i) end_[i + 1] = cells.test(i) ? i + 1 : end_[i];
+    }
+    /// Afterwards all runs begin and end with counted cells.
+    void keepIn(CellParts& parts) const {
+        std::uint32_t count = 0, begin = 0;
+        for (std::size_t part = 0; part < parts.size(); ++part) {
+            const std::uint32_t end = parts.first[part + 1];
+            for (std::uint32_t i = begin; i < end; ++i) {
+                const CellRun run{next_[parts.runs[i].first], end_[parts.runs[i].end]};
+                if (run.first < run.end) parts.runs[count++] = run;
+            }
+            begin = end;
+            parts.first[part + 1] = count;
+        }
+        parts.runs.resize(count);
+    }
+
+  private:
+    std::vector<std::uint32_t> next_;  // [i]: the first counted cell from i on
+    std::vector<std::uint32_t> end_;   // [i]: the end of the last counted cell before i
+};
+
+}  // namespace
+
+struct CandidateViews::Data {
+    const Grid& grid;
+    const Sight& sight;
+    std::shared_ptr<const Level> level;
+    SensorModel device;
+    Pose3 mount;
+    bool is_round, looks_in_slice;
+    std::optional<Counted> counted = {};
+    const RayWorld* beam_world = nullptr;  // of lasers that see by beams
+
+    [[nodiscard]] std::size_t headingsOf(const Site& site) const {
+        return is_round ? 1 : site.headings.size();
+    }
+    [[nodiscard]] Sensor at(const Site& site, std::size_t heading) const {
+        Sensor sensor{"", device, mount};
+        sensor.pose.position = {site.place.x, site.place.y, mount.position.z};
+        sensor.pose.heading = site.headings[heading];
+        return sensor;
+    }
+    /// The cells of each heading, a part each, and an empty one that all see.
+    void lookAtPlane(const Site& site, CellParts& parts) const {
+        const std::size_t headings = headingsOf(site);
+        parts.runs.clear();
+        parts.first.assign(headings + 2, 0);
+        if (level->isBuried(site.place)) return;
+        std::vector<FieldOfView> fields;
+        for (std::size_t k = 0; k < headings; ++k)
+            if (const auto field = fieldOfView(at(site, k))) fields.push_back(*field);
+        if (!fields.empty()) {
+            cellsByView(grid, sight.meshFor(device), fields, sight.plane(), parts);
+        } else {  // lasers
+            parts.first.resize(1);
+            for (std::size_t k = 0; k < headings; ++k) {
+                const Sensor laser = at(site, k);
+                const CellParts seen =
+                    partOf(beam_world == nullptr ? sight.cellsOf(grid, laser)
+                                                 : cellsByBeams(grid, *beam_world, laser));
+                parts.runs.insert(parts.runs.end(), seen.runs.begin(), seen.runs.end());
+                parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+            }
+        }
+        parts.first.push_back(parts.first.back());
+    }
+};
+
+CandidateViews::CandidateViews(const Sight& sight, const Grid& grid, const SensorModel& device,
+                               const Pose3& mount, const CellSet* counted,
+                               const std::optional<ByBeams>& by_beams)
+    : data_(new Data{grid, sight, sight.levelAt(mount.position.z), device, mount,
+                     looksAround(device, mount), scansSlice(Sensor{"", device, mount}),
+                     counted != nullptr && counted->count() < counted->size()
+                         ? std::optional<Counted>(*counted)
+                         : std::nullopt}) {
+    sight.prepare({"", device, mount});
+    if (!by_beams || !data_->looks_in_slice) return;
+    data_->looks_in_slice = false;
+    data_->device = atResolution(std::get<Laser>(device), by_beams->step);
+    data_->beam_world = &by_beams->worlds.at(mount);
+}
+
+CandidateViews::~CandidateViews() = default;
+
+bool CandidateViews::isRound() const { return data_->is_round; }
+
+namespace {
+
+/// Position of a place along a Morton curve through the box.
+std::uint64_t alongCurve(Point2 place, const Box2& box) {
+    const double scale = 0xffff / std::max({box.width(), box.depth(), kRayEpsilon});
+    const auto x = static_cast<std::uint32_t>((place.x - box.low.x) * scale);
+    const auto y = static_cast<std::uint32_t>((place.y - box.low.y) * scale);
+    return mortonCode(x & 0xffffU, y & 0xffffU);
+}
+
+/// `count` of the sites from `first` on, spread over the plan however they are listed, ascending:
+/// the middle of each of `count` equal stretches of a Morton curve. O(n log n)
+/// \pre count <= sites.size() - first
+std::vector<std::size_t> sitesSpreadOver(std::span<const Site> sites, std::size_t first,
+                                         std::size_t count) {
+    Box2 box;
+    for (const Site& site : sites) box.add(site.place);
+    std::vector<std::pair<std::uint64_t, std::size_t>> curve;
+    curve.reserve(sites.size() - first);
+    for (std::size_t i = first; i < sites.size(); ++i)
+        curve.emplace_back(alongCurve(sites[i].place, box), i);
+    std::sort(curve.begin(), curve.end());
+    std::vector<std::size_t> sample;
+    sample.reserve(count);
+    for (std::size_t k = 0; k < count; ++k)
+        sample.push_back(curve[(2 * k + 1) * curve.size() / (2 * count)].second);
+    std::sort(sample.begin(), sample.end());
+    return sample;
+}
+
+/// Scans some sites at a time and adds what is seen to the set, in the order of the list. Once
+/// progress says stop, only a sample of the other sites follows, so that there are candidates
+/// everywhere.
+class Scanner {
+  public:
+    Scanner(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
+            std::size_t least, Progress& progress, const SearchShare& share)
+        : set_(set),
+          data_(views.data()),
+          sites_(sites),
+          progress_(progress),
+          share_(share),
+          least_(std::min(least, sites.size())),
+          at_once_(data_.looks_in_slice ? 512 : 32) {}
+
+    /// True if all sites were scanned.
+    bool run(std::size_t max_bytes) {
+        std::size_t next = 0;
+        while (next < sites_.size() && !progress_.stopped()) {
+            turns_.clear();
+            for (; next < sites_.size() && turns_.size() < at_once_; ++next) turns_.push_back(next);
+            const int step = share_.results != nullptr ? share_.results->numberOf("views/") : 0;
+            const std::string name = "views/" + std::to_string(step);
+            prepare();
+            if (!recall(name) && !leaveToOthers(step)) {
+                look(added_ >= least_);
+                if (share_.results != nullptr && !progress_.stopped()) keep(name);
+            }
+            addSeen(max_bytes);
+        }
+        if (next < sites_.size()) {
+            turns_ = sitesSpreadOver(sites_, next, std::min(least_, sites_.size() - next));
+            prepare();
+            look(false);
+            addSeen(max_bytes);
+        }
+        return added_ == sites_.size();
+    }
+
+  private:
+    static std::string tooLarge(std::size_t max_bytes) {
+        return "the candidates take more than " + formatBytes(max_bytes) +
+               ": use fewer places, headings or cells, or --max-memory";
+    }
+
+    /// Makes room for what is seen from the sites at hand.
+    void prepare() {
+        if (parts_.size() < turns_.size()) parts_.resize(turns_.size());
+        is_done_.assign(turns_.size(), 1);
+        if (data_.looks_in_slice) findSectors(turns_.size());
+    }
+
+    /// Fills parts_ of the sites at hand. What is seen of a plane takes a while: it may stop in
+    /// between.
+    void look(bool may_stop) {
+        std::atomic<std::int64_t> looks = 0;
+        tbb::parallel_for(std::size_t{0}, turns_.size(), [&](std::size_t i) {
+            if (data_.looks_in_slice) {
+                lookFrom(i);
+            } else if (may_stop && progress_.stopped()) {
+                is_done_[i] = 0;
+                return;
+            } else {
+                // A thread that waits for rows of cells here does not begin with another site.
+                tbb::this_task_arena::isolate([&] { lookFrom(i); });
+            }
+            ++looks;
+        });
+        progress_.advance(looks);
+    }
+
+    void addSeen(std::size_t max_bytes) {
+        for (std::size_t i = 0; i < turns_.size(); ++i) {
+            if (is_done_[i] == 0) continue;
+            add(i);
+            ++added_;
+            if (set_.bytes() > max_bytes) throw UsageError(tooLarge(max_bytes));
+        }
+    }
+
+    /// Takes what an earlier run or another shard saw in this step.
+    bool recall(const std::string& name) {
+        const auto bytes = share_.results != nullptr ? share_.results->find(name) : std::nullopt;
+        if (!bytes) return false;
+        Unpacker from(*bytes);
+        for (std::size_t i = 0; i < turns_.size(); ++i) {
+            parts_[i].runs = from.all<CellRun>();
+            parts_[i].first = from.all<std::uint32_t>();
+            if (!isWhole(parts_[i], set_.cells()) || parts_[i].size() != directedOf(i) + 1)
+                Unpacker::refuse();
+            progress_.advance(1);
+        }
+        return true;
+    }
+    void keep(const std::string& name) {
+        Packer to;
+        for (std::size_t i = 0; i < turns_.size(); ++i) {
+            to.addAll(parts_[i].runs);
+            to.addAll(parts_[i].first);
+        }
+        share_.results->store(name, to.bytes());
+    }
+    /// A step of another shard: nothing is seen.
+    bool leaveToOthers(int step) {
+        if (!share_.isOwn(Shared::Candidates) ||
+            (step - 1) % share_.own->count == share_.own->index - 1)
+            return false;
+        for (std::size_t i = 0; i < turns_.size(); ++i) {
+            parts_[i].runs.clear();
+            parts_[i].first.assign(directedOf(i) + 2, 0);
+        }
+        return true;
+    }
+    /// Directed parts of what is seen from a site.
+    [[nodiscard]] std::size_t directedOf(std::size_t i) const {
+        return data_.looks_in_slice ? sectors_[sectors_of_[i]].limits.size() : headingsOf(i).size();
+    }
+
+    /// Neighbours mostly have the same headings.
+    void findSectors(std::size_t count) {
+        if (sectors_.size() > 1) sectors_.erase(sectors_.begin(), sectors_.end() - 1);
+        sectors_of_.clear();
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::span<const Angle> headings = headingsOf(i);
+            if (sectors_.empty() ||
+                !std::equal(headings.begin(), headings.end(), sectors_.back().headings.begin(),
+                            sectors_.back().headings.end()))
+                sectors_.emplace_back(std::get<Laser>(data_.device), headings);
+            sectors_of_.push_back(sectors_.size() - 1);
+        }
+    }
+
+    [[nodiscard]] std::span<const Angle> headingsOf(std::size_t i) const {
+        const Site& site = sites_[turns_[i]];
+        return std::span(site.headings).first(data_.headingsOf(site));
+    }
+
+    void lookFrom(std::size_t i) {
+        const Site& site = sites_[turns_[i]];
+        assert(!site.headings.empty());
+        if (data_.looks_in_slice)
+            cellsBySector(data_.grid, *data_.level, site.place,
+                          std::get<Laser>(data_.device).max_range, sectors_[sectors_of_[i]].limits,
+                          parts_[i]);
+        else
+            data_.lookAtPlane(site, parts_[i]);
+        if (data_.counted) data_.counted->keepIn(parts_[i]);
+    }
+
+    void add(std::size_t i) {
+        const Site& site = sites_[turns_[i]];
+        Pose3 mount = data_.mount;
+        mount.position = {site.place.x, site.place.y, mount.position.z};
+        const std::span<const Angle> headings = headingsOf(i);
+        if (data_.looks_in_slice) {
+            set_.addSite(mount, headings, sectors_[sectors_of_[i]].ranges, parts_[i]);
+            return;
+        }
+        ranges_.clear();
+        for (std::uint32_t k = 0; k < headings.size(); ++k) ranges_.push_back({k, 1});
+        set_.addSite(mount, headings, ranges_, parts_[i]);
+    }
+
+    PosedCandidates& set_;
+    const CandidateViews::Data& data_;
+    std::span<const Site> sites_;
+    Progress& progress_;
+    const SearchShare& share_;
+    std::size_t least_, at_once_;
+    std::size_t added_ = 0;
+    // Of the sites at hand:
+    std::vector<std::size_t> turns_;
+    std::vector<char> is_done_;
+    std::vector<CellParts> parts_;
+    std::vector<Sectors> sectors_;
+    std::vector<std::size_t> sectors_of_;
+    std::vector<CandidateSet::PartRange> ranges_;
+};
+
+}  // namespace
+
+bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
+                   std::size_t max_bytes, Progress& progress, std::size_t least,
+                   const SearchShare& share) {
+    assert(set.cells() == views.data().grid.size());
+    progress.begin("scanning candidates", static_cast<std::int64_t>(sites.size()));
+    const bool is_complete = Scanner(set, views, sites, least, progress, share).run(max_bytes);
+    progress.end();
+    return is_complete;
+}
+
+Laser atResolution(Laser laser, Angle step) {
+    const double turn = 360, own = laser.step.degrees();
+    const double wanted = step > Angle() ? step.degrees() : own;
+    const bool is_round = laser.seesAround();
+    const double span = laser.sweptSpan().degrees();
+    laser.sweep = SweepAxis::None;
+    if (is_round) {
+        laser.beams = static_cast<int>(std::lround(turn / wanted));
+        laser.step = Angle::degrees(turn / laser.beams);
+    } else {
+        constexpr double kSlack = 1e-9;
+        laser.beams = static_cast<int>(std::floor(span / wanted + kSlack)) + 1;
+        laser.step = Angle::degrees(wanted);
+    }
+    return laser;
+}
+
+CellSet cellsByBeams(const Grid& grid, const RayWorld& world, const Sensor& sensor) {
+    const auto& laser = std::get<Laser>(sensor.model);
+    const Point2 place = sensor.pose.position.onFloor();
+    const std::vector<float> ranges = castBeams(world, sensor);
+    std::vector<Point2> contour;
+    contour.reserve(ranges.size() + 1);
+    if (laser.span() < Angle::degrees(360)) contour.push_back(place);
+    Box2 box;
+    box.add(place);
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        const double range = std::min(static_cast<double>(ranges[i]), laser.max_range);
+        const Angle heading = sensor.pose.heading + laser.bearing(static_cast<int>(i));
+        contour.push_back(place + range * unitVector(heading));
+        box.add(contour.back());
+    }
+    Scanline inside(grid, box);
+    for (std::size_t i = 0; i < contour.size(); ++i) {
+        const Point2 from = contour[i], to = contour[(i + 1) % contour.size()];
+        if (from != to) inside.add({from, to});
+    }
+    CellSet cells(grid.size());
+    inside.addInside(cells);
+    return cells;
+}
+
+}  // namespace ispace

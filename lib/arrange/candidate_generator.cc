@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/candidate_generator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <map>
+
+#include "arrange/candidate.h"
+#include "arrange/strategy.h"
+#include "base/error.h"
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+/// Places are whole nanometres: people read layouts, and rounding residues are noise.
+double onNanometres(double metres) {
+    constexpr double kPerMetre = 1e9;
+    return std::round(metres * kPerMetre) / kPerMetre;
+}
+Point2 onNanometres(Point2 place) { return {onNanometres(place.x), onNanometres(place.y)}; }
+
+std::vector<Site> onNanometres(std::vector<Site> sites) {
+    for (Site& site : sites) {
+        site.place = onNanometres(site.place);
+        for (Angle& heading : site.headings) heading = wrapped(heading);
+    }
+    return sites;
+}
+
+std::vector<Angle> degrees(std::initializer_list<double> angles) {
+    std::vector<Angle> all;
+    all.reserve(angles.size());
+    for (const double angle : angles) all.push_back(Angle::degrees(angle));
+    return all;
+}
+
+/// What scans a plane stays level. What has an axis looks down from above; one that is aimed has
+/// some tilts to choose from, unless it sees all around from there.
+std::vector<Angle> usualTilts(const SensorModel& model, MountOn mount) {
+    const bool is_aimed = kindOf(model).is_overhead;
+    if (mount == MountOn::Wall && is_aimed) return degrees({-30, -15, -45});
+    const bool hangs = mount == MountOn::Frame || mount == MountOn::Ceiling;
+    if (!hangs || !fieldOfView(Sensor{{}, model, {}})) return {Angle()};
+    const Pose3 down{{}, {}, Angle::degrees(-90), {}};
+    return is_aimed && !looksAround(model, down) ? degrees({-90, -60, -30}) : degrees({-90});
+}
+
+/// Sites at one height.
+struct SitesAtHeight {
+    double height = kScanHeight;
+    std::vector<Site> sites;
+};
+
+}  // namespace
+
+struct CandidatePool::Data {
+    const Environment& environment;
+    Worlds& worlds;
+    const Target& target;
+    CandidateWeights weights;
+    const ArrangeOptions& options;
+    Progress& progress;
+    Sight sight;
+    std::map<double, std::unique_ptr<SiteValidity>> validities = {};
+    std::size_t bytes = 0;  // of the sets made so far
+
+    const SiteValidity& validityAt(double height) {
+        std::unique_ptr<SiteValidity>& validity = validities[height];
+        if (validity != nullptr) return *validity;
+        const MountRules& mount = options.mount;
+        SiteRules rules;
+        rules.height = height;
+        rules.clearance = mount.clearance;
+        rules.judges_inside = options.judges_inside;
+        for (const NamedZone& zone : mount.keep_out) rules.keep_out.push_back(zone.outline);
+        for (const NamedZone& zone : mount.keep_in) rules.keep_in.push_back(zone.outline);
+        if (mount.on == MountOn::Wall) rules.wall_within = std::max(options.dist, kOffWall) + 1e-6;
+        validity = std::make_unique<SiteValidity>(environment, std::move(rules));
+        return *validity;
+    }
+
+    [[nodiscard]] MountOn mountOf(const SensorClass& kind) const {
+        if (options.mount.on) return *options.mount.on;
+        if (!kindOf(kind.model).is_overhead) return MountOn::Floor;
+        return options.strategy == Strategy::Wall ? MountOn::Wall : MountOn::Ceiling;
+    }
+
+    [[nodiscard]] std::vector<double> heightsOf(const SensorClass& kind) const {
+        if (!options.mount.heights.empty()) return options.mount.heights;
+        const MountOn mount = mountOf(kind);
+        const double top = environment.height();
+        if (mount == MountOn::Ceiling) return {onNanometres(top - kBelowCeiling)};
+        if (mount == MountOn::Wall && kindOf(kind.model).is_overhead)
+            return {onNanometres(std::min(kOnWall, top - kBelowWallTop))};
+        return {kScanHeight};
+    }
+
+    [[nodiscard]] std::vector<Angle> tiltsOf(const SensorClass& kind) const {
+        if (kind.record.has("tilt")) return {kind.record.angle("tilt")};
+        if (!options.mount.tilts.empty()) return options.mount.tilts;
+        return usualTilts(kind.model, mountOf(kind));
+    }
+
+    /// By which strategies space their places: the maximum range, but of what hangs overhead no
+    /// more than it looks over.
+    [[nodiscard]] double reachOf(const SensorClass& kind, double height) const {
+        constexpr double kOverHeight = 3;
+        const double range = maxRange(kind.model);
+        const bool hangs = kindOf(kind.model).is_overhead && mountOf(kind) != MountOn::Floor;
+        return hangs ? std::min(range, kOverHeight * height) : range;
+    }
+
+    /// What the strategy proposes at one height; Random comes by itself.
+    [[nodiscard]] std::vector<Site> proposals(const SensorClass& kind, double height) const {
+        return onNanometres(
+            rowOf(options.strategy).propose({environment, height, reachOf(kind, height), options}));
+    }
+
+    [[nodiscard]] std::vector<SitesAtHeight> frameLevels() const {
+        std::map<double, std::vector<Point2>> by_height;
+        for (const Point3& place : framePlaces(environment, options.density.lattice_step))
+            by_height[onNanometres(place.z)].push_back(place.onFloor());
+        std::vector<SitesAtHeight> levels;
+        levels.reserve(by_height.size());
+        for (const auto& [height, places] : by_height)
+            levels.push_back({height, onNanometres(sitesAt(places, headingsPerPlace(options)))});
+        return levels;
+    }
+
+    /// The valid sites at all heights.
+    std::vector<SitesAtHeight> levelsFor(const SensorClass& kind) {
+        std::vector<SitesAtHeight> levels;
+        if (options.mount.on == MountOn::Frame)
+            levels = frameLevels();
+        else
+            for (const double height : heightsOf(kind))
+                levels.push_back({height, proposals(kind, height)});
+        std::size_t proposed = 0, valid = 0;
+        for (SitesAtHeight& level : levels) {
+            proposed += level.sites.size();
+            level.sites = validSites(validityAt(level.height), level.sites, progress);
+            valid += level.sites.size();
+        }
+        if (valid == 0) throw UnmetError(noPlaceText(kind, proposed));
+        return levels;
+    }
+
+    [[nodiscard]] std::string noPlaceText(const SensorClass& kind, std::size_t proposed) const {
+        const MountRules& mount = options.mount;
+        const bool on_frame = mount.on == MountOn::Frame;
+        std::string text = "no place for " + kind.id + ": ";
+        if (on_frame && proposed == 0)
+            return text + "the room has no frame to mount it on (a record `infra`)";
+        if (options.strategy == Strategy::List && proposed == 0)
+            return text + "the list of places is empty";
+        text +=
+            "of the places " +
+            (on_frame ? "under the frame"
+                      : "that strategy " + std::string(nameOf(options.strategy)) + " proposes") +
+            " (" + std::to_string(proposed) + ") none lies indoors and clear of objects";
+        if (!on_frame) {
+            text += " at ";
+            const std::vector<double> all = heightsOf(kind);
+            for (std::size_t i = 0; i < all.size(); ++i)
+                text.append(i == 0 ? "" : ", ").append(formatDouble(all[i]));
+            text += " m";
+        }
+        if (!mount.keep_out.empty() || !mount.keep_in.empty() || mount.clearance > 0 ||
+            mount.on == MountOn::Wall)
+            text += " within the rules for places (--keep-out, --keep-in, --clearance, --mount)";
+        if (const std::string_view hint = rowOf(options.strategy).hint; !hint.empty() && !on_frame)
+            text.append("; ").append(hint);
+        return text;
+    }
+
+    /// Candidates at these sites for each tilt; false if progress says stop: then of about `least`
+    /// places, shared out over all levels and tilts.
+    bool addLevels(PosedCandidates& set, const SensorClass& kind,
+                   const std::vector<SitesAtHeight>& levels, std::size_t least) {
+        const std::vector<Angle> tilts = tiltsOf(kind);
+        std::size_t places = 0;
+        for (const SitesAtHeight& level : levels) places += level.sites.size() * tilts.size();
+        bool is_complete = true;
+        for (const SitesAtHeight& level : levels)
+            for (const Angle tilt : tilts) {
+                if (level.sites.empty()) continue;
+                if (!is_complete && least == 0) return false;
+                const Pose3 mount{{0, 0, level.height}, {}, tilt, kind.record.angle("roll")};
+                worlds.prepare(mount);
+                std::optional<CandidateViews::ByBeams> by_beams;
+                if (options.beam_step)
+                    by_beams.emplace(CandidateViews::ByBeams{worlds, *options.beam_step});
+                const CandidateViews views(sight, target.grid, kind.model, mount, &weights.counted,
+                                           by_beams);
+                const std::size_t share = (least * level.sites.size() + places - 1) / places;
+                if (!addCandidates(set, views, level.sites, options.max_bytes - bytes, progress,
+                                   share, options.search.share))
+                    is_complete = false;
+            }
+        return is_complete;
+    }
+
+    /// Places drawn at all heights.
+    struct Drawn {
+        std::vector<SitesAtHeight> levels;
+        std::size_t places = 0;
+        bool is_complete = true;  ///< false: progress said to stop before
+    };
+
+    /// Valid random places; fewer if they are hard to find or progress says stop. `needs_one`: even
+    /// then tries for one place as long as a single place allows.
+    template <typename Draw>
+    Drawn randomLevels(const SensorClass& kind, int count, bool needs_one, Draw draw) {
+        constexpr std::uint64_t kTries = 1000;  // a place
+        const std::uint64_t max_tries = kTries * static_cast<std::uint64_t>(count);
+        Drawn drawn;
+        std::uint64_t k = 0;
+        const std::vector<double> heights = heightsOf(kind);
+        progress.begin("drawing places", std::int64_t{count} * std::ssize(heights));
+        for (const double height : heights) {
+            const SiteValidity& validity = validityAt(height);
+            std::vector<Point2> places;
+            for (std::uint64_t tries = 0;
+                 tries < max_tries && places.size() < static_cast<std::size_t>(count); ++tries) {
+                const bool must_go_on = needs_one && drawn.places == 0 && k < kTries;
+                if (progress.stopped() && !must_go_on) {
+                    drawn.is_complete = false;
+                    break;
+                }
+                const Point2 place = onNanometres(draw(k++));
+                if (!validity.isValid(place)) continue;
+                places.push_back(place);
+                ++drawn.places;
+                progress.advance(1);
+            }
+            drawn.levels.push_back(
+                {height, onNanometres(sitesAt(places, headingsPerPlace(options)))});
+        }
+        progress.end();
+        return drawn;
+    }
+
+    /// The candidate from `first` on that adds most to what is covered so far, and how much.
+    struct Best {
+        std::size_t candidate = 0;
+        std::uint32_t value = 0;
+    };
+    [[nodiscard]] Best bestFrom(const PosedCandidates& set, std::size_t first) const {
+        std::vector<std::uint32_t> values(set.size());
+        set.weighAll(WeightSums(weights.left), values);
+        const auto best =
+            std::max_element(values.begin() + static_cast<std::ptrdiff_t>(first), values.end());
+        return {static_cast<std::size_t>(best - values.begin()), *best};
+    }
+
+    /// Hierarchical Random, for each sensor anew: R1 places, then R2 more about the best of them.
+    /// What the best of these sees is covered for those that come after. False if progress says
+    /// stop.
+    bool addRandom(PosedCandidates& set, const SensorClass& kind) {
+        for (int sensor = 0; sensor < kind.most; ++sensor) {
+            const bool is_first = sensor == 0;
+            if (!is_first && !isAnythingLeft()) break;
+            const RandomSequence sequence{options.seed, kind.id,
+                                          static_cast<std::uint64_t>(sensor)};
+            const std::size_t own = set.size();
+            // One that adds nothing needs but a place to stand.
+            const int count = isAnythingLeft() ? options.first_places : 1;
+            const Drawn first = randomLevels(kind, count, is_first, [&](std::uint64_t k) {
+                return randomPlace(environment.limits(), sequence, k);
+            });
+            if (first.places == 0) {
+                if (!first.is_complete) return false;
+                if (!is_first) break;
+                throw UnmetError(
+                    noPlaceText(kind, static_cast<std::size_t>(count) * first.levels.size()));
+            }
+            if (!addLevels(set, kind, first.levels, is_first ? kMinPlaces : 0) ||
+                !first.is_complete)
+                return false;
+            const Best start = bestFrom(set, own);
+            if (start.value == 0) continue;
+            const double scope =
+                options.scope.value_or(reachOf(kind, first.levels.front().height) / kSegments);
+            const Point2 center = set.pose(start.candidate).position.onFloor();
+            const Drawn more = randomLevels(kind, options.more_places, false, [&](std::uint64_t k) {
+                return randomPlaceAbout(center, scope, sequence, k);
+            });
+            if (!more.is_complete || !addLevels(set, kind, more.levels, 0)) return false;
+            set.forEachRun(bestFrom(set, own).candidate, [&](const CellRun& run) {
+                std::fill(weights.left.begin() + run.first, weights.left.begin() + run.end, 0U);
+            });
+        }
+        return true;
+    }
+    [[nodiscard]] bool isAnythingLeft() const {
+        return std::any_of(weights.left.begin(), weights.left.end(),
+                           [](std::uint32_t weight) { return weight > 0; });
+    }
+};
+
+CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
+                             CandidateWeights weights, const ArrangeOptions& options,
+                             Progress& progress)
+    : data_(new Data{environment,
+                     worlds,
+                     target,
+                     std::move(weights),
+                     options,
+                     progress,
+                     {environment, options.plane, &worlds}}) {}
+
+CandidatePool::~CandidatePool() = default;
+
+CandidatePool::Made CandidatePool::make(const SensorClass& kind) {
+    Made made{std::make_unique<PosedCandidates>(data_->target.grid.size())};
+    const bool is_random =
+        data_->options.strategy == Strategy::Random && data_->options.mount.on != MountOn::Frame;
+    made.is_complete = is_random
+                           ? data_->addRandom(*made.set, kind)
+                           : data_->addLevels(*made.set, kind, data_->levelsFor(kind), kMinPlaces);
+    data_->bytes += made.set->bytes();
+    return made;
+}
+
+const SiteValidity& CandidatePool::validityAt(double height) { return data_->validityAt(height); }
+
+}  // namespace ispace

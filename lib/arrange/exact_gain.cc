@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/refine.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "arrange/sensor_group.h"
+#include "base/error.h"
+#include "geom/overlay/overlay.h"
+#include "sense/ultrasound.h"
+
+namespace ispace {
+
+namespace {
+
+/// What a counted layer adds to LayerLabel::numbers: lasers and rangers count in the low digits,
+/// receivers in the high ones.
+constexpr std::int64_t kOneSet = 1, kOneReceiver = std::int64_t{1} << 32;
+constexpr std::uint64_t kNearMark = std::uint64_t{1} << 63;
+
+/// Floor of one weight.
+struct Floor {
+    double weight = 1;
+    std::vector<Curve> curves;
+    Box2 box;
+};
+
+bool meet(const Box2& a, const Box2& b) {
+    return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
+}
+
+bool isVoid(const Box2& box) { return box.low.x > box.high.x || box.low.y > box.high.y; }
+
+/// An empty box is in every one.
+bool holds(const Box2& outer, const Box2& inner) {
+    return isVoid(inner) || (outer.low.x <= inner.low.x && inner.high.x <= outer.high.x &&
+                             outer.low.y <= inner.low.y && inner.high.y <= outer.high.y);
+}
+
+Box2 grown(const Box2& box, double by) {
+    return {{box.low.x - by, box.low.y - by}, {box.high.x + by, box.high.y + by}};
+}
+
+Polygon cornersOf(const Box2& box) {
+    return {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
+}
+
+Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
+    return {.curves = std::move(curves), .counts = false, .marks = marks};
+}
+
+/// The indoor floor that counts, parted by its weight; what weighs nothing is left out.
+std::vector<Floor> floorsOf(const Environment& environment, const FloorWeights& floor) {
+    std::vector<Floor> floors;
+    if (floor.isUniform()) {
+        floors.push_back({1, curvesWithArcs(environment.indoor()), {}});
+    } else {
+        constexpr std::uint64_t kIndoor = 1;
+        constexpr std::size_t kFirstWeight = 1;
+        std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoor)};
+        layers.reserve(1 + floor.targets.size() + floor.weights.size());
+        for (const NamedZone& zone : floor.targets)
+            layers.push_back({.curves = {curveOf(zone.outline)}});
+        std::set<double> weights = {1};
+        for (std::size_t i = 0; i < floor.weights.size(); ++i) {
+            layers.push_back(markLayer({curveOf(floor.weights[i].first.outline)},
+                                       std::uint64_t{1} << (kFirstWeight + i)));
+            weights.insert(floor.weights[i].second);
+        }
+        const auto weight_of = [&](const LayerLabel& label) {
+            if ((label.marks & kIndoor) == 0) return 0.0;
+            if (label.count == 0 && !floor.targets.empty()) return 0.0;
+            for (std::size_t i = floor.weights.size(); i > 0; --i)
+                if ((label.marks >> (kFirstWeight + i - 1) & 1U) != 0)
+                    return floor.weights[i - 1].second;
+            return 1.0;
+        };
+        const Overlay overlay(layers);
+        for (const double weight : weights) {
+            if (weight <= 0) continue;
+            const auto weighs = [&](const LayerLabel& label) { return weight_of(label) == weight; };
+            floors.push_back({weight, overlay.curves(weighs), {}});
+        }
+    }
+    for (Floor& floor : floors) floor.box = boundsOfAll(floor.curves);
+    return floors;
+}
+
+/// A sensor's region as a layer.
+struct View {
+    Layer layer;
+    Box2 box;
+
+    View(std::vector<Curve> curves, bool is_receiver)
+        : layer{.curves = std::move(curves), .number = is_receiver ? kOneReceiver : kOneSet} {
+        box = boundsOfAll(layer.curves);
+    }
+};
+
+}  // namespace
+
+struct ExactGain::Data {
+    std::span<const Sensor> sensors;  // that move
+    int multiplicity;
+    const Sight& sight;
+    std::vector<Floor> floors = {};
+    Box2 floor_box = {};
+    std::vector<View> standing = {}, moving = {};
+    std::vector<std::shared_ptr<const Level>> levels =
+        {};  // of these sensors, held while they move
+
+    /// The sensor in hand: the floor where it is the one that is still missing, within `near`.
+    std::size_t in_hand = 0;
+    Box2 near = {};
+    std::vector<Layer> missing = {};  // marks 1 << i: of floors[i]
+    /// The floors within a wider box about each sensor; made when they are wanted.
+    struct Surroundings {
+        Box2 box;
+        std::vector<Floor> floors;
+    };
+    std::vector<Surroundings> around = {};
+
+    [[nodiscard]] View viewOf(const Sensor& sensor) const {
+        auto region = sight.regionOf(sensor);
+        if (!region)
+            throw UsageError(sensor.id + " cannot be refined: its exact region is not known");
+        return {std::move(*region), isPartial(sensor.model)};
+    }
+    [[nodiscard]] View viewOf(std::size_t sensor, const Pose3& pose) const {
+        return viewOf({sensors[sensor].id, sensors[sensor].model, pose});
+    }
+
+    [[nodiscard]] static std::int64_t setsAt(const LayerLabel& label) {
+        const bool heard = label.numbers / kOneReceiver >= static_cast<std::int64_t>(kMinReceivers);
+        return label.numbers % kOneReceiver + (heard ? 1 : 0);
+    }
+    /// True where one more sensor of this kind makes the floor count.
+    [[nodiscard]] bool lacksOne(const LayerLabel& label, bool is_receiver) const {
+        if (setsAt(label) != multiplicity - 1) return false;
+        return !is_receiver ||
+               label.numbers / kOneReceiver == static_cast<std::int64_t>(kMinReceivers) - 1;
+    }
+
+    static void addFloors(const std::vector<Floor>& floors, std::vector<Layer>& layers) {
+        for (std::size_t i = 0; i < floors.size(); ++i)
+            if (!floors[i].curves.empty())
+                layers.push_back(markLayer(floors[i].curves, std::uint64_t{1} << i));
+    }
+
+    /// The floors in a box about the sensor in hand that holds `near`.
+    const std::vector<Floor>& floorsNear() {
+        constexpr double kReach = 3;  // metres that a sensor is let go before they are made anew
+        Surroundings& own = around[in_hand];
+        if (!own.floors.empty() && holds(own.box, near)) return own.floors;
+        own.box = grown(near, kReach);
+        if (holds(own.box, floor_box)) {
+            own.floors = floors;
+            return own.floors;
+        }
+        own.floors.assign(floors.size(), {});
+        for (std::size_t i = 0; i < floors.size(); ++i) {
+            own.floors[i].weight = floors[i].weight;
+            if (!meet(floors[i].box, own.box)) continue;
+            const std::vector<Layer> layers = {markLayer(floors[i].curves, 1),
+                                               {.curves = {curveOf(cornersOf(own.box))}}};
+            own.floors[i].curves = Overlay(layers).curves(
+                [](const LayerLabel& label) { return label.marks == 1 && label.count == 1; });
+        }
+        return own.floors;
+    }
+
+    /// Makes `missing` for a sensor in hand whose region lies in this box, which may hold nothing.
+    void look(const Box2& region) {
+        constexpr double kReach = 0.6;  // metres; steps reach farther at times
+        missing.clear();
+        near = {};
+        if (isVoid(region)) return;
+        near = grown(region, kReach);
+        std::vector<Layer> layers = {markLayer({curveOf(cornersOf(near))}, kNearMark)};
+        addFloors(floorsNear(), layers);
+        for (const View& view : standing)
+            if (meet(view.box, near)) layers.push_back(view.layer);
+        for (std::size_t i = 0; i < moving.size(); ++i)
+            if (i != in_hand && meet(moving[i].box, near)) layers.push_back(moving[i].layer);
+        const Overlay overlay(layers);
+        const bool is_receiver = isPartial(sensors[in_hand].model);
+        for (std::size_t i = 0; i < floors.size(); ++i) {
+            const std::uint64_t mark = std::uint64_t{1} << i;
+            std::vector<Curve> curves = overlay.curves([&](const LayerLabel& label) {
+                return label.marks == (mark | kNearMark) && lacksOne(label, is_receiver);
+            });
+            if (!curves.empty()) missing.push_back(markLayer(std::move(curves), mark));
+        }
+    }
+
+    [[nodiscard]] double weightOf(std::uint64_t marks) const {
+        return marks == 0 ? 0 : floors[static_cast<std::size_t>(std::countr_zero(marks))].weight;
+    }
+
+    [[nodiscard]] double gainOf(const View& view) const {
+        if (view.layer.curves.empty() || missing.empty()) return 0;
+        std::vector<Layer> layers = missing;
+        layers.push_back(view.layer);
+        double gain = 0;
+        Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
+            if (label.count > 0) gain += weightOf(label.marks) * area;
+        });
+        return gain;
+    }
+};
+
+ExactGain::ExactGain(const Scene& scene, const Sight& sight, std::span<const Sensor> sensors,
+                     const FloorWeights& weights, int multiplicity)
+    : data_(new Data{sensors, multiplicity, sight}) {
+    if (weights.weights.size() > kMaxZones)
+        throw UsageError("sensors cannot be refined for " + std::to_string(weights.weights.size()) +
+                         " weighted zones, wanted at most " + std::to_string(kMaxZones));
+    data_->floors = floorsOf(scene.environment, weights);
+    for (const Floor& floor : data_->floors) {
+        if (floor.box.empty()) continue;
+        data_->floor_box.add(floor.box.low);
+        data_->floor_box.add(floor.box.high);
+    }
+    for (const Sensor& sensor : scene.sensors)
+        if (kindOf(sensor.model).perceives) data_->standing.push_back(data_->viewOf(sensor));
+    data_->moving.reserve(sensors.size());
+    for (const Sensor& sensor : sensors) {
+        data_->levels.push_back(sight.levelAt(sensor.pose.position.z));
+        data_->moving.push_back(data_->viewOf(sensor));
+    }
+    data_->around.resize(sensors.size());
+}
+ExactGain::~ExactGain() = default;
+
+double ExactGain::total() const {
+    double sum = 0;
+    for (const Floor& floor : data_->floors) sum += floor.weight * signedArea(floor.curves);
+    return sum;
+}
+
+double ExactGain::value() const {
+    std::vector<Layer> layers;
+    Data::addFloors(data_->floors, layers);
+    for (const View& view : data_->standing) layers.push_back(view.layer);
+    for (const View& view : data_->moving) layers.push_back(view.layer);
+    double value = 0;
+    Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
+        if (Data::setsAt(label) >= data_->multiplicity)
+            value += data_->weightOf(label.marks) * area;
+    });
+    return std::max(0.0, value);
+}
+
+void ExactGain::take(std::size_t sensor) {
+    data_->in_hand = sensor;
+    data_->look(common(data_->moving[sensor].box, data_->floor_box));
+}
+
+std::vector<double> ExactGain::gains(std::span<const Pose3> poses) {
+    std::vector<std::optional<View>> views(poses.size());
+    tbb::parallel_for(std::size_t{0}, poses.size(),
+                      [&](std::size_t i) { views[i] = data_->viewOf(data_->in_hand, poses[i]); });
+    Box2 all;
+    for (const auto& view : views) {
+        const Box2 box = common(view->box, data_->floor_box);
+        if (holds(data_->near, box)) continue;
+        all.add(box.low);
+        all.add(box.high);
+    }
+    if (!all.empty()) {
+        // What was found before stays comparable: gains are of whole regions.
+        if (!data_->near.empty()) {
+            all.add(data_->near.low);
+            all.add(data_->near.high);
+        }
+        data_->look(all);
+    }
+    std::vector<double> gains(poses.size());
+    tbb::parallel_for(std::size_t{0}, poses.size(),
+                      [&](std::size_t i) { gains[i] = data_->gainOf(*views[i]); });
+    return gains;
+}
+
+void ExactGain::put(const Pose3& pose) {
+    data_->moving[data_->in_hand] = data_->viewOf(data_->in_hand, pose);
+}
+
+bool ExactGain::turns(std::size_t sensor) const {
+    const Sensor& own = data_->sensors[sensor];
+    return !looksAround(own.model, own.pose);
+}
+
+}  // namespace ispace

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/measured_scene.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "arrange/candidate.h"
+#include "arrange/objective.h"
+#include "arrange/refine.h"
+#include "arrange/search/problem.h"
+#include "arrange/sensor_group.h"
+#include "base/error.h"
+#include "base/number.h"
+#include "scene/sensor/field_of_view.h"
+#include "sense/scan.h"
+#include "sense/ultrasound.h"
+
+namespace ispace {
+
+namespace {
+
+std::vector<SensorModel> devicesOf(const std::vector<SensorClass>& kinds) {
+    std::vector<SensorModel> devices;
+    devices.reserve(kinds.size());
+    for (const SensorClass& kind : kinds) devices.push_back(kind.model);
+    return devices;
+}
+
+CoverageOptions searching(const ArrangeOptions& options) {
+    return {.cells = searchCells(options), .plane = options.plane, .exact = false};
+}
+
+CellSet countedCells(const Problem& problem) {
+    CellSet counted(problem.cells());
+    for (std::size_t i = 0; i < problem.cells(); ++i)
+        if (problem.weights[i] > 0) counted.set(i);
+    return counted;
+}
+
+/// Why nothing counts. \pre all cells weigh 0
+std::string nothingText(const Target& target, FloorWeights weights) {
+    weights.weights.clear();
+    const std::vector<double> unweighted = weightsOfCells(target, weights);
+    const bool is_weight =
+        std::any_of(unweighted.begin(), unweighted.end(), [](double cell) { return cell > 0; });
+    return is_weight ? "nothing to cover: all of the target weighs 0 (--weight)"
+                     : "nothing to cover: no cell of the target lies indoors; use a larger zone or "
+                       "smaller cells (--cell)";
+}
+
+}  // namespace
+
+SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& groups,
+                           const ArrangeOptions& options, Progress& progress)
+    : scene_(scene),
+      groups_(groups),
+      options_(options),
+      worlds_(scene.environment),
+      sight_(scene.environment, options.plane, &worlds_),
+      kinds_(kindsOf(groups, drawsForEach(options))) {
+    mustBeAffordable();
+    if (options.refine) mustBeRefinable(scene, devicesOf(kinds_), options.weights);
+    const Coverage standing = measureCoverage(scene, worlds_, searching(options));
+    target_ = standing.target;
+    if (!options.judges_inside)
+        for (std::size_t i = 0; i < target_.indoor.size(); ++i) target_.indoor.set(i);
+    problem_.weights = integerWeights(cellWeights(target_, options));
+    total_ = problem_.totalWeight();
+    if (total_ == 0) throw UnmetError(nothingText(target_, options.weights));
+    setMultiplicities(standing);
+    pool_ = std::make_unique<CandidatePool>(scene.environment, worlds_, target_,
+                                            CandidateWeights{countedCells(problem_), weightsLeft()},
+                                            options, progress);
+    addKinds();
+}
+
+void SceneProblem::mustBeAffordable() const {
+    if (!options_.budget) return;
+    double least = kinds_.front().cost;
+    for (const SensorClass& kind : kinds_) least = std::min(least, kind.cost);
+    if (*options_.budget < least)
+        throw UnmetError("a budget of " + formatDouble(*options_.budget) +
+                         " buys nothing: the cheapest sensor costs " + formatDouble(least));
+}
+
+/// Four receivers count as one sensor; where there are receivers, others have multiplicity 4.
+void SceneProblem::setMultiplicities(const Coverage& standing) {
+    const auto is_partial = [](const auto& sensor) { return isPartial(sensor.model); };
+    const bool listens = std::any_of(scene_.sensors.begin(), scene_.sensors.end(), is_partial) ||
+                         std::any_of(kinds_.begin(), kinds_.end(), is_partial);
+    unit_ = listens ? static_cast<int>(kMinReceivers) : 1;
+    problem_.required = unit_ * options_.redundancy;
+    problem_.achieved.assign(target_.grid.size(), 0);
+    problem_.standing = CellSet(target_.grid.size());
+    for (const SensorView& view : standing.sensors) {
+        const int part = view.isPartial() ? 1 : unit_;
+        view.cells.forEach([&](std::size_t cell) {
+            problem_.achieved[cell] =
+                static_cast<std::uint16_t>(std::min(problem_.achieved[cell] + part, 0xffff));
+        });
+        problem_.standing |= view.cells;
+    }
+    problem_.is_connected = options_.is_connected;
+    problem_.budget = options_.budget;
+}
+
+void SceneProblem::addKinds() {
+    for (const SensorClass& kind : kinds_) {
+        CandidatePool::Made made = pool_->make(kind);
+        is_complete_ = is_complete_ && made.is_complete;
+        if (made.set->size() == 0)
+            throw UnmetError("stopped before there was any candidate for " + kind.id);
+        sets_.push_back(std::move(made.set));
+        problem_.kinds.push_back(
+            {sets_.back().get(), kind.most, kind.cost, isPartial(kind.model) ? 1 : unit_});
+    }
+    if (options_.budget || options_.target) return;
+    for (const Placement& sensor : sensorsToPlace(groups_, kinds_))
+        problem_.order.push_back(sensor.kind);
+}
+
+std::size_t SceneProblem::candidates() const {
+    std::size_t count = 0;
+    for (const auto& set : sets_) count += set->size();
+    return count;
+}
+
+std::size_t SceneProblem::bytes() const {
+    std::size_t bytes = 0;
+    for (const auto& set : sets_) bytes += set->bytes();
+    return bytes;
+}
+
+SearchOptions SceneProblem::searchOptions() const {
+    SearchOptions searching = options_.search;
+    const std::size_t taken = std::min(bytes(), options_.max_bytes);
+    searching.max_bytes = std::min(searching.max_bytes, options_.max_bytes - taken);
+    return searching;
+}
+
+double SceneProblem::share(std::uint64_t value) const {
+    return static_cast<double>(value) / static_cast<double>(total_);
+}
+
+std::uint64_t SceneProblem::valueFor(double share) const {
+    return static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_) - 1e-6));
+}
+
+std::vector<std::uint32_t> SceneProblem::weightsLeft() const {
+    std::vector<std::uint32_t> left = problem_.weights;
+    for (std::size_t i = 0; i < left.size(); ++i)
+        if (problem_.achieved[i] >= problem_.required) left[i] = 0;
+    return left;
+}
+
+std::vector<Placement> SceneProblem::placementsOf(const std::vector<Choice>& chosen) const {
+    std::vector<std::vector<Pose3>> poses(kinds_.size());
+    for (const Choice& choice : chosen) poses[choice.kind].push_back(poseOf(choice));
+    return ispace::placementsOf(scene_, groups_, kinds_, poses);
+}
+
+std::vector<CountedView> SceneProblem::viewsOf(std::span<const Sensor> sensors) const {
+    std::vector<CountedView> views(sensors.size());
+    for (const Sensor& sensor : sensors) sight_.prepare(sensor);
+    tbb::parallel_for(std::size_t{0}, sensors.size(), [&](std::size_t i) {
+        // A thread that waits for a level in here does not begin with another sensor.
+        tbb::this_task_arena::isolate([&] {
+            views[i] = {sight_.cellsOf(target_.grid, sensors[i]),
+                        isPartial(sensors[i].model) ? 1 : unit_};
+        });
+    });
+    return views;
+}
+
+std::uint64_t SceneProblem::valueOf(std::span<const CountedView> views) const {
+    std::vector<int> met(problem_.achieved.begin(), problem_.achieved.end());
+    for (const CountedView& view : views)
+        view.cells.forEach([&](std::size_t cell) { met[cell] += view.multiplicity; });
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < met.size(); ++i)
+        if (met[i] >= problem_.required) value += problem_.weights[i];
+    return value;
+}
+
+bool SceneProblem::isConnected(std::span<const CountedView> views) const {
+    const CellSet counted = countedCells(problem_);
+    std::vector<CellSet> waiting;
+    CellSet reached = problem_.standing;
+    reached &= counted;
+    for (const CountedView& view : views) {
+        waiting.push_back(view.cells);
+        waiting.back() &= counted;
+    }
+    if (reached.empty() && !waiting.empty()) {
+        reached = waiting.back();
+        waiting.pop_back();
+    }
+    // Joins what shares a cell with what is joined already until nothing does.
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (std::size_t i = 0; i < waiting.size(); ++i) {
+            if (countCommon(waiting[i], reached) == 0) continue;
+            reached |= waiting[i];
+            waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i--));
+            grows = true;
+        }
+    }
+    return waiting.empty();
+}
+
+void SceneProblem::spreadIdle(std::vector<Choice>& chosen) const {
+    std::vector<Point3> standing;
+    for (const Sensor& sensor : scene_.sensors)
+        if (kindOf(sensor.model).perceives) standing.push_back(sensor.pose.position);
+    const auto position_of = [this](const Choice& choice) { return poseOf(choice).position; };
+    ispace::spreadIdle(problem_, standing, position_of, chosen);
+}
+
+std::uint64_t SceneProblem::maxFromAnyPlace(const std::vector<int>& most) const {
+    return ispace::maxFromAnyPlace(problem_, target_.grid, devicesOf(kinds_), most);
+}
+
+namespace {
+
+void addSliceAreas(Worlds& worlds, const Laser& laser, std::span<TriedPose> poses) {
+    for (const TriedPose& tried : poses) worlds.prepare(tried.pose);
+    tbb::parallel_for(std::size_t{0}, poses.size(), [&](std::size_t i) {
+        const Sensor placed{"", laser, poses[i].pose};
+        poses[i].slice_area = sliceArea(laser, castBeams(worlds.at(placed.pose), placed));
+    });
+}
+
+}  // namespace
+
+std::vector<TriedPose> SceneProblem::triedPoses(const std::vector<Choice>& chosen) {
+    const WeightSums weights(weightsLeft());
+    std::vector<TriedPose> all;
+    all.reserve(candidates());
+    for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
+        const CandidateSet& set = *problem_.kinds[k].candidates;
+        const SensorClass& kind = kinds_[k];
+        std::vector<std::uint32_t> values(set.size());
+        set.weighAll(weights, values);
+        const double part = static_cast<double>(problem_.kinds[k].multiplicity) / problem_.required;
+        const std::size_t first = all.size();
+        for (std::size_t i = 0; i < set.size(); ++i)
+            all.push_back({kind.id, poseOf({k, i}), part * share(values[i]), false});
+        for (const Choice& choice : chosen)
+            if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
+        if (const auto* laser = std::get_if<Laser>(&kind.model))
+            addSliceAreas(worlds_,
+                          options_.beam_step ? atResolution(*laser, *options_.beam_step) : *laser,
+                          std::span(all).subspan(first));
+    }
+    return all;
+}
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Upper bounds of what a sensor sees of a plane, each on its own.
+struct Extent {
+    double reach;          ///< distance from the sensor, metres
+    double area, outline;  ///< square metres, metres
+};
+
+Extent discOf(double radius) { return {radius, kPi * radius * radius, 2 * kPi * radius}; }
+
+Extent extentOf(const Laser& laser) {
+    const double range = laser.max_range;
+    if (laser.sweep != SweepAxis::None) return discOf(range);
+    const double span = laser.sweptSpan().radians();
+    // The two sides also count for a sector with just a gap.
+    return {range, span / 2 * range * range, span * range + (span < 2 * kPi ? 2 * range : 0)};
+}
+
+Extent extentOf(const FieldOfView& view) {
+    const Extent disc = discOf(view.farthest());
+    if (view.shape != FieldOfView::Shape::Pyramid) return disc;
+    // For sensors that measure distances this bounds the depth too.
+    const double depth = view.max_range;
+    const double x = std::max(std::fabs(view.sides.left), std::fabs(view.sides.right));
+    const double y = std::max(std::fabs(view.sides.up), std::fabs(view.sides.down));
+    const double area = depth * depth * std::hypot(4 * x * y, x, y);
+    const double diameter = depth * std::max(2 * std::hypot(x, y), std::hypot(1, x, y));
+    return {disc.reach, std::min(disc.area, area), std::min(disc.outline, kPi * diameter)};
+}
+
+}  // namespace
+
+std::uint64_t maxCellsInView(const SensorModel& device, const Grid& grid) {
+    // Edges are in view however they round: ranges are float32, and so are the cosines of the sides
+    // of a narrow sector.
+    constexpr double kRounding = 2e-6;
+    const auto view = fieldOfView(Sensor{"", device, {}});
+    const Extent most = view ? extentOf(*view) : extentOf(std::get<Laser>(device));
+    const double cell_x = grid.limits.width() / grid.columns,
+                 cell_y = grid.limits.depth() / grid.rows;
+    const double near = std::hypot(cell_x, cell_y) / 2 + kRounding * most.reach;
+    const double cells = (most.area + most.outline * near + kPi * near * near) / grid.cellArea();
+    const auto all = static_cast<double>(grid.size());
+    return static_cast<std::uint64_t>(std::min(all, std::floor(cells) + 1));
+}
+
+namespace {
+
+/// Multiplicity that sensors at any places can add to all cells together.
+std::uint64_t maxParts(const Problem& problem, const Grid& grid,
+                       std::span<const SensorModel> devices, std::span<const int> most) {
+    struct Offer {
+        double parts, cost;
+        int most;
+    };
+    std::vector<Offer> offers;
+    offers.reserve(devices.size());
+    for (std::size_t k = 0; k < devices.size(); ++k) {
+        const Kind& kind = problem.kinds[k];
+        offers.push_back({kind.multiplicity * static_cast<double>(maxCellsInView(devices[k], grid)),
+                          kind.cost, most[k]});
+    }
+    std::stable_sort(offers.begin(), offers.end(), [](const Offer& a, const Offer& b) {
+        return a.parts * b.cost > b.parts * a.cost;
+    });
+    double parts = 0, left = problem.budget.value_or(std::numeric_limits<double>::infinity());
+    for (const Offer& offer : offers) {
+        const double number = std::min(static_cast<double>(offer.most), left / offer.cost);
+        parts += number * offer.parts;
+        left -= number * offer.cost;
+    }
+    return static_cast<std::uint64_t>(std::floor(parts + 1e-6));  // multiplicities are whole
+}
+
+}  // namespace
+
+std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
+                              std::span<const SensorModel> devices, std::span<const int> most) {
+    std::uint64_t value = 0, parts = maxParts(problem, grid, devices, most);
+    /// What a cell lacks to be covered.
+    struct Missing {
+        std::uint32_t weight;
+        std::uint64_t parts;
+    };
+    std::vector<Missing> missing;
+    int together = 0;  // what all of them give a cell
+    for (std::size_t k = 0; k < devices.size(); ++k)
+        together += most[k] * problem.kinds[k].multiplicity;
+    for (std::size_t i = 0; i < problem.cells(); ++i) {
+        const int achieved = problem.achieved.empty() ? 0 : problem.achieved[i];
+        if (achieved >= problem.required)
+            value += problem.weights[i];
+        else if (problem.weights[i] > 0 && problem.required - achieved <= together)
+            missing.push_back(
+                {problem.weights[i], static_cast<std::uint64_t>(problem.required - achieved)});
+    }
+    // Most weight per missing multiplicity first.
+    std::sort(missing.begin(), missing.end(), [](const Missing& a, const Missing& b) {
+        return a.weight * b.parts > b.weight * a.parts;
+    });
+    for (const Missing& cell : missing) {
+        if (parts == 0) break;
+        const std::uint64_t used = std::min(parts, cell.parts);
+        // The last one in part, as in a fractional knapsack.
+        value += (cell.weight * used + cell.parts - 1) / cell.parts;
+        parts -= used;
+    }
+    return value;
+}
+
+}  // namespace ispace

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/objective.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <variant>
+
+#include "arrange/arrange.h"
+#include "arrange/measured_scene.h"
+#include "arrange/search/problem.h"
+#include "scene/sensor/camera.h"
+
+namespace ispace {
+
+namespace {
+
+std::vector<double> floorWeights(const Target& target, const ArrangeOptions& /*options*/) {
+    return weightsOfCells(target, {});
+}
+
+std::vector<double> zoneWeights(const Target& target, const ArrangeOptions& options) {
+    return weightsOfCells(target, options.weights);
+}
+
+void limitCamera(SensorModel& model, const ArrangeOptions& options) {
+    if (auto* camera = std::get_if<Camera>(&model))
+        *camera = withDensity(*camera, options.pixel_density);
+}
+
+/// The share of the total weight that is covered as often as it has to be.
+void reportShare(const SceneProblem& model, std::span<const CountedView> views,
+                 Arrangement& result) {
+    result.value = model.share(model.valueOf(views));
+}
+
+void reportCost(const SceneProblem& model, std::span<const CountedView> /*views*/,
+                Arrangement& result) {
+    // Kind by kind there are few sums to round.
+    std::vector<int> counts(model.kinds().size());
+    for (const Placement& placement : result.sensors) ++counts[placement.kind];
+    double cost = 0;
+    for (std::size_t k = 0; k < counts.size(); ++k) cost += counts[k] * model.kinds()[k].cost;
+    result.cost = normaliseCost(cost);
+    result.has_costs = std::any_of(model.kinds().begin(), model.kinds().end(),
+                                   [](const SensorClass& kind) { return kind.cost != 1; });
+}
+
+using Options = const ArrangeOptions&;
+
+constexpr Objective kObjectives[] = {
+    {.name = "coverage",
+     .option = "",
+     .is_asked = [](Options) { return true; },
+     .weights = floorWeights},
+    {.name = "weights",
+     .option = "--weight",
+     .is_asked = [](Options options) { return !options.weights.isUniform(); },
+     .weights = zoneWeights,
+     .report = reportShare},
+    {.name = "density",
+     .option = "--density",
+     .is_asked = [](Options options) { return options.pixel_density > 0; },
+     .limit = limitCamera},
+    {.name = "redundancy",
+     .option = "--redundancy",
+     .is_asked = [](Options options) { return options.redundancy > 1; },
+     .report = reportShare},
+    {.name = "cost",
+     .option = "--budget",
+     .is_asked = [](Options) { return true; },
+     .report = reportCost}};
+
+}  // namespace
+
+std::span<const Objective> objectives() { return kObjectives; }
+
+std::vector<double> cellWeights(const Target& target, const ArrangeOptions& options) {
+    std::vector<double> weights(target.grid.size(), 1.0);
+    for (const Objective& row : objectives()) {
+        if (row.weights == nullptr || !row.is_asked(options)) continue;
+        const std::vector<double> factors = row.weights(target, options);
+        for (std::size_t i = 0; i < weights.size(); ++i) weights[i] *= factors[i];
+    }
+    return weights;
+}
+
+void limitCovered(SensorModel& model, const ArrangeOptions& options) {
+    for (const Objective& row : objectives())
+        if (row.limit != nullptr && row.is_asked(options)) row.limit(model, options);
+}
+
+}  // namespace ispace

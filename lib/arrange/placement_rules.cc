@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/placement_rules.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <string_view>
+#include <utility>
+
+#include "arrange/dense_sites.h"
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "env/level.h"
+#include "geom/planar_map.h"
+#include "geom/predicates.h"
+#include "geom/spatial_index.h"
+#include "record/text.h"
+
+namespace ispace {
+
+std::vector<Site> sitesAt(const std::vector<Point2>& places, const std::vector<Angle>& headings) {
+    std::vector<Site> sites;
+    sites.reserve(places.size());
+    for (const Point2 place : places) sites.push_back({place, headings});
+    return sites;
+}
+
+namespace {
+
+/// Distance queries among lines.
+class LineFinder {
+  public:
+    explicit LineFinder(std::vector<Segment2> lines) : lines_(std::move(lines)), tree_(lines_) {}
+
+    /// A line comes within `reach`.
+    [[nodiscard]] bool anyWithin(Point2 p, double reach) const {
+        bool any = false;
+        tree_.search({p, p}, reach,
+                     [&](std::size_t i) { any = any || distance(p, lines_[i]) <= reach; });
+        return any;
+    }
+
+  private:
+    std::vector<Segment2> lines_;
+    SegmentTree tree_;
+};
+
+/// What stands at one height.
+std::vector<Segment2> linesOf(const Slice& slice) {
+    std::vector<Segment2> lines;
+    slice.forEachLine([&lines](const Segment2& line) { lines.push_back(line); });
+    return lines;
+}
+
+/// The boundary of the indoor region, whatever the height, and what stands at one.
+std::vector<Segment2> linesOf(const Regions& indoor, const Slice& slice) {
+    std::vector<Segment2> lines = linesOf(slice);
+    indoor.forEachEdge([&lines](const Segment2& edge) { lines.push_back(edge); });
+    return lines;
+}
+
+}  // namespace
+
+struct SiteValidity::Data {
+    Data(const Environment& environment, SiteRules wanted)
+        : rules(std::move(wanted)),
+          level(environment.level(rules.height)),
+          obstacles(linesOf(environment.indoor(), level->slice())),
+          walls(linesOf(wallSlice(environment, rules.height))),
+          keep_out(rules.keep_out),
+          keep_in(rules.keep_in) {}
+
+    SiteRules rules;
+    std::shared_ptr<const Level> level;
+    LineFinder obstacles, walls;
+    PolygonIndex keep_out, keep_in;
+};
+
+SiteValidity::SiteValidity(const Environment& environment, SiteRules rules)
+    : data_(std::make_unique<const Data>(environment, std::move(rules))) {}
+
+SiteValidity::~SiteValidity() = default;
+
+bool SiteValidity::isValid(Point2 place) const {
+    const Data& data = *data_;
+    const SiteRules& rules = data.rules;
+    const bool is_free = rules.judges_inside ? data.level->isFree(place)
+                                             : !data.level->isBuried(place) &&
+                                                   !data.obstacles.anyWithin(place, kWeldDistance);
+    if (!is_free || data.keep_out.holder(place)) return false;
+    if (!data.keep_in.empty() && !data.keep_in.holder(place)) return false;
+    // Distances round: a place at exactly the required distance is valid.
+    if (rules.clearance > kWeldDistance &&
+        data.obstacles.anyWithin(place, rules.clearance - kWeldDistance))
+        return false;
+    return !rules.wall_within || data.walls.anyWithin(place, *rules.wall_within + kWeldDistance);
+}
+
+namespace {
+
+/// Each place once, where it comes first, with the headings of all.
+std::vector<Site> withoutDoubles(std::vector<Site> sites) {
+    std::vector<std::size_t> order(sites.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&sites](std::size_t a, std::size_t b) {
+        const Point2 p = sites[a].place, q = sites[b].place;
+        return lexLess(p, q) || (!lexLess(q, p) && a < b);
+    });
+    std::vector<char> is_double(sites.size());
+    for (std::size_t i = 1, first = 0; i < order.size(); ++i) {
+        Site& kept = sites[order[first]];
+        const Site& other = sites[order[i]];
+        if (kept.place != other.place) {
+            first = i;
+            continue;
+        }
+        is_double[order[i]] = 1;
+        for (const Angle heading : other.headings)
+            if (std::find(kept.headings.begin(), kept.headings.end(), heading) ==
+                kept.headings.end())
+                kept.headings.push_back(heading);
+    }
+    std::size_t i = 0;
+    std::erase_if(sites, [&](const Site& /*site*/) { return is_double[i++] != 0; });
+    return sites;
+}
+
+}  // namespace
+
+std::vector<Site> validSites(const SiteValidity& validity, const std::vector<Site>& sites,
+                             Progress& progress) {
+    std::vector<char> is_valid(sites.size());
+    progress.begin("checking places", static_cast<std::int64_t>(sites.size()));
+    tbb::parallel_for(std::size_t{0}, sites.size(), [&](std::size_t i) {
+        is_valid[i] = validity.isValid(sites[i].place) ? 1 : 0;
+        progress.advance(1);
+    });
+    progress.end();
+    std::vector<Site> valid;
+    valid.reserve(static_cast<std::size_t>(std::count(is_valid.begin(), is_valid.end(), 1)));
+    for (std::size_t i = 0; i < sites.size(); ++i)
+        if (is_valid[i] != 0) valid.push_back(sites[i]);
+    return withoutDoubles(std::move(valid));
+}
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+constexpr std::array kNames = {"x", "y", "heading"};
+/// Plans lie within this of the origin, in metres; headings are no larger, in degrees.
+constexpr double kFarthest = 1e6;
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(kBlanks);
+    if (begin == std::string_view::npos) return text.substr(text.size());
+    return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+/// The fields of a line, without the blanks around them.
+std::vector<std::string_view> fieldsOf(std::string_view line) {
+    std::vector<std::string_view> fields;
+    for (std::size_t begin = 0; begin <= line.size();) {
+        const std::size_t end = std::min(line.find(',', begin), line.size());
+        fields.push_back(trimmed(line.substr(begin, end - begin)));
+        begin = end + 1;
+    }
+    return fields;
+}
+
+struct LexLess {
+    bool operator()(Point2 a, Point2 b) const { return lexLess(a, b); }
+};
+
+class SiteReader {
+  public:
+    SiteReader(const std::string& name, const std::vector<Angle>& headings)
+        : file_(displayName(name)), headings_(headings) {}
+
+    void readLine(std::string_view line) {
+        ++line_;
+        const char* const begin = line.data();
+        constexpr std::string_view kMark = "\xef\xbb\xbf";  // as some editors begin a file
+        if (line_ == 1 && line.starts_with(kMark)) line.remove_prefix(kMark.size());
+        line = trimmed(line.substr(0, line.find('#')));
+        if (line.empty()) return;
+        const std::vector<std::string_view> fields = fieldsOf(line);
+        const bool is_first = is_first_;
+        is_first_ = false;
+        const auto is_name = [](std::string_view field, char small) {
+            return field.size() == 1 && (field[0] == small || field[0] == small - 'a' + 'A');
+        };
+        if (is_first && fields.size() >= 2 && is_name(fields[0], 'x') && is_name(fields[1], 'y'))
+            return;
+        if (fields.size() < 2 || fields.size() > kNames.size())
+            return refuse(fields.size() < 2 ? line.data() - begin : fields[3].data() - begin,
+                          std::to_string(fields.size()) +
+                              (fields.size() == 1 ? " field" : " fields") +
+                              ", a line is x,y or x,y,heading");
+        std::array<double, kNames.size()> values{};
+        const bool has_heading = fields.size() > 2 && !fields[2].empty();
+        for (std::size_t i = 0; i < (has_heading ? 3U : 2U); ++i) {
+            const std::optional<double> value = parseDouble(fields[i]);
+            if (!value)
+                return refuse(fields[i].data() - begin,
+                              std::string(kNames[i]) +
+                                  (fields[i].empty() ? " is missing"
+                                                     : ' ' + excerpt(fields[i]) + " is no number"));
+            if (std::fabs(*value) > kFarthest)
+                return refuse(fields[i].data() - begin, std::string(kNames[i]) + ' ' +
+                                                            excerpt(fields[i]) +
+                                                            " is too large: a million at most");
+            values[i] = *value;
+        }
+        if (has_heading)
+            add({values[0], values[1]}, {Angle::degrees(values[2])});
+        else
+            add({values[0], values[1]}, headings_);
+    }
+    [[nodiscard]] bool full() const { return findings_.full(); }
+    std::vector<Site> finish() {
+        findings_.throwIfAny();
+        return std::move(sites_);
+    }
+
+  private:
+    void refuse(std::ptrdiff_t offset, std::string message) {
+        findings_.add({file_, line_, static_cast<int>(offset) + 1, std::move(message)});
+    }
+
+    void add(Point2 place, const std::vector<Angle>& headings) {
+        const auto [at, is_new] = known_.try_emplace(place, sites_.size());
+        if (is_new) sites_.push_back({place, {}});
+        std::vector<Angle>& own = sites_[at->second].headings;
+        for (const Angle heading : headings) {
+            const auto is_same = [heading](Angle other) {
+                return wrapped(other) == wrapped(heading);
+            };
+            if (std::none_of(own.begin(), own.end(), is_same)) own.push_back(heading);
+        }
+    }
+
+    std::string file_;
+    const std::vector<Angle>& headings_;
+    int line_ = 0;
+    bool is_first_ = true;  // no line with fields has come yet
+    Diagnostics findings_;
+    std::vector<Site> sites_;
+    std::map<Point2, std::size_t, LexLess> known_;  // their indices
+};
+
+}  // namespace
+
+std::vector<Site> readSites(const std::string& text, const std::string& name,
+                            const std::vector<Angle>& headings) {
+    SiteReader reader(name, headings);
+    LineReader lines(text);
+    while (const auto line = reader.full() ? std::nullopt : lines.next()) reader.readLine(*line);
+    return reader.finish();
+}
+
+}  // namespace ispace

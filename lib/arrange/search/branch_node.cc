@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/search/branch_node.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "arrange/search/relaxation.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr int kMaxTrials = 80;
+constexpr int kTrialsBetweenLooks = 40;
+constexpr std::uint64_t kFairPart = 5;  // of the distance to the cut that trials must gain
+constexpr double kFewSets = 64;         // so many are tried one by one
+
+/// In how many ways the groups can choose, up to about kFewSets.
+double setsOf(const std::vector<OpenGroup>& groups, bool with_fewer) {
+    double all = 1;
+    for (const OpenGroup& group : groups) {
+        const std::size_t size = group.list.size(), count = std::min(group.count, size);
+        double ways = 1, up_to = 1;
+        for (std::size_t n = 0; n < count && up_to <= kFewSets * 1e6; ++n) {
+            ways *= static_cast<double>(size - n) / static_cast<double>(n + 1);
+            up_to += ways;
+        }
+        all *= with_fewer ? up_to : ways;
+        if (all > kFewSets * 1e6) break;
+    }
+    return all;
+}
+
+/// Tries all sets of choices of a node.
+class SetSearch {
+  public:
+    SetSearch(const Problem& problem, const BranchNode& node, const NodeRelaxation& relaxed,
+              std::uint64_t cut)
+        : problem_(problem),
+          reduced_(relaxed.problem()),
+          groups_(relaxed.groups()),
+          cut_(cut),
+          multiplicities_(reduced_.cells(), 0),
+          chosen_(node.fixed) {}
+    /// The best solution above the cut.
+    BranchResult search() {
+        if (groups_.empty())
+            check();
+        else
+            visit(0, 0, groups_[0].count);
+        return std::move(result_);
+    }
+
+  private:
+    void visit(std::size_t group, std::size_t first, std::size_t left) {
+        if (group == groups_.size()) {
+            check();
+            return;
+        }
+        const OpenGroup& own = groups_[group];
+        // Full groups are never worse, but connected solutions may need fewer.
+        const bool is_full = left == 0 || first == own.list.size();
+        if (is_full || problem_.is_connected) {
+            const std::size_t next = group + 1;
+            visit(next, 0, next < groups_.size() ? groups_[next].count : 0);
+        }
+        if (is_full) return;
+        for (std::size_t i = first; i < own.list.size(); ++i) {
+            add(own.kind, own.list[i], 1);
+            visit(group, i + 1, left - 1);
+            add(own.kind, own.list[i], -1);
+            if (!problem_.is_connected && own.list.size() - i <= left) break;
+        }
+    }
+    void add(std::size_t kind, std::uint32_t candidate, int sign) {
+        const ReducedProblem::OfKind& own = reduced_.kinds[kind];
+        own.candidates->forEachRun(candidate, [&](const CellRun& run) {
+            for (std::uint32_t i = run.first; i < run.end; ++i)
+                multiplicities_[i] += sign * own.multiplicity;
+        });
+        if (sign > 0)
+            chosen_.push_back({kind, own.original[candidate]});
+        else
+            chosen_.pop_back();
+    }
+    void check() {
+        std::uint64_t value = reduced_.settled;
+        for (std::size_t i = 0; i < multiplicities_.size(); ++i)
+            if (multiplicities_[i] >= reduced_.needs[i]) value += reduced_.weights[i];
+        if (value <= cut_) {
+            // Once something is found, its value is above the others'.
+            if (result_.found.empty()) result_.closed = std::max(result_.closed, value);
+            return;
+        }
+        if (problem_.is_connected && !isFeasible(problem_, chosen_)) return;
+        cut_ = value;
+        result_.found = chosen_;
+    }
+
+    const Problem& problem_;
+    const ReducedProblem& reduced_;
+    const std::vector<OpenGroup>& groups_;
+    std::uint64_t cut_;
+    std::vector<int> multiplicities_;
+    std::vector<Choice> chosen_;
+    BranchResult result_;
+};
+
+/// The node with what has been fixed, cut down to what is left.
+BranchNode cutDown(const BranchNode& node, const NodeRelaxation& relaxed,
+                   const std::vector<Choice>& forced, std::vector<std::uint32_t> multipliers) {
+    BranchNode now;
+    now.fixed = node.fixed;
+    for (const Choice& choice : forced)
+        now.fixed.push_back(
+            {choice.kind, relaxed.problem().kinds[choice.kind].original[choice.candidate]});
+    std::vector<std::vector<std::uint32_t>> kept(relaxed.problem().kinds.size());
+    std::size_t left = forced.size();
+    for (const Choice& choice : forced)
+        kept[choice.kind].push_back(static_cast<std::uint32_t>(choice.candidate));
+    for (const OpenGroup& group : relaxed.groups()) {
+        kept[group.kind].insert(kept[group.kind].end(), group.list.begin(), group.list.end());
+        left += group.list.size();
+    }
+    // Cutting down costs as much as dozens of bounds, and what differs takes memory: much has to
+    // go.
+    const bool is_same = left * 5 > node.problem->candidates() * 3;
+    if (is_same) {
+        now.problem = node.problem;
+        now.pending = node.pending;
+    } else {
+        for (auto& list : kept) std::sort(list.begin(), list.end());
+        now.problem =
+            std::make_shared<const ReducedProblem>(reduce(relaxed.problem(), kept, multipliers));
+    }
+    now.multipliers = std::make_shared<const std::vector<std::uint32_t>>(std::move(multipliers));
+    const auto name_of = [&](std::size_t kind, std::size_t candidate) {
+        if (is_same) return static_cast<std::uint32_t>(candidate);
+        return static_cast<std::uint32_t>(
+            std::lower_bound(kept[kind].begin(), kept[kind].end(), candidate) - kept[kind].begin());
+    };
+    for (const Choice& choice : forced)
+        now.pending.push_back({choice.kind, name_of(choice.kind, choice.candidate)});
+    for (const OpenGroup& group : relaxed.groups()) {
+        if (group.list.empty()) continue;
+        std::vector<std::uint32_t> list = group.list;
+        for (std::uint32_t& i : list) i = name_of(group.kind, i);
+        now.groups.push_back({group.kind, group.count,
+                              std::make_shared<const std::vector<std::uint32_t>>(std::move(list))});
+    }
+    return now;
+}
+
+/// The bound of a node after some trials; its candidates are ruled out on the way. A trial weighs
+/// all candidates only if it promises a lower bound by those of the working sites.
+std::uint64_t boundOf(NodeRelaxation& relaxed, MultiplierSearch& search, std::uint64_t bound,
+                      std::uint64_t cut, const Progress& progress) {
+    std::uint64_t last = bound;
+    for (int trial = 0; trial < kMaxTrials && bound > cut && !progress.stopped(); ++trial) {
+        std::uint64_t now = 0;
+        if (trial > 0) now = relaxed.evaluateWorking(search.trial());
+        if (static_cast<double>(now) < search.bound()) {
+            now = relaxed.evaluate(search.trial());
+            if (now <= bound) {
+                bound = now;
+                relaxed.ruleOut(cut);
+            }
+            relaxed.widen();
+        }
+        search.report(static_cast<double>(now), relaxed.cover());
+        relaxed.count(static_cast<float>(search.part()));
+        if (trial % kTrialsBetweenLooks != kTrialsBetweenLooks - 1) continue;
+        // As fast as this it would take too long.
+        if (bound > cut && (last - bound) * kFairPart < bound - cut) break;
+        last = bound;
+    }
+    return bound;
+}
+
+/// The solution of the relaxation, if it is feasible and above the cut.
+std::vector<Choice> foundBy(const Problem& problem, const BranchNode& node,
+                            const NodeRelaxation& relaxed, std::uint64_t cut) {
+    std::uint64_t value = relaxed.problem().settled;
+    for (std::size_t i = 0; i < relaxed.cover().size(); ++i)
+        if (relaxed.cover()[i] > 0.9999F) value += relaxed.problem().weights[i];
+    if (value <= cut) return {};
+    std::vector<Choice> found = node.fixed;
+    for (const Choice& choice : relaxed.chosen())
+        found.push_back(
+            {choice.kind, relaxed.problem().kinds[choice.kind].original[choice.candidate]});
+    if (!isFeasible(problem, found)) return {};
+    return found;
+}
+
+/// A closed node with this bound.
+BranchResult closedAt(std::uint64_t bound) {
+    BranchResult result;
+    result.closed = bound;
+    return result;
+}
+
+BranchResult unchanged(const BranchNode& node, std::uint64_t bound) {
+    BranchResult result;
+    result.children = {node};
+    result.children[0].bound = bound;
+    return result;
+}
+
+}  // namespace
+
+BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut,
+                    const Progress& progress) {
+    if (node.bound <= cut) return closedAt(node.bound);
+    if (progress.stopped()) return unchanged(node, node.bound);
+    NodeRelaxation relaxed(node);
+    if (setsOf(relaxed.groups(), problem.is_connected) <= kFewSets)
+        return SetSearch(problem, node, relaxed, cut).search();
+    MultiplierSearch search(relaxed.problem().weights, relaxed.start(node),
+                            static_cast<double>(cut), kWarmPace);
+    std::uint64_t bound = boundOf(relaxed, search, node.bound, cut, progress);
+    if (bound > cut && !progress.stopped())
+        bound = std::min(bound, relaxed.evaluate(search.best()));
+    if (bound <= cut) return closedAt(std::max(bound, relaxed.ruledOut()));
+    if (progress.stopped()) return unchanged(node, bound);
+    BranchResult result;
+    result.found = foundBy(problem, node, relaxed, cut);
+    relaxed.ruleOut(cut);
+    const std::vector<Choice> forced = relaxed.takeForced(cut);
+    result.closed = relaxed.ruledOut();
+    BranchNode now = cutDown(node, relaxed, forced, search.best());
+    now.bound = bound;
+    if (!forced.empty() || setsOf(relaxed.groups(), problem.is_connected) <= kFewSets ||
+        progress.stopped()) {
+        result.children.push_back(std::move(now));
+        return result;
+    }
+    SplitNode split = splitNode(now, relaxed, search.best(), cut, progress);
+    result.children = std::move(split.children);
+    result.closed = std::max(result.closed, split.closed);
+    return result;
+}
+
+}  // namespace ispace

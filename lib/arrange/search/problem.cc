@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/search/problem.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+/// Each choice once.
+std::vector<Choice> distinct(std::vector<Choice> chosen) {
+    std::sort(chosen.begin(), chosen.end());
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    return chosen;
+}
+
+}  // namespace
+
+std::uint64_t Problem::totalWeight() const {
+    return std::accumulate(weights.begin(), weights.end(), std::uint64_t{0});
+}
+
+std::uint64_t valueOf(const Problem& problem, const std::vector<Choice>& chosen) {
+    // Differences of the multiplicity from cell to cell, so that a run costs two writes.
+    std::vector<std::int64_t> steps(problem.cells() + 1, 0);
+    for (const Choice& choice : distinct(chosen)) {
+        const Kind& kind = problem.kinds[choice.kind];
+        kind.candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
+            steps[run.first] += kind.multiplicity;
+            steps[run.end] -= kind.multiplicity;
+        });
+    }
+    std::uint64_t value = 0;
+    std::int64_t multiplicities = 0;
+    for (std::size_t i = 0; i < problem.cells(); ++i) {
+        multiplicities += steps[i];
+        const std::int64_t achieved = problem.achieved.empty() ? 0 : problem.achieved[i];
+        if (achieved + multiplicities >= problem.required) value += problem.weights[i];
+    }
+    return value;
+}
+
+double costOf(const Problem& problem, const std::vector<Choice>& chosen) {
+    // Kind by kind there are few sums to round.
+    double cost = 0;
+    for (std::size_t k = 0; k < problem.kinds.size(); ++k) {
+        const auto count = std::count_if(chosen.begin(), chosen.end(),
+                                         [k](const Choice& choice) { return choice.kind == k; });
+        cost += static_cast<double>(count) * problem.kinds[k].cost;
+    }
+    return cost;
+}
+
+bool isFeasible(const Problem& problem, const std::vector<Choice>& chosen) {
+    std::vector<int> counts(problem.kinds.size(), 0);
+    for (const Choice& choice : chosen)
+        if (++counts[choice.kind] > problem.kinds[choice.kind].most) return false;
+    if (problem.budget && !isAffordable(problem, costOf(problem, chosen))) return false;
+    return !problem.is_connected || isConnected(problem, chosen);
+}
+
+bool isCheaper(double cost, double than) {
+    constexpr double kSlack = 1e-13;
+    return cost < than * (1 - kSlack);
+}
+
+bool isAffordable(const Problem& problem, double cost) {
+    return !problem.budget || !isCheaper(*problem.budget, cost);
+}
+
+std::size_t affordableCount(double budget, double spent, double cost, std::size_t most) {
+    std::size_t least = 0;
+    while (least < most) {
+        const std::size_t middle = most - (most - least) / 2;
+        if (isCheaper(budget, spent + static_cast<double>(middle) * cost))
+            most = middle - 1;
+        else
+            least = middle;
+    }
+    return least;
+}
+
+double normaliseCost(double cost) {
+    constexpr int kFewDigits = 12, kAllDigits = 17;
+    for (int digits = kFewDigits; digits < kAllDigits; ++digits) {
+        std::array<char, 32> text;
+        const auto end = std::to_chars(text.data(), text.data() + text.size(), cost,
+                                       std::chars_format::scientific, digits - 1)
+                             .ptr;
+        double rounded = cost;
+        std::from_chars(text.data(), end, rounded);
+        if (!isCheaper(rounded, cost) && !isCheaper(cost, rounded)) return rounded;
+    }
+    return cost;
+}
+
+bool isConnected(const Problem& problem, const std::vector<Choice>& chosen) {
+    return Connection(problem, chosen).parts() <= 1;
+}
+
+namespace {
+
+/// Joins sets; the root of a set is its least member.
+class UnionFind {
+  public:
+    explicit UnionFind(std::size_t count) : parents_(count) {
+        std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+    }
+    std::size_t rootOf(std::size_t i) {
+        while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+        return i;
+    }
+    void join(std::size_t a, std::size_t b) {
+        const auto [low, high] = std::minmax({rootOf(a), rootOf(b)});
+        parents_[high] = low;
+    }
+
+  private:
+    std::vector<std::size_t> parents_;
+};
+
+constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+
+}  // namespace
+
+Connection::Connection(const Problem& problem, const std::vector<Choice>& chosen)
+    : problem_(&problem), part_of_cell_(problem.cells(), kNobody) {
+    // Member 0 are those that stand, member 1 + i is choice i; at first a cell's is who sees it.
+    UnionFind members(chosen.size() + 1);
+    bool has_standing = false;
+    problem.standing.forEach([&](std::size_t cell) {
+        if (problem.weights[cell] == 0) return;
+        part_of_cell_[cell] = 0;
+        has_standing = true;
+    });
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const auto see = [&](const CellRun& run) {
+            for (std::uint32_t cell = run.first; cell < run.end; ++cell) {
+                if (problem.weights[cell] == 0) continue;
+                if (part_of_cell_[cell] == kNobody)
+                    part_of_cell_[cell] = i + 1;
+                else
+                    members.join(part_of_cell_[cell], i + 1);
+            }
+        };
+        problem.kinds[chosen[i].kind].candidates->forEachRun(chosen[i].candidate, see);
+    }
+    std::vector<std::size_t> part_of_member(chosen.size() + 1, kNobody);
+    for (std::size_t i = has_standing ? 0 : 1; i <= chosen.size(); ++i) {
+        std::size_t& part = part_of_member[members.rootOf(i)];
+        if (part == kNobody) part = parts_++;
+    }
+    for (std::size_t& member : part_of_cell_)
+        if (member != kNobody) member = part_of_member[members.rootOf(member)];
+}
+
+bool Connection::isJoinedBy(const Choice& choice) const {
+    if (parts_ > 0 && cells_of_part_.empty()) {
+        std::vector<std::uint32_t> is_of(part_of_cell_.size());
+        cells_of_part_.reserve(parts_);
+        for (std::size_t part = 0; part < parts_; ++part) {
+            for (std::size_t i = 0; i < is_of.size(); ++i) is_of[i] = part_of_cell_[i] == part;
+            cells_of_part_.emplace_back(is_of);
+        }
+    }
+    const CandidateSet& candidates = *problem_->kinds[choice.kind].candidates;
+    for (const WeightSums& cells : cells_of_part_)
+        if (candidates.weigh(choice.candidate, cells) == 0) return false;
+    return true;
+}
+
+namespace {
+
+constexpr double kMaxUnits = 4e9;
+
+/// Each is a whole number of units, and more than none if it is more than 0.
+bool areWhole(const std::vector<double>& weights, double scale, double slack) {
+    return std::all_of(weights.begin(), weights.end(), [scale, slack](double w) {
+        const double units = std::round(w * scale);
+        return std::abs(w * scale - units) < slack * scale && (units > 0 || w == 0);
+    });
+}
+
+double scaleOf(const std::vector<double>& weights) {
+    constexpr double kDecimals = 1e6, kDigits = 1e5;
+    constexpr double kMaxScale = 1e300;  // of weights that are hardly numbers
+    double sum = 0, largest = 0;
+    for (const double w : weights) {
+        sum += w;
+        largest = std::max(largest, w);
+    }
+    if (largest == 0) return 1;
+    if (sum > kMaxUnits) return kMaxUnits / sum;
+    const double slack = 1e-9 * std::min(1.0, largest);
+    double scale = 1;
+    while ((scale < kDecimals || largest * scale < kDigits) && scale < kMaxScale &&
+           sum * scale * 10 < kMaxUnits && !areWhole(weights, scale, slack))
+        scale *= 10;
+    return scale;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> integerWeights(const std::vector<double>& weights) {
+    const double scale = scaleOf(weights);
+    std::vector<std::uint32_t> units;
+    units.reserve(weights.size());
+    for (const double w : weights)
+        units.push_back(
+            w == 0 ? 0U : static_cast<std::uint32_t>(std::max(1LL, std::llround(w * scale))));
+    return units;
+}
+
+namespace {
+
+constexpr std::size_t kMaxLevels = 4'000;
+
+}  // namespace
+
+CostLevels::CostLevels(const std::vector<Kind>& kinds, double most) {
+    for (const Kind& kind : kinds) {
+        // 1, 2, 4, ... and the rest: they make up any number, and equal sums never pile up.
+        auto left =
+            std::min(static_cast<std::size_t>(std::max(kind.most, 0)), kind.candidates->size());
+        for (std::size_t count = 1; left > 0; count *= 2) {
+            count = std::min(count, left);
+            left -= count;
+            mayAdd(count, kind.cost, most);
+            if (levels_.size() > kMaxLevels) {
+                setEven(most);
+                return;
+            }
+        }
+    }
+}
+
+void CostLevels::mayAdd(std::size_t count, double cost, double most) {
+    const double more = static_cast<double>(count) * cost;
+    std::vector<Level> dearer;
+    dearer.reserve(levels_.size());
+    for (const Level& level : levels_) {
+        if (isCheaper(most, level.least + more)) break;
+        dearer.push_back({level.least + more, level.most + more});
+    }
+    std::vector<Level> both;
+    both.reserve(levels_.size() + dearer.size());
+    std::merge(levels_.begin(), levels_.end(), dearer.begin(), dearer.end(),
+               std::back_inserter(both),
+               [](const Level& a, const Level& b) { return a.least < b.least; });
+    levels_.clear();
+    for (const Level& level : both) {
+        if (levels_.empty() || isCheaper(levels_.back().most, level.least))
+            levels_.push_back(level);
+        else
+            levels_.back().most = std::max(levels_.back().most, level.most);
+    }
+}
+
+void CostLevels::setEven(double most) {
+    is_even_ = true;
+    const double unit = std::pow(10, std::floor(std::log10(most)) - 5);
+    levels_.resize(kMaxLevels + 1);
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+        const double multiplicity = static_cast<double>(i) / static_cast<double>(kMaxLevels);
+        const double cost = normaliseCost(std::floor(most * multiplicity / unit) * unit);
+        levels_[i] = {cost, cost};
+    }
+}
+
+std::size_t CostLevels::below(double cost) const {
+    const auto end =
+        std::partition_point(levels_.begin() + 1, levels_.end(),
+                             [cost](const Level& level) { return isCheaper(level.most, cost); });
+    return static_cast<std::size_t>(end - levels_.begin()) - 1;
+}
+
+double CostLevels::above(std::size_t i) const {
+    if (is_even_) return levels_[i].most;
+    if (i + 1 < levels_.size()) return levels_[i + 1].least;
+    return std::numeric_limits<double>::infinity();
+}
+
+namespace {
+
+/// One problem on its way into a file. Lines are gathered in one string, as there are many.
+class MpsWriter {
+  public:
+    MpsWriter(const Problem& problem, const std::vector<std::string>& kinds, std::ostream& out)
+        : problem_(problem), names_(kinds), out_(out), lacks_(problem.cells(), 0) {
+        std::vector<char> is_seen(problem.cells(), 0);
+        for (const Kind& kind : problem.kinds)
+            for (std::size_t i = 0; i < kind.candidates->size(); ++i)
+                kind.candidates->forEachRun(i, [&is_seen](const CellRun& run) {
+                    std::fill(is_seen.begin() + run.first, is_seen.begin() + run.end, char{1});
+                });
+        for (std::size_t cell = 0; cell < lacks_.size(); ++cell) {
+            const int achieved = problem.achieved.empty() ? 0 : problem.achieved[cell];
+            if (achieved >= problem.required)
+                achieved_already_ += problem.weights[cell];
+            else if (is_seen[cell] != 0 && problem.weights[cell] > 0)
+                lacks_[cell] = problem.required - achieved;
+        }
+    }
+    void write(const std::string& legend,
+               const std::function<std::string(const Choice&)>& describe) {
+        writeComments(legend, describe);
+        writeRows();
+        line({"COLUMNS"});
+        line({"    MARKER 'MARKER' 'INTORG'"});
+        for (std::size_t k = 0; k < names_.size(); ++k)
+            for (std::size_t i = 0; i < problem_.kinds[k].candidates->size(); ++i)
+                writeSensor(k, i);
+        if (problem_.required == 1) line({"    MARKER 'MARKER' 'INTEND'"});
+        writeCells();
+        if (problem_.required != 1) line({"    MARKER 'MARKER' 'INTEND'"});
+        writeLimits();
+        line({"ENDATA"});
+        flush();
+    }
+
+  private:
+    void line(std::initializer_list<std::string_view> parts) {
+        for (const std::string_view part : parts) text_ += part;
+        text_ += '\n';
+        if (text_.size() > 1U << 16U) flush();
+    }
+    void flush() {
+        out_ << text_;
+        text_.clear();
+    }
+    [[nodiscard]] std::string nameOf(std::size_t kind, std::size_t candidate) const {
+        std::string name = "x_";
+        name += names_[kind];
+        name += '_';
+        name += std::to_string(candidate);
+        return name;
+    }
+    void writeComments(const std::string& legend,
+                       const std::function<std::string(const Choice&)>& describe);
+    void writeRows();
+    void writeSensor(std::size_t kind, std::size_t candidate);
+    void writeCells();
+    void writeLimits();
+
+    const Problem& problem_;
+    const std::vector<std::string>& names_;
+    std::ostream& out_;
+    std::string text_;
+    std::vector<int> lacks_;  ///< multiplicity still required of each cell; 0: left out
+    std::uint64_t achieved_already_ = 0;
+};
+
+void MpsWriter::writeComments(const std::string& legend,
+                              const std::function<std::string(const Choice&)>& describe) {
+    line(
+        {"* Where sensors see most. y_CELL is 1 if the cell is covered, x_KIND_INDEX if a sensor"});
+    line({"* stands there. The objective is to be minimised: the value is ",
+          std::to_string(achieved_already_), " minus the objective."});
+    line({"* The weights of all cells together: ", std::to_string(problem_.totalWeight())});
+    if (problem_.is_connected)
+        line({"* That the views hang together is not part of this model: its value is a bound."});
+    line({"* Candidate: ", legend});
+    for (std::size_t k = 0; k < names_.size(); ++k)
+        for (std::size_t i = 0; i < problem_.kinds[k].candidates->size(); ++i)
+            line({"* ", nameOf(k, i), ": ", describe({k, i})});
+}
+
+void MpsWriter::writeRows() {
+    line({"NAME coverage"});
+    line({"ROWS"});
+    line({" N minus_value"});
+    for (std::size_t cell = 0; cell < lacks_.size(); ++cell)
+        if (lacks_[cell] > 0) line({" L cell_", std::to_string(cell)});
+    for (const std::string& name : names_) line({" L most_", name});
+    if (problem_.budget) line({" L budget"});
+}
+
+/// Coefficients are capped at what the cell lacks: the same integer solutions, a tighter model.
+void MpsWriter::writeSensor(std::size_t kind, std::size_t candidate) {
+    const Kind& own = problem_.kinds[kind];
+    const std::string name = nameOf(kind, candidate);
+    line({"    ", name, " most_", names_[kind], " 1"});
+    if (problem_.budget) line({"    ", name, " budget ", formatDouble(own.cost)});
+    own.candidates->forEachRun(candidate, [&](const CellRun& run) {
+        for (std::uint32_t cell = run.first; cell < run.end; ++cell)
+            if (lacks_[cell] > 0)
+                line({"    ", name, " cell_", std::to_string(cell), " -",
+                      std::to_string(std::min(own.multiplicity, lacks_[cell]))});
+    });
+}
+
+void MpsWriter::writeCells() {
+    for (std::size_t cell = 0; cell < lacks_.size(); ++cell) {
+        if (lacks_[cell] == 0) continue;
+        const std::string number = std::to_string(cell);
+        line({"    y_", number, " minus_value -", std::to_string(problem_.weights[cell])});
+        line({"    y_", number, " cell_", number, " ", std::to_string(lacks_[cell])});
+    }
+}
+
+void MpsWriter::writeLimits() {
+    line({"RHS"});
+    for (std::size_t k = 0; k < names_.size(); ++k)
+        line(
+            {"    RHS most_", names_[k], " ", std::to_string(std::max(problem_.kinds[k].most, 0))});
+    if (problem_.budget) line({"    RHS budget ", formatDouble(*problem_.budget)});
+    line({"BOUNDS"});
+    for (std::size_t k = 0; k < names_.size(); ++k)
+        for (std::size_t i = 0; i < problem_.kinds[k].candidates->size(); ++i)
+            line({" UP BOUND ", nameOf(k, i), " 1"});
+    for (std::size_t cell = 0; cell < lacks_.size(); ++cell)
+        if (lacks_[cell] > 0) line({" UP BOUND y_", std::to_string(cell), " 1"});
+}
+
+}  // namespace
+
+void writeMps(const Problem& problem, const std::vector<std::string>& kinds,
+              const std::string& legend, const std::function<std::string(const Choice&)>& describe,
+              std::ostream& out) {
+    assert(kinds.size() == problem.kinds.size());
+    MpsWriter(problem, kinds, out).write(legend, describe);
+}
+
+}  // namespace ispace

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "arrange/search/cover_sets.h"
+
+namespace ispace {
+
+/// Interchangeable sensors: they share one set of candidates.
+struct Kind {
+    const CandidateSet* candidates = nullptr;
+    int most = 1;          ///< how many may be placed
+    double cost = 1;       ///< of each; above 0
+    int multiplicity = 1;  ///< what one sensor adds to the coverage multiplicity of a cell it sees
+};
+
+/// A weighted coverage problem: choose sensors so that the covered cells weigh as much as possible.
+///
+/// A cell is covered if the multiplicities of the sensors that see it, plus what is achieved
+/// already, reach `required`. With 1 and 1 that is the plain union; K-fold coverage requires K.
+/// Where ultrasound takes part, four receivers of multiplicity 1 equal a laser of multiplicity 4,
+/// and 4 K is required.
+///
+/// A solution is a set: a candidate chosen twice (there may be fewer candidates than sensors)
+/// counts once, so a binary variable per candidate models it.
+struct Problem {
+    /// Integer weight of each cell, 0 if it does not count. The sum is below 2^32.
+    std::vector<std::uint32_t> weights;
+    int required = 1;
+    /// Multiplicity of each cell from sensors that stand already; empty: none.
+    std::vector<std::uint16_t> achieved;
+    std::vector<Kind> kinds;  ///< all candidate sets are of weights.size() cells
+    /// Upper limit of the total cost; without it only Kind::most limits the choice.
+    std::optional<double> budget;
+    /// Kinds in the order in which greedy search places them; empty: the best first.
+    std::vector<std::size_t> order;
+    /// Require connected coverage: the graph whose nodes are sensors and whose edges join sensors
+    /// that share a cell of positive weight must be connected. Sensors that stand already are one
+    /// node, which sees `standing`, or none if no cell of that has positive weight.
+    bool is_connected = false;
+    CellSet standing = CellSet();
+
+    [[nodiscard]] std::size_t cells() const { return weights.size(); }
+    [[nodiscard]] std::uint64_t totalWeight() const;
+};
+
+/// One sensor on one candidate.
+struct Choice {
+    std::size_t kind = 0;
+    std::size_t candidate = 0;  ///< of the kind's set
+    friend auto operator<=>(const Choice&, const Choice&) = default;
+};
+
+/// Chosen sensors in the order of placement, and the value they reach together with those that
+/// stand already.
+struct Solution {
+    std::vector<Choice> chosen;
+    std::uint64_t value = 0;
+};
+
+/// Weight of all covered cells. Repeated choices count once. O(cells + runs)
+std::uint64_t valueOf(const Problem& problem, const std::vector<Choice>& chosen);
+/// Total cost; repeated choices count each time. Independent of their order.
+double costOf(const Problem& problem, const std::vector<Choice>& chosen);
+/// True if `cost` is less than `than` beyond rounding. Every comparison of costs goes through this:
+/// costs within a relative 1e-13 (above the rounding errors of a sum over some hundred kinds) are
+/// equal, as 0.1 + 0.2 and 0.3 are; 1e9 and 1e9 + 0.001 are not.
+bool isCheaper(double cost, double than);
+/// True if this cost is within the budget, or there is none.
+bool isAffordable(const Problem& problem, double cost);
+/// How many sensors of this cost the rest of a budget buys, at most `most`. O(log most)
+std::size_t affordableCount(double budget, double spent, double cost, std::size_t most);
+/// Rounds a sum of decimal costs to 12 significant digits, or to as many as isCheaper() tells
+/// apart: 0.1 + 0.2 becomes 0.3.
+double normaliseCost(double cost);
+/// Within Kind::most and the budget and, where required, connected.
+bool isFeasible(const Problem& problem, const std::vector<Choice>& chosen);
+/// True if the coverage is connected, see Problem::is_connected.
+bool isConnected(const Problem& problem, const std::vector<Choice>& chosen);
+
+/// Connected components of the coverage, see Problem::is_connected.
+class Connection {
+  public:
+    /// O(cells + cells that the chosen see)
+    Connection(const Problem& problem, const std::vector<Choice>& chosen);
+
+    /// Number of components.
+    [[nodiscard]] std::size_t parts() const { return parts_; }
+    /// True if this sensor joins all components. O(parts * runs); the first call O(parts * cells)
+    [[nodiscard]] bool isJoinedBy(const Choice& choice) const;
+
+  private:
+    const Problem* problem_;
+    std::size_t parts_ = 0;
+    std::vector<std::size_t> part_of_cell_;          // kNobody: of none
+    mutable std::vector<WeightSums> cells_of_part_;  // 1 for its cells; made when first asked for
+};
+
+/// Scales weights to the integers of a Problem, with a sum below 2^32. The factor is the smallest
+/// power of ten that makes all of them integers to within 1e-9 of min(1, the largest weight), which
+/// absorbs decimals that binary cannot store. If there is none, the factor is the largest power the
+/// sum allows, up to six decimals and six digits of the largest weight; weights whose sum is too
+/// large are scaled down. The results are rounded, positive weights to at least 1. O(n) a power
+/// \pre all are finite and not negative, and there are at most 2^28
+std::vector<std::uint32_t> integerWeights(const std::vector<double>& weights);
+
+/// The costs that sets of sensors can have, each sensor on a candidate of its own: ascending from
+/// level 0, which costs nothing, up to some cost. Sums equal up to rounding (isCheaper) are one
+/// level. If there are more than 4000, the levels are even steps instead, rounded down to a few
+/// digits.
+class CostLevels {
+  public:
+    /// O(4000 * kinds * log of how many of each)
+    CostLevels(const std::vector<Kind>& kinds, double most);
+
+    [[nodiscard]] std::size_t size() const { return levels_.size(); }
+    [[nodiscard]] bool isEven() const { return is_even_; }
+    /// The budget that buys level i but not level i + 1.
+    [[nodiscard]] double at(std::size_t i) const { return levels_[i].most; }
+    /// The highest level that is cheaper; 0 if none is.
+    [[nodiscard]] std::size_t below(double cost) const;
+    /// The lowest cost that at(i) does not buy; infinite if level i is the last.
+    [[nodiscard]] double above(std::size_t i) const;
+
+  private:
+    /// Sums equal up to rounding.
+    struct Level {
+        double least = 0, most = 0;
+    };
+    /// Adds the sums with `count` more sensors of this cost.
+    void mayAdd(std::size_t count, double cost, double most);
+    void setEven(double most);
+
+    std::vector<Level> levels_ = {Level()};
+    bool is_even_ = false;
+};
+
+/// Writes the problem as a maximum-coverage model in free MPS, for any solver of mixed-integer
+/// programs (glpsol, cbc, HiGHS, SCIP): maximise the weights of covered cells. Columns x_KIND_INDEX
+/// (binary, 1: a sensor of that kind stands on that candidate) and y_CELL (at most 1); rows
+/// cell_CELL (y <= what sees it; binary if more than 1 is required), most_KIND and budget. As MPS
+/// knows only minimising everywhere, the objective is minus the value gained; a comment says how to
+/// read it, and others describe each candidate. Cells that nothing sees or that are covered already
+/// are left out. \param kinds names of the kinds, without spaces
+/// \param legend what `describe` tells of a candidate, for a comment each
+void writeMps(const Problem& problem, const std::vector<std::string>& kinds,
+              const std::string& legend, const std::function<std::string(const Choice&)>& describe,
+              std::ostream& out);
+
+}  // namespace ispace

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/search/search.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "arrange/search/branch_and_bound.h"
+#include "arrange/search/local_search.h"
+#include "arrange/search/packed_search.h"
+#include "arrange/search/pair_bound.h"
+#include "arrange/search/relaxation.h"
+
+namespace ispace {
+
+namespace {
+
+// A bound that is to be quick, and one that is to be good.
+constexpr LagrangeLimits kQuick = {.gap = 0.01, .rounds = 8};
+constexpr double kSmallGap = 0.001;
+// A wider gap than this takes a tree too long.
+constexpr double kWideGap = 0.005;
+/// From so many sensors on the bound by overlaps and kicks close more of the gap than a tree does
+/// in the same time.
+constexpr std::size_t kManySensors = 6;
+/// Before the bound by overlaps, which gains from a better solution, too.
+constexpr KickOptions kFewKicks = {.rounds = 1};
+constexpr int kOverlapRounds = 60;
+constexpr double kOverlapStall = 0.04;
+
+LagrangeLimits limitsOf(const SearchOptions& options) {
+    LagrangeLimits limits;
+    switch (options.optimizer) {
+        case Optimizer::Greedy:
+            limits = kQuick;
+            limits.gap = std::max(limits.gap, options.gap);
+            break;
+        case Optimizer::Swap:
+            limits.gap = std::max(kSmallGap, options.gap);
+            break;
+        case Optimizer::Exact:
+            // The tree begins from these multipliers, and each of its nodes costs more than a
+            // round.
+            limits = {.gap = options.gap, .rounds = 40, .stall = 0.0125, .pace = kLongPace};
+            break;
+    }
+    return limits;
+}
+
+/// What need not be made better.
+std::uint64_t enoughOf(const Problem& problem, std::uint64_t bound, double gap) {
+    // Swaps also look for cheaper solutions of the same value.
+    if (problem.budget && gap <= 0) return std::numeric_limits<std::uint64_t>::max();
+    return bound -
+           static_cast<std::uint64_t>(std::clamp(gap, 0.0, 1.0) * static_cast<double>(bound));
+}
+
+}  // namespace
+
+std::string_view nameOf(Optimizer optimizer) {
+    switch (optimizer) {
+        case Optimizer::Greedy:
+            return "greedy";
+        case Optimizer::Swap:
+            return "swap";
+        case Optimizer::Exact:
+            break;
+    }
+    return "exact";
+}
+
+Solution placeFeasibly(const Problem& problem, Progress& progress) {
+    Solution solution = placeGreedily(problem, progress);
+    if (!isFeasible(problem, solution.chosen)) solution = {{}, valueOf(problem, {})};
+    return solution;
+}
+
+namespace {
+
+/// The result stored under a key for this very problem, or what `compute` returns, which is kept
+/// unless it was cut short.
+template <typename T, typename Compute>
+T recalled(const SearchShare& share, const Problem& problem, const std::string& step,
+           T (*unpack)(Unpacker&, const Problem&), const Progress& progress, Compute compute) {
+    if (share.results == nullptr) return compute();
+    const std::string name = share.results->keyFor(step);
+    const std::uint64_t mark = fingerprintOf(problem);
+    if (const auto bytes = share.results->find(name)) {
+        Unpacker from(*bytes);
+        if (from.number() == mark) return unpack(from, problem);
+    }
+    T made = compute();
+    if (progress.stopped()) return made;
+    Packer to;
+    to.add(mark);
+    pack(to, made);
+    share.results->store(name, to.bytes());
+    return made;
+}
+
+std::string proofName(int shard) { return "proof/" + std::to_string(shard); }
+
+/// The best of the subtrees of all shards, and the highest of their bounds. \pre all are there
+SearchResult joinedProof(const Problem& problem, const SearchShare& share) {
+    SearchResult all;
+    for (int i = 1; i <= share.joined; ++i) {
+        const auto bytes = share.results->find(proofName(i));
+        if (!bytes) Unpacker::refuse();
+        Unpacker from(*bytes);
+        if (from.number() != fingerprintOf(problem)) Unpacker::refuse();
+        SearchResult own = unpackResult(from, problem);
+        if (own.best.value != valueOf(problem, own.best.chosen) ||
+            !isFeasible(problem, own.best.chosen) || own.bound < own.best.value)
+            Unpacker::refuse();
+        if (i == 1 || own.best.value > all.best.value) all.best = std::move(own.best);
+        all.bound = std::max(all.bound, own.bound);
+        all.is_complete = all.is_complete && own.is_complete;
+    }
+    if (all.best.value >= all.bound) all.is_complete = true;
+    return all;
+}
+
+/// One search, step by step.
+class Search {
+  public:
+    Search(const Problem& problem, const SearchOptions& options, Progress& progress)
+        : problem_(problem), options_(options), share_(options.share), progress_(progress) {}
+
+    SearchResult run() {
+        result_.bound = problem_.totalWeight();
+        result_.best = placeFeasibly(problem_, progress_);
+        noteProgress(problem_, result_, progress_);
+        if (options_.optimizer != Optimizer::Greedy && !progress_.stopped()) swap();
+        if (share_.isOwn(Shared::Starts)) return std::move(result_);
+        if (!progress_.stopped()) prove();
+        if (result_.bound == problem_.totalWeight() && progress_.stopped()) {
+            SilentProgress silent;  // there shall be some bound
+            const LagrangeLimits soon = {.cut = result_.best.value, .gap = kQuick.gap, .rounds = 2};
+            result_.bound = lagrangianBound(problem_, result_.best.chosen, soon, silent).value;
+        }
+        if (progress_.stopped() && result_.best.value < result_.bound) result_.is_complete = false;
+        return std::move(result_);
+    }
+
+  private:
+    void swap() {
+        // Swaps may take long: if there is no time for more, this is the bound.
+        LagrangeLimits quick = kQuick;
+        quick.cut = result_.best.value;
+        quick.gap = std::min(quick.gap, limitsOf(options_).gap);
+        result_.bound = lagrangianBound(problem_, result_.best.chosen, quick, progress_).value;
+        noteProgress(problem_, result_, progress_);
+        result_ = recalled(share_, problem_, "swapped", unpackResult, progress_, [&] {
+            SearchResult better = result_;
+            SwapOptions swap = options_.swap;
+            swap.enough = std::min(swap.enough, enoughOf(problem_, result_.bound, options_.gap));
+            swap.share = &share_;
+            better.best = improveBySwaps(problem_, result_.best, swap, progress_);
+            return better;
+        });
+    }
+    void prove() {
+        LagrangeLimits limits = limitsOf(options_);
+        limits.cut = result_.best.value;
+        const Bound bound = recalled(share_, problem_, "bound", unpackBound, progress_, [&] {
+            return lagrangianBound(problem_, result_.best.chosen, limits, progress_);
+        });
+        result_.bound = std::min(result_.bound, bound.value);
+        noteProgress(problem_, result_, progress_);
+        if (options_.optimizer != Optimizer::Exact) return;
+        kick(kFewKicks);
+        if (result_.best.chosen.size() >= kManySensors) {
+            boundByOverlaps(bound);
+            kick(KickOptions());
+        }
+        if (!progress_.stopped() && result_.best.value < result_.bound)
+            result_ = branchAndBound(problem_, bound, std::move(result_), options_.gap, progress_,
+                                     std::numeric_limits<std::uint64_t>::max(), options_.max_bytes,
+                                     share_);
+    }
+    /// More than a tree closes in a while.
+    [[nodiscard]] bool isWide() const {
+        const auto open = static_cast<double>(result_.bound - result_.best.value);
+        return open > std::max(options_.gap, kWideGap) * static_cast<double>(result_.bound);
+    }
+    /// Where a wide gap is left the best solution may be what lacks.
+    void kick(KickOptions options) {
+        if (!isWide() || progress_.stopped()) return;
+        options.seed = options_.swap.seed;
+        options.enough = enoughOf(problem_, result_.bound, options_.gap);
+        result_ = recalled(share_, problem_, "kicked", unpackResult, progress_, [&] {
+            SearchResult better = result_;
+            better.best = improveByKicks(problem_, result_.best, options, progress_);
+            return better;
+        });
+        noteProgress(problem_, result_, progress_);
+    }
+    void boundByOverlaps(const Bound& plain) {
+        if (!isWide()) return;
+        const LagrangeLimits limits = {.cut = result_.best.value,
+                                       .gap = options_.gap,
+                                       .rounds = kOverlapRounds,
+                                       .stall = kOverlapStall,
+                                       .pace = kLongPace};
+        result_ = recalled(share_, problem_, "overlaps", unpackResult, progress_, [&] {
+            SearchResult tighter = result_;
+            tighter.bound =
+                std::min(tighter.bound,
+                         overlapBound(problem_, plain, tighter.best.chosen, limits, progress_));
+            return tighter;
+        });
+        noteProgress(problem_, result_, progress_);
+    }
+
+    const Problem& problem_;
+    const SearchOptions& options_;
+    const SearchShare& share_;
+    Progress& progress_;
+    SearchResult result_;
+};
+
+}  // namespace
+
+std::string_view nameOf(Shared shared) {
+    switch (shared) {
+        case Shared::Candidates:
+            return "candidates";
+        case Shared::Starts:
+            return "starts";
+        case Shared::Tree:
+            break;
+    }
+    return "tree";
+}
+
+SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress) {
+    const SearchShare& share = options.share;
+    if (share.joined > 0 && share.what == Shared::Tree) return joinedProof(problem, share);
+    SearchResult result = Search(problem, options, progress).run();
+    if (share.isOwn(Shared::Tree)) {
+        Packer to;
+        to.add(fingerprintOf(problem));
+        pack(to, result);
+        share.results->store(proofName(share.own->index), to.bytes());
+    }
+    return result;
+}
+
+void noteProgress(const Problem& problem, std::uint64_t value, std::uint64_t bound,
+                  Progress& progress) {
+    const double total = static_cast<double>(std::max<std::uint64_t>(problem.totalWeight(), 1));
+    char text[80];
+    const int length = std::snprintf(text, sizeof text, "best %.1f %%, at most %.1f %%",
+                                     100 * static_cast<double>(value) / total,
+                                     100 * static_cast<double>(bound) / total);
+    progress.note({text, static_cast<std::size_t>(length)});
+}
+
+}  // namespace ispace

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "arrange/search/problem.h"
+#include "arrange/search/search_share.h"
+#include "base/error.h"
+
+namespace ispace {
+
+/// Greedy search (thesis section 4.6): places sensors one by one, each on the candidate with the
+/// largest marginal gain, the first among equals. problem.order sets the order of kinds; without it
+/// the best kind comes next, and with a budget the better of two runs counts, one by gain and one
+/// by gain per cost. Where covering a cell takes several sensors, its weight is divided among those
+/// it still lacks, and is 0 once too few are left; partial gains break ties. Places every sensor
+/// that fits, even if it gains nothing, and at least the first 32 if progress says stop.
+///
+/// Lazy (Minoux 1978): a candidate is evaluated again only while its upper bound exceeds the best
+/// gain. Reaches at least 1 - 1/e of the optimum if one sensor covers a cell, there is one kind and
+/// no budget; 1/2 with several kinds (Fisher, Nemhauser & Wolsey 1978).
+///
+/// With is_connected each sensor after the first shares a cell with those before it, if any
+/// candidate does; no guarantee holds then.
+Solution placeGreedily(const Problem& problem, Progress& progress);
+/// The same, or nothing where greed ends in something that is not feasible.
+Solution placeFeasibly(const Problem& problem, Progress& progress);
+
+struct SwapOptions {
+    int starts = 20;  ///< random starts, besides the greedy one
+    std::uint64_t seed = 0;
+    /// The search ends once it reaches this value.
+    std::uint64_t enough = std::numeric_limits<std::uint64_t>::max();
+    /// Null: all of the search. Of a share that is not all, `start` comes back.
+    const SearchShare* share = nullptr;
+};
+
+/// Local search: moves one sensor at a time to its best candidate given the others, while that
+/// helps; with a budget it also swaps sensors for those of other kinds. Starts from `start`, from a
+/// greedy solution by partial gains where cells take several sensors, and from random solutions, in
+/// parallel. Returns the best result, of the first start among equals, or that of the first start
+/// to reach options.enough: the same for any number of threads. Never worse than `start`.
+/// \pre start is feasible
+Solution improveBySwaps(const Problem& problem, const Solution& start, const SwapOptions& options,
+                        Progress& progress);
+
+/// The best solution found and an upper bound.
+struct SearchResult {
+    Solution best;
+    std::uint64_t bound = 0;  ///< no feasible solution has a larger value
+    bool is_complete = true;  ///< false if the search was stopped
+};
+
+enum class Optimizer { Greedy, Swap, Exact };
+constexpr Optimizer kOptimizers[] = {Optimizer::Greedy, Optimizer::Swap, Optimizer::Exact};
+/// As on the command line and in results.
+std::string_view nameOf(Optimizer optimizer);
+
+/// Default memory limit of the open nodes of a search tree.
+constexpr std::size_t kMaxTreeBytes = std::size_t{1} << 30U;
+
+struct SearchOptions {
+    Optimizer optimizer = Optimizer::Swap;
+    double gap = 0;  ///< relative gap (bound - value) / bound at which the search ends
+    SwapOptions swap = SwapOptions();
+    std::size_t max_bytes = kMaxTreeBytes;
+    SearchShare share = SearchShare();
+};
+
+/// Greedy search; then, as the optimizer asks, swap search and branch and bound. Each comes with a
+/// Lagrangian bound: a quick one before the swaps, in case time runs out (the only one for Greedy),
+/// and a tight one after. Where that leaves more than 0.5 %, Exact kicks the best solution a
+/// little; with six sensors or more it then computes overlapBound() and kicks at length. It drops
+/// the candidates that the bound rules out by their reduced costs, merges cells that the same
+/// remaining candidates see, and branches until value and bound are within the gap.
+/// If a budget can be split among the kinds in more than 20'000 ways there is no tree, and a gap
+/// may remain. Ends early, with is_complete = false, if progress says stop. The same for any number
+/// of threads unless it is stopped. A shard of starts ends after the swaps, one of the tree with
+/// what is known of its subtrees, see SearchShare.
+SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress);
+
+/// A cheapest solution that reaches a given value.
+struct MinimumCostCover {
+    /// A good one of the cheapest solutions found, with a bound for its cost; if the value is not
+    /// reached, the best solution found, without sensors that gain nothing.
+    SearchResult result;
+    bool is_reached = false;
+    bool is_all = false;    ///< not reached even by all candidates together
+    double cost = 0;        ///< of result, normalised
+    double cost_bound = 0;  ///< lower bound of the cost, normalised
+};
+
+/// Minimum-cost cover: the cheapest sensors (the fewest, where all cost the same) that reach the
+/// value `wanted`. Greedy search finds a first solution and quick bounds a lower limit of the cost;
+/// the costs between them are searched with the optimizer of the options, in long steps with few
+/// starts first. Tighter bounds follow and, except for Greedy, a swap search for the best value at
+/// that cost. Kinds without a limit should have a `most` of about a thousand.
+///
+/// Exact ends with cost == cost_bound unless it is stopped or has no tree (see search()). If
+/// solutions can have more than 4000 different costs, it searches 4000 even steps instead: cost and
+/// cost_bound may then be off by one step.
+MinimumCostCover minimumCostCover(const Problem& problem, std::uint64_t wanted,
+                                  const SearchOptions& options, Progress& progress);
+
+/// Reports value and bound as shares of the total weight: "best 85.7 %, at most 85.9 %".
+void noteProgress(const Problem& problem, std::uint64_t value, std::uint64_t bound,
+                  Progress& progress);
+inline void noteProgress(const Problem& problem, const SearchResult& result, Progress& progress) {
+    noteProgress(problem, result.best.value, result.bound, progress);
+}
+
+}  // namespace ispace

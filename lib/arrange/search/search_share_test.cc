@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/search/search_share.h"
+
+#include <gtest/gtest.h>
+
+#include "arrange/search/packed_search.h"
+#include "arrange/search/search.h"
+#include "base/packed.h"
+#include "support/test_folder.h"
+#include "support/test_problems.h"
+
+namespace ispace {
+namespace {
+
+/// Results in a folder of their own, kept or not.
+class TestResults {
+  public:
+    explicit TestResults(bool is_kept = false)
+        : results_(folder_ / "results", jobOfTest(), {}, is_kept) {}
+    [[nodiscard]] JobResults* get() { return &results_; }
+    /// What another process would find.
+    void takeFrom(const TestResults& other, const std::string& prefix = "") {
+        for (const std::string& key : other.results_.keys())
+            if (key.starts_with(prefix)) results_.store(key, other.results_.find(key).value());
+    }
+    [[nodiscard]] std::size_t size() const { return results_.keys().size(); }
+
+  private:
+    static JobId jobOfTest() {
+        JobId job;
+        job.tool = "arrange";
+        return job;
+    }
+    testing::TestFolder folder_;
+    JobResults results_;
+};
+
+/// Large enough for a tree of some hundred nodes.
+RandomProblem hardProblem(std::uint64_t seed) {
+    RandomProblemOptions options;
+    options.columns = 40;
+    options.rows = 30;
+    options.sites = 100;
+    options.headings = 6;
+    options.most = 6;
+    options.max_range = 8;
+    options.max_weight = 9;
+    return randomProblem(seed, options);
+}
+
+SearchOptions searchOptions(Optimizer optimizer) {
+    SearchOptions options;
+    options.optimizer = optimizer;
+    options.swap.starts = 7;
+    options.swap.seed = 5;
+    return options;
+}
+
+/// The merge of so many shards.
+SearchResult inShards(const Problem& problem, const SearchOptions& options, Shared what,
+                      int count) {
+    TestResults all;
+    for (int i = 1; i <= count; ++i) {
+        SilentProgress silent;
+        TestResults own;
+        SearchOptions sharing = options;
+        sharing.share = {.what = what, .own = Shard{i, count}, .joined = 0, .results = own.get()};
+        (void)search(problem, sharing, silent);
+        all.takeFrom(own, what == Shared::Tree ? "proof/" : "start");
+    }
+    SilentProgress silent;
+    SearchOptions merging = options;
+    merging.share = {.what = what, .own = {}, .joined = count, .results = all.get()};
+    return search(problem, merging, silent);
+}
+
+TEST(SearchShare, StartsJoinToTheSameSolution) {
+    for (std::uint64_t round = 0; round < 12; ++round) {
+        const RandomProblem random = round < 10 ? variedProblem(round) : hardProblem(round);
+        const SearchOptions options = searchOptions(Optimizer::Swap);
+        SilentProgress silent;
+        const SearchResult single = search(random.problem, options, silent);
+        for (const int count : {1, 2, 3, 8, 11}) {
+            const SearchResult merged = inShards(random.problem, options, Shared::Starts, count);
+            EXPECT_EQ(merged.best.chosen, single.best.chosen) << round << ' ' << count;
+            EXPECT_EQ(merged.best.value, single.best.value);
+            EXPECT_EQ(merged.bound, single.bound);
+        }
+    }
+}
+
+TEST(SearchShare, ProofsOfShardsCloseTheSameGap) {
+    for (std::uint64_t round = 0; round < 40; ++round) {
+        const RandomProblem random = round < 36 ? variedProblem(round) : hardProblem(round);
+        const SearchOptions options = searchOptions(Optimizer::Exact);
+        SilentProgress silent;
+        const SearchResult single = search(random.problem, options, silent);
+        for (const int count : {1, 2, 8}) {
+            const SearchResult merged = inShards(random.problem, options, Shared::Tree, count);
+            EXPECT_EQ(merged.best.value, single.best.value) << round << ' ' << count;
+            EXPECT_EQ(merged.bound, single.bound) << round << ' ' << count;
+            EXPECT_EQ(merged.best.value, valueOf(random.problem, merged.best.chosen));
+            EXPECT_TRUE(merged.is_complete);
+        }
+    }
+}
+
+TEST(SearchShare, BoundsOfShardsThatAreCutShortHold) {
+    int open = 0;
+    for (std::uint64_t round = 36; round < 40; ++round) {
+        const RandomProblem random = hardProblem(round);
+        const SearchOptions options = searchOptions(Optimizer::Exact);
+        SilentProgress silent;
+        const SearchResult best = search(random.problem, options, silent);
+        for (const int asking : {300, 1000, 3000, 10000}) {
+            TestResults all;
+            for (int i = 1; i <= 3; ++i) {
+                SearchOptions sharing = options;
+                TestResults own;
+                sharing.share = {
+                    .what = Shared::Tree, .own = Shard{i, 3}, .joined = 0, .results = own.get()};
+                StopWhen stopping(afterAsking(asking * i));
+                (void)search(random.problem, sharing, stopping);
+                all.takeFrom(own, "proof/");
+            }
+            SearchOptions merging = options;
+            merging.share = {.what = Shared::Tree, .own = {}, .joined = 3, .results = all.get()};
+            const SearchResult merged = search(random.problem, merging, silent);
+            EXPECT_LE(merged.best.value, best.best.value);
+            EXPECT_GE(merged.bound, best.best.value) << round << ' ' << asking;
+            EXPECT_EQ(merged.is_complete, merged.best.value == merged.bound);
+            open += merged.is_complete ? 0 : 1;
+        }
+    }
+    EXPECT_GT(open, 0) << "nothing was cut short";
+}
+
+/// Runs that are stopped, each a little later, until one is complete.
+TEST(SearchShare, ASearchGoesOnWhereItWasStopped) {
+    for (const Optimizer optimizer : {Optimizer::Swap, Optimizer::Exact})
+        for (std::uint64_t round = 36; round < 39; ++round) {
+            const RandomProblem random = hardProblem(round);
+            const SearchOptions options = searchOptions(optimizer);
+            SilentProgress silent;
+            const SearchResult single = search(random.problem, options, silent);
+            TestResults kept;
+            SearchResult result;
+            int runs = 0;
+            for (int asking = 2;; asking += 1 + asking / 4) {
+                SearchOptions resuming = options;
+                // A new process counts anew, and finds what is kept.
+                TestResults own(true);
+                own.takeFrom(kept);
+                own.get()->setInterval(runs++ % 2 == 0 ? 0 : 1e6);
+                resuming.share.results = own.get();
+                StopWhen stopping(afterAsking(asking));
+                result = search(random.problem, resuming, stopping);
+                kept.takeFrom(own);
+                if (!stopping.stopped()) break;
+                ASSERT_LT(runs, 100);
+            }
+            EXPECT_GT(runs, 3);
+            EXPECT_EQ(result.best.chosen, single.best.chosen) << round;
+            EXPECT_EQ(result.bound, single.bound) << round;
+            EXPECT_TRUE(result.is_complete);
+        }
+}
+
+/// What was kept is of another problem: it is not used.
+TEST(SearchShare, StepsOfAnotherProblemAreNotTaken) {
+    const RandomProblem one = hardProblem(36), other = hardProblem(37);
+    const SearchOptions options = searchOptions(Optimizer::Exact);
+    SilentProgress silent;
+    const SearchResult single = search(other.problem, options, silent);
+    TestResults kept, again;
+    SearchOptions keeping = options;
+    keeping.share.results = kept.get();
+    (void)search(one.problem, keeping, silent);
+    EXPECT_GT(kept.size(), 5U);
+    again.takeFrom(kept);
+    keeping.share.results = again.get();
+    const SearchResult result = search(other.problem, keeping, silent);
+    EXPECT_EQ(result.best.chosen, single.best.chosen);
+    EXPECT_EQ(result.bound, single.bound);
+}
+
+TEST(PackedSearch, DamageIsRefused) {
+    const RandomProblem random = hardProblem(36);
+    SearchResult result{{{{0, 3}, {0, 7}}, 12}, 20, true};
+    Packer to;
+    pack(to, result);
+    Unpacker from(to.bytes());
+    EXPECT_EQ(unpackResult(from, random.problem).best.chosen, result.best.chosen);
+    EXPECT_TRUE(from.atEnd());
+    for (std::size_t size = 0; size < to.bytes().size(); ++size) {
+        Unpacker cut(std::string_view(to.bytes()).substr(0, size));
+        EXPECT_THROW((void)unpackResult(cut, random.problem), FormatError) << size;
+    }
+    result.best.chosen = {{0, 1'000'000}};
+    Packer bad;
+    pack(bad, result);
+    Unpacker unknown(bad.bytes());
+    EXPECT_THROW((void)unpackResult(unknown, random.problem), FormatError);
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/search/greedy_search.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace ispace {
+
+namespace {
+
+/// The most with which weights may be multiplied, if there is room for it such that their halves,
+/// thirds, ... eighths are whole: sums of these that are equal stay equal.
+std::uint32_t stepScaleOf(const Problem& problem) {
+    constexpr std::uint32_t kWhole = 840;
+    const std::uint64_t most = std::numeric_limits<std::uint32_t>::max() /
+                               std::max<std::uint64_t>(1, problem.totalWeight());
+    const auto scale = static_cast<std::uint32_t>(most);
+    return scale < kWhole ? scale : scale - scale % kWhole;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> partialWeights(const Problem& problem) {
+    std::uint64_t most = 1;
+    for (const Kind& kind : problem.kinds)
+        most = std::max<std::uint64_t>(
+            most, static_cast<std::uint64_t>(std::min(kind.multiplicity, problem.required)));
+    std::vector<std::uint32_t> weights = problem.weights;
+    const auto sum = [&weights] {
+        std::uint64_t all = 0;
+        for (const std::uint32_t weight : weights) all += weight;
+        return all;
+    };
+    while (sum() * most >> 32U != 0) {
+        // At least 1, until even that is too much.
+        const bool is_least = *std::max_element(weights.begin(), weights.end()) <= 1;
+        for (std::uint32_t& weight : weights)
+            weight = is_least ? weight / 2 : weight / 2 + (weight & 1U);
+    }
+    return weights;
+}
+
+bool takesSteps(const Problem& problem) {
+    return std::any_of(problem.kinds.begin(), problem.kinds.end(),
+                       [&](const Kind& kind) { return kind.multiplicity < problem.required; });
+}
+
+std::vector<int> limitsOf(const Problem& problem) {
+    std::vector<int> limits;
+    limits.reserve(problem.kinds.size());
+    for (std::size_t kind = 0; kind < problem.kinds.size(); ++kind) {
+        int limit = problem.kinds[kind].most;
+        if (!problem.order.empty())
+            limit = std::min(limit, static_cast<int>(std::count(problem.order.begin(),
+                                                                problem.order.end(), kind)));
+        limits.push_back(problem.kinds[kind].candidates->size() == 0 ? 0 : limit);
+    }
+    return limits;
+}
+
+CoverageState::CoverageState(const Problem& problem, const std::vector<std::uint32_t>& partial)
+    : problem_(&problem),
+      partial_weights_(&partial),
+      required_(static_cast<std::uint32_t>(problem.required)),
+      step_scale_(stepScaleOf(problem)) {
+    multiplicities_.reserve(problem.kinds.size());
+    for (const Kind& kind : problem.kinds)
+        multiplicities_.push_back(
+            static_cast<std::uint32_t>(std::min(kind.multiplicity, problem.required)));
+    clear();
+}
+
+void CoverageState::clear() {
+    chosen_.clear();
+    counts_.assign(problem_->kinds.size(), 0);
+    loads_.assign(problem_->cells(), 0);
+    value_ = partial_value_ = 0;
+    for (std::size_t i = 0; i < loads_.size(); ++i) {
+        if (!problem_->achieved.empty())
+            loads_[i] = std::min<std::uint32_t>(problem_->achieved[i], required_);
+        if (loads_[i] >= required_) value_ += problem_->weights[i];
+        partial_value_ += std::uint64_t{(*partial_weights_)[i]} * loads_[i];
+    }
+}
+
+template <bool kAdds>
+void CoverageState::change(const Choice& choice) {
+    const std::uint32_t multiplicity = multiplicities_[choice.kind], required = required_;
+    const auto change_run = [&](const CellRun& run) {
+        for (std::uint32_t cell = run.first; cell < run.end; ++cell) {
+            const std::uint32_t less = kAdds ? loads_[cell] : loads_[cell] - multiplicity;
+            const std::uint32_t more = less + multiplicity;
+            const std::uint64_t value =
+                less < required && more >= required ? problem_->weights[cell] : 0;
+            const std::uint64_t parts = std::uint64_t{(*partial_weights_)[cell]} *
+                                        (std::min(more, required) - std::min(less, required));
+            loads_[cell] = kAdds ? more : less;
+            value_ = kAdds ? value_ + value : value_ - value;
+            partial_value_ = kAdds ? partial_value_ + parts : partial_value_ - parts;
+        }
+    };
+    problem_->kinds[choice.kind].candidates->forEachRun(choice.candidate, change_run);
+}
+
+void CoverageState::insert(std::size_t position, const Choice& choice) {
+    if (!holds(choice)) change<true>(choice);
+    ++counts_[choice.kind];
+    chosen_.insert(chosen_.begin() + static_cast<std::ptrdiff_t>(position), choice);
+}
+
+void CoverageState::removeAt(std::size_t position) {
+    const Choice choice = chosen_[position];
+    chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(position));
+    --counts_[choice.kind];
+    if (!holds(choice)) change<false>(choice);
+}
+
+bool CoverageState::holds(const Choice& choice) const {
+    return std::find(chosen_.begin(), chosen_.end(), choice) != chosen_.end();
+}
+
+double CoverageState::cost() const { return costOf(*problem_, chosen_); }
+
+bool CoverageState::canTake(std::size_t kind, int limit) const {
+    return counts_[kind] < limit &&
+           (!problem_->budget || isAffordable(*problem_, cost() + problem_->kinds[kind].cost));
+}
+
+void CoverageState::marginalGains(std::size_t kind, Measure measure,
+                                  std::vector<std::uint32_t>& gains) const {
+    const std::size_t cells = loads_.size();
+    const std::uint32_t multiplicity = multiplicities_[kind], required = required_;
+    gains.resize(cells);
+    if (measure == Measure::Full) {
+        const std::uint32_t* weights = problem_->weights.data();
+        for (std::size_t i = 0; i < cells; ++i)
+            gains[i] =
+                loads_[i] < required && loads_[i] + multiplicity >= required ? weights[i] : 0;
+    } else {
+        const std::uint32_t* weights = partial_weights_->data();
+        for (std::size_t i = 0; i < cells; ++i)
+            gains[i] = weights[i] * (std::min(loads_[i] + multiplicity, required) -
+                                     std::min(loads_[i], required));
+    }
+}
+
+void CoverageState::stepGains(std::size_t kind, std::uint64_t to_come,
+                              std::vector<std::uint32_t>& gains) const {
+    const std::uint32_t multiplicity = multiplicities_[kind];
+    gains.resize(loads_.size());
+    for (std::size_t i = 0; i < gains.size(); ++i) {
+        const std::uint32_t lack = required_ - std::min(loads_[i], required_);
+        const bool is_in_vain = lack == 0 || lack > multiplicity + to_come;
+        const std::uint32_t steps = lack / multiplicity + (lack % multiplicity != 0 ? 1U : 0U);
+        gains[i] = is_in_vain ? 0 : problem_->weights[i] * step_scale_ / steps;
+    }
+}
+
+namespace {
+
+constexpr std::uint64_t kLow = 0xffffffffU;
+
+}  // namespace
+
+std::vector<std::uint32_t> maxOfSites(const CandidateSet& candidates,
+                                      std::span<const std::uint32_t> values) {
+    std::vector<std::uint32_t> most(candidates.sites());
+    for (std::size_t site = 0; site < most.size(); ++site) {
+        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(candidates.firstOf(site));
+        const auto end = values.begin() + static_cast<std::ptrdiff_t>(candidates.firstOf(site + 1));
+        most[site] = *std::max_element(begin, end);
+    }
+    return most;
+}
+
+void CandidateFinder::visit(std::size_t site, const CandidateGains& gains,
+                            std::span<std::uint32_t> bounds,
+                            const std::function<bool(std::size_t)>& allows, BestCandidate& best) {
+    const std::size_t begin = gains.candidates->firstOf(site);
+    const std::size_t count = gains.candidates->firstOf(site + 1) - begin;
+    values_.resize(count);
+    gains.candidates->weighSite(site, *gains.first, values_);
+    bounds[site] = *std::max_element(values_.begin(), values_.end());
+    const bool has_second = gains.second != nullptr;
+    const Score most = std::uint64_t{bounds[site]} << 32U | (has_second ? kLow : 0U);
+    if (best.is_found && most < best.score) return;
+    if (has_second) {
+        more_.resize(count);
+        gains.candidates->weighSite(site, *gains.second, more_);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        const Score score = std::uint64_t{values_[k]} << 32U | (has_second ? more_[k] : 0U);
+        const bool is_better = !best.is_found || score > best.score ||
+                               (score == best.score && begin + k < best.candidate);
+        if (is_better && (!allows || allows(begin + k))) best = {begin + k, score, true};
+    }
+}
+
+BestCandidate CandidateFinder::find(const CandidateGains& gains, std::span<std::uint32_t> bounds,
+                                    const BestCandidate& known,
+                                    const std::function<bool(std::size_t)>& allows,
+                                    const Progress& progress) {
+    BestCandidate best = known;
+    const std::uint64_t low = gains.second != nullptr ? kLow : 0U;
+    // Among equals only a site that comes before the best one matters.
+    const auto may_help = [&](std::uint64_t bound, std::size_t site) {
+        const Score most = bound << 32U | low;
+        return !best.is_found || most > best.score ||
+               (most == best.score && site <= gains.candidates->siteOf(best.candidate));
+    };
+    queue_.clear();
+    for (std::size_t site = 0; site < bounds.size(); ++site)
+        if (may_help(bounds[site], site))
+            queue_.push_back(std::uint64_t{bounds[site]} << 32U | (kLow - site));
+    std::make_heap(queue_.begin(), queue_.end());
+    while (!queue_.empty()) {
+        std::pop_heap(queue_.begin(), queue_.end());
+        const std::uint64_t top = queue_.back();
+        queue_.pop_back();
+        const std::size_t site = kLow - (top & kLow);
+        if (!may_help(top >> 32U, site) || (best.is_found && progress.stopped())) break;
+        visit(site, gains, bounds, allows, best);
+    }
+    return best;
+}
+
+SearchBasis::SearchBasis(const Problem& of)
+    : problem(of), partial_weights(partialWeights(of)), limits(limitsOf(of)) {
+    const CoverageState state = emptyState();
+    const std::size_t kinds = problem.kinds.size();
+    alone.reserve(kinds);
+    site_partial.reserve(kinds);
+    site_full.reserve(kinds);
+    std::vector<std::uint32_t> gains, most;
+    for (std::size_t kind = 0; kind < kinds; ++kind) {
+        const CandidateSet& candidates = *problem.kinds[kind].candidates;
+        std::vector<std::uint32_t>& values = alone.emplace_back(candidates.size());
+        state.marginalGains(kind, Measure::Partial, gains);
+        candidates.weighAll(WeightSums(gains), values);
+        site_partial.push_back(maxOfSites(candidates, values));
+        if (problem.required == 1) {
+            site_full.push_back(site_partial.back());
+            continue;
+        }
+        // Whatever else is placed, an uncovered cell adds at most its weight.
+        for (std::size_t i = 0; i < gains.size(); ++i)
+            if (gains[i] > 0 || problem.achieved.empty() || problem.achieved[i] < problem.required)
+                gains[i] = problem.weights[i];
+        most.resize(candidates.size());
+        candidates.weighAll(WeightSums(gains), most);
+        site_full.push_back(maxOfSites(candidates, most));
+    }
+}
+
+}  // namespace ispace

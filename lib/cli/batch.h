@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/file.h"
+#include "base/shard.h"
+#include "cli/command_line.h"
+#include "cli/common_options.h"
+
+namespace ispace {
+
+/// How a job is shared out, joined, or gone on with.
+struct BatchOptions {
+    std::optional<Shard> shard;
+    bool merge = false;  ///< operands are parts
+    bool resume = false;
+};
+
+/// Declares --shard I/N, --merge and --resume. \param shares what the shards share out, for help
+void addBatchOptions(CommandLine& line, BatchOptions& options, const std::string& shares);
+
+/// Checks them against each other and the rest. \throws UsageError for --merge without operands,
+/// with --shard or --resume, or with an option that the parts know; for the output of a shard with
+/// another suffix than .part; for --resume to stdout
+void checkBatchOptions(const CommandLine& line, const BatchOptions& options,
+                       const CommonOptions& common, const std::vector<std::string>& operands);
+
+/// One job of a list: what would be the operands of a command.
+struct BatchJob {
+    int line = 0;  ///< where it stands in the list
+    std::vector<std::string> operands;
+    std::string wrong = {};  ///< why it cannot be run, "" if it can
+
+    /// The operands with blanks between.
+    [[nodiscard]] std::string text() const;
+};
+
+/// Reads a list of jobs, a line `ENV [LAYOUT]` each. Names are words or "strings" by the rules for
+/// values of records; blank lines and comments are no jobs. Lines that are wrong are jobs that say
+/// so. O(bytes) \throws FormatError for bytes that are no text, and for a list without a job
+std::vector<BatchJob> readBatchList(std::string_view bytes, const std::string& name);
+
+/// Calls work(i) for all i below `count` on all threads, and what it returns one after the other in
+/// order. No more than two results a thread wait for their turn, so that memory does not grow with
+/// `count`. What `work` does in parallel stays within it. What either throws ends it.
+void runInOrder(std::size_t count, const std::function<std::function<void()>(std::size_t)>& work);
+
+/// One verdict, as CI servers list them.
+struct JunitCase {
+    enum class Outcome {
+        Met,
+        Unmet,  ///< judged, and not as required: a `failure`
+        Error,  ///< could not be judged
+    };
+    std::string name;
+    Outcome outcome = Outcome::Met;
+    std::string message = {};            ///< why it is not met
+    std::chrono::nanoseconds time = {};  ///< 0 where no time passes
+};
+
+/// The verdicts of a tool in the XML that CI servers read as JUnit's: one testsuite, whose time is
+/// that of its last verdict, with a testcase each. \param suite its name, e.g. the environment's
+std::string junitXml(const std::string& tool, const std::string& suite,
+                     std::span<const JunitCase> cases);
+
+/// The file of --junit, which is written whether or not the run succeeds.
+class JunitFile {
+  public:
+    /// \param file "" for none \throws std::system_error, UsageError as OutputFile
+    JunitFile(std::string tool, const std::string& file);
+
+    /// Writes the verdicts of a suite, once.
+    void write(const std::string& suite, std::span<const JunitCase> cases);
+    /// Does a tool's work. If it throws before write(), the file holds one case, an `error` with
+    /// the messages, named after the tool and `inputs`, its operands; the exception goes on.
+    void during(std::span<const std::string> inputs, const std::function<void()>& work);
+
+  private:
+    std::string tool_;
+    std::optional<OutputFile> file_;  // until it is written
+};
+
+}  // namespace ispace

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "base/error.h"
+#include "cli/run_tool.h"
+
+namespace ispace {
+
+/// A line on stderr that shows phase, share, rate, time left and the last note, drawn at most ten
+/// times a second and left at its last state at the end of a phase.
+class ProgressBar final : public Progress {
+  public:
+    explicit ProgressBar(std::string tool) : tool_(std::move(tool)) {}
+    ~ProgressBar() override;
+    void begin(std::string_view phase, std::int64_t total) override;
+    void advance(std::int64_t count) override;
+    void note(std::string_view text) override;
+    void end() override;
+
+  private:
+    void draw(std::int64_t done, bool last);
+
+    using Clock = std::chrono::steady_clock;
+    std::string tool_, phase_, note_;
+    std::int64_t total_ = 0;
+    std::atomic<std::int64_t> done_{0};
+    std::atomic<std::int64_t> next_draw_{0};  // microseconds after start_
+    std::mutex drawing_;
+    Clock::time_point start_;
+    bool shown_ = false;
+};
+
+/// A ProgressBar if `wanted`, or by default if stderr is a terminal; else one that is silent.
+std::unique_ptr<Progress> makeProgress(const std::string& tool, std::optional<bool> wanted,
+                                       bool quiet);
+
+/// Progress of a search that ends early at TERM, INT or a time limit, with the best it has.
+class SearchWatch final : public Progress {
+  public:
+    /// \param shown where progress is shown; \param limit seconds from now on
+    SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> limit);
+
+    void begin(std::string_view phase, std::int64_t total) override { shown_->begin(phase, total); }
+    void advance(std::int64_t count) override { shown_->advance(count); }
+    /// With a limit, also shows the time left.
+    void note(std::string_view text) override;
+    void end() override { shown_->end(); }
+    [[nodiscard]] bool stopped() const override;
+
+    /// The signal received, 0 if none.
+    [[nodiscard]] int signal() const { return signals_.signal(); }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    std::unique_ptr<Progress> shown_;
+    std::optional<Clock::time_point> end_;
+    StopSignals signals_;
+};
+
+/// Ends this process by the signal, as if it had not been caught.
+[[noreturn]] void endBySignal(int signal);
+
+}  // namespace ispace

@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coverage/coverage.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+#include <utility>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "coverage/metrics.h"
+#include "coverage/pixel_density.h"
+#include "coverage/visible_area.h"
+#include "env/level.h"
+#include "geom/arrangement.h"
+#include "geom/overlay/overlay.h"
+#include "raster/contour.h"
+#include "sense/scan.h"
+#include "sense/ultrasound.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+std::uint32_t mostSeen(const Coverage& coverage, const std::vector<std::uint32_t>& cell_times) {
+    if (!coverage.overlay) return *std::max_element(cell_times.begin(), cell_times.end());
+    std::int32_t most = 0;
+    for (const Overlay::Edge& edge : coverage.overlay->edges())
+        most = std::max({most, edge.left.count, edge.right.count});
+    return static_cast<std::uint32_t>(most);
+}
+
+std::vector<Region> viewRegions(const SensorView& view, const Grid& grid) {
+    if (!view.region) return cellRegions(grid, view.cells);
+    const Overlay overlay(std::vector<Layer>{{.curves = *view.region}});
+    return withArcAreas(overlay,
+                        overlay.regions([](const LayerLabel& label) { return label.count > 0; }));
+}
+
+std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
+                           const std::vector<std::uint32_t>& cell_times) {
+    if (coverage.overlay)
+        return withArcAreas(*coverage.overlay,
+                            coverage.overlay->regions([times](const LayerLabel& label) {
+                                return label.count == static_cast<std::int32_t>(times) &&
+                                       (label.marks & kIndoorMark) != 0;
+                            }));
+    const Target& target = coverage.target;
+    CellSet cells(target.grid.size());
+    target.indoor.forEach([&](std::size_t cell) {
+        if (cell_times[cell] == times) cells.set(cell);
+    });
+    return cellRegions(target.grid, cells);
+}
+
+std::optional<std::vector<Curve>> regionHeardByEnough(
+    std::span<const SensorView* const> receivers) {
+    std::vector<Layer> layers;
+    layers.reserve(receivers.size());
+    for (const SensorView* view : receivers) {
+        if (!view->region) return std::nullopt;
+        layers.push_back({.curves = *view->region});
+    }
+    try {
+        return Overlay(layers).curves([](const LayerLabel& label) {
+            return label.count >= static_cast<std::int32_t>(kMinReceivers);
+        });
+    } catch (const FormatError&) {
+        return std::nullopt;
+    }
+}
+
+namespace {
+
+SensorView viewOf(const Sensor& sensor, std::size_t index) {
+    return {.kind = &kindOf(sensor.model),
+            .index = index,
+            .id = sensor.id,
+            .model = deviceName(sensor.model),
+            .pose = sensor.pose,
+            .max_range = maxRange(sensor.model)};
+}
+
+/// Cells whose centre lies in the polygon through the sensor and the ends of its beams, seen from
+/// above; a beam without return ends at max_range (thesis, section 4.5.2). `beams` as of castBeams.
+CellSet cellsAmongBeams(const Grid& grid, const Sensor& sensor, std::span<const float> beams) {
+    const Point3 origin = sensor.pose.position;
+    Polygon outline;
+    outline.reserve(beams.size() + 1);
+    for (std::size_t k = 0; k < beams.size(); ++k) {
+        const double range = std::min(static_cast<double>(beams[k]), sensor.as<Laser>().max_range);
+        const Vec3 beam = sensor.pose.beam(sensor.as<Laser>().bearing(static_cast<int>(k)));
+        outline.push_back((origin + range * beam).onFloor());
+    }
+    if (sensor.as<Laser>().span() < Angle::degrees(360)) outline.push_back(origin.onFloor());
+    const std::vector<Polygon> curves = {std::move(outline)};
+    return cellsWithin(grid, curves);
+}
+
+/// Runs both, at once if there are threads. Who waits for tasks within one does not begin with
+/// others: it may hold what these wait for.
+template <typename F, typename G>
+void runBoth(F f, G g) {
+    tbb::parallel_invoke([&] { tbb::this_task_arena::isolate(f); },
+                         [&] { tbb::this_task_arena::isolate(g); });
+}
+
+/// Finds what every laser, ranger and receiver of a scene sees, in this order; shared out over all
+/// cores.
+class Viewer {
+  public:
+    Viewer(const Scene& scene, Worlds& worlds, const Grid& grid, const CoverageOptions& options)
+        : scene_(scene), worlds_(worlds), grid_(grid), options_(options) {}
+
+    std::vector<SensorView> run() {
+        makeViews();
+        // Height by height, so that no level is made twice.
+        std::map<double, std::vector<std::size_t>> at_height;
+        for (std::size_t i = 0; i < views_.size(); ++i)
+            at_height[sensorOf(views_[i]).pose.position.z].push_back(i);
+        const std::vector<std::pair<double, std::vector<std::size_t>>> groups(at_height.begin(),
+                                                                              at_height.end());
+        if (groups.empty()) return std::move(views_);
+        const auto first = sight_.levelAt(groups.front().first);
+        runBoth([&] { prepareWorlds(); }, [&] { prepareSight(*first, groups.front().second); });
+        tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t k) {
+            // Whoever waits for others in here does not begin with another level or sensor.
+            tbb::this_task_arena::isolate([&] {
+                const auto level = sight_.levelAt(groups[k].first);
+                tbb::parallel_for(std::size_t{0}, groups[k].second.size(), [&](std::size_t i) {
+                    tbb::this_task_arena::isolate([&] { look(views_[groups[k].second[i]]); });
+                });
+            });
+        });
+        return std::move(views_);
+    }
+
+  private:
+    void makeViews() {
+        for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {
+            const Sensor& sensor = scene_.sensors[i];
+            if (!kindOf(sensor.model).perceives) continue;
+            views_.push_back(viewOf(sensor, i));
+        }
+        std::stable_sort(views_.begin(), views_.end(),
+                         [&](const SensorView& a, const SensorView& b) {
+                             return sensorOf(a).model.index() < sensorOf(b).model.index();
+                         });
+    }
+    void prepareWorlds() {
+        for (const SensorView& view : views_) {
+            const Sensor& sensor = sensorOf(view);
+            if (sensor.is<Laser>()) worlds_.prepare(sensor.pose);
+            sight_.prepare(sensor);
+        }
+    }
+    /// What level sensors at a height see through; others are made when it is their turn.
+    void prepareSight(const Level& level, const std::vector<std::size_t>& views) const {
+        const bool is_used = std::any_of(views.begin(), views.end(), [&](std::size_t i) {
+            return scansSlice(sensorOf(views_[i]));
+        });
+        if (!is_used) return;
+        try {
+            level.prepareSight();
+        } catch (const FormatError&) {
+            return;  // who looks through it meets the error again
+        }
+    }
+    [[nodiscard]] const Sensor& sensorOf(const SensorView& view) const {
+        return scene_.sensors[view.index];
+    }
+
+    [[nodiscard]] bool isBuried(const Sensor& sensor) const {
+        const Point3 place = sensor.pose.position;
+        return sight_.levelAt(place.z)->isBuried(place.onFloor());
+    }
+
+    void look(SensorView& view) const {
+        Sensor sensor = sensorOf(view);
+        if (auto* camera = std::get_if<Camera>(&sensor.model)) {
+            *camera = withDensity(*camera, options_.density);
+            view.max_range = camera->max_range;
+        }
+        const Laser* laser = std::get_if<Laser>(&sensor.model);
+        if (laser != nullptr) view.beams = castBeams(worlds_.at(sensor.pose), sensor);
+        // Beams are those of one scan: of a sweep they outline nothing.
+        const bool by_beams = laser != nullptr && options_.cells_by == CellRule::Beams &&
+                              laser->sweep == SweepAxis::None;
+        view.cells = by_beams && (scansSlice(sensor) || !isBuried(sensor))
+                         ? cellsAmongBeams(grid_, sensor, view.beams)
+                         : sight_.cellsOf(grid_, sensor);
+        if (options_.exact) view.region = regionOf(sensor);
+        if (sensor.is<Camera>()) addClasses(view, sensor);
+    }
+
+    [[nodiscard]] std::optional<std::vector<Curve>> regionOf(const Sensor& sensor) const {
+        try {
+            return sight_.regionOf(sensor);
+        } catch (const FormatError&) {
+            return std::nullopt;  // more crossings than can be laid over each other
+        }
+    }
+
+    void addClasses(SensorView& view, const Sensor& sensor) const {
+        const Sensor& whole = sensorOf(view);
+        SeenSet seen{view.cells, view.region};
+        if (options_.density > 0) {
+            seen.cells = sight_.cellsOf(grid_, whole);
+            if (options_.exact) seen.region = regionOf(whole);
+        }
+        const FloorDensity density(sensor.as<Camera>(), sensor.pose, options_.plane);
+        try {
+            view.classes = classesOf(density, grid_, seen);
+        } catch (const FormatError&) {
+            seen.region.reset();
+            view.classes = classesOf(density, grid_, seen);
+        }
+    }
+
+    const Scene& scene_;
+    Worlds& worlds_;
+    const Grid& grid_;
+    const CoverageOptions& options_;
+    Sight sight_{scene_.environment, options_.plane, &worlds_};
+    std::vector<SensorView> views_;
+};
+
+/// Where at least kMinReceivers hear.
+SeenSet heardByEnough(const std::vector<const SensorView*>& receivers, const Grid& grid) {
+    SeenSet set;
+    set.cells = CellSet(grid.size());
+    std::vector<std::uint16_t> heard(grid.size());
+    for (const SensorView* view : receivers)
+        view->cells.forEach([&](std::size_t cell) {
+            if (++heard[cell] == kMinReceivers) set.cells.set(cell);
+        });
+    set.region = regionHeardByEnough(receivers);
+    return set;
+}
+
+/// The sets that count, of these views: each laser and ranger, then all receivers together.
+std::vector<SeenSet> setsOf(const std::vector<SensorView>& views, const Grid& grid) {
+    std::vector<SeenSet> sets;
+    std::vector<const SensorView*> receivers;
+    for (const SensorView& view : views) {
+        if (view.isPartial())
+            receivers.push_back(&view);
+        else
+            sets.push_back({view.cells, view.region});
+    }
+    if (!receivers.empty()) sets.push_back(heardByEnough(receivers, grid));
+    return sets;
+}
+
+SensorMetrics metricsOf(const Scene& scene, const SensorView& view, const Grid& grid,
+                        double plane) {
+    SensorMetrics metrics{.id = view.id, .model = view.model, .kind = view.kind};
+    if (const auto* laser = std::get_if<Laser>(&scene.sensors[view.index].model))
+        metrics.slice_area = sliceArea(*laser, view.beams);
+    if (view.region) metrics.area.exact = std::max(0.0, signedArea(*view.region));
+    if (const auto* camera = std::get_if<Camera>(&scene.sensors[view.index].model))
+        metrics.picture = pictureMetricsOf(FloorDensity(*camera, view.pose, plane), grid,
+                                           view.pose.position.onFloor(), view);
+    return metrics;
+}
+
+/// Cells are a bit a sensor, twice: of its view, and of the set it is.
+void mustFit(const Scene& scene, const Grid& grid) {
+    constexpr double kMaxBytes = 8e9;
+    const auto sensors =
+        std::count_if(scene.sensors.begin(), scene.sensors.end(),
+                      [](const Sensor& sensor) { return kindOf(sensor.model).perceives; });
+    const double bytes = static_cast<double>(sensors) * static_cast<double>(grid.size()) / 4;
+    if (bytes > kMaxBytes)
+        throw UsageError("cells of all sensors take " + formatFixed(bytes / 1e9, 1) +
+                         " GB: use fewer cells");
+}
+
+/// Exact metrics, or the reason why there are none.
+void tryExactMetrics(Coverage& coverage, const Environment& environment, FloorCurves floor,
+                     const std::vector<Zone>& zones, bool keep_depths) {
+    std::string& missing = coverage.report.exact_missing;
+    for (const SensorView& view : coverage.sensors)
+        if (!view.region) {
+            missing = "what " + view.id + " sees is known by cells only";
+            return;
+        }
+    for (const SeenSet& set : coverage.sets)
+        if (!set.region) {
+            missing = "what enough receivers hear is known by cells only";
+            return;
+        }
+    try {
+        addExactMetrics(coverage, environment, std::move(floor), zones, keep_depths);
+    } catch (const FormatError& error) {
+        missing = error.diagnostics().front().message;
+    }
+}
+
+/// Layers of both, told apart by their numbers.
+constexpr std::int64_t kThisNumber = 1, kOtherNumber = std::int64_t{1} << 32;
+
+void addLayers(const Coverage& coverage, std::int64_t number, std::vector<Layer>& layers) {
+    for (const SeenSet& set : coverage.sets)
+        layers.push_back({.curves = *set.region, .number = number});
+}
+
+void compareExactly(const Coverage& coverage, const Coverage& other, const Regions& indoor,
+                    Comparison& comparison) {
+    std::vector<Layer> layers;
+    layers.reserve(coverage.sets.size() + other.sets.size() + 1);
+    addLayers(coverage, kThisNumber, layers);
+    addLayers(other, kOtherNumber, layers);
+    layers.push_back({.curves = curvesWithArcs(indoor), .counts = false, .marks = kIndoorMark});
+    double gained = 0, lost = 0;
+    try {
+        forEachArea(layers, [&](const LayerLabel& label, double area) {
+            if (label.count == 0 || (label.marks & kIndoorMark) == 0) return;
+            if (label.numbers < kOtherNumber) gained += area;
+            if (label.numbers % kOtherNumber == 0) lost += area;
+        });
+    } catch (const FormatError&) {
+        return;  // each for itself could be laid out, but not both together
+    }
+    comparison.gained.exact = std::max(0.0, gained);
+    comparison.lost.exact = std::max(0.0, lost);
+}
+
+}  // namespace
+
+Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options) {
+    const Environment& environment = scene.environment;
+    Coverage coverage;
+    const Grid grid = gridOver(environment.limits(), options.cells);
+    mustFit(scene, grid);
+    const auto level = environment.level(options.height);
+    CoverageReport& report = coverage.report;
+    FloorCurves floor;
+    runBoth([&] { coverage.sensors = Viewer(scene, worlds, grid, options).run(); },
+            [&] {
+                coverage.target = makeTarget(environment, options.cells, options.height);
+                report.free_area = totalArea(level->freeFloor());
+                if (options.exact) floor = floorCurvesOf(environment, level->freeFloor());
+                static_cast<void>(scene.digest());  // made here, beside the views, and kept
+            });
+    coverage.sets = setsOf(coverage.sensors, grid);
+
+    report.digest = scene.digest();
+    report.limits = environment.limits();
+    report.grid = grid;
+    report.height = options.height;
+    report.plane = options.plane;
+    report.density = options.density;
+    report.indoor_area = environment.indoor().area();
+    report.sensors.reserve(coverage.sensors.size());
+    for (const SensorView& view : coverage.sensors)
+        report.sensors.push_back(metricsOf(scene, view, grid, options.plane));
+    const std::vector<Zone> zones = zonesOf(environment);
+    report.zones = zoneMetricsOf(environment, zones);
+    if (options.exact)
+        tryExactMetrics(coverage, environment, std::move(floor), zones, options.keep_depths);
+    addCellMetrics(coverage, zones);
+    addDensities(coverage, environment, level->freeFloor(), zones);
+    if (options.parallax) addParallax(coverage, environment, *options.parallax);
+    return coverage;
+}
+
+void compare(Coverage& coverage, const Coverage& other, const Regions& indoor,
+             const std::string& name) {
+    assert(coverage.target.grid == other.target.grid);
+    Comparison comparison{.name = name, .coverage = other.report.coverage};
+    const double cell_area = coverage.target.grid.cellArea();
+    const CellSet& inside = coverage.target.indoor;
+    const auto area_without = [&](CellSet cells, const CellSet& without) {
+        cells -= without;
+        return static_cast<double>(countCommon(cells, inside)) * cell_area;
+    };
+    const CellSet mine = coveredCells(coverage), theirs = coveredCells(other);
+    comparison.gained.grid = area_without(mine, theirs);
+    comparison.lost.grid = area_without(theirs, mine);
+    if (coverage.overlay && other.overlay) compareExactly(coverage, other, indoor, comparison);
+    coverage.report.comparison = comparison;
+}
+
+std::vector<std::uint32_t> timesSeen(const Coverage& coverage) {
+    std::vector<std::uint32_t> times(coverage.target.grid.size());
+    for (const SeenSet& set : coverage.sets)
+        set.cells.forEach([&times](std::size_t cell) { ++times[cell]; });
+    return times;
+}
+
+CellSet coveredCells(const Coverage& coverage) {
+    CellSet covered(coverage.target.grid.size());
+    for (const SeenSet& set : coverage.sets) covered |= set.cells;
+    return covered;
+}
+
+std::optional<double> coveredShare(const CellSet& covered, const CellSet& target) {
+    const std::size_t all = target.count();
+    if (all == 0) return std::nullopt;
+    return static_cast<double>(countCommon(covered, target)) / static_cast<double>(all);
+}
+
+}  // namespace ispace

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pixels a metre on the floor, camera by camera and of all together, and axes that are far apart.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "coverage/pixel_density.h"
+#include "coverage/requirement.h"
+#include "coverage/shadow_footprint.h"
+#include "support/test_covering_sensors.h"
+#include "support/test_scenes.h"
+
+namespace ispace {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr std::size_t kClasses = 6, kRecognise = 3, kIdentify = 4;
+
+Coverage measured(const std::string& lines, CoverageOptions options = {}) {
+    const Scene scene = sceneOf(lines);
+    Worlds worlds(scene.environment);
+    if (std::holds_alternative<RoomCells>(options.cells)) options.cells = CellSize{0.05};
+    return measureCoverage(scene, worlds, options);
+}
+
+constexpr const char* kRoom = "ispace size=12,8,3\n";
+const std::string kOfficeCameras =
+    std::string(kRoom) +
+    "table at=2,1 size=1.4,1.4\ndesk at=-2,1.5 heading=20\ncube at=1,-2 heading=30 "
+    "size=0.8,0.6,1.9\nzone id=door path=-5,-3;-3,-3;-3,-1;-5,-1\n"
+    "camera id=a at=-5.8,-3.8,2.8 heading=35 tilt=-30 fov=80 pixels=1920,1080\n"
+    "camera id=b at=5.8,3.8,2.8 heading=-145 tilt=-25 fov=70 pixels=1280,720\n"
+    "camera id=c at=0,0,2.9 tilt=-90 projection=omni fov=180 pixels=1000,1000 range=9\n";
+
+TEST(Densities, AreasOfClassesAreThoseOfShorterRanges) {
+    const Scene scene = sceneOf(kOfficeCameras);
+    const ShadowCaster caster(scene.environment);
+    const CoverageReport report = measured(kOfficeCameras).report;
+    ASSERT_EQ(report.sensors.size(), 3U);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const PictureMetrics& picture = *report.sensors[k].picture;
+        ASSERT_EQ(picture.areas.size(), kClasses);
+        for (std::size_t i = 0; i < kClasses; ++i) {
+            Sensor sensor = scene.sensors[k];
+            sensor.model = withDensity(sensor.as<Camera>(), pixelDensities()[i].pixels_per_metre);
+            const double area = signedArea(caster.regionSeen(sensor, 0).value());
+            EXPECT_NEAR(*picture.areas[i].exact, area, 2e-5) << k << ' ' << i;
+            EXPECT_NEAR(*picture.areas[i].grid, area, 0.02 * area + 0.05) << k << ' ' << i;
+        }
+    }
+}
+
+TEST(Densities, MeanIsThatOfPlaces) {
+    for (const SensorMetrics& sensor : measured(kOfficeCameras).report.sensors) {
+        const PictureMetrics& picture = *sensor.picture;
+        EXPECT_NEAR(*picture.mean_density.exact, *picture.mean_density.grid,
+                    5e-3 * *picture.mean_density.exact)
+            << sensor.id;
+    }
+    // Straight down a pinhole has the same everywhere.
+    const std::string empty = "ispace size=40,40,9\n";
+    const PictureMetrics down = *measured(empty + "camera at=0,0,4 tilt=-90 fx=500 pixels=600,400")
+                                     .report.sensors[0]
+                                     .picture;
+    EXPECT_NEAR(*down.mean_density.exact, 125, 1e-9);
+    EXPECT_NEAR(*down.areas[kRecognise].exact, 4.8 * 3.2, 1e-5);
+    EXPECT_EQ(*down.areas[kIdentify].exact, 0);
+    EXPECT_EQ(*down.nearest, 0);
+    EXPECT_NEAR(*down.farthest, std::hypot(2.4, 1.6), 1e-6);
+    // A fisheye that looks down sees a disc.
+    const PictureMetrics disc =
+        *measured(empty + "camera at=0,0,3 tilt=-90 projection=omni fov=180 pixels=600,600 range=5")
+             .report.sensors[0]
+             .picture;
+    const double focal = 300 / (kPi / 2);
+    EXPECT_NEAR(*disc.mean_density.exact, focal * 2 * (5 - 3) / 16, 1e-3);
+    EXPECT_NEAR(*disc.farthest, 4, 1e-6);
+    // From 45 degrees: between the rays of the lower and the upper edge, ahead.
+    const PictureMetrics ahead =
+        *measured(empty + "camera at=0,0,2 tilt=-45 fov=60,40 pixels=600,400")
+             .report.sensors[0]
+             .picture;
+    EXPECT_NEAR(*ahead.nearest, 2 * tanOf(25), 1e-5);
+    EXPECT_NEAR(*ahead.farthest,
+                std::hypot(2 * tanOf(65), tanOf(30) * (2 * tanOf(65) + 2) * std::sqrt(0.5)), 1e-5);
+}
+
+TEST(Densities, OnlyFloorWithEnoughPixelsIsCovered) {
+    const double area[] = {
+        *measured(kOfficeCameras, {.density = 125}).report.sensors[0].area.exact,
+        *measured(kOfficeCameras).report.sensors[0].picture->areas[kRecognise].exact};
+    EXPECT_NEAR(area[0], area[1], 2e-5);
+    const CoverageReport all = measured(kOfficeCameras).report;
+    const CoverageReport some = measured(kOfficeCameras, {.density = 125}).report;
+    // Cameras alone are placed, so it is the share of the class; classes stay what they are.
+    EXPECT_NEAR(*some.coverage.exact, *all.densities.indoor[kRecognise].exact, 1e-6);
+    EXPECT_NEAR(*some.densities.indoor[0].exact, *all.densities.indoor[0].exact, 1e-6);
+    EXPECT_NEAR(*some.densities.seen.exact, *some.coverage.exact, 1e-6);
+    for (std::size_t i = 0; i < kClasses; ++i) {
+        EXPECT_NEAR(*all.densities.indoor[i].exact, *all.densities.indoor[i].grid, 0.01) << i;
+        EXPECT_NEAR(*all.densities.free[i].exact, *all.densities.free[i].grid, 0.01) << i;
+        EXPECT_NEAR(*all.zones[0].densities[i].exact, *all.zones[0].densities[i].grid, 0.03) << i;
+    }
+}
+
+TEST(Densities, ManyZonesAreMeasuredInPasses) {
+    std::string lines = kOfficeCameras;
+    for (int i = 0; i < 60; ++i) {
+        const double x = -6 + 0.2 * i;
+        lines += "zone path=" + std::to_string(x) + ",-4;" + std::to_string(x + 0.2) + ",-4;" +
+                 std::to_string(x + 0.2) + ",4;" + std::to_string(x) + ",4\n";
+    }
+    const CoverageReport report = measured(lines).report;
+    ASSERT_EQ(report.zones.size(), 61U);
+    double sum = 0;
+    for (std::size_t i = 1; i < 61; ++i)
+        sum += *report.zones[i].densities[kRecognise].exact * report.zones[i].area;
+    EXPECT_NEAR(sum, *report.densities.indoor[kRecognise].exact * report.indoor_area, 1e-5);
+}
+
+TEST(Densities, AreRequired) {
+    const Coverage coverage = measured(kOfficeCameras);
+    const auto verdict = [&](const char* text) {
+        return checkRequirement(parseRequirement(text), coverage);
+    };
+    EXPECT_TRUE(verdict("monitor:10%").is_met);
+    EXPECT_TRUE(verdict("detect:free:10%").is_met);
+    const Verdict missing = verdict("identify:door=100%");
+    EXPECT_FALSE(missing.is_met);
+    EXPECT_EQ(missing.text.find("coverage to identify of zone door is "), 0U) << missing.text;
+    EXPECT_NE(missing.text.find("the largest such spot has "), std::string::npos) << missing.text;
+    // Without cameras all is missing.
+    const Verdict none = checkRequirement(parseRequirement("detect:1%"),
+                                          measured(std::string(kRoom) + "laser at=1,1"));
+    EXPECT_EQ(none.text.find("coverage to detect is 0.00%"), 0U) << none.text;
+    EXPECT_FALSE(none.is_met);
+}
+
+TEST(Parallax, IsWhereSoManyAxesAreApart) {
+    const auto shares = [](double degrees, int cameras) {
+        const Metric metric =
+            measured(kOfficeCameras, {.parallax = ParallaxChoice{Angle::degrees(degrees), cameras}})
+                .report.parallax_coverage;
+        EXPECT_NEAR(*metric.exact, *metric.grid, 0.01) << degrees << ' ' << cameras;
+        return *metric.exact;
+    };
+    const CoverageReport report = measured(kOfficeCameras).report;
+    const std::vector<double>& seen = *report.redundancy_exact;
+    // Any pair counts at 0 degrees: what two or three see.
+    EXPECT_NEAR(shares(0, 2), seen[2] + seen[3], 1e-6);
+    EXPECT_NEAR(shares(0, 3), seen[3], 1e-6);
+    // Axes a and c are 60 degrees apart, b and c 65, a and b 125.
+    EXPECT_NEAR(shares(59, 2), shares(0, 2), 1e-6);
+    EXPECT_NEAR(shares(59, 3), seen[3], 1e-6);
+    EXPECT_LT(shares(64, 2), shares(59, 2) - 1e-3);
+    EXPECT_GT(shares(64, 2), shares(66, 2) + 1e-3);
+    EXPECT_GT(shares(66, 2), 0.05);
+    EXPECT_EQ(shares(64, 3), 0);
+    EXPECT_EQ(shares(126, 2), 0);
+    EXPECT_EQ(shares(0, 4), 0);
+}
+
+}  // namespace
+}  // namespace ispace

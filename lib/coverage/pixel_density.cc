@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What all cameras together see, by density of pixels and by the angles between their axes.
+#include "coverage/pixel_density.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "base/error.h"
+#include "coverage/shadow_footprint.h"
+#include "geom/arrangement.h"
+#include "geom/predicates.h"
+#include "geom/tolerance.h"
+
+namespace ispace {
+
+FloorDensity::FloorDensity(const Camera& camera, const Pose3& pose, double plane)
+    : focal_(rangeOf(camera, 1)),
+      drop_(plane - pose.position.z),
+      is_by_depth_(camera.lens == Lens::Pinhole),
+      foot_(pose.position.onFloor()),
+      axis_(Frame3(pose).forward),
+      slope_(std::hypot(axis_.x, axis_.y)) {}
+
+double FloorDensity::at(Point2 place) const {
+    const Vec2 way = place - foot_;
+    const double far = is_by_depth_ ? axis_.x * way.x + axis_.y * way.y + axis_.z * drop_
+                                    : std::hypot(way.x, way.y, drop_);
+    return far > 0 ? focal_ / far : std::numeric_limits<double>::infinity();
+}
+
+std::vector<Curve> FloorDensity::least(double pixels_per_metre, const Box2& box) const {
+    const double far = focal_ / pixels_per_metre;
+    if (!is_by_depth_) {
+        if (!(std::fabs(drop_) < far)) return {};
+        Curve disc = circleOf(std::sqrt(far * far - drop_ * drop_));
+        for (CurveEdge& edge : disc) {
+            const Vec2 way = foot_ - Point2{};
+            edge = {edge.from + way, edge.to + way, edge.radius, edge.center + way};
+        }
+        return {std::move(disc)};
+    }
+    const Polygon polygon = {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
+    const double offset = far - axis_.z * drop_ + axis_.x * foot_.x + axis_.y * foot_.y;
+    const Polygon half = halfOf(polygon, Vec2{-axis_.x, -axis_.y}, offset);
+    if (half.empty()) return {};
+    return {curveOf(half)};
+}
+
+namespace {
+
+/// Mean of ln(t) for t from a to b, both over 0.
+double meanLog(double a, double b) {
+    const double step = b - a, middle = a + step / 2;
+    if (std::fabs(step) < 1e-2 * middle) {
+        const double share = step / middle, squared = share * share;
+        return std::log(middle) - squared / 24 - squared * squared / 320;
+    }
+    return (b * std::log(b) - a * std::log(a)) / step - 1;
+}
+
+}  // namespace
+
+/// The part of an edge in the integral of focal / depth, by Green's theorem: depth grows along one
+/// direction of the plane, and edges count by how far they go across it.
+double FloorDensity::alongAxis(Point2 a, Point2 b) const {
+    constexpr double kNearest = 1e-12;
+    const Vec2 uphill{axis_.x / slope_, axis_.y / slope_};
+    const auto depth = [&](Point2 p) {
+        return std::max(kNearest, slope_ * dot(uphill, p - foot_) + axis_.z * drop_);
+    };
+    return focal_ / slope_ * cross(uphill, b - a) * meanLog(depth(a), depth(b));
+}
+
+/// Likewise of focal / distance, by the angle that edges span about the foot.
+double FloorDensity::around(Point2 a, Point2 b) const {
+    constexpr std::array<double, 4> kPlaces = {-0.861136311594052575, -0.339981043584856265,
+                                               0.339981043584856265, 0.861136311594052575};
+    constexpr std::array<double, 4> kWeights = {0.347854845137453857, 0.652145154862546143,
+                                                0.652145154862546143, 0.347854845137453857};
+    const Vec2 from = a - foot_, way = b - a;
+    const double high = std::fabs(drop_), scale = high + distance(foot_, Segment2{a, b});
+    constexpr double kMostPieces = 4096;
+    const double pieces = std::clamp(std::ceil(2 * length(way) / scale), 1.0, kMostPieces);
+    double sum = 0;
+    for (double i = 0; i < pieces; ++i)
+        for (std::size_t k = 0; k < kPlaces.size(); ++k) {
+            const Vec2 p = from + (i + (1 + kPlaces[k]) / 2) / pieces * way;
+            sum += kWeights[k] / 2 / (std::hypot(p.x, p.y, high) + high);
+        }
+    return focal_ * cross(from, way) * sum / pieces;
+}
+
+double FloorDensity::integral(std::span<const Curve> curves) const {
+    constexpr double kLevel = 1e-9;
+    if (is_by_depth_ && slope_ < kLevel)
+        return focal_ / std::fabs(axis_.z * drop_) * signedArea(curves);
+    double sum = 0;
+    for (const Curve& curve : curves)
+        forEachEdge(chords(curve, kConicError), [&](const Segment2& edge) {
+            sum += is_by_depth_ ? alongAxis(edge.a, edge.b) : around(edge.a, edge.b);
+        });
+    return sum;
+}
+
+std::vector<SeenSet> classesOf(const FloorDensity& density, const Grid& grid, const SeenSet& view) {
+    const auto classes = pixelDensities();
+    std::vector<SeenSet> sets(classes.size());
+    for (SeenSet& set : sets) set.cells = CellSet(grid.size());
+    view.cells.forEach([&](std::size_t cell) {
+        const double pixels = density.at(grid.center(cell));
+        for (std::size_t i = 0; i < classes.size() && pixels >= classes[i].pixels_per_metre; ++i)
+            sets[i].cells.set(cell);
+    });
+    if (!view.region) return sets;
+    for (SeenSet& set : sets) set.region.emplace();
+    Box2 box = boundsOfAll(*view.region);
+    if (box.empty()) return sets;
+    constexpr double kAround = 1;
+    box = {{box.low.x - kAround, box.low.y - kAround},
+           {box.high.x + kAround, box.high.y + kAround}};
+    std::vector<Layer> layers = {{.curves = *view.region}};
+    for (std::size_t i = 0; i < classes.size(); ++i)
+        layers.push_back({.curves = density.least(classes[i].pixels_per_metre, box),
+                          .counts = false,
+                          .marks = classMark(i)});
+    const Overlay overlay(layers);
+    for (std::size_t i = 0; i < classes.size(); ++i)
+        sets[i].region = overlay.curves([i](const LayerLabel& label) {
+            return label.count > 0 && (label.marks & classMark(i)) != 0;
+        });
+    return sets;
+}
+
+namespace {
+
+/// How near and how far curves come to a place; 0 near if they hold it.
+void addDistances(const std::vector<Curve>& curves, Point2 foot, PictureMetrics& metrics) {
+    bool is_inside = false;
+    for (const Curve& curve : curves) {
+        const Polygon polygon = chords(curve);
+        is_inside = is_inside != (locate(polygon, foot) == Side::Inside);
+        forEachEdge(polygon, [&](const Segment2& edge) {
+            metrics.nearest =
+                std::min(metrics.nearest.value_or(std::numeric_limits<double>::infinity()),
+                         distance(foot, edge));
+            metrics.farthest = std::max(metrics.farthest.value_or(0), distance(foot, edge.a));
+        });
+    }
+    if (is_inside) metrics.nearest = 0;
+}
+
+}  // namespace
+
+PictureMetrics pictureMetricsOf(const FloorDensity& density, const Grid& grid, Point2 foot,
+                                const SensorView& view) {
+    PictureMetrics metrics;
+    for (const SeenSet& set : view.classes) {
+        Metric area{static_cast<double>(set.cells.count()) * grid.cellArea(), {}};
+        if (set.region) area.exact = std::max(0.0, signedArea(*set.region));
+        metrics.areas.push_back(area);
+    }
+    double sum = 0;
+    std::size_t cells = 0;
+    view.cells.forEach([&](std::size_t cell) {
+        const Point2 center = grid.center(cell);
+        if (const double pixels = density.at(center); std::isfinite(pixels)) {
+            sum += pixels;
+            ++cells;
+        }
+        if (view.region) return;
+        const double far = distance(foot, center);
+        metrics.nearest = std::min(metrics.nearest.value_or(far), far);
+        metrics.farthest = std::max(metrics.farthest.value_or(far), far);
+    });
+    if (cells > 0) metrics.mean_density.grid = sum / static_cast<double>(cells);
+    if (!view.region) return metrics;
+    addDistances(*view.region, foot, metrics);
+    const double area = signedArea(*view.region);
+    if (area > kMinPiece) metrics.mean_density.exact = density.integral(*view.region) / area;
+    return metrics;
+}
+
+namespace {
+
+std::vector<const SensorView*> camerasOf(const Coverage& coverage) {
+    std::vector<const SensorView*> cameras;
+    for (const SensorView& view : coverage.sensors)
+        if (!view.classes.empty()) cameras.push_back(&view);
+    return cameras;
+}
+
+Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
+    return {.curves = std::move(curves), .counts = false, .marks = marks};
+}
+
+/// The zones from `first` on, as many as fit.
+Overlay densityOverlay(const Coverage& coverage, const Environment& environment,
+                       const std::vector<Region>& free_floor, std::span<const Zone> zones) {
+    std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoorMark)};
+    std::vector<Curve> free;
+    for (const Region& piece : free_floor)
+        for (Curve& curve : curvesWithArcs(piece)) free.push_back(std::move(curve));
+    layers.push_back(markLayer(std::move(free), kFreeMark));
+    for (const SensorView* view : camerasOf(coverage)) {
+        layers.push_back(markLayer(*view->region, kCameraMark));
+        for (std::size_t i = 0; i < view->classes.size(); ++i)
+            layers.push_back(markLayer(*view->classes[i].region, classMark(i)));
+    }
+    for (std::size_t i = 0; i < zones.size(); ++i) {
+        Polygon outline = zones[i].outline;
+        if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
+        layers.push_back(markLayer({curveOf(outline)}, densityZoneMark(i)));
+    }
+    return Overlay(layers, environment.slice(coverage.target.height).sheets);
+}
+
+/// The exact shares, of the indoor region, the free floor, and the zones from `first` on.
+void addShares(CoverageReport& report, const Overlay& overlay, std::size_t first) {
+    const std::size_t classes = pixelDensities().size();
+    const std::size_t zones = std::min(kDensityZones, report.zones.size() - first);
+    double seen = 0;
+    std::vector<double> indoor(classes), free(classes), by_zone(classes * zones);
+    overlay.addAreas([&](const LayerLabel& label, double area) {
+        if ((label.marks & kIndoorMark) != 0 && (label.marks & kCameraMark) != 0) seen += area;
+        for (std::size_t i = 0; i < classes; ++i) {
+            if ((label.marks & classMark(i)) == 0) continue;
+            if ((label.marks & kFreeMark) != 0) free[i] += area;
+            if ((label.marks & kIndoorMark) == 0) continue;
+            indoor[i] += area;
+            for (std::size_t zone = 0; zone < zones; ++zone)
+                if ((label.marks & densityZoneMark(zone)) != 0) by_zone[zone * classes + i] += area;
+        }
+    });
+    report.densities.seen.exact = shareOf(seen, report.indoor_area);
+    for (std::size_t i = 0; i < classes; ++i) {
+        report.densities.indoor[i].exact = shareOf(indoor[i], report.indoor_area);
+        report.densities.free[i].exact = shareOf(free[i], report.free_area);
+        for (std::size_t zone = 0; zone < zones; ++zone)
+            report.zones[first + zone].densities[i].exact =
+                shareOf(by_zone[zone * classes + i], report.zones[first + zone].area);
+    }
+}
+
+}  // namespace
+
+CellSet cellsOfClass(const Coverage& coverage, std::size_t index) {
+    CellSet cells(coverage.target.grid.size());
+    for (const SensorView* view : camerasOf(coverage)) cells |= view->classes[index].cells;
+    return cells;
+}
+
+void addDensities(Coverage& coverage, const Environment& environment,
+                  const std::vector<Region>& free_floor, const std::vector<Zone>& zones) {
+    const std::vector<const SensorView*> cameras = camerasOf(coverage);
+    if (cameras.empty()) return;
+    CoverageReport& report = coverage.report;
+    const std::size_t classes = pixelDensities().size();
+    report.densities.indoor.resize(classes);
+    report.densities.free.resize(classes);
+    CellSet seen(coverage.target.grid.size());
+    for (const SensorView* view : cameras) seen |= view->cells;
+    report.densities.seen.grid = coveredShare(seen, coverage.target.indoor);
+    for (ZoneMetrics& zone : report.zones) zone.densities.resize(classes);
+    for (std::size_t i = 0; i < classes; ++i) {
+        const CellSet cells = cellsOfClass(coverage, i);
+        report.densities.indoor[i].grid = coveredShare(cells, coverage.target.indoor);
+        report.densities.free[i].grid = coveredShare(cells, coverage.target.free);
+        for (std::size_t k = 0; k < zones.size(); ++k) {
+            CellSet zone = cellsWithin(coverage.target.grid, std::span(&zones[k].outline, 1));
+            zone &= coverage.target.indoor;
+            report.zones[k].densities[i].grid = coveredShare(cells, zone);
+        }
+    }
+    const bool is_known = std::all_of(cameras.begin(), cameras.end(), [](const SensorView* view) {
+        return view->region && view->classes.front().region;
+    });
+    if (!is_known) return;
+    try {
+        std::vector<Overlay> overlays;
+        for (std::size_t first = 0; first == 0 || first < zones.size(); first += kDensityZones)
+            overlays.push_back(densityOverlay(
+                coverage, environment, free_floor,
+                std::span(zones).subspan(first, std::min(kDensityZones, zones.size() - first))));
+        coverage.density_overlays = std::move(overlays);
+    } catch (const FormatError&) {
+        return;  // more crossings than can be laid over each other: by cells only
+    }
+    for (std::size_t i = 0; i < coverage.density_overlays.size(); ++i)
+        addShares(report, coverage.density_overlays[i], i * kDensityZones);
+}
+
+namespace {
+
+/// Cameras have bits; sets of them are words.
+using CameraBits = std::uint64_t;
+constexpr std::size_t kMaxExact = 60;
+
+/// Which sets of cameras hold so many whose axes are pairwise far enough apart.
+class AxisPairs {
+  public:
+    AxisPairs(const std::vector<const SensorView*>& cameras, const ParallaxChoice& choice)
+        : wanted_(choice.cameras), apart_(cameras.size()) {
+        const double most = cos(choice.least) + kUnitTolerance;
+        for (std::size_t i = 0; i < cameras.size(); ++i)
+            for (std::size_t k = 0; k < cameras.size(); ++k)
+                if (i != k &&
+                    dot(Frame3(cameras[i]->pose).forward, Frame3(cameras[k]->pose).forward) <= most)
+                    apart_[i].push_back(k);
+    }
+    /// `seen_by[i]`: whether camera i is in the set.
+    [[nodiscard]] bool isEnough(const std::vector<bool>& seen_by) const {
+        std::vector<std::size_t> all;
+        for (std::size_t i = 0; i < seen_by.size(); ++i)
+            if (seen_by[i]) all.push_back(i);
+        return canChoose(all, wanted_);
+    }
+
+  private:
+    /// True if `count` of these are pairwise apart.
+    [[nodiscard]] bool canChoose(const std::vector<std::size_t>& from, int count) const {
+        if (count <= 0) return true;
+        if (from.size() < static_cast<std::size_t>(count)) return false;
+        for (std::size_t i = 0; i < from.size(); ++i) {
+            std::vector<std::size_t> rest;
+            for (std::size_t k = i + 1; k < from.size(); ++k)
+                if (std::binary_search(apart_[from[i]].begin(), apart_[from[i]].end(), from[k]))
+                    rest.push_back(from[k]);
+            if (canChoose(rest, count - 1)) return true;
+        }
+        return false;
+    }
+
+    int wanted_;
+    std::vector<std::vector<std::size_t>> apart_;
+};
+
+std::optional<double> exactShare(const std::vector<const SensorView*>& cameras,
+                                 const AxisPairs& pairs, const Environment& environment,
+                                 double indoor_area) {
+    if (cameras.size() > kMaxExact) return std::nullopt;
+    constexpr CameraBits kIndoor = CameraBits{1} << 63U;
+    std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoor)};
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        if (!cameras[i]->region) return std::nullopt;
+        layers.push_back(markLayer(*cameras[i]->region, CameraBits{1} << i));
+    }
+    std::unordered_map<CameraBits, bool> known;
+    const auto is_enough = [&](CameraBits marks) {
+        const auto found = known.find(marks);
+        if (found != known.end()) return found->second;
+        std::vector<bool> seen_by(cameras.size());
+        for (std::size_t i = 0; i < cameras.size(); ++i) seen_by[i] = ((marks >> i) & 1U) != 0;
+        return known[marks] = pairs.isEnough(seen_by);
+    };
+    try {
+        const double area = Overlay(layers).area([&](const LayerLabel& label) {
+            return (label.marks & kIndoor) != 0 && is_enough(label.marks & ~kIndoor);
+        });
+        return shareOf(area, indoor_area);
+    } catch (const FormatError&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+void addParallax(Coverage& coverage, const Environment& environment, const ParallaxChoice& choice) {
+    const std::vector<const SensorView*> cameras = camerasOf(coverage);
+    const AxisPairs pairs(cameras, choice);
+    CoverageReport& report = coverage.report;
+    report.parallax = choice;
+    CellSet cells(coverage.target.grid.size());
+    std::vector<bool> seen_by(cameras.size());
+    coverage.target.indoor.forEach([&](std::size_t cell) {
+        for (std::size_t i = 0; i < cameras.size(); ++i) seen_by[i] = cameras[i]->cells.test(cell);
+        if (pairs.isEnough(seen_by)) cells.set(cell);
+    });
+    report.parallax_coverage.grid = coveredShare(cells, coverage.target.indoor);
+    report.parallax_coverage.exact = exactShare(cameras, pairs, environment, report.indoor_area);
+}
+
+}  // namespace ispace

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coverage/requirement.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "geom/arrangement.h"
+
+namespace ispace {
+
+namespace {
+
+double shareOfText(std::string_view text) {
+    if (const auto share = parseShare(text)) return *share;
+    throw UsageError('`' + std::string(text) +
+                     "` is no share: write 95% or 0.95, free:95%, zone:NAME=95%, identify:95%");
+}
+
+/// With all digits where two do not show that a share is below another.
+std::string percent(double share, double required) {
+    const std::string text = formatFixed(100 * share, 2);
+    return text == formatFixed(100 * required, 2) ? formatPercent(roundSignificant(share))
+                                                  : text + "%";
+}
+
+/// What a requirement is about.
+struct Subject {
+    std::string what;
+    Metric share;
+    double area = 0;
+};
+
+/// \pre there is such a zone
+std::size_t zoneIndex(const Requirement& requirement, const CoverageReport& report) {
+    const auto found =
+        std::find_if(report.zones.begin(), report.zones.end(),
+                     [&requirement](const ZoneMetrics& one) { return one.id == requirement.zone; });
+    return static_cast<std::size_t>(found - report.zones.begin());
+}
+
+Subject densitySubject(const Requirement& requirement, const CoverageReport& report) {
+    const std::size_t index = *requirement.density;
+    const auto of = [index](const std::vector<Metric>& metrics) {
+        return metrics.empty() ? Metric{.grid = 0, .exact = 0} : metrics[index];
+    };
+    const std::string name(pixelDensities()[index].name);
+    switch (requirement.of) {
+        case Requirement::Of::Free:
+            return {"free coverage to " + name, of(report.densities.free), report.free_area};
+        case Requirement::Of::Zone: {
+            const ZoneMetrics& zone = report.zones[zoneIndex(requirement, report)];
+            return {"coverage to " + name + " of zone " + printable(zone.id), of(zone.densities),
+                    zone.area};
+        }
+        case Requirement::Of::Indoor:
+            break;
+    }
+    return {"coverage to " + name, of(report.densities.indoor), report.indoor_area};
+}
+
+/// The largest piece of what is asked for that no camera sees so well; nothing if it is not known.
+std::optional<UnseenSpot> largestWithout(const Requirement& requirement, const Coverage& coverage) {
+    if (coverage.density_overlays.empty()) return std::nullopt;
+    std::uint64_t wanted = requirement.of == Requirement::Of::Free ? kFreeMark : kIndoorMark;
+    std::size_t pass = 0;
+    if (requirement.of == Requirement::Of::Zone) {
+        const std::size_t zone = zoneIndex(requirement, coverage.report);
+        wanted |= densityZoneMark(zone);
+        pass = zone / kDensityZones;
+    }
+    const Overlay& overlay = coverage.density_overlays[pass];
+    const std::vector<Region> pieces = overlay.regions([&](const LayerLabel& label) {
+        return (label.marks & wanted) == wanted &&
+               (label.marks & classMark(*requirement.density)) == 0;
+    });
+    if (pieces.empty()) return std::nullopt;
+    const std::vector<double> areas = overlay.areasOf(pieces);
+    const auto largest =
+        static_cast<std::size_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
+    return UnseenSpot{interiorPoint(pieces[largest]), areas[largest]};
+}
+
+Subject subjectOf(const Requirement& requirement, const CoverageReport& report) {
+    if (requirement.density) return densitySubject(requirement, report);
+    switch (requirement.of) {
+        case Requirement::Of::Free:
+            return {"free coverage", report.free_coverage, report.free_area};
+        case Requirement::Of::Zone: {
+            const ZoneMetrics& zone = report.zones[zoneIndex(requirement, report)];
+            return {"coverage of zone " + printable(zone.id), zone.coverage, zone.area};
+        }
+        case Requirement::Of::Indoor:
+            break;
+    }
+    return {"coverage", report.coverage, report.indoor_area};
+}
+
+/// Of a name of pixelDensities().
+std::optional<std::size_t> densityIndex(std::string_view name) {
+    if (name.empty() || (name.front() >= '0' && name.front() <= '9')) return std::nullopt;
+    const auto pixels = pixelDensityOf(name);
+    const auto classes = pixelDensities();
+    for (std::size_t i = 0; i < classes.size(); ++i)
+        if (pixels == classes[i].pixels_per_metre) return i;
+    return std::nullopt;
+}
+
+/// With more digits where two would be 0.00.
+std::string squareMetres(double area) { return formatFixed(area, area < 0.01 ? 6 : 2) + " m2"; }
+
+}  // namespace
+
+Requirement parseRequirement(std::string_view text) {
+    const auto colon = text.find(':');
+    if (const auto density =
+            colon == std::string_view::npos ? std::nullopt : densityIndex(text.substr(0, colon))) {
+        const std::string rest(text.substr(colon + 1));
+        const bool names_zone = rest.find('=') != std::string::npos && !rest.starts_with("zone:");
+        Requirement requirement = parseRequirement(names_zone ? "zone:" + rest : rest);
+        if (requirement.density) throw UsageError('`' + std::string(text) + "` has two classes");
+        requirement.density = density;
+        return requirement;
+    }
+    constexpr std::string_view kFree = "free:", kZone = "zone:";
+    if (text.starts_with(kFree))
+        return {Requirement::Of::Free, "", shareOfText(text.substr(kFree.size()))};
+    if (!text.starts_with(kZone)) return {Requirement::Of::Indoor, "", shareOfText(text)};
+    // A name may have an equals sign, a share has none.
+    const auto equals = text.rfind('=');
+    if (equals == std::string_view::npos || equals == kZone.size())
+        throw UsageError('`' + std::string(text) + "` is no requirement: write zone:NAME=95%");
+    return {Requirement::Of::Zone, std::string(text.substr(kZone.size(), equals - kZone.size())),
+            shareOfText(text.substr(equals + 1))};
+}
+
+std::string requirementText(const Requirement& requirement) {
+    std::string text;
+    if (requirement.density) text.append(pixelDensities()[*requirement.density].name) += ':';
+    if (requirement.of == Requirement::Of::Free) text += "free:";
+    if (requirement.of == Requirement::Of::Zone) text += "zone:" + requirement.zone + '=';
+    return text + formatPercent(requirement.share);
+}
+
+void mustHaveZone(const Requirement& requirement, const Environment& environment) {
+    if (requirement.of != Requirement::Of::Zone) return;
+    std::vector<std::string> known;
+    for (const Element& element : environment.elements())
+        if (element.record.keyword() == "zone") known.push_back(element.id);
+    if (std::find(known.begin(), known.end(), requirement.zone) != known.end()) return;
+    throw UsageError("the room has no zone `" + printable(requirement.zone) + '`' +
+                     didYouMean(requirement.zone, known));
+}
+
+Verdict checkRequirement(const Requirement& requirement, const Coverage& coverage) {
+    const CoverageReport& report = coverage.report;
+    constexpr double kExactError = 1e-7;
+    const auto [what, metric, area] = subjectOf(requirement, report);
+    if (!metric.exact && !metric.grid)
+        return {false, what +
+                           " is not known: no centre of a cell lies there, and exact figures are "
+                           "missing; use smaller cells (--cell)"};
+    const double share = metric.exact ? *metric.exact : *metric.grid;
+    std::string text = what + " is " + percent(share, requirement.share) +
+                       (metric.exact ? " (exact)" : " (by cells)");
+    const std::string required = formatPercent(requirement.share);
+    if (share >= requirement.share - (metric.exact ? kExactError : 0))
+        return {true, text + ", as required (" + required + ")"};
+    text += ", below the required " + required;
+    if (area <= 0) return {false, text + ": it has no floor in the room"};
+    text += ": " + squareMetres((requirement.share - share) * area) + " are missing";
+    std::optional<UnseenSpot> largest;
+    if (requirement.density)
+        largest = largestWithout(requirement, coverage);
+    else if (requirement.of != Requirement::Of::Zone && !report.unseen.empty())
+        largest = report.unseen.front();
+    if (!largest) return {false, text};
+    const UnseenSpot& spot = *largest;
+    return {false, text + "; the largest " + (requirement.density ? "such" : "unseen") +
+                       " spot has " + squareMetres(spot.area) + " around (" +
+                       formatFixed(spot.place.x, 2) + ", " + formatFixed(spot.place.y, 2) + ")"};
+}
+
+}  // namespace ispace

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coverage/run_coverage.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "geom/tolerance.h"
+#include "sense/selection.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kSampling = 0.02;  // s
+constexpr double kThinning = 0.02;  // m
+
+/// A moment that is looked at.
+struct Sample {
+    double time = 0;
+    std::vector<RunState> states;
+    std::vector<Pose2> robots, people;  // of the scene, for sensors that ride on them
+    std::vector<std::size_t> counts;    // of each state
+    std::vector<double> fastest;        // m/s, of each state
+};
+
+/// Finds the members of a record in a scene.
+class Members {
+  public:
+    Members(const Scene& scene, const RunReader& reader) : scene_(&scene), reader_(&reader) {
+        for (const PlacedRobot& robot : scene.robots) robots.push_back(robot.pose);
+        for (const PlacedPerson& person : scene.people) people.push_back(person.pose);
+    }
+    /// \throws FormatError for who is there and not in the scene
+    void check() {
+        for (const RunState& state : reader_->states())
+            if (ownerOf(state.who) == MovingBodies::kNobody)
+                throw FormatError({reader_->name(), 0, 0,
+                                   "the scene has no robot or person " +
+                                       excerpt(reader_->who()[state.who].id) +
+                                       ": it is not that of the record"});
+    }
+
+    /// As carrierOf(); kNobody of who was added while the run went on.
+    std::uint32_t ownerOf(std::size_t who) {
+        for (std::size_t i = owners_.size(); i < reader_->who().size(); ++i)
+            owners_.push_back(find(reader_->who()[i]));
+        return owners_[who];
+    }
+    /// What nobody goes faster than, m/s: with a margin, as a record may have changed in the run.
+    double fastest(const RunState& state) {
+        const std::uint32_t owner = ownerOf(state.who);
+        constexpr double kUnknown = std::numeric_limits<double>::infinity(), kMargin = 2;
+        if (owner == MovingBodies::kNobody) return kUnknown;
+        const double going = std::hypot(state.speed, state.sidespeed);
+        if (owner >= kFirstPerson)
+            return kMargin * std::max(scene_->people[owner - kFirstPerson].speed, going);
+        const RobotModel& model = scene_->robots[owner].model;
+        return kMargin * std::max(std::hypot(model.max_speed, model.max_sidespeed), going);
+    }
+    /// Where everybody is now.
+    void move(const RunState& state) {
+        const std::uint32_t owner = ownerOf(state.who);
+        if (owner == MovingBodies::kNobody) return;
+        (owner < kFirstPerson ? robots[owner] : people[owner - kFirstPerson]) = state.pose;
+    }
+
+    std::vector<Pose2> robots, people;
+
+  private:
+    [[nodiscard]] std::uint32_t find(const RunMember& member) const {
+        const auto index_in = [&member](const auto& list, std::uint32_t first) {
+            for (std::size_t i = 0; i < list.size(); ++i)
+                if (list[i].id == member.id) return first + static_cast<std::uint32_t>(i);
+            return MovingBodies::kNobody;
+        };
+        return member.is_person ? index_in(scene_->people, kFirstPerson)
+                                : index_in(scene_->robots, 0);
+    }
+
+    const Scene* scene_;
+    const RunReader* reader_;
+    std::vector<std::uint32_t> owners_;
+};
+
+/// Adds up what happens between moments.
+class SightSum {
+  public:
+    void add(const Sample& sample);
+    RunSight finish(const RunReader& reader);
+
+  private:
+    /// Somebody at the last moment.
+    struct Last {
+        bool is_there = false;
+        double time = 0;
+        Point2 place;
+        std::size_t count = 0;
+        std::optional<SightGap> gap;  // that goes on
+        bool was_seen = false;        // ever
+        bool has_jumped = false;      // since its way was drawn
+        std::size_t way = 0;          // index of its last one
+    };
+
+    void lookAt(std::size_t who, double time, Point2 place, std::size_t count, double fastest);
+    void addTo(RunSightMetrics& metrics, std::size_t count, double time, double way);
+    void closeGap(std::size_t who, double time, Point2 place);
+    void draw(std::size_t who, Point2 place, std::size_t count);
+
+    RunSight sight_;
+    std::vector<Last> last_;
+    bool is_first_ = true;
+};
+
+void SightSum::addTo(RunSightMetrics& metrics, std::size_t count, double time, double way) {
+    for (auto* shares : {&metrics.time_shares, &metrics.way_shares})
+        if (shares->size() <= count) shares->resize(count + 1);
+    metrics.time_shares[count] += time;
+    metrics.way_shares[count] += way;
+    metrics.duration += time;
+    metrics.length += way;
+}
+
+void SightSum::closeGap(std::size_t who, double time, Point2 place) {
+    Last& last = last_[who];
+    if (!last.gap) return;
+    last.gap->end = time;
+    last.gap->to = place;
+    const double duration = time - last.gap->begin;
+    if (last.was_seen) {
+        ++sight_.members[who].losses;
+        sight_.losses.push_back({who, last.gap->begin, duration, last.gap->from});
+    }
+    for (RunSightMetrics* metrics : {&sight_.members[who], &sight_.all}) {
+        const auto& longest = metrics->longest_gap;
+        if (duration > 0 && (!longest || duration > longest->end - longest->begin))
+            metrics->longest_gap = last.gap;
+    }
+    last.gap.reset();
+}
+
+void SightSum::draw(std::size_t who, Point2 place, std::size_t count) {
+    Last& last = last_[who];
+    const bool has_jumped = std::exchange(last.has_jumped, false);
+    const bool goes_on = last.is_there && !has_jumped && sight_.ways[last.way].sensors == count;
+    if (goes_on) {
+        std::vector<Point2>& points = sight_.ways[last.way].points;
+        if (distance(points.back(), place) >= kThinning) points.push_back(place);
+        return;
+    }
+    if (last.is_there && !has_jumped) sight_.ways[last.way].points.push_back(place);
+    last.way = sight_.ways.size();
+    sight_.ways.push_back({who, count, {place}});
+}
+
+void SightSum::lookAt(std::size_t who, double time, Point2 place, std::size_t count,
+                      double fastest) {
+    Last& last = last_[who];
+    if (last.is_there) {
+        const double passed = time - last.time;
+        double way = distance(last.place, place);
+        if (way > fastest * passed + kThinning) {  // put there by a client: nobody went that way
+            way = 0;
+            last.has_jumped = true;
+        }
+        addTo(sight_.members[who], last.count, passed, way);
+        addTo(sight_.all, last.count, passed, way);
+    }
+    if (count > 0) {
+        closeGap(who, time, place);
+        last.was_seen = true;
+    } else if (!last.gap) {
+        last.gap = SightGap{time, time, place, place};
+    }
+    draw(who, place, count);
+    last.is_there = true;
+    last.time = time;
+    last.place = place;
+    last.count = count;
+}
+
+void SightSum::add(const Sample& sample) {
+    if (std::exchange(is_first_, false)) sight_.begin = sample.time;
+    sight_.end = sample.time;
+    for (std::size_t i = 0; i < sample.states.size(); ++i) {
+        const RunState& state = sample.states[i];
+        if (state.who >= last_.size()) {
+            last_.resize(state.who + 1);
+            sight_.members.resize(state.who + 1);
+        }
+        lookAt(state.who, sample.time, state.pose.position, sample.counts[i], sample.fastest[i]);
+    }
+}
+
+void turnIntoShares(RunSightMetrics& metrics) {
+    for (double& share : metrics.time_shares)
+        share = metrics.duration > 0 ? share / metrics.duration : 0;
+    if (!(metrics.length > 0)) metrics.way_shares.clear();
+    for (double& share : metrics.way_shares) share /= metrics.length;
+}
+
+RunSight SightSum::finish(const RunReader& reader) {
+    for (std::size_t who = 0; who < last_.size(); ++who) {
+        closeGap(who, last_[who].time, last_[who].place);
+        RunSightMetrics& metrics = sight_.members[who];
+        metrics.id = reader.who()[who].id;
+        metrics.is_person = reader.who()[who].is_person;
+        sight_.all.losses += metrics.losses;
+        turnIntoShares(metrics);
+    }
+    turnIntoShares(sight_.all);
+    std::stable_sort(
+        sight_.losses.begin(), sight_.losses.end(),
+        [](const SightLoss& a, const SightLoss& b) { return a.duration > b.duration; });
+    return std::move(sight_);
+}
+
+/// Looks at some samples at once, then adds them in order.
+void flush(const Watch& watch, Members& members, std::vector<Sample>& samples, SightSum& sum) {
+    // Known before threads ask.
+    for (Sample& sample : samples)
+        for (const RunState& state : sample.states)
+            sample.fastest.push_back(members.fastest(state));
+    tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+        Sample& sample = samples[i];
+        const WatchMoment moment{.robots = sample.robots, .people = sample.people};
+        for (const RunState& state : sample.states)
+            sample.counts.push_back(
+                watch.seenBy({state.pose.position, members.ownerOf(state.who)}, moment));
+    });
+    for (const Sample& sample : samples) sum.add(sample);
+    samples.clear();
+}
+
+}  // namespace
+
+RunSight measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
+                    RunChanges* changes) {
+    if (!reader.next())
+        throw FormatError({reader.name(), 0, 0, "holds no moment of a run: nobody moved in it"});
+    // As changes leave it.
+    std::optional<Scene> changed;
+    std::optional<Watch> watch(std::in_place, start, options);
+    std::optional<Members> members(std::in_place, start, reader);
+    if (reader.time() == 0 || changes == nullptr || changes->empty()) members->check();
+    SightSum sum;
+    constexpr std::size_t kTogether = 256;
+    std::vector<Sample> samples;
+    std::optional<Sample> passed;  // the last moment, if it was not looked at
+    double next = reader.time();
+    const auto take = [&](Sample sample) {
+        samples.push_back(std::move(sample));
+        if (samples.size() == kTogether) flush(*watch, *members, samples, sum);
+    };
+    const auto make_changes = [&] {
+        if (changes == nullptr) return;
+        const auto unknown = [](const std::string&) { return std::optional<Pose2>(); };
+        const Scene* now = changed ? &*changed : &start;
+        while (auto step = changes->next(reader.time(), *now, unknown)) {
+            flush(*watch, *members, samples, sum);
+            members.reset();
+            watch.reset();
+            changed.emplace(std::move(step->scene));
+            now = &*changed;
+            watch.emplace(*now, options);
+            members.emplace(*now, reader);
+        }
+    };
+    do {
+        make_changes();
+        Sample sample{
+            reader.time(), {reader.states().begin(), reader.states().end()}, {}, {}, {}, {}};
+        for (const RunState& state : sample.states) members->move(state);
+        if (watch->rides()) {
+            sample.robots = members->robots;
+            sample.people = members->people;
+        }
+        passed.reset();
+        if (sample.time < next - kTimeTolerance) {
+            passed = std::move(sample);
+            continue;
+        }
+        next = sample.time + kSampling;
+        take(std::move(sample));
+    } while (reader.next());
+    if (passed) take(std::move(*passed));
+    flush(*watch, *members, samples, sum);
+    return sum.finish(reader);
+}
+
+}  // namespace ispace

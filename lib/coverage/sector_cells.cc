@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coverage/sector_cells.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+
+#include "scene/sensor/field_of_view.h"
+
+namespace ispace {
+
+namespace {
+
+/// How much farther than its range a place looks for the sake of cells: those at the greatest range
+/// are then not on the outline of what is seen.
+constexpr double kBeyondRange = 1 + 1e-6;
+
+/// Calls visit(Point2) for the corners of a polygon that holds what is seen and, beyond the
+/// greatest range, nothing that is nearer: arcs become the tangents at their ends. Neighbours may
+/// be the same.
+template <typename Visit>
+void forEachCorner(const VisibleRegion& region, Visit visit) {
+    for (const SightEdge& edge : region.edges) {
+        visit(edge.from);
+        if (edge.line == SightEdge::kArc) {
+            const Vec2 a = edge.from - region.viewpoint, b = edge.to - region.viewpoint;
+            const double r2 = region.max_range * region.max_range;
+            // Where the tangents meet: on a + b, at t with t (a + b) a = r2.
+            visit(region.viewpoint + (r2 / (r2 + dot(a, b))) * (a + b));
+        }
+        visit(edge.to);
+    }
+}
+
+/// A direction at which one part ends and the next begins, and the line that it makes: a cell's
+/// centre is at or beyond it if cross(unit, offset) >= 0, in the half (above, below) in which the
+/// limit is.
+struct Limit {
+    Angle angle;
+    Vec2 unit;
+    double cotangent = 0;
+
+    explicit Limit(Angle of) : angle(of), unit(unitVector(of)), cotangent(unit.x / unit.y) {}
+    [[nodiscard]] bool isPassed(Vec2 offset) const { return cross(unit, offset) >= 0; }
+};
+
+/// Limits first, first + 1, ..., end - 1, counter-clockwise.
+struct LimitRange {
+    std::size_t first = 0, end = 0;
+};
+
+/// Rasterises what places see, one after another, in the same memory.
+class SectorRaster {
+  public:
+    void run(const Grid& grid, const Level& level, Point2 place, double max_range,
+             std::span<const Angle> limits, CellParts& parts);
+
+  private:
+    void setLimits(std::span<const Angle> limits);
+    void rasterise(const Level& level);
+    void cutAtRange();
+    void takeCentre();
+    void cutAt(std::size_t limit, int begin, int end);
+    void addPart(std::size_t part);
+    void addLevelRow(std::size_t part, int row);
+    void addRow(int row, int begin, int end);
+
+    [[nodiscard]] std::uint64_t* wordsOf(int row) {
+        return words_.data() + static_cast<std::size_t>(row) * scan_.wordsPerRow();
+    }
+    [[nodiscard]] std::uint32_t cellAt(int row, int column) const {
+        return static_cast<std::uint32_t>(
+            grid_.cell(scan_.firstColumn() + column, scan_.firstRow() + row));
+    }
+    /// Of a cell's centre from the place.
+    [[nodiscard]] Vec2 offsetOf(int row, int column) const {
+        return {x_axis_.center(scan_.firstColumn() + column) - place_.x,
+                dy_[static_cast<std::size_t>(row)]};
+    }
+    /// Where a coordinate is among the columns of the window.
+    [[nodiscard]] double columnAt(double x) const {
+        return x_axis_.position(x) - scan_.firstColumn();
+    }
+    /// The first column beyond a position, from 0 to the number of columns.
+    [[nodiscard]] int firstBeyond(double position) const {
+        return static_cast<int>(std::max(-1.0, std::min(position, scan_.columns() - 1.0)) + 1);
+    }
+    /// Below the place the first column that has passed a limit, above it the first that has not.
+    [[nodiscard]] int cutOf(std::size_t limit, int row) const {
+        return cuts_[limit * dy_.size() + static_cast<std::size_t>(row)];
+    }
+    /// Calls visit(column) for the cells of a row in columns [begin, end); it may clear them.
+    template <typename Visit>
+    void forEachCell(int row, int begin, int end, Visit visit);
+    void clear(int row, int column) {
+        wordsOf(row)[column / 64] &= ~(std::uint64_t{1} << (static_cast<unsigned>(column) % 64));
+    }
+
+    Grid grid_;
+    GridAxis x_axis_;
+    Point2 place_;
+    double max_range_ = 0, slack_ = 0;
+    CellParts* parts_ = nullptr;
+    std::size_t part_begin_ = 0;  // its first run
+
+    std::vector<Limit> limits_;
+    LimitRange below_, above_;  // those of directions below 0, and between 0 and 180 degrees
+    VisibleRegion region_;
+    Scanline scan_;
+    std::vector<std::uint64_t> words_;     // what is seen
+    std::vector<double> dy_;               // of the rows' middles from the place
+    int level_begin_ = 0, level_end_ = 0;  // rows level with the place: one or none
+    std::vector<int> cuts_;                // by limit, by row
+    std::vector<char> is_empty_;           // parts between limits that cut all rows alike
+    std::optional<std::uint32_t> centre_;
+};
+
+/// The bits of a row's word i that stand for columns [begin, end).
+std::uint64_t bitsOf(int i, int begin, int end) {
+    const int low = std::max(begin - 64 * i, 0), high = std::min(end - 64 * i, 64);
+    if (low >= high) return 0;
+    return (~std::uint64_t{0} << low) & (~std::uint64_t{0} >> (64 - high));
+}
+
+template <typename Visit>
+void SectorRaster::forEachCell(int row, int begin, int end, Visit visit) {
+    for (int i = begin / 64; 64 * i < end; ++i)
+        for (std::uint64_t bits = wordsOf(row)[i] & bitsOf(i, begin, end); bits != 0;
+             bits &= bits - 1)
+            visit(64 * i + std::countr_zero(bits));
+}
+
+void SectorRaster::run(const Grid& grid, const Level& level, Point2 place, double max_range,
+                       std::span<const Angle> limits, CellParts& parts) {
+    grid_ = grid;
+    x_axis_ = GridAxis::columnsOf(grid);
+    place_ = place;
+    max_range_ = max_range;
+    parts_ = &parts;
+    parts.runs.clear();
+    parts.first.assign(1, 0);
+    setLimits(limits);
+    rasterise(level);
+    cutAtRange();
+    takeCentre();
+    cuts_.resize(limits_.size() * dy_.size());
+    is_empty_.assign(limits_.size(), 0);
+    for (std::size_t i = below_.first; i < below_.end; ++i) cutAt(i, 0, level_begin_);
+    for (std::size_t i = above_.first; i < above_.end; ++i) cutAt(i, level_end_, scan_.rows());
+    for (std::size_t part = 0; part < limits_.size(); ++part) {
+        if (is_empty_[part] == 0) addPart(part);
+        parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+    }
+    part_begin_ = parts.runs.size();
+    if (limits_.empty())
+        for (int row = 0; row < scan_.rows(); ++row) addRow(row, 0, scan_.columns());
+    else if (centre_)
+        parts.runs.push_back({*centre_, *centre_ + 1});
+    parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+}
+
+void SectorRaster::setLimits(std::span<const Angle> limits) {
+    const auto is_same = [](Angle angle, const Limit& limit) { return angle == limit.angle; };
+    if (std::equal(limits.begin(), limits.end(), limits_.begin(), limits_.end(), is_same)) return;
+    assert(std::is_sorted(limits.begin(), limits.end()));
+    limits_.clear();
+    for (const Angle limit : limits) limits_.emplace_back(limit);
+    const auto first_from = [&](Angle angle) {
+        return static_cast<std::size_t>(std::lower_bound(limits.begin(), limits.end(), angle) -
+                                        limits.begin());
+    };
+    const std::size_t zero = first_from(Angle());
+    below_ = {0, zero};
+    above_ = {zero + (zero < limits.size() && limits[zero] == Angle() ? 1 : 0),
+              first_from(Angle::degrees(180))};
+}
+
+/// Cells strictly inside the outline of what is seen, within a box about the range.
+void SectorRaster::rasterise(const Level& level) {
+    level.query(place_, kBeyondRange * max_range_, region_);
+    Box2 box;
+    forEachCorner(region_, [&box](Point2 corner) { box.add(corner); });
+    const double reach = kBeyondRange * max_range_;
+    box.low = {std::max(box.low.x, place_.x - reach), std::max(box.low.y, place_.y - reach)};
+    box.high = {std::min(box.high.x, place_.x + reach), std::min(box.high.y, place_.y + reach)};
+    scan_.reset(grid_, box);
+    slack_ = x_axis_.slack(std::abs(place_.x));
+    bool has_last = false;
+    Point2 last;
+    const auto go_to = [&](Point2 corner) {
+        if (has_last && last != corner) scan_.add({last, corner});
+        last = corner;
+        has_last = true;
+    };
+    forEachCorner(region_, go_to);
+    if (!region_.edges.empty()) go_to(region_.edges.front().from);
+    scan_.takeInside(words_);
+    for (const Polygon& solid : level.solidsTouching(place_)) {
+        Scanline closed(grid_, box);
+        forEachEdge(solid, [&closed](const Segment2& edge) { closed.add(edge); });
+        closed.removeClosed(words_);
+    }
+    dy_.resize(static_cast<std::size_t>(scan_.rows()));
+    for (std::size_t row = 0; row < dy_.size(); ++row)
+        dy_[row] = grid_.rowCenter(scan_.firstRow() + static_cast<int>(row)) - place_.y;
+}
+
+void SectorRaster::cutAtRange() {
+    constexpr double kUnsure = 1e-6;  // ranges are compared as float32
+    const auto square = [](double x) { return x * x; };
+    const double outer2 = square((1 + kUnsure) * max_range_);
+    const double inner2 = square((1 - kUnsure) * max_range_);
+    const double middle = columnAt(place_.x), per_metre = x_axis_.perMetre();
+    const int columns = scan_.columns();
+    for (int row = 0; row < scan_.rows(); ++row) {
+        const double dy2 = square(dy_[static_cast<std::size_t>(row)]);
+        const double outer = per_metre * std::sqrt(std::max(0.0, outer2 - dy2));
+        const int begin = firstBeyond(middle - outer - slack_);
+        const int end = firstBeyond(middle + outer + slack_);
+        std::uint64_t* words = wordsOf(row);
+        for (int i = 0; 64 * i < columns; ++i)
+            words[i] &= dy2 <= outer2 ? bitsOf(i, begin, end) : 0;
+        int sure_begin = end, sure_end = end;
+        if (dy2 < inner2) {
+            const double inner = per_metre * std::sqrt(inner2 - dy2);
+            sure_begin = firstBeyond(middle - inner + slack_);
+            sure_end = std::max(sure_begin, firstBeyond(middle + inner - slack_));
+        }
+        const auto settle = [&](int column) {
+            if (!withinRange(length(offsetOf(row, column)), max_range_)) clear(row, column);
+        };
+        if (begin < sure_begin) forEachCell(row, begin, sure_begin, settle);
+        if (sure_end < end) forEachCell(row, sure_end, end, settle);
+    }
+}
+
+/// Finds the row level with the place, and the cell whose centre is the place.
+void SectorRaster::takeCentre() {
+    const auto [begin, end] = std::equal_range(dy_.begin(), dy_.end(), 0.0);
+    level_begin_ = static_cast<int>(begin - dy_.begin());
+    level_end_ = static_cast<int>(end - dy_.begin());
+    centre_.reset();
+    const double at = columnAt(place_.x);
+    for (int row = level_begin_; row < level_end_ && !limits_.empty(); ++row)
+        forEachCell(row, firstBeyond(at - slack_ - 1), firstBeyond(at + slack_ + 1),
+                    [&](int column) {
+                        if (offsetOf(row, column).x != 0) return;
+                        clear(row, column);
+                        centre_ = cellAt(row, column);
+                    });
+}
+
+/// Finds where a limit crosses rows [begin, end), none of them level with the place: by its
+/// cotangent, and by the limit's own rule where that is too near to a centre to be sure.
+void SectorRaster::cutAt(std::size_t limit, int begin, int end) {
+    constexpr double kUnsure = 1e-6;  // columns: far more than what rounds
+    const Limit& at = limits_[limit];
+    const bool is_below = at.unit.y < 0;
+    const double slope = x_axis_.perMetre() * at.cotangent, middle = columnAt(place_.x);
+    const double slack = slack_ + kUnsure, most = scan_.columns() - 0.5;
+    int* cuts = cuts_.data() + limit * dy_.size();
+    const double* dy = dy_.data();
+    bool is_unsure = false;
+    for (int row = begin; row < end; ++row) {
+        const double next = std::max(-0.5, std::min(middle + dy[row] * slope, most)) + 1;
+        cuts[row] = static_cast<int>(next);
+        const double rest = next - cuts[row];
+        is_unsure |= !(rest > slack && rest < 1 - slack);
+    }
+    for (int row = begin; is_unsure && row < end; ++row) {
+        const double position = middle + dy[row] * slope;
+        const int last = firstBeyond(position + slack);
+        cuts[row] = firstBeyond(position - slack);
+        while (cuts[row] < last && at.isPassed(offsetOf(row, cuts[row])) != is_below) ++cuts[row];
+    }
+    // Limits that rounding makes one line stay in order.
+    if (limit == (is_below ? below_ : above_).first) return;
+    const int* before = cuts - dy_.size();
+    int different = 0;
+    for (int row = begin; row < end; ++row) {
+        cuts[row] = is_below ? std::max(cuts[row], before[row]) : std::min(cuts[row], before[row]);
+        different |= cuts[row] ^ before[row];
+    }
+    if (different == 0) is_empty_[limit - 1] = 1;
+}
+
+/// Below the place columns rise counter-clockwise, above it they fall.
+void SectorRaster::addPart(std::size_t part) {
+    part_begin_ = parts_->runs.size();
+    const std::size_t count = limits_.size();
+    // What lies before the first limit of a half belongs to the part of the limit before it.
+    const auto part_before = [count](std::size_t limit) {
+        return (limit == 0 ? count : limit) - 1;
+    };
+    const auto add_half = [&](const LimitRange& half, bool is_below, int row) {
+        const auto cut_of = [&](std::size_t limit, int otherwise) {
+            return limit < half.end ? cutOf(limit, row) : otherwise;
+        };
+        const int all = scan_.columns();
+        const bool is_after = half.first <= part && part < half.end;
+        const bool is_before = part == part_before(half.first);
+        if (is_below) {
+            if (is_before) addRow(row, 0, cut_of(half.first, all));
+            if (is_after) addRow(row, cutOf(part, row), cut_of(part + 1, all));
+        } else {
+            if (is_after) addRow(row, cut_of(part + 1, 0), cutOf(part, row));
+            if (is_before) addRow(row, cut_of(half.first, 0), all);
+        }
+    };
+    const auto concerns = [&](const LimitRange& half) {
+        return (half.first <= part && part < half.end) || part == part_before(half.first);
+    };
+    for (int row = 0; row < level_begin_ && concerns(below_); ++row) add_half(below_, true, row);
+    for (int row = level_begin_; row < level_end_; ++row) addLevelRow(part, row);
+    for (int row = level_end_; row < scan_.rows() && concerns(above_); ++row)
+        add_half(above_, false, row);
+}
+
+/// All cells on a side of the place lie in the very same direction: 180 or 0 degrees.
+void SectorRaster::addLevelRow(std::size_t part, int row) {
+    const int middle =
+        std::clamp(x_axis_.firstNotBelow(place_.x) - scan_.firstColumn(), 0, scan_.columns());
+    const std::size_t count = limits_.size();
+    if (part == count - 1) addRow(row, 0, middle);
+    if (part == (above_.first == 0 ? count : above_.first) - 1)
+        addRow(row, middle, scan_.columns());
+}
+
+void SectorRaster::addRow(int row, int begin, int end) {
+    if (begin >= end) return;
+    std::vector<CellRun>& runs = parts_->runs;
+    const std::uint64_t* words = wordsOf(row);
+    for (int i = begin / 64; 64 * i < end; ++i) {
+        std::uint64_t bits = words[i] & bitsOf(i, begin, end);
+        while (bits != 0) {
+            const int first = std::countr_zero(bits);
+            const int count = std::countr_one(bits >> first);
+            const std::uint32_t cell = cellAt(row, 64 * i + first);
+            const std::uint32_t end_cell = cell + static_cast<std::uint32_t>(count);
+            if (runs.size() > part_begin_ && runs.back().end == cell)
+                runs.back().end = end_cell;
+            else
+                runs.push_back({cell, end_cell});
+            bits = first + count == 64 ? 0 : bits & (~std::uint64_t{0} << (first + count));
+        }
+    }
+}
+
+}  // namespace
+
+std::optional<Sector> sectorOf(const Laser& laser, Angle heading) {
+    const Angle slack = Angle::degrees(1e-9), span = laser.sweptSpan() + 2 * slack;
+    if (span >= Angle::degrees(360)) return std::nullopt;
+    const Angle first = heading + laser.first - slack;
+    return Sector{wrapped(first), wrapped(first + span)};
+}
+
+void cellsBySector(const Grid& grid, const Level& level, Point2 place, double max_range,
+                   std::span<const Angle> limits, CellParts& parts) {
+    thread_local SectorRaster raster;  // for its memory
+    raster.run(grid, level, place, max_range, limits, parts);
+}
+
+}  // namespace ispace

@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coverage/shadow_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "env/mesh.h"
+#include "geom/curve.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr int kSides = 5;  // of the box, and the plane
+
+using Edge = ShadowEdge;
+
+bool lessEdge(const Edge& a, const Edge& b) {
+    if (a.from != b.from) return lexLess(a.from, b.from);
+    return lexLess(a.to, b.to);
+}
+
+/// Drops as many edges as run the other way.
+std::vector<Edge> uncancelled(const std::vector<Edge>& edges) {
+    // Each edge by its lower end, with the way it runs.
+    struct Way {
+        Edge edge;
+        int sign;
+    };
+    std::vector<Way> ways;
+    ways.reserve(edges.size());
+    for (const Edge& edge : edges) {
+        const bool is_up = lexLess(edge.from, edge.to);
+        ways.push_back({is_up ? edge : Edge{edge.to, edge.from}, is_up ? 1 : -1});
+    }
+    std::sort(ways.begin(), ways.end(),
+              [](const Way& a, const Way& b) { return lessEdge(a.edge, b.edge); });
+    std::vector<Edge> left;
+    for (std::size_t i = 0; i < ways.size();) {
+        const Edge edge = ways[i].edge;
+        int sum = 0;
+        for (; i < ways.size() && ways[i].edge.from == edge.from && ways[i].edge.to == edge.to; ++i)
+            sum += ways[i].sign;
+        for (; sum > 0; --sum) left.push_back(edge);
+        for (; sum < 0; ++sum) left.push_back({edge.to, edge.from});
+    }
+    std::sort(left.begin(), left.end(), lessEdge);
+    return left;
+}
+
+/// Closed curves of edges of which as many arrive at each point as leave it. Sorted by lessEdge.
+std::vector<Curve> chained(const std::vector<Edge>& edges) {
+    const auto leaving = [&edges](Point2 p) {
+        const auto found = std::lower_bound(
+            edges.begin(), edges.end(), p,
+            [](const Edge& edge, Point2 place) { return lexLess(edge.from, place); });
+        return static_cast<std::size_t>(found - edges.begin());
+    };
+    // Of the edges that leave a point the next to be taken, kept where the first of them is.
+    std::vector<std::size_t> next(edges.size());
+    for (std::size_t i = 0; i < edges.size(); ++i) next[i] = i;
+    const auto is_left = [&](std::size_t first) {
+        return first < edges.size() && next[first] < edges.size() &&
+               edges[next[first]].from == edges[first].from;
+    };
+    std::vector<Curve> curves;
+    for (std::size_t home = 0; home < edges.size(); ++home) {
+        while (is_left(home)) {
+            Curve curve;
+            for (std::size_t at = home; is_left(at); at = leaving(curve.back().to)) {
+                const Edge& edge = edges[next[at]++];
+                curve.push_back({edge.from, edge.to});
+                if (edge.to == edges[home].from) break;
+            }
+            curves.push_back(std::move(curve));
+        }
+    }
+    return curves;
+}
+
+double distance(Point3 p, const std::array<Point3, 3>& triangle) {
+    const Vec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+    bool is_over = true;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Point3 from = triangle[i];
+        const Vec3 side = triangle[(i + 1) % 3] - from, way = p - from;
+        if (dot(cross(normal, side), way) < 0) is_over = false;
+        const double squared = dot(side, side);
+        const double share = squared > 0 ? std::clamp(dot(way, side) / squared, 0.0, 1.0) : 0;
+        nearest = std::min(nearest, length(p - (from + share * side)));
+    }
+    if (!is_over || length(normal) == 0) return nearest;
+    return std::fabs(dot(p - triangle[0], normal)) / length(normal);
+}
+
+std::array<Point3, 3> cornersOf(const ShadowBody& body, std::size_t triangle) {
+    const auto& [i, j, k] = body.triangles[triangle];
+    return {body.vertices[i], body.vertices[j], body.vertices[k]};
+}
+
+void add(Mesh mesh, ShadowBody::Kind kind, std::vector<ShadowBody>& bodies) {
+    ShadowBody body{kind, std::move(mesh.vertices), std::move(mesh.triangles), {}, 0, 0};
+    body.bottom = std::numeric_limits<double>::infinity();
+    body.top = -body.bottom;
+    for (const Point3& p : body.vertices) {
+        body.plan.add(p.onFloor());
+        body.bottom = std::min(body.bottom, p.z);
+        body.top = std::max(body.top, p.z);
+    }
+    bodies.push_back(std::move(body));
+}
+
+void addAll(const Body& body, ShadowBody::Kind kind, std::vector<ShadowBody>& bodies) {
+    for (Mesh& mesh : meshesOf(body, Surfaces::Solid)) add(std::move(mesh), kind, bodies);
+}
+
+void addSheet(const Sheet& sheet, std::vector<ShadowBody>& bodies) {
+    addAll({{}, {sheet}, {}, {}}, ShadowBody::Kind::Flat, bodies);
+}
+
+void addPlate(const Plate& plate, std::vector<ShadowBody>& bodies) {
+    addAll({{}, {}, {plate}, {}}, ShadowBody::Kind::Flat, bodies);
+}
+
+}  // namespace
+
+void addPrism(const Prism& prism, std::vector<ShadowBody>& bodies) {
+    if (isConvex(prism.footprint)) {
+        addAll({{prism}, {}, {}, {}}, ShadowBody::Kind::Convex, bodies);
+        if (prism.curve) bodies.back().curve = *prism.curve;
+        return;
+    }
+    forEachEdge(prism.footprint, [&](const Segment2& side) {
+        addSheet({side, prism.bottom, prism.top}, bodies);
+    });
+    for (const double z : {prism.bottom, prism.top}) addPlate({prism.footprint, z}, bodies);
+}
+
+std::vector<ShadowBody> clearBodiesOf(const Environment& environment) {
+    std::vector<ShadowBody> bodies;
+    for (const Element& element : environment.elements())
+        for (const Sheet& sheet : element.body.sheets)
+            if (!isAmong(Surfaces::Opaque, sheet)) addSheet(sheet, bodies);
+    return bodies;
+}
+
+const ShadowBody& seenFrom(Point3 place, const ShadowBody& body, ShadowBody& memory) {
+    if (!body.curve) return body;
+    std::vector<ShadowBody> made;
+    addAll({{{outlineFrom(*body.curve, place.onFloor()), body.bottom, body.top}}, {}, {}, {}},
+           ShadowBody::Kind::Convex, made);
+    memory = std::move(made.front());
+    return memory;
+}
+
+std::vector<ShadowBody> opaqueBodiesOf(const Environment& environment) {
+    std::vector<ShadowBody> bodies;
+    for (const Element& element : environment.elements()) {
+        const Body& body = element.body;
+        for (const Prism& prism : body.prisms) addPrism(prism, bodies);
+        for (const Sheet& sheet : body.sheets)
+            if (isAmong(Surfaces::Opaque, sheet)) addSheet(sheet, bodies);
+        for (const Plate& plate : body.plates) addPlate(plate, bodies);
+        addAll({{}, {}, {}, body.meshes}, ShadowBody::Kind::Loose, bodies);
+    }
+    add(environment.floor(), ShadowBody::Kind::Flat, bodies);
+    return bodies;
+}
+
+Shadows::Shadows(std::span<const ShadowBody> bodies, Point3 sensor, double height, const Box2& box)
+    : sensor_(sensor), drop_(height - sensor.z), box_(box) {
+    for (const ShadowBody& body : bodies) {
+        if (!mayTouch(body)) continue;
+        for (std::size_t i = 0; i < body.triangles.size(); ++i) {
+            const std::array<Point3, 3> triangle = cornersOf(body, i);
+            if (distance(sensor_, triangle) > kRayEpsilon) continue;
+            const Vec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+            const double size = length(normal);
+            if (size > 0) touched_.push_back(1 / size * normal);
+        }
+    }
+}
+
+bool Shadows::mayTouch(const ShadowBody& body) const {
+    return sensor_.x >= body.plan.low.x - kRayEpsilon &&
+           sensor_.x <= body.plan.high.x + kRayEpsilon &&
+           sensor_.y >= body.plan.low.y - kRayEpsilon &&
+           sensor_.y <= body.plan.high.y + kRayEpsilon && sensor_.z >= body.bottom - kRayEpsilon &&
+           sensor_.z <= body.top + kRayEpsilon;
+}
+
+bool Shadows::isPassed(const std::array<Point3, 3>& triangle) const {
+    constexpr double kParallel = 1 - 1e-6;  // cosine
+    if (touched_.empty()) return false;
+    const Vec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+    const double size = length(normal);
+    if (std::fabs(dot(sensor_ - triangle[0], normal)) > kRayEpsilon * size) return false;
+    return std::any_of(touched_.begin(), touched_.end(), [&](Vec3 other) {
+        return std::fabs(dot(other, normal)) >= kParallel * size;
+    });
+}
+
+Shadows::Place Shadows::placeOf(Point3 p) const {
+    const Vec3 way = p - sensor_;
+    return {way.x, way.y, way.z / drop_};
+}
+
+/// Not below 0 on the inner side.
+double Shadows::sideOf(const Place& p, int plane) const {
+    switch (plane) {
+        case 0:
+            return p.x - box_.low.x * p.share;
+        case 1:
+            return box_.high.x * p.share - p.x;
+        case 2:
+            return p.y - box_.low.y * p.share;
+        case 3:
+            return box_.high.y * p.share - p.y;
+        default:
+            return 1 - p.share;
+    }
+}
+
+/// True if nothing of the triangle falls into the box, or lies farther from the plane than contact.
+bool Shadows::isClear(const Corners& corners) const {
+    const auto& [a, b, c] = corners;
+    const double touching = 1 - kRayEpsilon / std::fabs(drop_);
+    if (std::min({a.share, b.share, c.share}) >= touching) return true;
+    for (int plane = 0; plane < kSides; ++plane)
+        if (sideOf(a, plane) < 0 && sideOf(b, plane) < 0 && sideOf(c, plane) < 0) return true;
+    return false;
+}
+
+/// Triangles with a common edge cut it at the very same place.
+void Shadows::clip(std::vector<Place>& polygon, int plane) const {
+    std::vector<Place> kept;
+    kept.reserve(polygon.size() + 2);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Place& p = polygon[i];
+        const Place& q = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+        const double fp = sideOf(p, plane), fq = sideOf(q, plane);
+        if (fp >= 0) kept.push_back(p);
+        if (!((fp > 0 && fq < 0) || (fp < 0 && fq > 0))) continue;
+        const bool in_order = p < q;
+        const Place& a = in_order ? p : q;
+        const Place& b = in_order ? q : p;
+        const double fa = in_order ? fp : fq, fb = in_order ? fq : fp;
+        const double t = fa / (fa - fb);
+        kept.push_back(
+            {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.share + t * (b.share - a.share)});
+    }
+    polygon = std::move(kept);
+}
+
+Point2 Shadows::shadowOf(const Place& p) const {
+    // Rounding may carry it out of the box, far where the share is small.
+    return {std::clamp(p.x / p.share, box_.low.x, box_.high.x),
+            std::clamp(p.y / p.share, box_.low.y, box_.high.y)};
+}
+
+/// `turn` is below 0 if the corners turn right as their shadow does.
+void Shadows::addShadow(const Corners& corners, double turn, std::vector<Edge>& edges) const {
+    std::vector<Place> polygon(corners.begin(), corners.end());
+    if (turn < 0) std::swap(polygon[1], polygon[2]);
+    for (int plane = 0; plane < kSides; ++plane) clip(polygon, plane);
+    if (polygon.size() < 3 ||
+        std::any_of(polygon.begin(), polygon.end(), [](const Place& p) { return p.share <= 0; }))
+        return;
+    Point2 from = shadowOf(polygon.back());
+    for (const Place& p : polygon) {
+        const Point2 to = shadowOf(p);
+        if (from != to) edges.push_back({from, to});
+        from = to;
+    }
+}
+
+bool Shadows::isOutOfTheWay(const ShadowBody& body) const {
+    return body.top <= std::min(sensor_.z, sensor_.z + drop_) ||
+           body.bottom >= std::max(sensor_.z, sensor_.z + drop_) ||
+           // Shadows fall away from the foot.
+           body.plan.low.x > sensor_.x + std::max(0.0, box_.high.x) ||
+           body.plan.high.x < sensor_.x + std::min(0.0, box_.low.x) ||
+           body.plan.low.y > sensor_.y + std::max(0.0, box_.high.y) ||
+           body.plan.high.y < sensor_.y + std::min(0.0, box_.low.y);
+}
+
+std::vector<Layer> Shadows::of(const ShadowBody& standing) const {
+    if (isOutOfTheWay(standing)) return {};
+    ShadowBody memory;
+    // What is in contact is known by its own triangles.
+    const ShadowBody& body = mayTouch(standing) ? standing : seenFrom(sensor_, standing, memory);
+    const bool is_convex = body.kind == ShadowBody::Kind::Convex;
+    // From outside, what is behind a solid throws no shadow that those in front do not throw.
+    const bool in_front_only = is_convex && !mayTouch(body);
+    std::vector<Layer> layers;
+    const auto finish = [&layers](std::vector<Edge>& edges) {
+        std::vector<Curve> curves = chained(uncancelled(edges));
+        if (!curves.empty()) layers.push_back({std::move(curves), true, 0, 0});
+        edges.clear();
+    };
+    std::vector<Edge> before, behind;
+    for (std::size_t i = 0; i < body.triangles.size(); ++i) {
+        const std::array<Point3, 3> triangle = cornersOf(body, i);
+        const Corners corners{placeOf(triangle[0]), placeOf(triangle[1]), placeOf(triangle[2])};
+        if (isClear(corners)) continue;
+        const auto& [a, b, c] = corners;
+        const double turn = a.x * (b.y * c.share - c.y * b.share) -
+                            a.y * (b.x * c.share - c.x * b.share) +
+                            a.share * (b.x * c.y - c.x * b.y);
+        // Seen from below, left and right change sides.
+        const bool is_behind = is_convex && (turn > 0) != (drop_ < 0);
+        if (turn == 0 || (in_front_only && is_behind) || isPassed(triangle)) continue;
+        addShadow(corners, turn, is_behind ? behind : before);
+        if (body.kind == ShadowBody::Kind::Loose) finish(before);
+    }
+    finish(before);
+    finish(behind);
+    return layers;
+}
+
+namespace {
+
+/// Rays meet what is this near aside, in metres.
+constexpr double kAside = 1e-9;
+
+/// Where a triangle meets the plane z = 0. Closed: one that only touches it with a side does; one
+/// that lies in it is seen from its edge.
+std::optional<Segment2> cutOf(const std::vector<Vec3>& local,
+                              const std::array<std::uint32_t, 3>& triangle) {
+    std::array<Point2, 3> on;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3& p = local[triangle[i]];
+        if (p.z == 0) on[count++] = {p.x, p.y};
+        // From the same end for both triangles of a side.
+        const Vec3& a = local[std::min(triangle[i], triangle[(i + 1) % 3])];
+        const Vec3& b = local[std::max(triangle[i], triangle[(i + 1) % 3])];
+        if (!((a.z > 0 && b.z < 0) || (a.z < 0 && b.z > 0))) continue;
+        const double t = a.z / (a.z - b.z);
+        on[count++] = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+    }
+    if (count != 2) return std::nullopt;
+    return Segment2{on[0], on[1]};
+}
+
+}  // namespace
+
+std::vector<Segment2> cutsOf(std::span<const ShadowBody> bodies, const Frame3& plane,
+                             double max_range) {
+    std::vector<Segment2> cuts;
+    std::vector<Vec3> local;
+    ShadowBody memory;
+    for (const ShadowBody& standing : bodies) {
+        if (standing.plan.low.x > plane.origin.x + max_range ||
+            standing.plan.high.x < plane.origin.x - max_range ||
+            standing.plan.low.y > plane.origin.y + max_range ||
+            standing.plan.high.y < plane.origin.y - max_range)
+            continue;
+        const ShadowBody& body = seenFrom(plane.origin, standing, memory);
+        local.clear();
+        for (const Point3& p : body.vertices) {
+            Vec3 place = plane.toLocal(p);
+            if (std::fabs(place.z) <= kAside) place.z = 0;
+            local.push_back(place);
+        }
+        for (const auto& [i, j, k] : body.triangles) {
+            const std::optional<Segment2> cut = cutOf(local, {i, j, k});
+            if (cut && cut->a != cut->b) cuts.push_back(*cut);
+        }
+    }
+    return cuts;
+}
+
+}  // namespace ispace

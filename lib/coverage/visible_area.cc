@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coverage/visible_area.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "coverage/plane_cells.h"
+#include "coverage/sector_cells.h"
+#include "geom/overlay/overlay.h"
+#include "scene/sensor/sensor.h"
+
+namespace ispace {
+
+namespace {
+
+std::vector<Curve> regionOfScan(const Level& level, const Sensor& sensor) {
+    const Point2 place = sensor.pose.position.onFloor();
+    const Laser& laser = sensor.as<Laser>();
+    VisibleRegion region;
+    level.query(place, laser.max_range, region);
+    Curve outline =
+        outlineOf(sectorOf(region, sensor.pose.heading + laser.first, laser.sweptSpan()));
+    if (outline.empty()) return {};
+    const std::vector<Polygon> solids = level.solidsTouching(place);
+    if (solids.empty()) return {std::move(outline)};
+    // Sight passes into what the sensor touches, but there is nothing to be seen.
+    std::vector<Layer> layers = {{.curves = {std::move(outline)}, .counts = false, .marks = 1}};
+    for (const Polygon& solid : solids) layers.push_back({.curves = {curveOf(solid)}});
+    return Overlay(layers).curves(
+        [](const LayerLabel& label) { return label.marks == 1 && label.count == 0; });
+}
+
+CellSet cellsOfScan(const Grid& grid, const Level& level, const Sensor& sensor) {
+    const Laser& laser = sensor.as<Laser>();
+    std::vector<Angle> limits;
+    std::size_t seen = 0;  // the part before the last
+    if (const auto sector = sectorOf(laser, sensor.pose.heading)) {
+        limits = {std::min(sector->first, sector->beyond), std::max(sector->first, sector->beyond)};
+        seen = sector->first < sector->beyond ? 0 : 1;
+    }
+    CellParts parts;
+    cellsBySector(grid, level, sensor.pose.position.onFloor(), laser.max_range, limits, parts);
+    CellSet cells = cellsOf(parts, limits.size(), grid.size());
+    if (!limits.empty()) cells |= cellsOf(parts, seen, grid.size());
+    return cells;
+}
+
+}  // namespace
+
+void Sight::prepare(const Sensor& sensor) const {
+    if (!scansSlice(sensor)) worlds_->prepareMesh(kindOf(sensor.model).stopped_by);
+}
+
+const RayWorld& Sight::meshFor(const SensorModel& model) const {
+    return worlds_->mesh(kindOf(model).stopped_by);
+}
+
+std::optional<std::vector<Curve>> Sight::regionOf(const Sensor& sensor) const {
+    const Point3 place = sensor.pose.position;
+    const std::shared_ptr<const Level> level = levelAt(place.z);
+    if (scansSlice(sensor)) return regionOfScan(*level, sensor);
+    if (level->isBuried(place.onFloor())) return std::vector<Curve>();
+    return shadows_.get([this] { return ShadowCaster(environment_); }).regionSeen(sensor, plane_);
+}
+
+CellSet Sight::cellsOf(const Grid& grid, const Sensor& sensor) const {
+    const Point3 place = sensor.pose.position;
+    const std::shared_ptr<const Level> level = levelAt(place.z);
+    if (scansSlice(sensor)) return cellsOfScan(grid, *level, sensor);
+    if (level->isBuried(place.onFloor())) return CellSet(grid.size());
+    return cellsOnPlane(grid, meshFor(sensor.model), sensor, plane_);
+}
+
+}  // namespace ispace

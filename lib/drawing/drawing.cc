@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures as PNG and PDF, by the module that links Cairo.
+#include "drawing/drawing.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "drawing/color.h"
+#include "drawing/module/painter.h"
+#include "raster/codec.h"
+#include "raster/module/decoded_picture.h"
+#include "raster/picture.h"
+
+namespace ispace {
+
+namespace {
+
+using Kind = DisplayList::Kind;
+
+std::uint32_t index(std::size_t size) { return static_cast<std::uint32_t>(size); }
+
+}  // namespace
+
+Picture::Picture(double width, double height, PageUnit unit)
+    : width_(width), height_(height), unit_(unit) {
+    if (!(width >= 1 && width <= kMaxSide && height >= 1 && height <= kMaxSide))
+        throw UsageError("a picture of " + formatFixed(width, 0) + " x " + formatFixed(height, 0) +
+                         " cannot be drawn, wanted 1 to " + formatFixed(kMaxSide, 0) + " each way");
+}
+
+void Picture::describe(std::string title, std::string description) {
+    title_ = std::move(title);
+    description_ = std::move(description);
+}
+
+void Picture::pushView(const PageView& view) {
+    views_.push_back(view);
+    pushed_.push_back(Pushed::View);
+}
+
+void Picture::pushClip(std::span<const Polygon> inside) {
+    // Nothing shows through an empty clip.
+    const Polygon nowhere = {{-1, -1}};
+    push(Kind::Group, {}, inside.empty() ? std::span(&nowhere, 1) : inside);
+}
+
+void Picture::pushLayer(std::string_view name, std::span<const Polygon> clip) {
+    push(Kind::Layer, {"", std::string(name)}, clip);
+}
+
+void Picture::pushGroup(std::string_view id, std::string_view title) {
+    push(Kind::Group, {std::string(id), std::string(title)}, {});
+}
+
+void Picture::push(Kind kind, DisplayList::Name name, std::span<const Polygon> clip) {
+    add(kind, add(clip), {});
+    list_.names.push_back(std::move(name));
+    pushed_.push_back(Pushed::Mark);
+}
+
+void Picture::pop() {
+    assert(!pushed_.empty());
+    const Pushed last = pushed_.back();
+    pushed_.pop_back();
+    if (last == Pushed::View) {
+        views_.pop_back();
+        return;
+    }
+    const Kind kind = list_.shapes.back().kind;
+    const bool is_empty = kind == Kind::Layer || kind == Kind::Group;
+    if (is_empty && (kind == Kind::Layer || list_.names.back().id.empty())) {
+        list_.shapes.pop_back();
+        list_.names.pop_back();
+    } else {
+        add(Kind::End, {}, {});
+    }
+}
+
+Point2 Picture::toPage(Point2 p) const {
+    // Cairo counts in 24.8 fixed point: what lies far off the page is brought near it.
+    constexpr double kFar = 1e6;
+    const Point2 page = views_.empty() ? p : views_.back() * p;
+    return {std::clamp(page.x, -kFar, kFar), std::clamp(page.y, -kFar, kFar)};
+}
+
+std::pair<std::uint32_t, std::uint32_t> Picture::add(std::span<const Polygon> curves) {
+    const std::uint32_t first = index(list_.ends.size() - 1);
+    for (const Polygon& curve : curves) {
+        if (curve.empty()) continue;
+        for (const Point2 p : curve) list_.points.push_back(toPage(p));
+        list_.ends.push_back(index(list_.points.size()));
+    }
+    return {first, index(list_.ends.size() - 1)};
+}
+
+void Picture::add(Kind kind, std::pair<std::uint32_t, std::uint32_t> range, Inks inks) {
+    // Neighbours are mostly of one style.
+    const std::size_t known = list_.inks.size();
+    const bool again = inks.size() <= known &&
+                       std::equal(inks.begin(), inks.end(),
+                                  list_.inks.end() - static_cast<std::ptrdiff_t>(inks.size()));
+    if (!again) list_.inks.insert(list_.inks.end(), inks.begin(), inks.end());
+    const std::uint32_t first_ink = index(list_.inks.size() - inks.size());
+    list_.shapes.push_back(
+        {kind, range.first, range.second, first_ink, first_ink + index(inks.size())});
+}
+
+void Picture::area(std::span<const Polygon> curves, Inks inks) {
+    if (const auto range = add(curves); range.first < range.second) add(Kind::Area, range, inks);
+}
+
+void Picture::lines(std::span<const std::vector<Point2>> chains, Inks inks) {
+    if (const auto range = add(chains); range.first < range.second) add(Kind::Lines, range, inks);
+}
+
+void Picture::lines(std::span<const Segment2> segments, Inks inks) {
+    if (segments.empty()) return;
+    const std::uint32_t first = index(list_.ends.size() - 1);
+    const Segment2* previous = nullptr;
+    for (const Segment2& segment : segments) {
+        if (previous == nullptr || !(previous->b == segment.a)) {
+            if (previous != nullptr) list_.ends.push_back(index(list_.points.size()));
+            list_.points.push_back(toPage(segment.a));
+        }
+        list_.points.push_back(toPage(segment.b));
+        previous = &segment;
+    }
+    list_.ends.push_back(index(list_.points.size()));
+    add(Kind::Lines, {first, index(list_.ends.size() - 1)}, inks);
+}
+
+void Picture::line(Point2 a, Point2 b, const Stroke& stroke) {
+    const Segment2 segment{a, b};
+    lines(std::span(&segment, 1), {stroke});
+}
+
+void Picture::circle(Point2 center, double radius, Inks inks) {
+    addArc({toPage(center), toPage(radius), Angle(), Angle::degrees(360)}, inks);
+}
+
+void Picture::sector(Point2 center, double radius, Angle from, Angle to, Inks inks) {
+    addArc({toPage(center), toPage(radius), from, to}, inks);
+}
+
+void Picture::addArc(const DisplayList::Arc& arc, Inks inks) {
+    list_.arcs.push_back(arc);
+    list_.arcs.back().radius = std::min(arc.radius, 1e6);
+    add(Kind::Arc, {index(list_.arcs.size() - 1), 0}, inks);
+}
+
+void Picture::image(Point2 corner, Image image, double pixel_width, double pixel_height) {
+    if (image.width < 1 || image.height < 1) return;
+    list_.images.push_back(
+        {toPage(corner), std::move(image), toPage(pixel_width), toPage(pixel_height)});
+    add(Kind::Image, {index(list_.images.size() - 1), 0}, {});
+}
+
+void Picture::text(Point2 anchor, std::string_view text, const TextStyle& style) {
+    if (text.empty()) return;
+    list_.texts.push_back({toPage(anchor), printable(text), style});
+    add(Kind::Text, {index(list_.texts.size() - 1), 0}, {});
+}
+
+std::string Picture::write(PictureFormat format) const {
+    assert(pushed_.empty());
+    switch (format) {
+        case PictureFormat::Svg:
+            return writeSvg(*this);
+        case PictureFormat::Pdf:
+            return writePdf(*this);
+        case PictureFormat::Png:
+            break;
+    }
+    return writePng(*this);
+}
+
+std::vector<Segment2> hatchLines(const Hatch& hatch, const Box2& box) {
+    std::vector<Segment2> lines;
+    if (box.empty()) return lines;
+    const Vec2 seen = unitVector(hatch.direction);
+    const Vec2 along{seen.x, -seen.y}, left_of{-seen.y, -seen.x};
+    const double reach = std::hypot(box.width(), box.depth()) / 2 + hatch.width;
+    const double spacing = std::max(hatch.spacing, 0.5);
+    const Vec2 middle = box.center() - Point2{};
+    const double at = dot(left_of, middle), begin = dot(along, middle);
+    const auto number = [&](double place) { return (place - hatch.offset) / spacing; };
+    const double last = std::floor(number(at + reach));
+    for (double k = std::ceil(number(at - reach)); k <= last; ++k) {
+        const Point2 foot = Point2{} + (k * spacing + hatch.offset) * left_of;
+        lines.push_back({foot + (begin - reach) * along, foot + (begin + reach) * along});
+    }
+    return lines;
+}
+
+Box2 visibleBox(const Picture& picture, const DisplayList::Shape& shape) {
+    Box2 box;
+    for (std::uint32_t i = shape.first; i < shape.last; ++i)
+        for (const Point2 p : picture.list().curve(i))
+            box.add(
+                {std::clamp(p.x, 0.0, picture.width()), std::clamp(p.y, 0.0, picture.height())});
+    return box;
+}
+
+std::string fitText(std::string_view text, double width, const TextStyle& style) {
+    std::string clean = printable(text);
+    if (textWidth(clean, style) <= width) return clean;
+    std::vector<std::size_t> ends = {0};  // of each character
+    while (ends.back() < clean.size())
+        ends.push_back(ends.back() + utf8Length(std::string_view(clean).substr(ends.back())));
+    const auto shortened = [&clean, &ends](std::size_t characters) {
+        return clean.substr(0, ends[characters]) + "…";
+    };
+    std::size_t fits = 0, too_long = ends.size() - 1;
+    while (too_long - fits > 1) {
+        const std::size_t middle = fits + (too_long - fits) / 2;
+        (textWidth(shortened(middle), style) <= width ? fits : too_long) = middle;
+    }
+    return shortened(fits);
+}
+
+double roundStep(double least) {
+    const double power = std::pow(10, std::floor(std::log10(least)));
+    for (const double digit : {1.0, 2.0, 5.0})
+        if (digit * power >= least * (1 - 1e-9)) return digit * power;
+    return 10 * power;
+}
+
+double usualScale(double least) {
+    for (double power = 1;; power *= 10)
+        for (const double digit : {1.0, 2.0, 2.5, 5.0})
+            if (const double scale = digit * power; scale >= least && scale == std::floor(scale))
+                return scale;
+}
+
+void drawScaleBar(Picture& picture, Point2 corner, double most, double page_per_metre, double em,
+                  const std::string& more) {
+    using namespace palette;
+    const double limit = most / page_per_metre;
+    const double power = std::pow(10, std::floor(std::log10(limit)));
+    const double digit = limit >= 5 * power ? 5 : limit >= 2 * power ? 2 : 1;
+    const int pieces = digit == 5 ? 5 : 4;
+    const double piece = digit * power * page_per_metre / pieces, thick = 0.32 * em;
+    picture.pushGroup("", "bar of scale");
+    for (int i = 0; i < pieces; ++i) {
+        const double x = corner.x + i * piece, top = corner.y - thick;
+        picture.area(Polygon{{x, corner.y}, {x + piece, corner.y}, {x + piece, top}, {x, top}},
+                     {i % 2 == 0 ? kInk : kWhite, Stroke{kInk, 0.05 * em}});
+    }
+    const std::string metres = formatDouble(std::round(digit * power * 1e9) / 1e9) + " m";
+    picture.text({corner.x + pieces * piece + 0.6 * em, corner.y + 0.05 * em}, metres + more,
+                 {em, false, Align::Left, kInk, {}});
+    picture.pop();
+}
+
+namespace {
+
+const Painting& painting() {
+    static const Painting& opened = [&]() -> const Painting& {
+        std::string error;
+        if (const void* found = moduleSymbol("drawing.so", kPainting, error))
+            return *static_cast<const Painting*>(found);
+        throw FormatError(
+            Diagnostic{"", 0, 0, "drawing needs Cairo (Debian: libcairo2): " + printable(error)});
+    }();
+    return opened;
+}
+
+std::vector<Segment2> hatchOf(const Hatch& hatch, const Picture& picture,
+                              const DisplayList::Shape& shape) {
+    return hatchLines(hatch, visibleBox(picture, shape));
+}
+
+/// How many bands are worth their threads: each is as large as the picture while it is drawn.
+int bandsAtOnce(const Picture& picture) {
+    constexpr std::size_t kManyPoints = 10'000, kMost = 4;
+    constexpr double kMostPixels = 16e6;
+    if (picture.list().points.size() < kManyPoints ||
+        picture.width() * picture.height() > kMostPixels)
+        return 1;
+    const std::size_t threads =
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    return static_cast<int>(std::min(threads, kMost));
+}
+
+/// Points of shapes that show in several bands, once for each band but one.
+std::size_t pointsAgain(const Picture& picture, const std::vector<Rows>& bands) {
+    const DisplayList& list = picture.list();
+    const auto band_of = [&](double y) {
+        const auto next = std::upper_bound(bands.begin() + 1, bands.end(), y,
+                                           [](double v, const Rows& b) { return v < b.first; });
+        return next - bands.begin();
+    };
+    std::size_t again = 0;
+    for (const DisplayList::Shape& shape : list.shapes) {
+        const bool has_curves =
+            shape.kind == DisplayList::Kind::Area || shape.kind == DisplayList::Kind::Lines;
+        if (!has_curves) continue;
+        double low = picture.height(), high = 0;
+        for (std::uint32_t i = shape.first; i < shape.last; ++i)
+            for (const Point2 p : list.curve(i)) {
+                low = std::min(low, p.y);
+                high = std::max(high, p.y);
+            }
+        if (low < high)
+            again += static_cast<std::size_t>(band_of(high) - band_of(low)) *
+                     (list.ends[shape.last] - list.ends[shape.first]);
+    }
+    return again;
+}
+
+/// Bands with about as many points each; one where these would draw much of the same.
+std::vector<Rows> bandsOf(const Picture& picture, int count) {
+    const int height = static_cast<int>(std::lround(picture.height()));
+    if (count < 2) return {{0, height}};
+    std::vector<std::size_t> points(static_cast<std::size_t>(height));  // by row
+    for (const Point2 p : picture.list().points)
+        if (p.y >= 0 && p.y < height) ++points[static_cast<std::size_t>(p.y)];
+    const std::size_t all = std::accumulate(points.begin(), points.end(), std::size_t{0});
+    std::vector<Rows> bands = {{0, height}};
+    std::size_t above = 0;
+    for (int row = 0; row < height; ++row) {
+        above += points[static_cast<std::size_t>(row)];
+        if (above * static_cast<std::size_t>(count) <= all * bands.size() || row + 1 == height ||
+            bands.size() == static_cast<std::size_t>(count))
+            continue;
+        bands.back().beyond = row + 1;
+        bands.push_back({row + 1, height});
+    }
+    if (4 * pointsAgain(picture, bands) > all) return {{0, height}};
+    return bands;
+}
+
+}  // namespace
+
+double textWidth(std::string_view text, const TextStyle& style) {
+    return painting().text_width(printable(text), style);
+}
+
+Image rasterOf(const Picture& picture) {
+    const std::vector<Rows> bands = bandsOf(picture, bandsAtOnce(picture));
+    std::vector<Image> images(bands.size());
+    tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t i) {
+        images[i] = painting().pixels(picture, hatchOf, bands[i]);
+    });
+    Image image = std::move(images.front());
+    for (std::size_t i = 1; i < bands.size(); ++i) {
+        const auto place = [&](int row) { return std::ptrdiff_t{image.width} * row; };
+        std::copy(images[i].pixels.begin() + place(bands[i].first),
+                  images[i].pixels.begin() + place(bands[i].beyond),
+                  image.pixels.begin() + place(bands[i].first));
+    }
+    return image;
+}
+
+std::string writePng(const Picture& picture) { return encodePng(rasterOf(picture)); }
+
+std::string writePdf(const Picture& picture) { return painting().pdf(picture, hatchOf); }
+
+std::string encodePng(const Image& image) {
+    return pngOfDrawing(image.width, image.height, image.pixels,
+                        static_cast<std::size_t>(image.width));
+}
+
+Image decodePng(std::string_view bytes) {
+    const DecodedPicture decoded = decodePng(bytes, "");
+    Image image{decoded.width, decoded.height, {}};
+    const auto channels = static_cast<std::size_t>(decoded.channels);
+    image.pixels.reserve(decoded.samples.size() / channels);
+    for (std::size_t i = 0; i < decoded.samples.size(); i += channels) {
+        const std::uint8_t* const sample = &decoded.samples[i];
+        const std::uint32_t opacity = channels == 4 ? sample[3] : 255;
+        std::uint32_t pixel = 0;
+        for (std::size_t c = 0; c < 3; ++c) pixel = pixel << 8U | (sample[c] * opacity + 127) / 255;
+        image.pixels.push_back(pixel);
+    }
+    return image;
+}
+
+}  // namespace ispace

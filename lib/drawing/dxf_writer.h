@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drawing/color.h"
+#include "geom/curve.h"
+#include "geom/polygon.h"
+
+namespace ispace {
+
+/// A layer of a drawing; colours are of layers, not of things.
+struct DxfLayer {
+    std::string name;
+    Color color;
+};
+
+/// What a flat thing is from the side, in metres: elevation and thickness, in the words of DXF.
+struct DxfExtrusion {
+    double bottom = 0, height = 0;
+};
+
+/// Writes a drawing in ASCII DXF (AutoCAD 2000) through dxflib: metres ($INSUNITS 6), coordinates
+/// in shortest form. Things lie on one of the layers, called by name. Equal calls give equal bytes.
+class DxfWriter {
+  public:
+    explicit DxfWriter(const std::vector<DxfLayer>& layers);
+    ~DxfWriter();
+    DxfWriter(const DxfWriter&) = delete;
+    DxfWriter& operator=(const DxfWriter&) = delete;
+
+    void line(const std::string& layer, const Segment2& segment);
+    /// A polyline, drawn `width` metres wide; a closed one does not repeat its first point.
+    void path(const std::string& layer, const std::vector<Point2>& points, bool closed,
+              double width = 0, DxfExtrusion upright = {});
+    /// A closed polyline with true arcs.
+    void curve(const std::string& layer, const Curve& curve);
+    void circle(const std::string& layer, Point2 center, double radius, DxfExtrusion upright = {});
+    /// A solid filling, holes left out.
+    void area(const std::string& layer, const Region& region);
+    /// One line of text, `height` metres high, beginning at a place. Control characters become
+    /// blanks.
+    void text(const std::string& layer, Point2 place, const std::string& text, double height);
+
+    /// The file. Nothing more may be written.
+    std::string finish();
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace ispace

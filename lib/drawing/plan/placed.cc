@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is placed on a plan: sensors with what they face, tags, mats, gates, robots, people; names.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/number.h"
+#include "drawing/plan/plan.h"
+#include "env/body.h"
+#include "scene/placement_schemas.h"
+#include "scene/sensor/sensor.h"
+
+namespace ispace {
+
+namespace {
+
+bool overlap(const Box2& a, const Box2& b) {
+    return a.low.x < b.high.x && b.low.x < a.high.x && a.low.y < b.high.y && b.low.y < a.high.y;
+}
+
+bool contains(const Box2& outer, const Box2& inner) {
+    return outer.low.x <= inner.low.x && inner.high.x <= outer.high.x &&
+           outer.low.y <= inner.low.y && inner.high.y <= outer.high.y;
+}
+
+Box2 boxAround(Point2 p, double half_width, double half_height) {
+    return {{p.x - half_width, p.y - half_height}, {p.x + half_width, p.y + half_height}};
+}
+
+/// The mark's body about the origin, y up.
+void fillBody(Picture& picture, SensorSign sign, double radius, Color color, double rim = 0) {
+    Polygon curve;
+    if (sign == SensorSign::Disc) {
+        picture.circle({}, radius + rim, {color});
+        return;
+    }
+    if (sign == SensorSign::Square) {
+        const double half = 0.9 * radius;
+        curve = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+    } else {
+        const double tip = 1.35 * radius, side = std::sqrt(0.75) * tip;
+        curve = {{0, tip}, {-side, -tip / 2}, {side, -tip / 2}};
+    }
+    if (rim > 0)
+        picture.area(curve, {color, Stroke{color, 2 * rim}});
+    else
+        picture.area(curve, {color});
+}
+
+}  // namespace
+
+BearingSpan bearingsOf(const Scene& scene, const Placed& placed) {
+    const Record& record = scene.records[placed.record];
+    const SensorKind* kind = sensorKind(record.keyword());
+    if (kind != nullptr && kind->bearings != nullptr)
+        return kind->bearings(scene.sensors[placed.index].model);
+    BearingSpan span{Angle::degrees(-22.5), Angle::degrees(22.5), 5};
+    if (record.has("fov")) {
+        const Angle fov = Angle::degrees(record.tuple("fov").front());
+        span = {-0.5 * fov, 0.5 * fov, 5};
+    }
+    if (record.has("range")) span.range = record.tuple("range").back();
+    return span;
+}
+
+std::optional<Angle> headingOf(const Pose3& pose) {
+    constexpr double kSteep = 0.02;  // of a direction's level part: no more than a degree
+    const Vec3 forward = pose.beam(Angle());
+    if (length(Vec2{forward.x, forward.y}) <= kSteep) return std::nullopt;
+    return directionOf(forward.x, forward.y);
+}
+
+void drawSensorMark(Picture& picture, Point2 page, const SensorMark& mark, double radius) {
+    using palette::kWhite;
+    picture.pushView({1, {0, 0}, page});
+    if (mark.heading) {
+        const Vec2 forward = unitVector(*mark.heading), left = perpendicular(forward);
+        const Point2 center, tip = center + 3.4 * radius * forward;
+        const Point2 neck = center + 1.9 * radius * forward;
+        const Polygon head = {tip, neck + 0.85 * radius * left, neck - 0.85 * radius * left};
+        picture.line(center, neck, {kWhite, radius});
+        picture.area(head, {Stroke{kWhite, 0.6 * radius}});
+        picture.line(center, neck, {mark.color, 0.5 * radius});
+        picture.area(head, {mark.color});
+    }
+    fillBody(picture, mark.sign, radius, kWhite, 0.3 * radius);
+    fillBody(picture, mark.sign, radius, mark.color);
+    if (mark.hollow) fillBody(picture, mark.sign, 0.5 * radius, kWhite);
+    picture.pop();
+}
+
+void LabelPlacer::addMark(Point2 page, std::optional<Angle> heading) {
+    marks_.push_back(boxAround(page, 0.45 * em_, 0.45 * em_));
+    if (!heading) return;
+    const Vec2 forward = em_ * unitVector(*heading);
+    marks_.push_back(boxAround({page.x + forward.x, page.y - forward.y}, 0.4 * em_, 0.4 * em_));
+}
+
+Point2 LabelPlacer::placeSign(Point2 page, double radius) {
+    const double half = radius + 0.1 * em_;
+    Point2 best = page;
+    double least = costOf(boxAround(page, half, half));
+    for (const double away : {1.2, 2.4}) {
+        for (int turn = 0; turn < 8 && least > 0; ++turn) {
+            const Vec2 off = away * em_ * unitVector(Angle::degrees(45.0 * turn));
+            const Point2 place{page.x + off.x, page.y - off.y};
+            if (const double cost = costOf(boxAround(place, half, half)) + away; cost < least) {
+                least = cost;
+                best = place;
+            }
+        }
+    }
+    labels_.push_back(boxAround(best, half, half));
+    return best;
+}
+
+std::optional<Point2> LabelPlacer::placeLabel(Point2 page, Angle heading, double width, double size,
+                                              bool crowd) {
+    constexpr std::array<double, 8> kTurns = {180, 135, -135, 90, -90, 45, -45, 0};
+    const double half_width = width / 2 + 0.15 * em_, half_height = 0.55 * size;
+    std::optional<Point2> best;
+    double least = crowd ? 1 : 100;  // of places that are worse than no label
+    for (std::size_t i = 0; i < kTurns.size(); ++i) {
+        const Vec2 away = unitVector(heading + Angle::degrees(kTurns[i]));
+        const Point2 middle{page.x + away.x * (0.6 * em_ + half_width),
+                            page.y - away.y * (0.6 * em_ + half_height)};
+        const Box2 box = boxAround(middle, half_width, half_height);
+        if (const double cost = costOf(box) + static_cast<double>(i) / 10; cost < least) {
+            least = cost;
+            best = middle;
+        }
+    }
+    if (best) labels_.push_back(boxAround(*best, half_width, half_height));
+    return best;
+}
+
+bool LabelPlacer::take(const Box2& box) {
+    if (costOf(box) > 0) return false;
+    labels_.push_back(box);
+    return true;
+}
+
+double LabelPlacer::costOf(const Box2& box) const {
+    double cost = contains(frame_, box) ? 0 : 100;
+    for (const Box2& label : labels_) cost += overlap(label, box) ? 100 : 0;
+    for (const Box2& mark : marks_) cost += overlap(mark, box) ? 5 : 0;
+    return cost;
+}
+
+namespace {
+
+using namespace palette;
+
+/// Radius of a sensor's mark, in sizes of text.
+constexpr double kMark = 0.3;
+
+bool looksAside(const Record& record, const Pose3& pose) {
+    const SensorKind* kind = sensorKind(record.keyword());
+    return kind != nullptr && kind->perceives && std::abs(pose.tilt.degrees()) < 70;
+}
+
+bool isPerson(const Record& record) { return record.keyword() == "human"; }
+bool movesItself(const Record& record) { return isPerson(record) || record.keyword() == "robot"; }
+
+Pose2 levelPose(const Placed& placed) {
+    return {placed.pose.position.onFloor(), placed.pose.heading};
+}
+
+void drawRobot(Picture& picture, const Pose2& pose, const RobotModel& model, const Stroke& edge) {
+    const double half = model.length > 0 ? model.length / 2 : model.radius;
+    const Ink fill = mixed(kRobot, kWhite, 0.45);
+    if (model.length > 0)
+        picture.area(
+            rectangle(pose * Point2{model.center, 0}, model.length, model.width, pose.heading),
+            {fill, edge});
+    else
+        picture.circle(pose * Point2{model.center, 0}, model.radius, {fill, edge});
+    picture.area(Polygon{pose * Point2{model.center + 0.85 * half, 0},
+                         pose * Point2{model.center + 0.2 * half, 0.35 * half},
+                         pose * Point2{model.center + 0.2 * half, -0.35 * half}},
+                 {kRobot});
+}
+
+/// Shoulders, head, nose.
+void drawPerson(Picture& picture, const Pose2& pose, double tall, const Stroke& edge) {
+    picture.area(ellipse(pose.position, 0.14 * tall, 0.27 * tall, pose.heading),
+                 {mixed(kPerson, kWhite, 0.4), edge});
+    picture.area(Polygon{pose * Point2{0.1 * tall, 0}, pose * Point2{0.04 * tall, 0.03 * tall},
+                         pose * Point2{0.04 * tall, -0.03 * tall}},
+                 {kPerson});
+    picture.circle(pose.position, 0.06 * tall,
+                   {mixed(displayColor(Material::Skin), kWhite, 0.2), edge});
+}
+
+}  // namespace
+
+void PlanDrawing::drawFieldsOfView() {
+    const std::vector<Polygon> indoor = curvesOf(scene_.environment.indoor());
+    const PlanLayer layer(*this, "fields of view", indoor);
+    for (const Placed& placed : scene_.placed) {
+        if (!looksAside(scene_.records[placed.record], placed.pose)) continue;
+        const Point2 place = placed.pose.position.onFloor();
+        const BearingSpan glyph = bearingsOf(scene_, placed);
+        picture_.pushGroup("", "field of view of " + scene_.ids[placed.record]);
+        picture_.sector(place, std::min(metres(4.5), glyph.range), placed.pose.heading + glyph.from,
+                        placed.pose.heading + glyph.to, {kSensor.faded(0.2), pen(kSensor, 0.05)});
+        picture_.pop();
+    }
+}
+
+void PlanDrawing::drawRobots() {
+    const PlanLayer layer(*this, "robots");
+    for (const Placed& placed : scene_.placed) {
+        const Record& record = scene_.records[placed.record];
+        if (!movesItself(record)) continue;
+        const std::string& id = scene_.ids[placed.record];
+        const Pose2 pose = levelPose(placed);
+        const Color color = isPerson(record) ? kPerson : kRobot;
+        picture_.pushGroup(id, id + ": " + (isPerson(record) ? "person" : "robot"));
+        if (record.has("path")) {  // where it goes by itself
+            std::vector<Point2> way{pose.position};
+            for (const Tuple& point : record.list("path")) way.push_back({point[0], point[1]});
+            picture_.lines(way, {pen(color.faded(0.7), 0.07, {0.3, 0.3})});
+        }
+        if (isPerson(record))
+            drawPerson(picture_, pose, record.number("height"), pen(kPerson, 0.07));
+        else
+            drawRobot(picture_, pose, scene_.robots[placed.index].model, pen(kRobot, 0.09));
+        picture_.pop();
+    }
+}
+
+void PlanDrawing::drawSensors() {
+    const PlanLayer layer(*this, "sensors");
+    for (const Placed& placed : scene_.placed) {
+        const Record& record = scene_.records[placed.record];
+        if (movesItself(record)) continue;
+        const std::string& id = scene_.ids[placed.record];
+        const std::string& keyword = record.keyword();
+        const Pose2 pose = levelPose(placed);
+        std::string title = id;
+        title.append(": ").append(keyword);
+        const SensorKind* kind = sensorKind(keyword);
+        if (kind != nullptr && kind->perceives)
+            title += " at height " +
+                     formatDouble(std::round(placed.pose.position.z * 1000) / 1000) + " m";
+        picture_.pushGroup(id, title);
+        if (keyword == "mat") {
+            const Tuple& size = record.tuple("size");
+            picture_.area(rectangle(pose.position, size[0], size[1], pose.heading),
+                          {kMat.faded(0.25), pen(kMat, 0.09)});
+        } else if (keyword == "gate") {
+            const double half = record.number("width") / 2;
+            const Point2 left = pose * Point2{0, half}, right = pose * Point2{0, -half};
+            picture_.line(left, right, pen(kSensor, 0.08, {0.25, 0.2}));
+            for (const Point2 p : {left, right})
+                picture_.circle(p, metres(0.25), {kSensor, pen(kWhite, 0.06)});
+        } else if (kind != nullptr && kind->sign == SensorSign::Diamond) {
+            const double size = metres(0.4);
+            const Point2 p = pose.position;
+            picture_.area(
+                Polygon{{p.x + size, p.y}, {p.x, p.y + size}, {p.x - size, p.y}, {p.x, p.y - size}},
+                {kMat, pen(kWhite, 0.08)});
+        } else {
+            const bool aside = looksAside(record, placed.pose);
+            if (!aside)  // upwards or downwards
+                picture_.circle(pose.position, metres(2 * kMark),
+                                {pen(kSensor, 0.08, {0.25, 0.2})});
+            drawSensorMark(picture_, picture_.toPage(pose.position),
+                           {kind == nullptr ? SensorSign::Disc : kind->sign,
+                            aside ? headingOf(placed.pose) : std::nullopt, kSensor},
+                           kMark * style_.em);
+        }
+        picture_.pop();
+    }
+}
+
+void PlanDrawing::drawNames() {
+    picture_.pushView(style_.view);
+    picture_.pushLayer("labels");
+    std::size_t zones = 0;
+    for (const Element& element : scene_.environment.elements())
+        if (element.record.keyword() == "zone") drawZoneName(element, zones++);
+    // In the middle of things that have room.
+    const TextStyle style{0.7 * style_.em, false, Align::Center, kInk, kWhite.faded(0.85)};
+    for (const Thing& thing : things_) {
+        const Point2 middle = thing.box.center();
+        if (!isOverhead(thing) && thing.box.depth() >= metres(0.8) &&
+            textWidth(thing.element->id, style) <= 0.96 * style_.view.scale * thing.box.width())
+            picture_.text({middle.x, middle.y - metres(0.25)}, thing.element->id, style);
+    }
+    drawPlacedNames();
+    picture_.pop();
+    picture_.pop();
+}
+
+/// Its id in the lower left corner of what the plan shows of it, moved in where it would run over
+/// the edge.
+void PlanDrawing::drawZoneName(const Element& element, std::size_t index) {
+    const Box2 zone = bounds(zoneOutline(element.record));
+    const Box2& box = style_.box;
+    const Point2 corner{std::max(zone.low.x, box.low.x), std::max(zone.low.y, box.low.y)};
+    if (corner.x >= std::min(zone.high.x, box.high.x) ||
+        corner.y >= std::min(zone.high.y, box.high.y))
+        return;
+    const TextStyle style{0.85 * style_.em, false, Align::Left,
+                          mixed(seriesColor(index), kInk, 0.35), kWhite.faded(0.85)};
+    const double em = metres(1), width = textWidth(element.id, style) / style_.view.scale;
+    const auto within = [em](double begin, double low, double high) {
+        return std::max(low + em / 4, std::min(begin, high - em / 4));
+    };
+    picture_.text({within(corner.x + 0.5 * em, box.low.x, box.high.x - width),
+                   within(corner.y + 0.55 * em, box.low.y, box.high.y - em)},
+                  element.id, style);
+}
+
+void PlanDrawing::drawPlacedNames() {
+    constexpr std::size_t kMaxNames = 500;  // more are no use on one page
+    if (scene_.placed.size() > kMaxNames) return;
+    const Box2 page{{0, 0}, {picture_.width(), picture_.height()}};
+    LabelPlacer places(page, style_.em);
+    for (const Placed& placed : scene_.placed) {
+        const bool has_arrow = looksAside(scene_.records[placed.record], placed.pose);
+        places.addMark(picture_.toPage(placed.pose.position.onFloor()),
+                       has_arrow ? headingOf(placed.pose) : std::nullopt);
+    }
+    TextStyle style{0.85 * style_.em, true, Align::Center, {}, kWhite.faded(0.85)};
+    for (const Placed& placed : scene_.placed) {
+        const Record& record = scene_.records[placed.record];
+        const std::string& id = scene_.ids[placed.record];
+        style.color = isPerson(record)      ? kPerson
+                      : movesItself(record) ? kRobot
+                                            : mixed(kSensor, kInk, 0.5);
+        const Point2 page_place = picture_.toPage(placed.pose.position.onFloor());
+        if (const auto middle = places.placeLabel(page_place, placed.pose.heading,
+                                                  textWidth(id, style), style.size, false)) {
+            picture_.pushView({1, {}, {middle->x, middle->y + 0.36 * style.size}});
+            picture_.text({}, id, style);
+            picture_.pop();
+        }
+    }
+}
+
+}  // namespace ispace

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "env/element_schemas.h"
+
+#include <utility>
+
+namespace ispace {
+
+namespace {
+
+/// Plans lie within this of the origin, in metres: doubles still tell micrometres apart there.
+constexpr double kFarthest = 1e6;
+
+KeySpec idKey() {
+    return {.name = "id",
+            .type = KeyType::Word,
+            .help = "name of the element; the keyword and a number where left out"};
+}
+
+KeySpec lengths(std::string name, std::string help, std::size_t min_count, std::size_t max_count) {
+    return {.name = std::move(name),
+            .type = KeyType::Tuple,
+            .unit = Unit::Length,
+            .help = std::move(help),
+            .min_count = min_count,
+            .max_count = max_count,
+            .lower = -kFarthest,
+            .upper = kFarthest};
+}
+
+KeySpec pointKey(std::string name, std::string help) {
+    KeySpec key = lengths(std::move(name), std::move(help), 2, 2);
+    key.role = Role::Place;
+    return key;
+}
+
+KeySpec atKey() {
+    KeySpec key = lengths("at", "centre of the footprint x,y and height of the underside z", 2, 3);
+    key.role = Role::Place;
+    key.default_value = Tuple{0, 0};
+    return key;
+}
+
+KeySpec floorAtKey() {
+    KeySpec key = pointKey("at", "centre x,y");
+    key.default_value = Tuple{0, 0};
+    return key;
+}
+
+KeySpec headingKey() {
+    return {.name = "heading",
+            .type = KeyType::Number,
+            .unit = Unit::Angle,
+            .help = "direction of the length, counter-clockwise from +x",
+            .default_value = 0.0,
+            .lower = -kFarthest,
+            .upper = kFarthest,
+            .role = Role::Heading};
+}
+
+/// Extents, each above 0.
+KeySpec sizeKey(std::string help, std::size_t min_count, std::size_t max_count) {
+    KeySpec key = lengths("size", std::move(help), min_count, max_count);
+    key.lower = 0;
+    key.lower_open = true;
+    return key;
+}
+
+KeySpec sizeKey(std::string help, std::size_t min_count, std::size_t max_count, Tuple standard) {
+    KeySpec key = sizeKey(std::move(help), min_count, max_count);
+    key.default_value = std::move(standard);
+    return key;
+}
+
+KeySpec heightKey(std::string help = "height, unless size holds it") {
+    return {.name = "height",
+            .type = KeyType::Number,
+            .unit = Unit::Length,
+            .help = std::move(help),
+            .lower = 0,
+            .upper = kFarthest,
+            .lower_open = true};
+}
+
+KeySpec heightKey(double standard, std::string help = "height, unless size holds it") {
+    KeySpec key = heightKey(std::move(help));
+    key.default_value = standard;
+    return key;
+}
+
+KeySpec thicknessKey(std::string help) {
+    return {.name = "thickness",
+            .type = KeyType::Number,
+            .unit = Unit::Length,
+            .help = std::move(help),
+            .default_value = 0.0,
+            .lower = 0,
+            .upper = kFarthest};
+}
+
+KeySpec kindKey(std::string help, std::vector<std::string> choices) {
+    KeySpec key{.name = "kind", .type = KeyType::Choice, .help = std::move(help)};
+    key.default_value = choices.front();
+    key.choices = std::move(choices);
+    return key;
+}
+
+KeySpec flagKey(std::string name, std::string help) {
+    return {.name = std::move(name),
+            .type = KeyType::Flag,
+            .help = std::move(help),
+            .default_value = false};
+}
+
+KeySpec textKey(std::string name, std::string help) {
+    return {.name = std::move(name), .type = KeyType::Text, .help = std::move(help)};
+}
+
+KeySpec pathKey(std::string help) {
+    KeySpec key = lengths("path", std::move(help), 2, 2);
+    key.type = KeyType::TupleList;
+    key.role = Role::Place;
+    return key;
+}
+
+/// `where`: how the picture lies on the body.
+KeySpec textureKey(const std::string& where) {
+    return {.name = "texture",
+            .type = KeyType::Text,
+            .help = "picture " + where +
+                    ", edge to edge: PNG, JPEG and others, relative to the folder of this file",
+            .role = Role::File};
+}
+
+Schema schema(std::string keyword, RecordType type, std::string help, std::vector<KeySpec> keys) {
+    keys.insert(keys.begin(), idKey());
+    return {std::move(keyword), type, std::move(help), std::move(keys)};
+}
+
+void addSpaces(std::vector<Schema>& out) {
+    out.push_back(schema(
+        "ispace", RecordType::Space, "a room: floor and four walls",
+        {floorAtKey(), headingKey(), sizeKey("length,width[,height] of the room", 2, 3, {8, 8}),
+         heightKey(kWallHeight), flagKey("ceiling", "close it with a ceiling")}));
+    KeySpec inside_at = pointKey("at", "the point x,y");
+    inside_at.required = true;
+    out.push_back(schema("inside", RecordType::Space,
+                         "a point known to be inside the room; several make several rooms",
+                         {std::move(inside_at)}));
+    out.push_back(schema("zone", RecordType::Space,
+                         "a part of the floor, called by its id: a polygon or a rectangle",
+                         {pathKey("corners of the polygon, three or more"), floorAtKey(),
+                          headingKey(), sizeKey("length,width of the rectangle", 2, 2),
+                          textKey("number", "number of the room, as on its door"),
+                          textKey("name", "name of the room")}));
+}
+
+void addFloors(std::vector<Schema>& out) {
+    KeySpec friction{.name = "friction",
+                     .type = KeyType::Number,
+                     .help = "share by which robots are slowed down on it",
+                     .default_value = 0.0,
+                     .lower = 0,
+                     .upper = 1};
+    out.push_back(schema(
+        "floor", RecordType::Floor, "a covering of a part of the floor",
+        {floorAtKey(), headingKey(), sizeKey("length,width of the covering", 2, 2, {8, 8}),
+         kindKey("one colour, or squares in two", {"plain", "checker"}), std::move(friction),
+         textureKey("that covers it once, its lower edge along the length, its top to the left of "
+                    "the heading")}));
+}
+
+void addWalls(std::vector<Schema>& out) {
+    // Bounded below by 0 as a whole since a thickness of 0 is usual; the body refuses the others.
+    KeySpec wall_size = lengths("size", "length[,thickness[,height]]", 1, 3);
+    wall_size.lower = 0;
+    out.push_back(
+        schema("wall", RecordType::Wall, "a straight wall, by its ends or by centre and length",
+               {pointKey("from", "one end of the mid-line"), pointKey("to", "the other end"),
+                atKey(), headingKey(), std::move(wall_size), heightKey(kWallHeight),
+                thicknessKey("thickness, unless size holds it"),
+                kindKey("material", {"plain", "brick", "wood", "concrete"}),
+                textureKey("that covers each of its two faces once, upright, from neither side "
+                           "mirrored")}));
+    out.push_back(schema(
+        "fence", RecordType::Wall, "walls along a path, as drawn in the fast construct mode",
+        {pathKey("corners of the mid-line, two or more"), pointKey("from", "one end"),
+         pointKey("to", "the other end"), flagKey("closed", "join the last point to the first"),
+         heightKey(kWallHeight, "height"), thicknessKey("thickness"),
+         textureKey("that covers both faces of each of its walls once, upright")}));
+}
+
+KeySpec countKey(std::string name, std::string help, double standard, double most) {
+    return {.name = std::move(name),
+            .type = KeyType::Number,
+            .help = std::move(help),
+            .default_value = standard,
+            .lower = 1,
+            .upper = most,
+            .whole = true};
+}
+
+/// Where a door or a window is: on its wall, or at a place that tells the wall.
+std::vector<KeySpec> openingKeys(double standard_width) {
+    KeySpec heading = headingKey();
+    heading.help = "direction of the wall, where several are near";
+    heading.default_value.reset();
+    return {{.name = "wall",
+             .type = KeyType::Word,
+             .help = "id of the wall, fence or room it is in; left out: the nearest wall",
+             .role = Role::Reference},
+            {.name = "offset",
+             .type = KeyType::Number,
+             .unit = Unit::Length,
+             .help = "from the beginning of the wall, along it, to the middle of the opening",
+             .lower = 0,
+             .upper = kFarthest},
+            pointKey("at", "middle of the opening, on its wall or near it"),
+            std::move(heading),
+            pointKey("from", "one end of the opening"),
+            pointKey("to", "the other end"),
+            sizeKey("length[,width[,height]]: along the wall, through it, upwards", 1, 3,
+                    {standard_width})};
+}
+
+void addOpenings(std::vector<Schema>& out) {
+    std::vector<KeySpec> door = openingKeys(0.9);
+    door.push_back(heightKey(2, "height, unless size holds it"));
+    door.push_back(flagKey("open", "yes: one can pass, and the rooms on both sides are one"));
+    out.push_back(schema("door", RecordType::Wall, "an opening down to the floor, with a leaf",
+                         std::move(door)));
+    std::vector<KeySpec> window = openingKeys(1.2);
+    window.push_back(heightKey(1.2, "height, unless size holds it"));
+    window.push_back({.name = "sill",
+                      .type = KeyType::Number,
+                      .unit = Unit::Length,
+                      .help = "height of its lower edge above the floor",
+                      .default_value = 0.9,
+                      .lower = 0,
+                      .upper = kFarthest});
+    KeySpec glass{.name = "glass",
+                  .type = KeyType::Choice,
+                  .help = "clear: light passes; opaque: light stops; none: an open hole",
+                  .default_value = "clear",
+                  .choices = {"clear", "opaque", "none"}};
+    window.push_back(std::move(glass));
+    out.push_back(schema("window", RecordType::Wall, "an opening above a sill, with a pane",
+                         std::move(window)));
+}
+
+void addInfra(std::vector<Schema>& out) {
+    out.push_back(schema("infra", RecordType::Infra,
+                         "a frame of bars under the ceiling, to hang sensors from",
+                         {floorAtKey(), headingKey(), sizeKey("length,width", 2, 2, {4, 4}),
+                          heightKey(2.4, "height of the bars' underside"),
+                          countKey("rows", "bars along the length", 3, 1000),
+                          countKey("cols", "bars across", 3, 1000)}));
+}
+
+Schema meshSchema() {
+    return schema(
+        "mesh", RecordType::Other, "a body from a file: OBJ, STL, PLY, COLLADA, glTF, GLB or IFC",
+        {atKey(),
+         headingKey(),
+         {.name = "file",
+          .type = KeyType::Text,
+          .help = "the file, relative to the folder of this one",
+          .required = true,
+          .role = Role::File},
+         {.name = "unit",
+          .type = KeyType::Choice,
+          .help = "unit of the file's numbers",
+          .default_value = "m",
+          .choices = {"m", "cm", "mm", "inch", "foot"}},
+         {.name = "up",
+          .type = KeyType::Choice,
+          .help = "the file's axis that points up; auto: y in glTF, the axis that COLLADA or a "
+                  "comment of OBJ (`y up`) names, else z",
+          .default_value = "auto",
+          .choices = {"auto", "x", "y", "z"}},
+         {.name = "scale",
+          .type = KeyType::Number,
+          .help = "makes it larger by this factor",
+          .default_value = 1.0,
+          .lower = 0,
+          .upper = 1e6,
+          .lower_open = true},
+         {.name = "side_files",
+          .type = KeyType::Choice,
+          .help = "where files that the file names may lie (buffers of glTF, materials of OBJ): in "
+                  "its folder and below, or anywhere",
+          .default_value = "folder",
+          .choices = {"folder", "anywhere"}},
+         {.name = "digest",
+          .type = KeyType::Word,
+          .help = "sha256: of the content when it was compiled; readers reject other content"}});
+}
+
+void addThings(std::vector<Schema>& out) {
+    const std::string box = "length,width[,height]";
+    const std::string round = "length,width[,height], or the diameter";
+    const auto other = [&out](std::string keyword, std::string help, std::vector<KeySpec> keys) {
+        keys.insert(keys.begin(), {atKey(), headingKey()});
+        out.push_back(
+            schema(std::move(keyword), RecordType::Other, std::move(help), std::move(keys)));
+    };
+    out.push_back(
+        schema("pillar", RecordType::Infra, "a pillar of the building",
+               {atKey(), headingKey(),
+                sizeKey("length,width[,height], or the width of all sides", 1, 3, {0.4, 0.4}),
+                heightKey(kWallHeight), kindKey("its section", {"square", "round"})}));
+    other("table", "a round table on one foot", {sizeKey(round, 1, 3, {0.9, 0.9}), heightKey(0.7)});
+    other("desk", "a desk; its length lies along the heading, its open side to the right",
+          {sizeKey(box, 2, 3, {1.2, 0.8}), heightKey(0.7),
+           kindKey("on four legs, or on panels down to the floor", {"legs", "closed"})});
+    other("chair", "a chair; its back is behind, against the heading",
+          {sizeKey(box, 2, 3, {0.45, 0.45}), heightKey(0.85)});
+    other("barrier", "a thin upright board",
+          {sizeKey(box, 2, 3, {1.2, 0.05}), heightKey(1),
+           textureKey("that covers each of its two long sides once, upright")});
+    other("boxes", "boxes upon each other",
+          {sizeKey("length,width[,height] of the stack", 2, 3, {0.6, 0.4}), heightKey(0.9),
+           countKey("count", "how many", 3, 100)});
+    other("screen", "a projection screen on two feet; its length lies along the heading",
+          {sizeKey(box, 2, 3, {1.8, 0.5}), heightKey(2),
+           textureKey("that covers each side of its board once, upright")});
+    other("cube", "a box",
+          {sizeKey("the edge, or length,width[,height]", 1, 3, {0.5}),
+           heightKey("height, unless size holds it; without both the length"),
+           textureKey("that covers each of its four sides once, upright, and its top, with the "
+                      "picture's right towards the heading")});
+    other("cylinder", "an upright cylinder, elliptic where length and width differ",
+          {sizeKey(round, 1, 3, {0.3, 0.3}), heightKey(0.5)});
+}
+
+}  // namespace
+
+std::vector<Schema> environmentSchemas() {
+    std::vector<Schema> out;
+    addSpaces(out);
+    addFloors(out);
+    addWalls(out);
+    addOpenings(out);
+    addInfra(out);
+    addThings(out);
+    out.push_back(meshSchema());
+    return out;
+}
+
+}  // namespace ispace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lib/env: the environment: its records, bodies, indoor region, slices, mesh. Uses record, geom.
+#pragma once
+
+#include <vector>
+
+#include "env/body.h"
+#include "geom/pose.h"
+#include "record/schema.h"
+
+namespace ispace {
+
+/// Frame and extents of a record that has `at`, `heading`, `size` and perhaps `height`.
+struct Standing {
+    Pose2 world_from_body;
+    double length = 0, width = 0;
+    double bottom = 0, top = 0;
+
+    [[nodiscard]] double height() const { return top - bottom; }
+    /// The rectangle between two corners given in the body's frame, `low` left-below of `high`.
+    [[nodiscard]] Polygon box(Point2 low, Point2 high) const;
+    [[nodiscard]] Polygon rectangle() const;
+    /// The ellipse in the rectangle, scaled by `share` about the centre.
+    [[nodiscard]] Ellipse ellipse(double share = 1) const;
+};
+
+/// One number in `size` stands for length and width. The height is the third number of `size`,
+/// else `height`, else the length.
+Standing standingOf(const Record& record);
+
+/// True for things whose body depends on `at` and `heading` only in where it is: furniture, pillars
+/// and floors, but no walls, and no meshes, which have their own frame.
+bool standsByItself(const Record& record);
+
+Body tableBody(const Record& record);
+Body deskBody(const Record& record);
+Body chairBody(const Record& record);
+Body infraBody(const Record& record);
+Body boxesBody(const Record& record);
+Body screenBody(const Record& record);
+
+/// Height of walls and fences that say nothing else, in metres.
+constexpr double kWallHeight = 2.5;
+
+/// ispace, inside, zone, floor, wall, fence, pillar, table, desk, chair, barrier, cube, cylinder.
+std::vector<Schema> environmentSchemas();
+
+}  // namespace ispace

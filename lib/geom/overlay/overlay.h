@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "geom/curve.h"
+
+namespace ispace {
+
+/// Which layers contain a point.
+struct LayerLabel {
+    std::int32_t count = 0;    ///< of counted layers that contain it
+    std::int64_t numbers = 0;  ///< sum of their numbers: identifies a single layer
+    std::uint64_t marks = 0;   ///< bits of the marking layers that contain it
+    friend bool operator==(const LayerLabel&, const LayerLabel&) = default;
+};
+
+/// A point set to overlay with others: what lies to the left of its curves, the outlines and holes
+/// of one or more disjoint regions, which may touch.
+struct Layer {
+    std::vector<Curve> curves;
+    /// If true it adds 1 to `count` and its number to `numbers`, else it sets bits of `marks`.
+    bool counts = true;
+    std::int64_t number = 0;
+    std::uint64_t marks = 0;
+};
+
+/// The overlay of layers: the faces into which their boundaries divide the plane, each with the set
+/// of layers that contain it. One pass gives the areas covered by any layer, by none, by exactly
+/// one and by k at once.
+///
+/// Robust against coincidences (many views end at the same walls): end points and crossings are
+/// rounded to a lattice of step unit() by snap rounding (Hobby 1999), so that edges meet at common
+/// ends only. A layer contains what its rounded curves enclose by the even-odd rule, so labels are
+/// consistent even in slivers made by rounding. Arcs are replaced by chords (kChordError) and the
+/// area between arc and chord is added in closed form. Areas err by at most 3 * unit() times the
+/// length of all boundaries, plus kChordError squared where an arc is crossed (kChordError times a
+/// chord's length where something ends or passes between an arc and its chord). Where input
+/// vertices must keep their doubles, as for rooms and walls, use boolean.h or planar_map.h.
+/// Deterministic. O((n + crossings) log n) unless edges crowd at one place. Large ones are made in
+/// strips, several at once, and take about 130 bytes an edge.
+class Overlay {
+  public:
+    /// An edge of the overlay. Label `left` is what lies on its left.
+    struct Edge {
+        Point2 from, to;
+        LayerLabel left, right;
+        double bulge = 0;   ///< area between the chord and its arc, m2; positive if the arc lies to
+                            ///< the right of from -> to
+        double radius = 0;  ///< of the arc's circle; 0: straight
+        Point2 center = {};
+    };
+
+    /// What to keep of an overlay with more faces than are asked for one by one.
+    struct Coarse {
+        /// Neighbouring faces whose labels become the same are kept as one face, with that label.
+        /// Called by several threads at once. \pre label({}) == {}
+        std::function<LayerLabel(const LayerLabel&)> label;
+        /// Is told of all faces what addAreas() would tell, by one thread, in an order that depends
+        /// only on the input.
+        std::function<void(const LayerLabel&, double)> add_area;
+    };
+
+    /// `walls` separate the regions of regions() without changing any label.
+    /// \pre all coordinates are finite
+    /// \throws FormatError (without a place) for outlines that cross by the ten million
+    explicit Overlay(std::span<const Layer> layers, std::span<const Segment2> walls = {})
+        : Overlay(layers, walls, Coarse()) {}
+    /// Memory for the edges that are kept and for those of some strips.
+    /// \throws FormatError (without a place) for outlines that cross by the ten million in one
+    /// strip
+    Overlay(std::span<const Layer> layers, std::span<const Segment2> walls, const Coarse& coarse);
+
+    /// Edges between faces of different labels, in an order that depends only on the input.
+    [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
+    /// Step of the lattice, metres, a power of two: at most 2^-29 of the extent of all layers. 0 if
+    /// they have none.
+    [[nodiscard]] double unit() const { return unit_; }
+
+    /// Calls add(label, area) several times for each label; the areas, some of them negative, add
+    /// up to that of all faces with this label. Ignore those of {0, 0, 0}, the unbounded face.
+    template <typename Add>
+    void addAreas(Add add) const;
+    /// Area of all faces whose label satisfies `in`. \pre not in({})
+    template <typename In>
+    [[nodiscard]] double area(In in) const;
+    /// The connected regions of the faces whose label satisfies `in`, with chords for arcs. Regions
+    /// that touch only at a point are separate. Sorted; curves begin at their lowest vertex.
+    /// Vertices within straight edges are left out. \pre not in({})
+    template <typename In>
+    [[nodiscard]] std::vector<Region> regions(In in) const;
+
+    /// The outlines and holes of regions(), with arcs instead of chords.
+    template <typename In>
+    [[nodiscard]] std::vector<Curve> curves(In in) const {
+        return withArcs(regions(in));
+    }
+
+    /// The areas of regions(), arcs included.
+    [[nodiscard]] std::vector<double> areasOf(std::span<const Region> regions) const;
+
+  private:
+    /// Places of the lattice, and the ends of an edge among them.
+    struct LatticePoint {
+        std::int32_t x, y;
+    };
+    struct Ends {
+        std::uint32_t from, to;
+        bool is_wall;
+    };
+    class Maker;
+    /// Where a piece lies, seen along an edge.
+    enum Sides : std::uint8_t { kNowhere = 0, kLeft = 1, kRight = 2, kBoth = 3 };
+
+    [[nodiscard]] Point2 placeOf(LatticePoint point) const {
+        return middle_ + Vec2{unit_ * point.x, unit_ * point.y};
+    }
+    /// What an edge adds to the area of what lies on its left.
+    static double areaLeftOf(Point2 middle, Point2 from, Point2 to, double bulge) {
+        return cross(from - middle, to - middle) / 2 + bulge;
+    }
+    [[nodiscard]] double areaLeftOf(const Edge& edge) const {
+        return areaLeftOf(middle_, edge.from, edge.to, edge.bulge);
+    }
+    friend void forEachArea(std::span<const Layer> layers,
+                            const std::function<void(const LayerLabel&, double)>& add);
+    /// The pieces with these boundaries: for each of edges_ and then of walls_.
+    [[nodiscard]] std::vector<Region> trace(const std::vector<Sides>& sides) const;
+    [[nodiscard]] std::vector<Curve> withArcs(std::span<const Region> regions) const;
+    [[nodiscard]] Point2 place(std::uint32_t point) const { return placeOf(points_[point]); }
+
+    std::vector<Edge> edges_;
+    std::vector<LayerLabel> walls_;  // walls with the same label on both sides, and what it is
+    std::vector<Ends> ends_;         // of edges_, then of walls_; from lower (lexLess) to upper
+    std::vector<LatticePoint> points_;
+    Point2 middle_;  // of the lattice
+    double unit_ = 0;
+};
+
+/// As Overlay(layers).addAreas(add), but nothing is kept. \throws FormatError as for what is Coarse
+void forEachArea(std::span<const Layer> layers,
+                 const std::function<void(const LayerLabel&, double)>& add);
+
+template <typename Add>
+void Overlay::addAreas(Add add) const {
+    for (const Edge& edge : edges_) {
+        const double area = areaLeftOf(edge);
+        add(edge.left, area);
+        add(edge.right, -area);
+    }
+}
+
+template <typename In>
+double Overlay::area(In in) const {
+    double sum = 0;
+    for (const Edge& edge : edges_) {
+        const bool left = in(edge.left), right = in(edge.right);
+        if (left != right) sum += left ? areaLeftOf(edge) : -areaLeftOf(edge);
+    }
+    return sum;
+}
+
+template <typename In>
+std::vector<Region> Overlay::regions(In in) const {
+    std::vector<Sides> sides;
+    sides.reserve(ends_.size());
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+        const bool left = in(edges_[i].left), right = in(edges_[i].right);
+        if (left == right)
+            sides.push_back(left && ends_[i].is_wall ? kBoth : kNowhere);
+        else
+            sides.push_back(left ? kLeft : kRight);
+    }
+    for (const LayerLabel& label : walls_) sides.push_back(in(label) ? kBoth : kNowhere);
+    return trace(sides);
+}
+
+/// The regions with a vertex over the middle of each chord, so that their areas are those of
+/// Overlay::areasOf(): for formats without arcs. The vertices lie within a third of kChordError of
+/// the arcs and are the same in regions on either side. An arc that another boundary has cut to
+/// less than a millimetre or so keeps its chord.
+/// \param regions from overlay.regions()
+std::vector<Region> withArcAreas(const Overlay& overlay, std::vector<Region> regions);
+
+}  // namespace ispace

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to VisibilityMap.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geom/curve.h"
+#include "geom/spatial_index.h"
+#include "geom/visibility/visibility.h"
+
+namespace ispace {
+
+/// Round bodies that block the view. Their shadows are cut from a region that was found without
+/// them: no query crosses their outlines edge by edge.
+class RoundBodies {
+  public:
+    /// \param first_line SightEdge::line of the first of them
+    RoundBodies(std::span<const Ellipse> rounds, std::uint32_t first_line);
+
+    [[nodiscard]] bool empty() const { return rounds_.empty(); }
+    /// Distance within which all round bodies lie.
+    [[nodiscard]] double farthest(Point2 p) const;
+    /// Cuts the shadows of all of them from the region. O(edges) for each that is within range.
+    void cut(VisibleRegion& region) const;
+
+  private:
+    /// Of those within range; the nearest first, so that others are found hidden.
+    [[nodiscard]] std::vector<std::uint32_t> within(const VisibleRegion& region) const;
+
+    std::vector<Ellipse> rounds_;
+    std::vector<Polygon> outlines_;  // computed once: sines take long
+    std::uint32_t first_line_;
+    BoxTree boxes_;
+    Box2 box_;
+};
+
+}  // namespace ispace

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The container of GLB files, and the builder that glb_write.cc writes them with.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/json_writer.h"
+#include "env/mesh.h"
+#include "geom/pose.h"
+#include "io/glb/glb_write.h"
+#include "record/record.h"
+
+namespace ispace {
+
+/// The two chunks of a binary glTF 2.0 file that matter.
+struct GlbChunks {
+    std::string_view json;    ///< never empty
+    std::string_view binary;  ///< empty if there is none
+};
+
+/// Takes the container apart; every length is checked against what is there. The parts point into
+/// `bytes`. \throws FormatError \pre isGlb(bytes)
+GlbChunks glbChunks(std::string_view bytes, const std::string& name);
+
+/// Writes the container: JSON, and the parts one after another as its binary data.
+/// \throws FormatError for more than 2 GiB, which some readers take for a negative length
+std::string glbContainer(std::string_view json, std::span<const std::string_view> parts);
+/// The same piece by piece, of JSON in pieces, each of which is let go of once it is written.
+/// \throws FormatError as above, before anything is written
+void writeGlbContainer(std::vector<std::string> json, std::span<const std::string_view> parts,
+                       const ByteSink& sink);
+
+/// glTF's (X, Y, Z) are our (x, z, -y).
+std::array<double, 3> gltfAxes(Vec3 v);
+
+/// Rz(heading) Ry(-tilt) Rx(roll) in glTF's axes.
+Eigen::Quaterniond rotationOf(const Pose3& pose);
+
+/// Triangles as glTF draws them, in its axes, with a normal a face: vertices are shared only where
+/// the normal is the same.
+struct GlbSurface {
+    using Vector = std::array<float, 3>;
+    std::vector<Vector> positions, normals;
+    std::vector<std::uint32_t> indices;
+    std::vector<std::array<float, 2>> places = {};  ///< on a picture, of each vertex; empty: none
+};
+
+/// The mesh about `origin`. Slivers that floats cannot tell from a line are left out.
+GlbSurface surfaceOf(const Mesh& mesh, Point3 origin);
+
+/// A node of the file.
+struct GlbNode {
+    std::string name;
+    std::string keyword;  ///< in its extras; "" for none
+    int mesh = -1;        ///< index as of GlbBuilder; -1 for none
+    /// Where its mesh stands, in glTF's axes; none: where the whole room does.
+    struct Frame {
+        std::array<double, 3> translation{};
+        Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+        double scale = 1;
+    };
+    std::unique_ptr<const Frame> frame;
+};
+
+/// Items one after another, in blocks: it grows without moving them.
+template <typename T>
+class Blocks {
+  public:
+    void append(const std::vector<T>& items) {
+        if (blocks_.empty() || blocks_.back().capacity() - blocks_.back().size() < items.size()) {
+            blocks_.emplace_back();
+            blocks_.back().reserve(std::max(std::clamp(size_, kLeast, kMost), items.size()));
+        }
+        blocks_.back().insert(blocks_.back().end(), items.begin(), items.end());
+        size_ += items.size();
+    }
+    [[nodiscard]] std::size_t bytes() const { return size_ * sizeof(T); }
+    [[nodiscard]] std::vector<std::string_view> parts() const {
+        std::vector<std::string_view> parts;
+        for (const auto& block : blocks_)
+            parts.emplace_back(reinterpret_cast<const char*>(block.data()),
+                               block.size() * sizeof(T));
+        return parts;
+    }
+
+  private:
+    static constexpr std::size_t kLeast = 1 << 10, kMost = 1 << 17;
+
+    std::vector<std::vector<T>> blocks_;
+    std::size_t size_ = 0;
+};
+
+/// Collects nodes, meshes and data of a file, and writes it. The JSON begins with what readers of
+/// the records need.
+class GlbBuilder {
+  public:
+    struct Primitive {
+        int positions = 0, normals = -1, places = -1, indices = 0;  ///< accessors; -1 for none
+        int material = 0;
+    };
+
+    /// Materials are made when first used. \return its index
+    int material(Material material, bool double_sided);
+    /// A material with a picture (PNG) on it, whose places are 0,0 at its upper left corner and 1,1
+    /// at the lower right one; beyond them its edges go on. \return its index \pre the picture
+    /// stays as it is until finish(), and is the only one
+    int pictureMaterial(std::string_view name, std::string_view png);
+    /// \pre the surface has triangles; it stays as it is until finish() if it has places
+    Primitive add(const GlbSurface& surface, int material);
+    /// The mesh of a file, in views of its own, once for all of equal digest.
+    /// \pre it has triangles, and stays as it is until finish()
+    Primitive add(const TriangleMesh& mesh, int material);
+    /// \return its index \pre there are primitives
+    int addMesh(std::string_view name, const std::vector<Primitive>& primitives);
+    void addNode(const GlbNode& node);
+
+    /// Writes the whole file. All nodes stand in a node `room` at this place, in glTF's axes.
+    /// \throws FormatError as writeGlbContainer does
+    void finish(std::string_view records, const std::array<double, 3>& origin,
+                const ByteSink& sink);
+
+  private:
+    // Accessors name views before the later ones are known: those of files follow the four.
+    enum View : int { kRecords, kPositions, kNormals, kIndices, kFiles };
+    struct ViewSpec {
+        std::vector<std::string_view> data;  ///< in pieces
+        int stride = 0;                      ///< bytes; 0: none is given
+        int target = 0;                      ///< how glTF uses it; 0: not at all
+    };
+    struct FileMesh {
+        std::string digest;
+        int view = 0;  ///< of its positions; that of its indices follows
+        Primitive primitive;
+    };
+
+    /// The items of a list in the file. What is full is put aside.
+    struct Section {
+        JsonWriter json;
+        std::vector<std::string> full;
+
+        void putAside();
+        [[nodiscard]] bool isEmpty() const { return full.empty() && json.text().empty(); }
+    };
+
+    int addAccessor(int view, std::size_t offset, std::size_t count, const char* type);
+    int addView(const ViewSpec& view);
+    JsonWriter& beginMaterial(std::string_view name);
+    int addPositions(int view, std::size_t offset, const std::vector<GlbSurface::Vector>& points);
+    void writeExtras(JsonWriter& json) const;
+    static std::vector<std::string_view> writeViews(JsonWriter& json,
+                                                    const std::vector<ViewSpec>& views);
+    void writeScene(JsonWriter& json, const std::array<double, 3>& origin);
+
+    Blocks<GlbSurface::Vector> positions_, normals_;
+    Blocks<std::uint32_t> indices_;
+    std::vector<ViewSpec> file_views_;
+    std::vector<FileMesh> files_;
+    std::map<std::pair<Material, bool>, int> materials_;
+    Section materials_json_, meshes_json_, accessors_json_, nodes_json_;
+    int material_count_ = 0, meshes_ = 0, accessors_ = 0, nodes_ = 0;
+    int picture_view_ = -1;  ///< of the picture; -1 for none
+};
+
+}  // namespace ispace

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/importers.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/message.h"
+#include "io/calibration.h"
+#include "io/glb/glb_read.h"
+#include "io/import_records.h"
+#include "io/mesh/cloud_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/mesh/mesh_parts.h"
+#include "raster/picture.h"
+#include "record/text.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr const char* kWanted =
+    "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, a picture, HouseExpo JSON, an ARIA or "
+    "MovingAI map, DXF, SVG, SDF, IFC, a mesh or a point cloud";
+constexpr std::string_view kBlanks = " \t\r\n";
+
+/// UTF-8 without control characters other than those of plain text.
+bool isPlainText(std::string_view bytes) {
+    while (!bytes.empty()) {
+        const auto first = static_cast<unsigned char>(bytes.front());
+        if (first < 0x20 && kBlanks.find(bytes.front()) == std::string_view::npos) return false;
+        const std::size_t length = utf8Length(bytes);
+        if (length == 0) return false;
+        bytes.remove_prefix(length);
+    }
+    return true;
+}
+
+/// A line of text and its number.
+struct Line {
+    std::string_view text;
+    int number = 0;
+};
+
+/// The first line that holds more than blanks and a comment, from its first word on.
+Line firstLine(std::string_view bytes) {
+    LineReader lines(bytes);
+    while (const auto line = lines.next())
+        if (const auto text = trimmed(*line); !text.empty() && text.front() != '#')
+            return {text, lines.number()};
+    return {};
+}
+
+/// True for `desk at=2,3` and for a known keyword alone: records that lack their magic line.
+bool isRecordLine(std::string_view line, const Schemas& schemas) {
+    const std::string_view first = line.substr(0, line.find_first_of(kBlanks));
+    if (first.find_first_of(":-{[") != std::string_view::npos) return false;  // YAML
+    std::string_view rest = line.substr(first.size());
+    rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
+    if (rest.empty()) return schemas.find(first) != nullptr;
+    const std::size_t equals = rest.find('=');
+    return equals != 0 && equals < rest.find_first_of(" \t:{[\"'");
+}
+
+/// First bytes of known files that are not read, and what they are.
+constexpr std::pair<std::string_view, const char*> kForeign[] = {
+    {"%PDF-",
+     "a PDF: if it was drawn, not scanned, convert it to SVG, for example with `pdftocairo -svg "
+     "FILE plan.svg`, or to a picture with `pdftoppm -png`"},
+    {"%!PS", "PostScript: convert it to PDF with `ps2pdf`, then to SVG with `pdftocairo -svg`"},
+    {"8BPS", "a Photoshop picture: convert it, for example with `convert FILE[0] plan.png`"},
+    {"ISO-10303-21",
+     "a STEP file without a building (IFC): export it as STL or OBJ, for example with FreeCAD"},
+    {"gimp xcf", "a GIMP picture: export it as PNG"},
+    {"GIF8", "a GIF picture: convert it, for example with `convert FILE plan.png`"},
+    {std::string_view("\0\0\0\x0cjP  ", 8),
+     "a JPEG 2000 picture: convert it, for example with `convert FILE plan.png`"},
+    {std::string_view("\xff\xfe\xff\x0e"
+                      "S\0k\0e\0t\0c\0h\0U\0p\0",
+                      20),
+     "a SketchUp model: export it as COLLADA, and cut walls from it with --slice-walls"},
+    {"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
+     "an OLE file, as Revit (.rvt) and Visio (.vsd) write: export it as IFC, DXF or SVG"},
+    {std::string_view("PK\3\4", 4),
+     "a zip archive: unpack it; of a drawing of Visio or LibreOffice export SVG"},
+    {"ASTM-E57", "an E57 point cloud: convert it to PCD or PLY, for example with CloudCompare"},
+    {"BLENDER", "a Blender scene: export it as glTF or COLLADA"},
+    {"\x1f\x8b", "compressed with gzip: unpack it with `gunzip` (a .svgz becomes .svg)"},
+};
+
+/// What a well-known foreign file is and how to convert it; "" for others.
+std::string foreignFile(std::string_view bytes) {
+    if (bytes.starts_with("AutoCAD Binary DXF"))
+        return "binary DXF: save it as ASCII DXF, for example with LibreCAD or FreeCAD";
+    if (bytes.starts_with("AC10") && bytes.size() > 6 && bytes[4] >= '0' && bytes[4] <= '9')
+        return "a DWG drawing: convert it to DXF, for example with `dwg2dxf FILE` (LibreDWG)";
+    for (const auto& [magic, what] : kForeign)
+        if (bytes.starts_with(magic)) return what;
+    return "";
+}
+
+/// Names foreign JSON, which would pass as YAML.
+std::string foreignJson(std::string_view bytes) {
+    if (bytes.find("\"FeatureCollection\"") != std::string_view::npos)
+        return "GeoJSON, which is written but not read";
+    return "";
+}
+
+/// What is to be read, and how.
+struct Source {
+    std::string_view bytes;  ///< without a byte order mark
+    const std::string& operand;
+    const ImportOptions& options;
+    const Schemas& schemas;
+};
+
+/// A format that is read.
+struct InputFormat {
+    bool is_plan;  ///< rooms are chosen from it, see isPlan()
+    bool (*holds)(const Source&);
+    Document (*read)(const Source&);
+};
+
+template <bool (*kTest)(std::string_view)>
+bool holdsBytes(const Source& source) {
+    return kTest(source.bytes);
+}
+
+template <Document (*kReader)(std::string_view, const std::string&, const ImportOptions&,
+                              const Schemas&)>
+Document importPlan(const Source& source) {
+    return kReader(source.bytes, source.operand, source.options, source.schemas);
+}
+
+/// Reads a mesh, with the upward axis that OBJ leaves open.
+template <Document (*kReader)(const std::string&, const ImportOptions&, const Schemas&)>
+Document readUpright(const Source& source) {
+    ImportOptions options = source.options;
+    if (options.up != "auto" || meshFormatOf(source.bytes) != MeshFormat::Obj)
+        return kReader(source.operand, options, source.schemas);
+    const auto* const unit =
+        std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
+                     [&](const LengthUnit& known) { return known.name == options.units; });
+    options.up = objUpAxis(source.bytes, unit == kLengthUnits.end() ? 1 : unit->metres);
+    Document document = kReader(source.operand, options, source.schemas);
+    const std::string choice = "OBJ taken with " + options.up + " upwards";
+    if (!objUpComment(source.bytes) && options.report != nullptr)
+        options.report->addChoice(source.operand, choice + ", by its extent; --up says otherwise");
+    else
+        document.notes.insert(document.notes.begin(), choice);
+    return document;
+}
+constexpr auto* kReadMesh = readUpright<meshDocument>;
+constexpr auto* kReadWalls = readUpright<readMeshWalls>;
+/// A mesh that is cut into walls is a plan; a model of ours stays what it is.
+bool isCutMesh(const Source& source) {
+    if (!source.options.slice_walls || isPointCloud(source.bytes)) return false;
+    const bool is_mesh = (isGlb(source.bytes) && !glbHasRecords(source.bytes)) ||
+                         isMeshFile(source.bytes) || hasMeshSuffix(source.operand);
+    return is_mesh && !isRecordText(source.bytes);
+}
+Document readGlbOrMesh(const Source& source) {
+    return glbHasRecords(source.bytes) ? readGlb(source.bytes, source.operand, source.schemas)
+                                       : kReadMesh(source);
+}
+Document readRecords(const Source& source) {
+    return readRecordText(source.bytes, source.operand, source.schemas);
+}
+Document readYamlRecords(const Source& source) {
+    return readYaml(source.bytes, source.operand, source.schemas, {}, source.options.max_work,
+                    source.options.includes);
+}
+bool isHouseExpo(const Source& source) {
+    return isJson(source.bytes) && source.bytes.find("\"verts\"") != std::string_view::npos;
+}
+
+/// Formats recognised by their first bytes.
+constexpr InputFormat kFormatsByMagic[] = {
+    {true, isCutMesh, kReadWalls},
+    {false, holdsBytes<isGlb>, readGlbOrMesh},
+    {false, holdsBytes<isRecordText>, readRecords},
+    {true, holdsBytes<isAriaMap>, importPlan<readAriaMap>},
+    {true, holdsBytes<isDxf>, importPlan<readDxf>},
+    {true, holdsBytes<isGridMap>, importPlan<readGridMap>},
+    {true, holdsBytes<isSvg>, importPlan<readSvg>},
+    {true, holdsBytes<isSdf>, importPlan<readSdf>},
+    {true, holdsBytes<isIfc>, importPlan<readIfc>},
+    {true, holdsBytes<isPicture>, importPlan<readBarePicture>},
+    {true, holdsBytes<isPointCloud>, importPlan<readPointCloud>},
+    {false, holdsBytes<isMeshFile>, kReadMesh},
+};
+
+/// Formats recognised within plain text; the last takes everything.
+constexpr InputFormat kFormatsOfText[] = {
+    {true, isHouseExpo, importPlan<readHouseExpo>},
+    {true, holdsBytes<isRosMap>, importPlan<readRosMap>},
+    {false, [](const Source&) { return true; }, readYamlRecords},
+};
+
+constexpr InputFormat kMeshBySuffix = {
+    false, [](const Source& source) { return hasMeshSuffix(source.operand); }, kReadMesh};
+
+const InputFormat* findFormat(std::span<const InputFormat> formats, const Source& source) {
+    const auto found = std::find_if(formats.begin(), formats.end(),
+                                    [&source](const auto& format) { return format.holds(source); });
+    return found == formats.end() ? nullptr : &*found;
+}
+
+/// The format of the source, or nothing with `refuse(line, message)` called where it is none.
+template <typename Refuse>
+const InputFormat* formatOf(const Source& source, Refuse refuse) {
+    const std::string_view bytes = source.bytes;
+    if (bytes.find_first_not_of(kBlanks) == std::string_view::npos)
+        return refuse(0, std::string("empty input: ") + kWanted), nullptr;
+    if (const InputFormat* format = findFormat(kFormatsByMagic, source)) return format;
+    if (const std::string what = foreignFile(bytes); !what.empty())
+        return refuse(0, "not an environment or layout but " + what), nullptr;
+    if (const std::string what = foreignMesh(source.operand); !what.empty())
+        return refuse(0, "not an environment or layout but " + what), nullptr;
+    if (kMeshBySuffix.holds(source)) return &kMeshBySuffix;
+    if (!isPlainText(bytes))
+        return refuse(0, std::string("not an environment or layout: ") + kWanted), nullptr;
+    if (isJson(bytes) && !isHouseExpo(source))
+        if (const std::string what = foreignJson(bytes); !what.empty())
+            return refuse(0, "not an environment or layout but " + what), nullptr;
+    const Line line = firstLine(bytes);
+    if (isRecordLine(line.text, source.schemas))
+        return refuse(line.number,
+                      "a record before the magic line: the first line must be "
+                      "`#env 1` or `#3dm 1`"),
+               nullptr;
+    return findFormat(kFormatsOfText, source);
+}
+
+}  // namespace
+
+bool isPlan(std::string_view bytes, const std::string& operand, const ImportOptions& options,
+            const Schemas& schemas) {
+    const InputFormat* format = formatOf({withoutMark(bytes), operand, options, schemas},
+                                         [](int /*line*/, const std::string& /*message*/) {});
+    return format != nullptr && format->is_plan;
+}
+
+Document parseDocument(std::string_view bytes, const std::string& operand,
+                       const ImportOptions& options, const Schemas& schemas) {
+    const Source source{withoutMark(bytes), operand, options, schemas};
+    const InputFormat* format = formatOf(
+        source, [&](int line, const std::string& message) { failFile(operand, message, line); });
+    Document document = format->read(source);
+    if (options.load_files) loadFiles(document, operand);
+    return document;
+}
+
+void ImportReport::addChoice(const std::string& operand, const std::string& sentence) {
+    choices.push_back(displayName(operand) + ": note: " + sentence);
+}
+
+void loadFiles(Document& document, const std::string& operand) {
+    loadMeshes(document, operand);
+    loadCalibrations(document, operand);
+}
+
+Document readDocument(const std::string& operand, const ImportOptions& options,
+                      const Schemas& schemas) {
+    if (auto document = operand == "-" ? std::nullopt : readGlbFile(operand, schemas)) {
+        if (options.load_files) loadFiles(*document, operand);
+        return std::move(*document);
+    }
+    return parseDocument(readAll(operand), operand, options, schemas);
+}
+
+}  // namespace ispace

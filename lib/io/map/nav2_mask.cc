@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/map/nav2_mask.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/json_writer.h"
+#include "base/number.h"
+
+namespace ispace {
+
+const Nav2Filter kKeepoutFilter{"nav2_costmap_2d::KeepoutFilter",        "keepout", 0, 0, 1,
+                                "100 (black): keep out; 0 (white): free"};
+const Nav2Filter kSpeedFilter{
+    "nav2_costmap_2d::SpeedFilter",
+    "speed",
+    1,
+    100,
+    -1,
+    "v above 0: at most 100 - v per cent of full speed; 0 (white): no limit"};
+
+namespace {
+
+/// A number that YAML's readers take for a double.
+std::string yamlDouble(double value) {
+    const std::string text = formatDouble(value);
+    return text.find('.') == std::string::npos ? text + ".0" : text;
+}
+
+std::string mapText(const Nav2Mask& mask, const std::string& picture_name) {
+    const Nav2Filter& filter = mask.filter;
+    const std::string name(filter.name);
+    std::string text = "# A mask for " + std::string(filter.plugin) + ". Values of cells:\n# " +
+                       std::string(filter.meaning) +
+                       "\n# The nodes that publish it take:\n"
+                       "# costmap_filter_info_server:\n#   ros__parameters:\n#     type: " +
+                       std::to_string(filter.type) + "\n#     base: " + yamlDouble(filter.base) +
+                       "\n#     multiplier: " + yamlDouble(filter.multiplier) +
+                       "\n#     mask_topic: /" + name + "_filter_mask\n#     filter_info_topic: /" +
+                       name +
+                       "_costmap_filter_info\n# filter_mask_server:\n#   ros__parameters:\n" +
+                       "#     topic_name: /" + name +
+                       "_filter_mask\n#     frame_id: map\n#     yaml_filename: this file\n";
+    return text + rosMapYaml({.image = picture_name,
+                              .mode = "scale",
+                              .resolution = mask.cell,
+                              .origin = mask.grid.limits.low,
+                              .occupied = 1,
+                              .free = 0});
+}
+
+/// Quotes names that YAML would not read as text; JSON strings are YAML strings.
+std::string yamlText(const std::string& text) {
+    const auto is_plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_' || c == '.' || c == '/' || c == '-';
+    };
+    const bool begins_as_word =
+        !text.empty() && text.front() != '-' &&
+        (is_plain(text.front()) && !(text.front() >= '0' && text.front() <= '9'));
+    if (begins_as_word && text.find('.') != std::string::npos &&
+        std::all_of(text.begin(), text.end(), is_plain))
+        return text;
+    JsonWriter json;
+    json.value(text);
+    return json.take();
+}
+
+}  // namespace
+
+std::string rosMapYaml(const RosMap& map) {
+    return "image: " + yamlText(map.image) + "\nmode: " + std::string(map.mode) +
+           "\nresolution: " + formatDouble(map.resolution) + "\norigin: [" +
+           formatDouble(map.origin.x) + ", " + formatDouble(map.origin.y) +
+           ", 0]\nnegate: 0\noccupied_thresh: " + yamlDouble(map.occupied) +
+           "\nfree_thresh: " + yamlDouble(map.free) + '\n';
+}
+
+Nav2MaskFiles nav2MaskFiles(const Nav2Mask& mask, const std::string& picture_name) {
+    constexpr double kWhite = 255, kMost = 100;
+    const Grid& grid = mask.grid;
+    std::string picture =
+        "P5\n" + std::to_string(grid.columns) + " " + std::to_string(grid.rows) + "\n255\n";
+    picture.reserve(picture.size() + grid.size());
+    for (int row = grid.rows; row-- > 0;)
+        for (int column = 0; column < grid.columns; ++column) {
+            // map_server computes round(100 * (255 - shade) / 255), which is the value again.
+            const double dark = std::round(mask.values[grid.cell(column, row)] * kWhite / kMost);
+            picture += static_cast<char>(static_cast<std::uint8_t>(kWhite - dark));
+        }
+    return {mapText(mask, picture_name), std::move(picture)};
+}
+
+}  // namespace ispace

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/mesh/mesh_cut.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "env/body.h"
+#include "env/slice.h"
+#include "env/walls.h"
+#include "geom/arrangement.h"
+#include "geom/point.h"
+#include "geom/polygon.h"
+#include "geom/predicates.h"
+#include "io/import_records.h"
+#include "io/importers.h"
+#include "io/mesh/mesh_file.h"
+#include "io/plan/line_plan.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kStraight = 0.001;  // metres: floats of a file wobble by less
+
+bool edgesMeet(const Polygon& a, const Polygon& b) {
+    bool meet = false;
+    forEachEdge(a, [&](const Segment2& s) {
+        forEachEdge(b, [&](const Segment2& t) { meet = meet || intersects(s, t); });
+    });
+    return meet;
+}
+
+/// Unites solids whose edges meet, as walls that run into each other. One inside another stays, as
+/// furniture in a room modelled by its inner surface.
+class Joiner {
+  public:
+    explicit Joiner(std::vector<Polygon> solids) : solids_(std::move(solids)) {
+        for (std::size_t i = 0; i < solids_.size(); ++i) group_.push_back(i);
+    }
+
+    std::vector<Polygon> join() {
+        groupTouching();
+        std::map<std::size_t, std::vector<Polygon>> groups;
+        for (std::size_t i = 0; i < solids_.size(); ++i)
+            groups[rootOf(i)].push_back(std::move(solids_[i]));
+        std::vector<Polygon> outlines;
+        // Even single ones: a cavity joined to its outline by a seam becomes a curve of its own.
+        for (const auto& [root, group] : groups)
+            for (Region& region : unite(group)) {
+                outlines.push_back(std::move(region.outline));
+                for (Polygon& hole : region.holes) outlines.push_back(std::move(hole));
+            }
+        return outlines;
+    }
+
+  private:
+    std::size_t rootOf(std::size_t i) {
+        while (group_[i] != i) i = group_[i] = group_[group_[i]];
+        return i;
+    }
+
+    /// From left to right, so that only boxes that overlap in x are compared.
+    void groupTouching() {
+        std::vector<Box2> boxes;
+        for (const Polygon& solid : solids_) boxes.push_back(bounds(solid));
+        std::vector<std::size_t> order(group_);
+        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            return std::pair(boxes[a].low.x, a) < std::pair(boxes[b].low.x, b);
+        });
+        for (std::size_t i = 0; i < order.size(); ++i)
+            for (std::size_t k = i + 1; k < order.size(); ++k) {
+                const Box2 &a = boxes[order[i]], &b = boxes[order[k]];
+                if (b.low.x > a.high.x) break;
+                if (b.low.y > a.high.y || b.high.y < a.low.y) continue;
+                if (rootOf(order[i]) != rootOf(order[k]) &&
+                    edgesMeet(solids_[order[i]], solids_[order[k]]))
+                    group_[std::max(rootOf(order[i]), rootOf(order[k]))] =
+                        std::min(rootOf(order[i]), rootOf(order[k]));
+            }
+    }
+
+    std::vector<Polygon> solids_;
+    std::vector<std::size_t> group_;
+};
+
+}  // namespace
+
+void closeLoops(Slice& slice) {
+    std::vector<PlanPath> lines;
+    for (const Segment2& sheet : slice.sheets) lines.push_back({{sheet.a, sheet.b}, false, 0});
+    slice.sheets.clear();
+    for (PlanPath& path : joinedAtEnds(withoutRepeats(snapped(lines, kStraight)))) {
+        if (path.closed && !selfCrossing(path.points)) {
+            slice.solids.push_back(std::move(path.points));
+            continue;
+        }
+        for (std::size_t i = 0; i < path.pieceCount(); ++i) slice.sheets.push_back(path.piece(i));
+    }
+}
+
+std::vector<PlanPath> cutPaths(Slice slice) {
+    std::vector<PlanPath> paths;
+    // Ends of triangles are not corners: openings would be fitted to them.
+    for (Polygon& outline : simplified(Joiner(std::move(slice.solids)).join(), kStraight))
+        paths.push_back({std::move(outline), true, 0});
+    for (const Segment2& sheet : slice.sheets) paths.push_back({{sheet.a, sheet.b}, false, 0});
+    return paths;
+}
+
+namespace {
+
+constexpr double kDefaultCut = 1.2;  // metres: over most sills, under most lintels
+
+/// The cut through a layer as lines of the plan.
+void addShapes(Slice slice, const std::string& layer, std::vector<PlanShape>& shapes) {
+    for (PlanPath& path : cutPaths(std::move(slice))) {
+        PlanShape& shape = shapes.emplace_back();
+        shape.path = std::move(path);
+        shape.layer = layer;
+    }
+}
+
+ImportOptions straightened(ImportOptions options) {
+    options.simplify = options.simplify.value_or(kStraight);
+    return options;
+}
+
+/// Lowest and highest point of meshes.
+struct Heights {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+
+    void add(const Body& body) {
+        for (const Mesh& mesh : body.meshes)
+            for (const Point3& p : mesh.vertices) {
+                low = std::min(low, p.z);
+                high = std::max(high, p.z);
+            }
+    }
+    [[nodiscard]] std::string text() const {
+        return "from " + formatFixed(low, 2) + " m to " + formatFixed(high, 2) + " m";
+    }
+};
+
+}  // namespace
+
+Document readMeshWalls(const std::string& operand, const ImportOptions& options,
+                       const Schemas& schemas) {
+    if (options.slice_top) failFile(operand, "a mesh is cut at one height: --slice-walls M");
+    // The mesh as it would stand in a room.
+    Document mesh = meshDocument(operand, options, schemas);
+    loadMeshes(mesh, operand);
+    const Body body = bodyOf(mesh.records.front());
+    Slice slice{options.slice_walls.value_or(kDefaultCut), {}, {}};
+    cutMeshes(body, slice.height, slice);
+    std::vector<PlanShape> shapes;
+    const double height = slice.height;
+    addShapes(std::move(slice), "cut", shapes);
+    if (shapes.empty()) {
+        Heights heights;
+        heights.add(body);
+        failFile(operand, "nothing stands at " + formatFixed(height, 2) + " m: the mesh reaches " +
+                              heights.text() + "; are --slice-walls, --units and --up right?");
+    }
+    ImportOptions plan = straightened(options);
+    plan.wall_layers.clear();  // a mesh has none
+    plan.door_layers.clear();
+    plan.window_layers.clear();
+    ImportRecords out(schemas, operand, options);
+    for (std::string& side_file : mesh.sources) out.source(std::move(side_file));
+    if (writeLinePlan(std::move(shapes), operand, plan, out) == 0)
+        out.warn("the cut at " + formatFixed(height, 2) +
+                 " m encloses no room, and what is inside of its walls may count as one: try "
+                 "another height with --slice-walls, wider gaps with --close-gaps, or --up");
+    return out.take();
+}
+
+}  // namespace ispace

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/mesh/mesh_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "base/confined.h"
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "io/exporters.h"
+#include "io/ifc/building.h"
+#include "io/import_records.h"
+#include "io/mesh/mesh_parts.h"
+#include "record/text.h"
+
+namespace ispace {
+
+namespace {
+
+/// Loads files, each once.
+class MeshLoader {
+  public:
+    MeshLoader(Document& document, const std::string& operand)
+        : document_(document), operand_(operand) {}
+
+    void load() {
+        for (Record& record : document_.records)
+            if (record.keyword() == "mesh" && record.mesh() == nullptr) load(record);
+        findings_.throwIfAny();
+    }
+
+  private:
+    void load(Record& record) {
+        const std::string& file = record.text("file");
+        const std::string path = sideFilePath(operand_, file);
+        try {
+            MeshOptions options{record.text("up"), record.text("side_files") == "anywhere"};
+            std::shared_ptr<const TriangleMesh>& mesh =
+                loaded_[{path, options.up, options.side_files_anywhere}];
+            if (mesh == nullptr) {
+                addSource(path);
+                std::vector<std::string> side_files;
+                mesh = loadMesh(path, options, &side_files);
+                for (const std::string& side : side_files) addSource(side);
+            }
+            checkDigest(record, *mesh);
+            record.setMesh(mesh);
+        } catch (const std::system_error& error) {
+            addFinding(record, path, " cannot be opened: " + error.code().message());
+        } catch (const FormatError& error) {
+            addFinding(record, path, ": " + error.diagnostics().front().message);
+        }
+    }
+
+    /// The place of a finding already names an operand.
+    void addFinding(const Record& record, const std::string& path, const std::string& what) {
+        const bool is_operand = path == operand_ && what.starts_with(": ");
+        findings_.add(record.finding(
+            "file", is_operand ? what.substr(2) : "mesh file `" + printable(path) + '`' + what));
+    }
+
+    void checkDigest(const Record& record, const TriangleMesh& mesh) {
+        if (!record.has("digest") || record.text("digest") == mesh.digest) return;
+        findings_.add(record.finding("digest", "mesh file `" + printable(record.text("file")) +
+                                                   '`' + " has changed: its digest is " +
+                                                   mesh.digest +
+                                                   "; leave `digest` out to take it as it is"));
+    }
+
+    void addSource(const std::string& path) {
+        std::vector<std::string>& sources = document_.sources;
+        if (path != operand_ && std::find(sources.begin(), sources.end(), path) == sources.end())
+            sources.push_back(path);
+    }
+
+    Document& document_;
+    const std::string& operand_;
+    std::map<std::tuple<std::string, std::string, bool>, std::shared_ptr<const TriangleMesh>>
+        loaded_;
+    Diagnostics findings_;
+};
+
+}  // namespace
+
+void loadMeshes(Document& document, const std::string& operand) {
+    MeshLoader(document, operand).load();
+}
+
+Document meshDocument(const std::string& operand, const ImportOptions& options,
+                      const Schemas& schemas) {
+    if (operand == "-")
+        throw FormatError(Diagnostic{displayName(operand), 0, 0,
+                                     "a mesh on standard input: name its file instead, so that "
+                                     "records can refer to it"});
+    ImportRecords out(schemas, operand, options);
+    Record& record = out.add("mesh", 0);
+    const std::filesystem::path path(operand);
+    record.set("id", out.freeId(path.stem().string(), "mesh"));
+    record.set("file", path.filename().string());
+    if (!options.units.empty()) record.set("unit", options.units);
+    record.set("up", options.up);
+    return out.take();
+}
+
+std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const MeshOptions& options,
+                                             std::vector<std::string>* side_files) {
+    if (const std::string what = foreignMesh(path); !what.empty()) failFile(path, "it is " + what);
+    const RegularFile main = openRegular(path);
+    std::set<std::string> opened;
+    const auto open = [&](const std::string& name) {
+        auto file = openSideFile(path, name, options.side_files_anywhere);
+        const std::string side = sideFilePath(path, name);
+        if (file && side_files != nullptr && opened.insert(side).second)
+            side_files->push_back(side);
+        return file;
+    };
+    const auto limits = [](std::size_t bytes) { return meshLimits(bytes, false); };
+    auto mesh = std::make_shared<TriangleMesh>(
+        unpackedMesh(readConfined({.name = path,
+                                   .program = "read-mesh",
+                                   .arguments = {meshSuffix(path), options.up, "mesh"},
+                                   .file = main.file.fd(),
+                                   .bytes = main.size,
+                                   .limits = limits,
+                                   .open = open,
+                                   .kind = "mesh file",
+                                   .reader = "assimp",
+                                   .subject = "meshes are",
+                                   .hint = "; is it installed, with assimp?"}),
+                     path));
+    if (mesh->triangles.empty()) failFile(path, "a mesh file without triangles");
+    mesh->digest = meshDigest(*mesh);
+    return mesh;
+}
+
+Building readBuildingInChild(std::string_view bytes, const std::string& name,
+                             std::optional<double> slice) {
+    const OpenFile copy = fileInMemory(bytes);
+    const std::string answer = readConfined(
+        {.name = name,
+         .program = "read-mesh",
+         .arguments = {meshSuffix(name), slice ? formatDouble(*slice) : "", "building"},
+         .file = copy.fd(),
+         .bytes = bytes.size(),
+         .limits = [](std::size_t size) { return meshLimits(size, true); },
+         .kind = "IFC file",
+         .reader = "its reader",
+         .subject = "buildings are",
+         .hint = "; is it installed, with assimp?"});
+    try {
+        return unpackedBuilding(answer);
+    } catch (const std::runtime_error& error) {
+        failFile(name, std::string("bad IFC file: ") + error.what());
+    }
+}
+
+}  // namespace ispace

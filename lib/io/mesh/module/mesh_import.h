@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/mesh/mesh_parts.h"
+
+namespace ispace {
+
+/// By content, else by suffix (".obj", lower case).
+/// \throws std::runtime_error if neither tells
+MeshFormat meshFormat(std::string_view bytes, const std::string& suffix);
+
+/// Checks beforehand what crashes or hangs assimp 5.2, or what it trusts: headers of PLY, chunks of
+/// GLB, and nodes of glTF and COLLADA that form circles or are too deep or too many. \throws
+/// std::runtime_error
+void checkMesh(MeshFormat format, std::string_view bytes);
+
+/// Reads the mesh on standard input with assimp, as loadMesh says. \param size in bytes
+/// \param up the upward axis, or auto \param obj_up what objUpComment() finds, of OBJ
+/// \throws std::runtime_error with what is wrong with the file
+TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up,
+                        const std::optional<std::string>& obj_up = {});
+
+}  // namespace ispace

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan/drawing_source.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+#include "base/glob.h"
+#include "base/number.h"
+#include "env/environment.h"
+
+namespace ispace {
+
+namespace {
+
+/// Metres that a plan is wide if its unit is right.
+constexpr double kLikelyPlan = 3, kUnlikelyPlan = 300;
+
+/// Metres; other drawings have another unit than they say.
+constexpr double kSmallestPlan = 1, kLargestPlan = 2000;
+
+/// Rooms whose areas differ by a smaller share are the same one.
+constexpr double kSameRoom = 0.01;
+
+/// Drawings with more lines of walls are not read again for a message.
+constexpr std::size_t kMaxLinesReadAgain = 100'000;
+
+constexpr std::array<std::string_view, 26> kWallWords{
+    "wall",  "walls",   "wand",   "wände",  "waende", "wande", "mauer", "mauern", "mauerwerk",
+    "mur",   "murs",    "muro",   "muros",  "muri",   "muur",  "muren", "parede", "paredes",
+    "pared", "paredes", "parete", "pareti", "vägg",   "vegg",  "stěna", "стена"};
+/// Words end with these, as in Innenwand and CURTAINWALL.
+constexpr std::array<std::string_view, 6> kWallEnds{"wall",  "walls",  "wand",
+                                                    "wände", "waende", "mauer"};
+/// Of wall layers that hold no outlines of walls.
+constexpr std::array<std::string_view, 20> kOtherWords{
+    "patt",  "hatch", "hatching", "fill",    "schraffur", "iden",     "text",
+    "texts", "tag",   "tags",     "dim",     "dims",      "note",     "notes",
+    "door",  "doors", "window",   "windows", "glaz",      "furniture"};
+
+template <typename List>
+bool isOneOf(const List& words, std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// The words of a name in lower case: letters of ASCII, and everything that is not ASCII.
+std::vector<std::string> wordsOf(std::string_view name) {
+    std::vector<std::string> words;
+    bool inside = false;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        char c = name[i];
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        const bool is_letter = (c >= 'a' && c <= 'z') || static_cast<unsigned char>(c) >= 0x80;
+        if (is_letter && !inside) words.emplace_back();
+        inside = is_letter;
+        if (!is_letter) continue;
+        // Capital letters of Latin-1 in UTF-8: Ä is C3 84, ä C3 A4.
+        const bool is_capital =
+            i > 0 && name[i - 1] == '\xc3' && static_cast<unsigned char>(c) <= 0x9e;
+        words.back() += is_capital ? static_cast<char>(c + 0x20) : c;
+    }
+    return words;
+}
+
+/// As an option takes it in a shell, its glob characters escaped.
+std::string optionText(const std::string& name) {
+    std::string glob;
+    bool is_plain = true;
+    for (const char c : name) {
+        const bool is_glob = std::string_view("*?[]\\").find(c) != std::string_view::npos;
+        if (is_glob) glob += '\\';
+        glob += c;
+        is_plain = is_plain && !is_glob &&
+                   (std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                    static_cast<unsigned char>(c) >= 0x80 ||
+                    std::string_view("-_.").find(c) != std::string_view::npos);
+    }
+    return is_plain ? glob : '\'' + glob + '\'';
+}
+
+}  // namespace
+
+std::string unitText(double metres_per_unit) {
+    return "a unit of the drawing is " + formatDouble(std::round(metres_per_unit * 1e9) / 1e6) +
+           " mm";
+}
+
+double metresPerUnit(double width, const std::string& name,
+                     const std::function<std::vector<PlanPath>(double)>& read) {
+    // Curves are drawn to a millimetre: the second round measures them at nearly the right scale.
+    double scale = 0.001;
+    for (int round = 0; round < 2; ++round) {
+        Box2 box;
+        for (const PlanPath& path : read(scale))
+            for (const Point2 p : path.points) box.add(p);
+        if (!(box.width() > 0))
+            failFile(name, "the lines of walls have no width: --width-is needs some");
+        scale *= width / box.width();
+    }
+    return scale;
+}
+
+std::string otherUnitHint(double extent, const DrawingSource& drawing,
+                          const ImportOptions& options) {
+    if (!drawing.area) return "";
+    for (const char* name : {"m", "mm", "cm", "inch", "foot"}) {
+        const auto other =
+            std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
+                         [&](const LengthUnit& u) { return std::string_view(u.name) == name; });
+        const double metres = extent / drawing.metres_per_unit * other->metres;
+        if (metres < kLikelyPlan || metres > kUnlikelyPlan) continue;
+        ImportOptions as_other = options;
+        as_other.units = name;
+        as_other.width_is.reset();
+        as_other.found = nullptr;
+        return " It is read in " + drawing.unit + "; with --units " + name + " it would be " +
+               lengthText(metres) + " m wide and have " + areaText(drawing.area(as_other)) +
+               " of floor";
+    }
+    return "";
+}
+
+void checkScale(double extent, const DrawingSource& drawing, const std::string& name,
+                const ImportOptions& options) {
+    if (!options.units.empty() || options.width_is) return;
+    if (extent >= kSmallestPlan && extent <= kLargestPlan) return;
+    const std::string hint = otherUnitHint(extent, drawing, options);
+    const std::string metres = extent < kLargestPlan ? lengthText(extent) : formatFixed(extent, 0);
+    failFile(name, "the plan is " + metres + " m wide: is its unit right?" +
+                       (hint.empty() ? " Else " + std::string(kScaleHint)
+                                     : hint + "; or say how wide it is, with --width-is 8.3m"));
+}
+
+bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer) {
+    const auto folded = [](std::string_view text) {
+        std::string lower(text);
+        for (char& c : lower)
+            if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        return lower;
+    };
+    const std::string name = folded(layer);
+    return std::any_of(globs.begin(), globs.end(),
+                       [&](const std::string& glob) { return Glob(folded(glob)).matches(name); });
+}
+
+bool isWallName(std::string_view name) {
+    const std::vector<std::string> words = wordsOf(name);
+    if (std::any_of(words.begin(), words.end(),
+                    [](const std::string& word) { return isOneOf(kOtherWords, word); }))
+        return false;
+    return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+        return isOneOf(kWallWords, word) ||
+               std::any_of(kWallEnds.begin(), kWallEnds.end(),
+                           [&](std::string_view end) { return word.ends_with(end); });
+    });
+}
+
+void warnOfWallNames(const std::map<std::string, std::size_t>& names, double area,
+                     const DrawingSource& drawing, const ImportOptions& options,
+                     ImportRecords& out) {
+    if (names.empty() || !drawing.area) return;
+    std::string hint;
+    std::size_t lines = 0;
+    ImportOptions from_walls = options;
+    from_walls.found = nullptr;
+    for (const auto& [name, count] : names) {
+        const std::string text = optionText(name);
+        hint += " --wall-layer " + text;
+        from_walls.wall_layers.push_back(text.front() == '\'' ? text.substr(1, text.size() - 2)
+                                                              : text);
+        lines += count;
+    }
+    if (lines > kMaxLinesReadAgain)
+        return out.warn("the drawing names its walls, which were not taken alone: try" + hint);
+    try {
+        const double other = drawing.area(from_walls);
+        if (std::abs(other - area) > kSameRoom * std::max(other, area))
+            out.warn("the drawing names its walls: with" + hint + " it would have " +
+                     areaText(other) + " of floor, not " + areaText(area));
+    } catch (const FormatError& /*those layers are no plan*/) {
+        return;
+    }
+}
+
+}  // namespace ispace

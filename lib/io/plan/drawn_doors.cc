@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "geom/predicates.h"
+#include "io/plan/line_plan.h"
+#include "io/plan/plan_lines.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kNarrowLeaf = 0.4, kWideLeaf = 1.5;  // metres
+/// Of the leaf's width: how far lengths and ends may be off.
+constexpr double kOff = 0.12;
+/// Angle between the leaf and the closed door.
+constexpr double kLeastOpen = 5, kMostOpen = 110;  // degrees
+
+/// A curve turns by less at each of its points, one way, and has few of them.
+constexpr double kMostTurn = 35;  // degrees
+constexpr std::size_t kLeastPieces = 2, kMostPieces = 200;
+/// Metres; no swing is shorter or longer.
+constexpr double kShortestSwing = 0.05, kLongestSwing = 2 * kWideLeaf;
+
+/// An end of a leaf that another wall meets this closely is no free end.
+constexpr double kMeets = 2 * kDefaultSnap;
+
+/// Consecutive pieces of a path that bend one way, as indices of pathPieces().
+struct Run {
+    std::size_t first = 0, count = 0;
+    int line = 0;  ///< of the file
+};
+
+class DoorFinder {
+  public:
+    explicit DoorFinder(const std::vector<PlanPath>& paths)
+        : paths_(paths), pieces_(pathPieces(paths)), is_door_(pieces_.size()) {
+        std::size_t first = 0;
+        for (const PlanPath& path : paths) {
+            findRuns(path, first);
+            first += path.pieceCount();
+        }
+    }
+
+    DrawnDoors find() {
+        if (!runs_.empty()) {
+            const NearSegments search(pieces_);
+            std::vector<bool> is_curved(pieces_.size());
+            for (const Run& run : runs_)
+                std::fill_n(is_curved.begin() + static_cast<std::ptrdiff_t>(run.first), run.count,
+                            true);
+            for (const Run& run : runs_) takeDoor(run, search, is_curved);
+        }
+        if (doors_.swings.empty()) return {};
+        dropLeafOutlines();
+        is_door_.flip();
+        doors_.walls = withPieces(paths_, is_door_);
+        // Without other lines these are the room, not its doors.
+        return doors_.walls.empty() ? DrawnDoors{} : std::move(doors_);
+    }
+
+  private:
+    /// A line of the leaf's length from the hinge to the swing.
+    struct Leaf {
+        std::size_t piece;
+        Point2 hinge, end, latch;  ///< `latch` is the swing's end at the closed door
+    };
+
+    static double degreesBetween(Vec2 a, Vec2 b) {
+        return std::atan2(cross(a, b), dot(a, b)) * 180 / std::numbers::pi;
+    }
+
+    /// Those of one path, whose first piece has this index.
+    void findRuns(const PlanPath& path, std::size_t first) {
+        const std::size_t count = path.pieceCount();
+        if (count < kLeastPieces) return;
+        const auto turn_after = [&](std::size_t i) {
+            const Segment2 here = pieces_[first + i], next = pieces_[first + (i + 1) % count];
+            return degreesBetween(here.b - here.a, next.b - next.a);
+        };
+        Run run{first, 1, path.line};
+        double way = 0;
+        for (std::size_t i = 0; i + 1 < count; ++i) {
+            const double turn = turn_after(i);
+            const bool is_curve = turn != 0 && std::abs(turn) <= kMostTurn;
+            if (is_curve && (run.count == 1 || turn * way > 0)) {
+                ++run.count;
+                way = turn;
+                continue;
+            }
+            keep(run);
+            run = {first + i + 1, 1, path.line};
+        }
+        keep(run);
+    }
+
+    void keep(const Run& run) {
+        if (run.count < kLeastPieces || run.count > kMostPieces) return;
+        double length = 0, longest = 0;
+        for (std::size_t i = run.first; i < run.first + run.count; ++i) {
+            const double piece = distance(pieces_[i].a, pieces_[i].b);
+            length += piece;
+            longest = std::max(longest, piece);
+        }
+        if (length >= kShortestSwing && length <= kLongestSwing && longest < kNarrowLeaf)
+            runs_.push_back(run);
+    }
+
+    [[nodiscard]] std::span<const Segment2> of(const Run& run) const {
+        return std::span(pieces_).subspan(run.first, run.count);
+    }
+
+    /// Every line that may be the leaf of this swing.
+    [[nodiscard]] std::vector<Leaf> leavesOf(const Run& run, const NearSegments& search,
+                                             const std::vector<bool>& is_curved) const {
+        const std::span<const Segment2> swing = of(run);
+        const Point2 from = swing.front().a, to = swing.back().b;
+        const Segment2 half = swing[swing.size() / 2];
+        const Point2 middle = swing.size() % 2 == 0 ? half.a : half.a + 0.5 * (half.b - half.a);
+        const double reach = kOff * kWideLeaf;
+        std::vector<Leaf> leaves;
+        for (const std::size_t i : search.near(boundsOf(swing), reach)) {
+            const Segment2& line = pieces_[i];
+            const double width = distance(line.a, line.b);
+            if (is_curved[i] || width < kNarrowLeaf || width > kWideLeaf) continue;
+            const auto is_off = [width](double length) {
+                return std::abs(length - width) > kOff * width;
+            };
+            for (const auto& [hinge, end] : {line, Segment2{line.b, line.a}}) {
+                const Point2 latch = distance(end, from) < distance(end, to) ? to : from;
+                if (is_off(distance(hinge, latch)) || is_off(distance(hinge, middle))) continue;
+                const bool meets =
+                    std::any_of(swing.begin(), swing.end(), [&, at = end](const Segment2& piece) {
+                        return distance(at, piece) <= kOff * width;
+                    });
+                const double open = std::abs(degreesBetween(end - hinge, latch - hinge));
+                if (meets && open >= kLeastOpen && open <= kMostOpen)
+                    leaves.push_back({i, hinge, end, latch});
+            }
+        }
+        return leaves;
+    }
+
+    /// Whether another line than those of the door ends at the leaf's free end.
+    [[nodiscard]] bool isAttached(const Leaf& leaf, const Run& run,
+                                  const NearSegments& search) const {
+        const auto near = search.near(leaf.end, kMeets);
+        return std::any_of(near.begin(), near.end(), [&](std::size_t i) {
+            if (i == leaf.piece || (i >= run.first && i < run.first + run.count)) return false;
+            const auto& [a, b] = pieces_[i];
+            const double width = distance(leaf.hinge, leaf.end);
+            // Another side of the leaf is no wall.
+            const bool is_leaf = distance(a, {leaf.hinge, leaf.end}) <= kOff * width &&
+                                 distance(b, {leaf.hinge, leaf.end}) <= kOff * width;
+            return !is_leaf && std::min(distance(a, leaf.end), distance(b, leaf.end)) <= kMeets;
+        });
+    }
+
+    /// Of lines to both ends of a swing one is the leaf and one the threshold or a wall: the leaf
+    /// ends freely.
+    void takeDoor(const Run& run, const NearSegments& search, const std::vector<bool>& is_curved) {
+        std::vector<Leaf> leaves = leavesOf(run, search, is_curved);
+        if (leaves.empty()) return;
+        const Point2 latch = leaves.front().latch;
+        const bool has_both = std::any_of(leaves.begin(), leaves.end(),
+                                          [&](const Leaf& leaf) { return !(leaf.latch == latch); });
+        if (has_both)
+            std::stable_partition(leaves.begin(), leaves.end(),
+                                  [&](const Leaf& leaf) { return !isAttached(leaf, run, search); });
+        const Leaf door = leaves.front();
+        for (const Leaf& leaf : leaves) {
+            if (has_both && isAttached(leaf, run, search)) continue;
+            is_door_[leaf.piece] = true;
+        }
+        std::fill_n(is_door_.begin() + static_cast<std::ptrdiff_t>(run.first), run.count, true);
+        leaves_.push_back({door.hinge, door.end});
+        PlanShape shape;
+        shape.path = {{door.latch, door.end}, false, run.line};
+        shape.chords.push_back({{door.latch, door.end}, door.hinge});
+        shape.is_guess = true;
+        doors_.swings.push_back(std::move(shape));
+    }
+
+    /// Closed outlines of leaves go as a whole.
+    void dropLeafOutlines() {
+        const NearSegments search(leaves_);
+        std::size_t first = 0;
+        for (const PlanPath& path : paths_) {
+            const std::size_t begin = std::exchange(first, first + path.pieceCount());
+            const auto end = is_door_.begin() + static_cast<std::ptrdiff_t>(first);
+            const auto start = is_door_.begin() + static_cast<std::ptrdiff_t>(begin);
+            if (!path.closed || std::find(start, end, true) == end) continue;
+            const auto near = search.near(path.points.front(), kOff * kWideLeaf);
+            const bool is_leaf = std::any_of(near.begin(), near.end(), [&](std::size_t i) {
+                const double off = kOff * distance(leaves_[i].a, leaves_[i].b);
+                return std::all_of(path.points.begin(), path.points.end(),
+                                   [&](Point2 p) { return distance(p, leaves_[i]) <= off; });
+            });
+            if (is_leaf) std::fill(start, end, true);
+        }
+    }
+
+    const std::vector<PlanPath>& paths_;
+    std::vector<Segment2> pieces_;
+    std::vector<bool> is_door_;  // by piece
+    std::vector<Run> runs_;
+    std::vector<Segment2> leaves_;  // from hinge to end
+    DrawnDoors doors_;
+};
+
+}  // namespace
+
+DrawnDoors takeDrawnDoors(const std::vector<PlanPath>& walls) { return DoorFinder(walls).find(); }
+
+}  // namespace ispace

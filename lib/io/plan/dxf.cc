@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <unordered_map>
+#include <utility>
+
+#include "base/budget.h"
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "env/environment.h"
+#include "io/importers.h"
+#include "io/plan/dxf_drawing.h"
+#include "io/plan/line_plan.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr int kDeepest = 16;  // blocks in blocks
+
+/// Blocks that are in no file (an outside reference that was not bound), and how often.
+using MissingBlocks = std::map<std::string, std::size_t>;
+
+/// Beyond these a bulge is a straight line, or a full circle.
+constexpr double kMinBulge = 1e-9, kMaxBulge = 1e4;
+
+constexpr double kFullTurn = 2 * std::numbers::pi;
+
+constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
+
+/// Ends of a spline this near, in metres, make it closed.
+constexpr double kSameEnd = 1e-6;
+
+/// The drawing in metres with all blocks put where they are inserted, entities on layer 0 of a
+/// block on the layer of its insert. Each insert, entity and point spends from the budget; shapes
+/// on layers that are not used have no points.
+class Expander {
+  public:
+    Expander(const DxfDrawing& drawing, const std::string& name, const Budget& budget,
+             MissingBlocks& missing, LayerSorter& layers)
+        : drawing_(drawing), name_(name), budget_(budget), layers_(layers), missing_(missing) {}
+
+    std::vector<PlanShape> expand(double metres_per_unit) {
+        const Affine metres{{metres_per_unit, 0}, {0, metres_per_unit}, {}};
+        shapes_.reserve(drawing_.entities.size());
+        add(drawing_.entities, metres, "", 0);
+        return std::move(shapes_);
+    }
+
+  private:
+    [[noreturn]] void fail(const DxfEntity& entity, const std::string& message) const {
+        failFile(name_, message, entity.line);
+    }
+
+    void spend(const DxfEntity& entity, std::size_t units) {
+        if (!budget_.take(units))
+            fail(entity,
+                 "blocks and curves of the drawing make " + budget_.excess() +
+                     "; is a block inserted by mistake, or in too large a grid? --wall-layer "
+                     "'A-WALL*' leaves layers out");
+    }
+
+    void add(const std::vector<DxfEntity>& entities, const Affine& outer, const std::string& layer,
+             int depth) {
+        for (const DxfEntity& entity : entities) {
+            spend(entity, 1);
+            const Affine frame = entity.mirrored ? outer * kMirror : outer;
+            const bool inherits = depth > 0 && entity.layer == "0";
+            const std::string& own = inherits ? layer : entity.layer;
+            if (const auto* insert = std::get_if<DxfInsert>(&entity.shape))
+                addInsert(entity, *insert, frame, own, depth);
+            else
+                addShape(entity, frame, layerOf(own));
+        }
+    }
+
+    /// The layer of an entity, unless only a block around it has a name that an option gives.
+    [[nodiscard]] const std::string& layerOf(const std::string& layer) const {
+        if (blocks_.empty() || layers_.isHidden(layer) || layers_.isNamed(layer)) return layer;
+        const auto named =
+            std::find_if(blocks_.rbegin(), blocks_.rend(),
+                         [this](const std::string* block) { return layers_.isNamed(*block); });
+        return named == blocks_.rend() ? layer : **named;
+    }
+
+    /// The layer, or the innermost block around, that is called walls; "" if none is.
+    [[nodiscard]] std::string wallsAround(const std::string& layer) {
+        if (isCalledWalls(layer)) return layer;
+        const auto walls =
+            std::find_if(blocks_.rbegin(), blocks_.rend(),
+                         [this](const std::string* block) { return isCalledWalls(*block); });
+        return walls == blocks_.rend() ? "" : **walls;
+    }
+
+    /// isWallName(), asked once for each name.
+    [[nodiscard]] bool isCalledWalls(const std::string& name) {
+        const auto [found, is_new] = called_walls_.try_emplace(name, false);
+        if (is_new) found->second = isWallName(name);
+        return found->second;
+    }
+
+    void addInsert(const DxfEntity& entity, const DxfInsert& insert, const Affine& outer,
+                   const std::string& layer, int depth) {
+        const auto block = drawing_.blocks.find(insert.block);
+        if (block == drawing_.blocks.end()) {
+            ++missing_[insert.block];
+            return;
+        }
+        if (depth == kDeepest)
+            fail(entity, "blocks in each other more than " + std::to_string(kDeepest) +
+                             " deep: does " + excerpt(insert.block) + " contain itself?");
+        const Vec2 along = unitVector(insert.turn), across = perpendicular(along);
+        const Vec2 x = insert.scale_x * along, y = insert.scale_y * across;
+        const Point2 base = block->second.base;
+        blocks_.push_back(&block->first);
+        for (int row = 0; row < std::max(1, insert.rows); ++row)
+            for (int column = 0; column < std::max(1, insert.columns); ++column) {
+                spend(entity, 1);
+                const Point2 at = insert.at + (column * insert.column_step) * along +
+                                  (row * insert.row_step) * across;
+                const Affine placed{x, y, at - (Point2() + base.x * x + base.y * y)};
+                add(block->second.entities, outer * placed, layer, depth + 1);
+            }
+        blocks_.pop_back();
+    }
+
+    void addShape(const DxfEntity& entity, const Affine& frame, const std::string& layer) {
+        shape_ = {};
+        shape_.layer = layer;
+        shape_.path.line = entity.line;
+        shape_.walls_in = wallsAround(layer);
+        if (!layers_.isUsed(layer)) {
+            shapes_.push_back(std::move(shape_));
+            return;
+        }
+        if (const auto* polyline = std::get_if<DxfPolyline>(&entity.shape))
+            addPolyline(entity, *polyline, frame);
+        else if (const auto* arc = std::get_if<DxfArc>(&entity.shape))
+            addArc(entity, *arc, frame);
+        else if (const auto* ellipse = std::get_if<DxfEllipse>(&entity.shape))
+            addEllipse(entity, *ellipse, frame);
+        else if (const auto* spline = std::get_if<DxfSpline>(&entity.shape))
+            addSpline(entity, *spline, frame);
+        for (const Point2 p : shape_.path.points)
+            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kFarthestPlan))
+                fail(entity, "lies more than " + formatDouble(kFarthestPlan / 1000) +
+                                 " km from the origin: are the units right (--units)?");
+        if (shape_.path.points.size() >= 2) shapes_.push_back(std::move(shape_));
+    }
+
+    void addPolyline(const DxfEntity& entity, const DxfPolyline& polyline, const Affine& frame) {
+        const auto& vertices = polyline.vertices;
+        spend(entity, vertices.size());
+        Polygon& points = shape_.path.points;
+        shape_.path.closed = polyline.closed && vertices.size() > 1;
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            points.push_back(frame * vertices[i].at);
+            const bool is_last = i + 1 == vertices.size();
+            if (is_last && !shape_.path.closed) break;
+            addPiece(entity, vertices[i], vertices[is_last ? 0 : i + 1].at, frame);
+        }
+    }
+
+    /// What lies between a vertex and the next one.
+    void addPiece(const DxfEntity& entity, const DxfPolyline::Vertex& from, Point2 to,
+                  const Affine& frame) {
+        PlanChord chord{{frame * from.at, frame * to}, {}};
+        const double bulge = from.bulge;
+        const Vec2 along = to - from.at;
+        if (std::abs(bulge) > kMinBulge && std::abs(bulge) < kMaxBulge && length(along) > 0) {
+            const double aside = (1 - bulge * bulge) / (4 * bulge);
+            const Point2 center = from.at + 0.5 * along + aside * perpendicular(along);
+            const Vec2 spoke = from.at - center;
+            const double sweep = 4 * std::atan(bulge);
+            const int count = arcPieces(sweep, length(spoke) * frame.largestScale());
+            spend(entity, static_cast<std::size_t>(count));
+            for (int i = 1; i < count; ++i)
+                shape_.path.points.push_back(frame * (center + turned(spoke, sweep * i / count)));
+            chord.center = frame * center;
+        }
+        shape_.chords.push_back(chord);
+    }
+
+    static Vec2 turned(Vec2 v, double radians) {
+        return std::cos(radians) * v + std::sin(radians) * perpendicular(v);
+    }
+
+    void addArc(const DxfEntity& entity, const DxfArc& arc, const Affine& frame) {
+        if (arc.radius == 0) return;  // shows nothing, like a line without length
+        if (!(arc.radius > 0)) fail(entity, "a radius of " + formatDouble(arc.radius));
+        const bool full = arc.from == Angle() && arc.to == Angle::degrees(360);
+        double degrees = std::fmod(arc.to.degrees() - arc.from.degrees(), 360);
+        if (degrees <= 0) degrees += 360;
+        const int count = arcPieces(degrees / 360 * kFullTurn, arc.radius * frame.largestScale());
+        spend(entity, static_cast<std::size_t>(count));
+        shape_.path.closed = full;
+        for (int i = 0; i < count + (full ? 0 : 1); ++i) {
+            const Angle angle =
+                i == count ? arc.to : arc.from + Angle::degrees(degrees * i / count);
+            shape_.path.points.push_back(frame * (arc.center + arc.radius * unitVector(angle)));
+        }
+        if (!full)
+            shape_.chords.push_back(
+                {{shape_.path.points.front(), shape_.path.points.back()}, frame * arc.center});
+    }
+
+    void addEllipse(const DxfEntity& entity, const DxfEllipse& ellipse, const Affine& frame) {
+        double sweep = std::fmod(ellipse.to - ellipse.from, kFullTurn);
+        if (sweep <= 1e-9) sweep += kFullTurn;
+        const bool full = sweep > kFullTurn - 1e-6;
+        const double radius = std::max(length(ellipse.major), length(ellipse.minor));
+        if (!(radius > 0)) return;
+        const int count = arcPieces(sweep, radius * frame.largestScale());
+        spend(entity, static_cast<std::size_t>(count));
+        shape_.path.closed = full;
+        for (int i = 0; i < count + (full ? 0 : 1); ++i) {
+            const double t = ellipse.from + sweep * i / count;
+            shape_.path.points.push_back(frame * (ellipse.center + std::cos(t) * ellipse.major +
+                                                  std::sin(t) * ellipse.minor));
+        }
+    }
+
+    void addSpline(const DxfEntity& entity, DxfSpline spline, const Affine& frame) {
+        spend(entity, spline.controls.size());
+        for (Point2& control : spline.controls) control = frame * control;
+        Polygon& points = shape_.path.points;
+        points = splinePoints(spline, budget_.left());
+        spend(entity, points.size());
+        shape_.path.closed = distance(points.front(), points.back()) <= kSameEnd;
+        if (shape_.path.closed) points.pop_back();
+    }
+
+    const DxfDrawing& drawing_;
+    const std::string& name_;
+    Budget budget_;
+    LayerSorter& layers_;
+    MissingBlocks& missing_;
+    std::vector<const std::string*> blocks_;  // around the entity, the outermost first
+    std::unordered_map<std::string, bool> called_walls_;
+    std::vector<PlanShape> shapes_;
+    PlanShape shape_;  // in the making
+};
+
+const LengthUnit& unitOf(const DxfDrawing& drawing, const std::string& name,
+                         const ImportOptions& options) {
+    const bool asked = !options.units.empty();
+    const auto unit =
+        std::find_if(kLengthUnits.begin(), kLengthUnits.end(), [&](const LengthUnit& u) {
+            return asked ? u.name == options.units : u.insunits == drawing.units;
+        });
+    if (unit == kLengthUnits.end())
+        failFile(name, (asked ? "unknown unit " + options.units
+                        : drawing.units == 0
+                            ? std::string("the drawing does not say its unit ($INSUNITS)")
+                            : "$INSUNITS is " + std::to_string(drawing.units) +
+                                  ", wanted 1 (inch), 2 (foot), 4 (mm), 5 (cm) or 6 (m)") +
+                           ": " + kScaleHint);
+    return *unit;
+}
+
+/// A drawing's document in a unit, and the floor it comes to.
+struct DxfImport {
+    Document document;
+    double area = 0;
+};
+
+class DxfImporter {
+  public:
+    DxfImporter(const DxfDrawing& drawing, const std::string& name, std::size_t bytes,
+                const Schemas& schemas)
+        : drawing_(drawing), name_(name), bytes_(bytes), schemas_(schemas) {}
+
+    /// \param hints whether the drawing may be read again to tell the effect of other options
+    [[nodiscard]] DxfImport import(const ImportOptions& options, bool hints) const {
+        ImportRecords out(schemas_, name_, options);
+        DrawingSource source = scaleOf(options, out);
+        if (hints)
+            source.area = [this](const ImportOptions& other) { return import(other, false).area; };
+        MissingBlocks missing;
+        const bool is_ours = options.wall_layers.empty() && options.door_layers.empty() &&
+                             options.window_layers.empty() && isDrawnRoom(drawing_);
+        const ImportOptions own = is_ours ? asDrawn(options) : options;
+        LayerSorter sorter(drawing_.hidden_layers, own);
+        LayerSorter::Sorted shapes =
+            sorter.sort(Expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter)
+                            .expand(source.metres_per_unit));
+        sorter.note(out);
+        if (!drawing_.left_out.empty())
+            out.note("entities left out: " + listText(drawing_.left_out));
+        if (!missing.empty())
+            out.note("inserts of blocks that the file lacks: " + listText(missing));
+        if (is_ours) {
+            out.note("a room as envc draws it");
+            shapes.sizes.emplace();
+            for (const auto& [line, size] : drawing_.sizes)
+                (*shapes.sizes)[line] = {source.metres_per_unit * size.width,
+                                         source.metres_per_unit * size.bottom,
+                                         source.metres_per_unit * size.height};
+        }
+        const double area =
+            writeLinePlan(shapes, sorter, name_, own, is_ours ? nullptr : &source, out);
+        if (is_ours) addDrawnThings(drawing_, *shapes.sizes, source.metres_per_unit, out);
+        return {out.take(), area};
+    }
+
+  private:
+    /// For a drawing of ours: its layers, and lines that meet already.
+    static ImportOptions asDrawn(ImportOptions options) {
+        options.wall_layers = {"walls"};
+        options.door_layers = {"doors"};
+        options.window_layers = {"windows"};
+        if (!options.snap) options.snap = 0;
+        return options;
+    }
+
+    [[nodiscard]] DrawingSource scaleOf(const ImportOptions& options, ImportRecords& out) const {
+        if (!options.width_is) {
+            const LengthUnit& unit = unitOf(drawing_, name_, options);
+            out.note(
+                std::string("unit: ") + unit.name +
+                (options.units.empty() ? ", as $INSUNITS of the drawing says" : ", as asked for"));
+            return {unit.name, unit.metres};
+        }
+        const double metres = metresPerUnit(*options.width_is, name_, [&](double metres_per_unit) {
+            MissingBlocks missing;
+            LayerSorter sorter(drawing_.hidden_layers, options);
+            return sorter
+                .sort(Expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter)
+                          .expand(metres_per_unit))
+                .walls;
+        });
+        out.note(unitText(metres) + ", so that it is " + formatDouble(*options.width_is) +
+                 " m wide");
+        return {unitText(metres), metres};
+    }
+
+    const DxfDrawing& drawing_;
+    const std::string& name_;
+    std::size_t bytes_;  // of the file
+    const Schemas& schemas_;
+};
+
+}  // namespace
+
+Document readDxf(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                 const Schemas& schemas) {
+    const DxfDrawing drawing = readDrawing(bytes, name);
+    return DxfImporter(drawing, name, bytes.size(), schemas).import(options, true).document;
+}
+
+}  // namespace ispace

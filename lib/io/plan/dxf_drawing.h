@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "geom/point.h"
+#include "io/plan/curves.h"
+#include "io/plan/line_plan.h"
+
+namespace ispace {
+
+/// Straight pieces and arcs; a LINE has two vertices.
+struct DxfPolyline {
+    struct Vertex {
+        Point2 at;
+        double bulge = 0;  ///< of the piece that begins here: tan(sweep / 4), left-turning above 0
+    };
+    std::vector<Vertex> vertices;
+    bool closed = false;
+};
+
+/// An arc counter-clockwise from one angle to the other; a whole circle from 0 to 360 degrees.
+struct DxfArc {
+    Point2 center;
+    double radius = 0;
+    Angle from, to;
+};
+
+/// An ellipse's arc: center + cos(t) major + sin(t) minor, t in radians.
+struct DxfEllipse {
+    Point2 center;
+    Vec2 major, minor;
+    double from = 0, to = 0;
+};
+
+/// A spline by its control points; its numbers are sound, see splineFault().
+using DxfSpline = SplineCurve;
+
+/// A block inserted somewhere, perhaps repeated in a grid.
+struct DxfInsert {
+    std::string block;
+    Point2 at;
+    double scale_x = 1, scale_y = 1;
+    Angle turn;
+    int columns = 1, rows = 1;
+    double column_step = 0, row_step = 0;
+};
+
+using DxfShape = std::variant<DxfPolyline, DxfArc, DxfEllipse, DxfSpline, DxfInsert>;
+
+struct DxfEntity {
+    DxfShape shape;
+    std::string layer;
+    bool mirrored = false;  ///< seen from below: x is mirrored
+    int line = 0;           ///< of the file
+};
+
+struct DxfBlock {
+    Point2 base;
+    std::vector<DxfEntity> entities;
+};
+
+/// A DXF file, in its own units.
+struct DxfDrawing {
+    int units = 0;                        ///< $INSUNITS; 0: none
+    std::set<std::string> layers;         ///< in its table
+    std::set<std::string> hidden_layers;  ///< off or frozen
+    std::map<std::string, DxfBlock> blocks;
+    std::vector<DxfEntity> entities;
+    std::map<std::string, std::size_t> left_out;  ///< entities, by type or reason
+    std::map<int, DrawnSize> sizes;  ///< of polylines and circles that have any, by their lines
+};
+
+/// True for a drawing with the layers on which writeDxf() draws a room, see dxfRoomLayers().
+bool isDrawnRoom(const DxfDrawing& drawing);
+
+/// Adds what is on other layers of such a drawing than those of walls and openings: of `objects`
+/// that have a height rectangles as cubes, circles and ellipses as cylinders, others as cubes
+/// around them, with a note; `zones`, and rectangles of `floors`. \param sizes in metres
+void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& sizes,
+                    double metres_per_unit, ImportRecords& out);
+
+/// Reads ASCII DXF. Counts in the file are not believed, and only numbers that are needed are
+/// read.
+/// \throws FormatError with its line: no group code, a number that is none, a missing coordinate,
+///         an end before `EOF`
+DxfDrawing readDrawing(std::string_view bytes, const std::string& name);
+
+}  // namespace ispace

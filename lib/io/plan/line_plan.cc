@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan/line_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "env/environment.h"
+#include "geom/predicates.h"
+#include "io/plan/plan_rooms.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kMaxExtent = 10000;    // metres
+constexpr double kOpeningReach = 1e-5;  // from its end to its wall
+
+/// Sizes of openings where walls are high enough.
+constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
+
+/// The lines of a plan, and those of them that are kept.
+class LinePlan {
+  public:
+    LinePlan(const LayerSorter::Sorted& shapes, const std::string& name,
+             const ImportOptions& options, const DrawingSource* drawing, ImportRecords& out)
+        : sizes_(shapes.sizes) {
+        DrawnDoors drawn = drawing == nullptr ? DrawnDoors{} : takeDrawnDoors(shapes.walls);
+        drawn_doors_ = drawn.swings.size();
+        paths_ = normalisedLines(drawn_doors_ == 0 ? shapes.walls : drawn.walls,
+                                 options.snap.value_or(kDefaultSnap));
+        pieces_ = pathPieces(paths_);
+        check(name, options, drawing);
+        std::vector<PlanShape> doors = shapes.doors;
+        doors.insert(doors.end(), drawn.swings.begin(), drawn.swings.end());
+        PlanOpenings found = findOpenings(doors, shapes.windows, pieces_);
+        if (options.simplify.value_or(0) > 0) {
+            simplify(*options.simplify, found.openings);
+            found = findOpenings(doors, shapes.windows, pieces_);
+        }
+        openings_ = std::move(found.openings);
+        unused_symbols_ = found.unused;
+        keepRooms(options, drawing, out);
+    }
+
+    [[nodiscard]] double area() const { return rooms_.area(); }
+
+    void write(ImportRecords& out, const ImportOptions& options) {
+        if (!rooms_.reached.empty()) {
+            // Without walls doors are where the floor goes on.
+            writeRooms(rooms_, options, out);
+            return note(out);
+        }
+        const std::vector<PlanPath> fences = sizes_ ? paths_ : joinedAtEnds(paths_);
+        const std::vector<std::size_t> fence_of = fencesOfOpenings(fences);
+        std::vector<std::string> ids(fences.size());
+        for (const std::size_t fence : fence_of)
+            if (fence < fences.size() && ids[fence].empty())
+                ids[fence] = out.freeId("f" + std::to_string(fence + 1), "f");
+        for (std::size_t i = 0; i < fences.size(); ++i) {
+            out.fence(fences[i], ids[i]);
+            if (const DrawnSize* size = sizeOf(fences[i].line)) {
+                out.last().set("height", size->height);
+                out.last().set("thickness", size->width);
+            }
+        }
+        for (std::size_t i = 0; i < openings_.size(); ++i) {
+            const std::string wall =
+                openings_[i].wall ? ids[fence_of[i]] : out.freeId("gap", "gap");
+            if (!openings_[i].wall) out.wall(openings_[i].line, wall, openings_[i].drawn_on);
+            writeOpening(openings_[i], wall, out, options.wall_height);
+        }
+        writeRooms(rooms_, options, out);
+        note(out);
+    }
+
+  private:
+    void check(const std::string& name, const ImportOptions& options,
+               const DrawingSource* drawing) const {
+        const Box2 box = boundsOf(pieces_);
+        if (!pieces_.empty() && drawing != nullptr)
+            checkScale(std::max(box.width(), box.depth()), *drawing, name, options);
+        if (!pieces_.empty() && std::max(box.width(), box.depth()) > kMaxExtent)
+            failFile(name,
+                     "the plan is " + formatFixed(std::max(box.width(), box.depth()), 0) +
+                         " m wide: is the unit right? Say another, for example with --units mm");
+        if (crossTooOften(pieces_))
+            failFile(name,
+                     "the lines cross each other too often to be walls: leave layers of hatching "
+                     "out, for example with --wall-layer 'A-WALL*'");
+    }
+
+    /// Pieces that openings lie on or touch stay.
+    void simplify(double tolerance, const std::vector<PlanOpening>& openings) {
+        paths_ = joinedAtEnds(paths_);
+        pieces_ = pathPieces(paths_);
+        const NearSegments search(pieces_);
+        std::vector<std::size_t> fixed;
+        for (const PlanOpening& opening : openings)
+            for (const Point2 end : {opening.line.a, opening.line.b})
+                for (const std::size_t i : search.near(end, kOpeningReach))
+                    if (distance(end, pieces_[i]) <= kOpeningReach) fixed.push_back(i);
+        paths_ = simplifiedPaths(paths_, tolerance, fixed);
+        pieces_ = pathPieces(paths_);
+    }
+
+    /// Walls, then lines that close the gaps of openings.
+    [[nodiscard]] std::vector<Segment2> allPieces() const {
+        std::vector<Segment2> all(pieces_);
+        for (const PlanOpening& opening : openings_)
+            if (!opening.wall) all.push_back(opening.line);
+        return all;
+    }
+
+    void keepRooms(const ImportOptions& options, const DrawingSource* drawing, ImportRecords& out) {
+        std::vector<Segment2> doorways;
+        for (const PlanOpening& opening : openings_)
+            if (!opening.is_window && !isShut(opening)) doorways.push_back(opening.line);
+        const std::vector<Segment2> all = allPieces();
+        PlanWalls plan{all, doorways, {}, {}, {}};
+        if (drawing != nullptr)
+            plan.unit_hint = [&](double extent) {
+                return otherUnitHint(extent, *drawing, options);
+            };
+        rooms_ = chooseRooms(plan, options, out);
+        if (rooms_.regions.empty() || sizes_) return;
+        const std::vector<bool> keep = belongsTo(rooms_.regions, all);
+        std::size_t gap = pieces_.size();
+        std::vector<PlanOpening> kept;
+        for (const PlanOpening& opening : openings_)
+            if (keep[opening.wall ? *opening.wall : gap++]) kept.push_back(opening);
+        dropped_openings_ = openings_.size() - kept.size();
+        openings_ = std::move(kept);
+        const std::vector<bool> walls(keep.begin(),
+                                      keep.begin() + static_cast<std::ptrdiff_t>(pieces_.size()));
+        dropped_lines_ = static_cast<std::size_t>(std::count(walls.begin(), walls.end(), false));
+        paths_ = withPieces(paths_, walls);
+    }
+
+    /// For each opening on a wall the index of the fence it is in.
+    [[nodiscard]] std::vector<std::size_t> fencesOfOpenings(
+        const std::vector<PlanPath>& fences) const {
+        using Ends = std::array<double, 4>;
+        const auto ends_of = [](const Segment2& s) {
+            return lexLess(s.a, s.b) ? Ends{s.a.x, s.a.y, s.b.x, s.b.y}
+                                     : Ends{s.b.x, s.b.y, s.a.x, s.a.y};
+        };
+        std::map<Ends, std::size_t> fence_with;
+        for (const PlanOpening& opening : openings_)
+            if (opening.wall) fence_with[ends_of(pieces_[*opening.wall])] = 0;
+        for (std::size_t i = 0; i < fences.size(); ++i)
+            for (std::size_t k = 0; k < fences[i].pieceCount(); ++k)
+                if (const auto it = fence_with.find(ends_of(fences[i].piece(k)));
+                    it != fence_with.end())
+                    it->second = i;
+        std::vector<std::size_t> result;
+        result.reserve(openings_.size());
+        for (const PlanOpening& opening : openings_)
+            result.push_back(opening.wall ? fence_with.at(ends_of(pieces_[*opening.wall]))
+                                          : fences.size());
+        return result;
+    }
+
+    [[nodiscard]] const DrawnSize* sizeOf(int line) const {
+        if (!sizes_) return nullptr;
+        const auto found = sizes_->find(line);
+        return found == sizes_->end() || found->second.height <= 0 ? nullptr : &found->second;
+    }
+
+    [[nodiscard]] bool isShut(const PlanOpening& opening) const {
+        const DrawnSize* size = sizeOf(opening.drawn_on);
+        return size != nullptr && size->width > 0;
+    }
+
+    void writeOpening(const PlanOpening& opening, const std::string& wall, ImportRecords& out,
+                      double wall_height) const {
+        Record& record = out.add(opening.is_window ? "window" : "door", opening.drawn_on);
+        record.set("wall", wall);
+        ImportRecords::setPoint(record, "from", opening.line.a);
+        ImportRecords::setPoint(record, "to", opening.line.b);
+        const DrawnSize* size = sizeOf(opening.drawn_on);
+        if (size != nullptr) {
+            record.set("height", size->height);
+            if (opening.is_window)
+                record.set("sill", size->bottom);
+            else
+                record.set("open", !isShut(opening));
+        } else if (opening.is_window) {
+            const double sill = std::min(kSill, wall_height * kSill / kDoorHeight);
+            record.set("height", std::min(kWindowHeight, wall_height - sill));
+            record.set("sill", sill);
+        } else {
+            record.set("height", std::min(kDoorHeight, wall_height));
+            record.set("open", true);
+        }
+    }
+
+    void note(ImportRecords& out) const {
+        if (drawn_doors_ > 0)
+            out.tell("leaves and swings of " + countText(drawn_doors_, "door") +
+                     " among the walls close no room");
+        const auto windows = static_cast<std::size_t>(
+            std::count_if(openings_.begin(), openings_.end(),
+                          [](const PlanOpening& opening) { return opening.is_window; }));
+        if (!openings_.empty() || unused_symbols_ > 0)
+            out.note(countText(openings_.size() - windows, "door") + ", " +
+                     countText(windows, "window") +
+                     (unused_symbols_ == 0 ? std::string()
+                                           : "; " + countText(unused_symbols_, "line") +
+                                                 " on their layers open nothing and are left out"));
+        if (dropped_lines_ + dropped_openings_ > 0)
+            out.note("left out outside of it: " + countText(dropped_lines_, "line") + " and " +
+                     countText(dropped_openings_, "opening"));
+    }
+
+    std::optional<std::map<int, DrawnSize>> sizes_;
+    std::vector<PlanPath> paths_;
+    std::vector<Segment2> pieces_;  // of all walls drawn
+    std::vector<PlanOpening> openings_;
+    std::size_t unused_symbols_ = 0, dropped_lines_ = 0, dropped_openings_ = 0;
+    std::size_t drawn_doors_ = 0;  // leaves
+    PlanRooms rooms_;
+};
+
+}  // namespace
+
+LayerSorter::Use LayerSorter::useOf(const std::string& layer) {
+    const auto [it, is_new] = uses_.try_emplace(layer, Others);
+    if (!is_new) return it->second;
+    Use& use = it->second;
+    if (hidden_.count(layer) != 0)
+        use = Hidden;
+    else if (matchesLayer(options_.door_layers, layer))
+        use = Doors;
+    else if (matchesLayer(options_.window_layers, layer))
+        use = Windows;
+    else if (options_.wall_layers.empty() || matchesLayer(options_.wall_layers, layer))
+        use = Walls;
+    return use;
+}
+
+bool LayerSorter::isUsed(const std::string& layer) {
+    const Use use = useOf(layer);
+    return use == Walls || use == Doors || use == Windows;
+}
+
+bool LayerSorter::isNamed(const std::string& name) const {
+    return matchesLayer(options_.door_layers, name) || matchesLayer(options_.window_layers, name) ||
+           matchesLayer(options_.wall_layers, name);
+}
+
+LayerSorter::Sorted LayerSorter::sort(std::vector<PlanShape> shapes) {
+    Sorted sorted;
+    for (PlanShape& shape : shapes) {
+        const Use use = useOf(shape.layer);
+        ++counts_[use][shape.layer];
+        if (use == Walls) ++wall_names_[shape.walls_in];
+        if (use == Walls)
+            sorted.walls.push_back(std::move(shape.path));
+        else if (use == Doors)
+            sorted.doors.push_back(std::move(shape));
+        else if (use == Windows)
+            sorted.windows.push_back(std::move(shape));
+    }
+    return sorted;
+}
+
+void LayerSorter::note(ImportRecords& out) const {
+    constexpr std::array<const char*, kUses> kTitles{
+        "layers of walls: ", "layers of doors: ", "layers of windows: ", "layers left out: ",
+        "layers left out because they are off or frozen: "};
+    for (std::size_t use = 0; use < kUses; ++use)
+        if (!counts_[use].empty()) out.note(kTitles[use] + listText(counts_[use]));
+}
+
+std::string LayerSorter::all() const {
+    std::map<std::string, std::size_t> all;
+    for (const auto& counts : counts_)
+        for (const auto& [layer, count] : counts) all[layer] += count;
+    return all.empty() ? "none" : listText(all);
+}
+
+std::map<std::string, std::size_t> LayerSorter::unusedWallNames() const {
+    if (!options_.wall_layers.empty() || wall_names_.count("") == 0) return {};
+    std::map<std::string, std::size_t> names = wall_names_;
+    names.erase("");
+    return names;
+}
+
+double writeLinePlan(const LayerSorter::Sorted& shapes, const LayerSorter& sorter,
+                     const std::string& name, const ImportOptions& options,
+                     const DrawingSource* drawing, ImportRecords& out) {
+    if (shapes.walls.empty())
+        failFile(name, (options.wall_layers.empty() ? "no line to make a wall of"
+                                                    : "no line on the layers of walls") +
+                           std::string("; layers with lines: ") + sorter.all());
+    return withFileName(name, [&] {
+        LinePlan plan(shapes, name, options, drawing, out);
+        plan.write(out, options);
+        if (drawing != nullptr)
+            warnOfWallNames(sorter.unusedWallNames(), plan.area(), *drawing, options, out);
+        return plan.area();
+    });
+}
+
+double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,
+                     const ImportOptions& options, ImportRecords& out) {
+    LayerSorter sorter({}, options);
+    const LayerSorter::Sorted sorted = sorter.sort(std::move(shapes));
+    sorter.note(out);
+    return writeLinePlan(sorted, sorter, name, options, nullptr, out);
+}
+
+std::string listText(const std::map<std::string, std::size_t>& counts) {
+    constexpr std::size_t kMaxNames = 12;
+    std::string text;
+    std::size_t named = 0;
+    for (const auto& [thing, count] : counts) {
+        if (named == kMaxNames) break;
+        if (named++ > 0) text += ", ";
+        text += thing + " (" + std::to_string(count) + ')';
+    }
+    if (counts.size() > named) text += " and " + std::to_string(counts.size() - named) + " more";
+    return text;
+}
+
+}  // namespace ispace

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plans drawn as lines on layers: what DXF, SVG and cut meshes have in common.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/import_records.h"
+#include "io/importers.h"
+#include "io/plan/drawing_source.h"
+#include "io/plan/plan_lines.h"
+
+namespace ispace {
+
+/// The line between the ends of a straight piece or an arc; an arc also has its centre, the hinge
+/// of a door.
+struct PlanChord {
+    Segment2 line;
+    std::optional<Point2> center;
+};
+
+/// An entity of a drawing in the plan's frame, in metres.
+struct PlanShape {
+    PlanPath path;  ///< arcs as straight pieces within a millimetre (radii to 10 km)
+    std::vector<PlanChord> chords;
+    std::string layer;
+    bool is_guess = false;  ///< a door found among walls: its chord runs from the closed door to
+                            ///< the end of the leaf
+    std::string walls_in = {};  ///< the name of walls around it, see isWallName(); "": none
+};
+
+/// A door or a window of a drawing.
+struct PlanOpening {
+    Segment2 line;                    ///< ends on walls, or at ends of walls
+    std::optional<std::size_t> wall;  ///< the wall piece it lies on; none: it closes a gap
+    bool is_window = false;
+    int drawn_on = 0;  ///< line of the file
+};
+
+/// The openings found.
+struct PlanOpenings {
+    std::vector<PlanOpening> openings;
+    std::size_t unused = 0;  ///< symbols that span nothing
+};
+
+/// What a drawing tells of a line besides its course, in metres.
+struct DrawnSize {
+    double width = 0;               ///< of the line as it is drawn
+    double bottom = 0, height = 0;  ///< elevation and thickness
+};
+
+/// Finds the openings that symbols of doors and windows mean, doors first.
+///
+/// A straight piece is an opening where both of its ends are at walls (within 0.1 m): across a gap,
+/// or along one wall. An arc is the swing of a leaf, hinged at its centre: the opening runs from
+/// there to the end of the arc that is at a wall, and lines to the other end are the leaf; two arcs
+/// that meet off the walls are a double door, from hinge to hinge. Openings are 0.4 m wide or more;
+/// none is found twice, and none overlaps another on its wall. Swings that are a guess open only
+/// from the hinge to the closed door, and nothing where both that and the leaf lie on walls, as the
+/// sides of a shower do. Where a drawing with such swings marks the ends of three doors by short
+/// lines across their wall, two more of these, 0.4 m to 1.3 m apart, are a doorway.
+PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
+                          std::span<const Segment2> walls);
+
+/// Doors that a drawing shows among its walls.
+struct DrawnDoors {
+    std::vector<PlanShape> swings;  ///< one for each leaf
+    std::vector<PlanPath> walls;    ///< without leaves and swings; empty where there is no door
+};
+
+/// Finds doors drawn as a leaf and its swing: a curve that bends one way, and a straight line of
+/// 0.4 m to 1.5 m from the hinge to that curve. The curve's other end and its middle lie as far
+/// from the hinge (within 12 %), 5 to 110 degrees from the leaf; it need be no circle about the
+/// hinge. A leaf drawn as a closed outline counts as one. Where lines lead to both ends of the
+/// curve, the leaf is the one that ends freely. O(n log n).
+DrawnDoors takeDrawnDoors(const std::vector<PlanPath>& walls);
+
+/// Sorts the shapes of a drawing into walls, doors and windows by their layers.
+class LayerSorter {
+  public:
+    struct Sorted {
+        std::vector<PlanPath> walls;
+        std::vector<PlanShape> doors, windows;
+        /// Of a drawing of ours, whose walls are right as drawn, by their lines in the file: widths
+        /// are the thickness of walls, and 0 for open doors. Walls are neither joined nor left out.
+        std::optional<std::map<int, DrawnSize>> sizes = {};
+    };
+
+    /// \param hidden layers that are off or frozen
+    LayerSorter(std::set<std::string> hidden, const ImportOptions& options)
+        : hidden_(std::move(hidden)), options_(options) {}
+
+    /// True for layers of walls, doors and windows.
+    [[nodiscard]] bool isUsed(const std::string& layer);
+    /// True if an option names layers like this; blocks and groups so named are layers, too.
+    [[nodiscard]] bool isNamed(const std::string& name) const;
+    [[nodiscard]] bool isHidden(const std::string& layer) const {
+        return hidden_.count(layer) != 0;
+    }
+    Sorted sort(std::vector<PlanShape> shapes);
+    /// Notes what each layer was taken for.
+    void note(ImportRecords& out) const;
+    /// All layers with lines, for a message.
+    [[nodiscard]] std::string all() const;
+    /// Names of walls, with their numbers of lines, where lines that have none were taken for
+    /// walls, too, because no option says otherwise.
+    [[nodiscard]] std::map<std::string, std::size_t> unusedWallNames() const;
+
+  private:
+    enum Use : std::size_t { Walls, Doors, Windows, Others, Hidden, kUses };
+    Use useOf(const std::string& layer);
+
+    std::set<std::string> hidden_;
+    const ImportOptions& options_;
+    std::map<std::string, Use> uses_;
+    std::array<std::map<std::string, std::size_t>, kUses> counts_;
+    std::map<std::string, std::size_t> wall_names_;  // with their lines; "": lines without one
+};
+
+/// Writes the plan that sorted shapes are, see readDxf: walls, doors and windows of the largest
+/// region. Of drawings doors among the walls close no room, see takeDrawnDoors(), a scale that no
+/// building has is refused, see checkScale(), and names of walls are pointed out.
+/// \param drawing null for cuts through meshes
+/// \return the floor that is kept, in square metres
+/// \throws FormatError: no line on the layers of walls
+double writeLinePlan(const LayerSorter::Sorted& shapes, const LayerSorter& sorter,
+                     const std::string& name, const ImportOptions& options,
+                     const DrawingSource* drawing, ImportRecords& out);
+
+/// Sorts the shapes of a drawing without hidden layers, and writes them. \return the floor kept
+double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,
+                     const ImportOptions& options, ImportRecords& out);
+
+/// "WALLS (24), 0 (3) and 2 more".
+std::string listText(const std::map<std::string, std::size_t>& counts);
+
+}  // namespace ispace

@@ -1,0 +1,452 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+
+#include "geom/arrangement.h"
+#include "geom/planar_map.h"
+#include "geom/polygon.h"
+#include "geom/predicates.h"
+#include "io/plan/line_plan.h"
+#include "io/plan/plan_lines.h"
+#include "io/plan/plan_rooms.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kReach = 0.1;      // frames keep leaves and hinges off the walls
+constexpr double kOnWall = 0.02;    // of lines drawn upon a wall
+constexpr double kNearWall = 0.06;  // of swings that end beside the closed door
+constexpr double kNarrowest = 0.4;  // metres; narrower ones are frames and jambs
+
+/// Short lines across a wall at the ends of an opening, where a drawing has them.
+constexpr double kShortestJamb = 0.03, kLongestJamb = 0.25;  // metres
+constexpr double kAcross = 0.2;                              // cosine of the angle to the wall
+constexpr double kWidestDoorway = 1.3;
+constexpr std::size_t kMinMarkedDoors = 3;
+
+/// Every pair is compared: more are not doors.
+constexpr std::size_t kMaxOpenSwings = 4000;
+
+bool isNear(Point2 a, Point2 b) { return distance(a, b) <= kReach; }
+
+/// Where an end of a symbol meets the walls.
+struct Anchor {
+    Point2 place;
+    double apart = 0;
+};
+
+class Walls {
+  public:
+    explicit Walls(std::span<const Segment2> walls) : walls_(walls), search_(walls) {}
+
+    /// The nearest end of a wall, else the nearest point of one, in reach.
+    [[nodiscard]] std::optional<Anchor> anchor(Point2 p) const {
+        std::optional<Anchor> corner, foot;
+        const auto keep_nearest = [p](std::optional<Anchor>& best, Point2 place) {
+            const double apart = distance(p, place);
+            if (apart <= kReach && (!best || apart < best->apart)) best = Anchor{place, apart};
+        };
+        for (const std::size_t i : search_.near(p, kReach)) {
+            keep_nearest(corner, walls_[i].a);
+            keep_nearest(corner, walls_[i].b);
+            keep_nearest(foot, nearestPoint(walls_[i], p));
+        }
+        if (!corner && foot) foot->place = wholeMicrometres(foot->place);
+        return corner ? corner : foot;
+    }
+
+    /// The nearest wall piece on which both ends lie.
+    [[nodiscard]] std::optional<std::size_t> wallUnder(const Segment2& line, double reach) const {
+        std::optional<std::size_t> nearest;
+        for (const std::size_t i : search_.near(line.a, reach)) {
+            const double off = std::max(distance(line.a, walls_[i]), distance(line.b, walls_[i]));
+            if (nearest ? off >= reach : off > reach) continue;
+            nearest = i;
+            reach = off;
+        }
+        return nearest;
+    }
+
+    [[nodiscard]] bool isOnWall(Point2 p) const {
+        const auto near = search_.near(p, kOnWall);
+        return std::any_of(near.begin(), near.end(),
+                           [&](std::size_t i) { return distance(p, walls_[i]) <= kOnWall; });
+    }
+
+    [[nodiscard]] const Segment2& operator[](std::size_t i) const { return walls_[i]; }
+    [[nodiscard]] std::size_t size() const { return walls_.size(); }
+
+    /// The wall piece that a jamb crosses in its middle; none if the piece is no jamb.
+    [[nodiscard]] std::optional<std::size_t> wallAcross(std::size_t jamb) const {
+        const auto [a, b] = walls_[jamb];
+        const double length_of_it = distance(a, b);
+        if (length_of_it < kShortestJamb || length_of_it > kLongestJamb) return std::nullopt;
+        const Point2 middle = a + 0.5 * (b - a);
+        for (const std::size_t i : search_.near(middle, kOnWall)) {
+            const Vec2 along = walls_[i].b - walls_[i].a;
+            if (length(along) > kLongestJamb && distance(middle, walls_[i]) <= kOnWall &&
+                std::abs(dot(along, b - a)) <= kAcross * length(along) * length_of_it)
+                return i;
+        }
+        return std::nullopt;
+    }
+
+  private:
+    std::span<const Segment2> walls_;
+    NearSegments search_;
+};
+
+/// An arc of a door's leaf.
+struct Swing {
+    PlanChord chord;
+    int drawn_on = 0;
+    bool is_guess = false;
+};
+
+class Finder {
+  public:
+    explicit Finder(std::span<const Segment2> walls) : walls_(walls) {}
+
+    void find(std::span<const PlanShape> symbols, bool are_windows) {
+        are_windows_ = are_windows;
+        open_swings_.clear();
+        for (const PlanShape& shape : symbols)
+            for (const PlanChord& chord : shape.chords)
+                if (chord.center) addSwing({chord, shape.path.line, shape.is_guess});
+        joinDoubleDoors();
+        for (const PlanShape& shape : symbols)
+            for (const PlanChord& chord : shape.chords)
+                if (!chord.center && !isLeaf(chord.line) && !add(chord.line, shape.path.line))
+                    ++found_.unused;
+    }
+    PlanOpenings take() { return std::move(found_); }
+
+    /// Where jambs mark the ends of three swings or more, two others on one wall are a doorway.
+    void findJambs() {
+        std::map<std::size_t, std::vector<Point2>> free;  // by wall
+        for (std::size_t i = 0; i < walls_.size(); ++i)
+            if (const auto wall = walls_.wallAcross(i))
+                free[*wall].push_back(walls_[i].a + 0.5 * (walls_[i].b - walls_[i].a));
+        std::size_t marked = 0;
+        for (const PlanOpening& opening : found_.openings) {
+            const auto jambs = opening.wall ? free.find(*opening.wall) : free.end();
+            if (jambs == free.end()) continue;
+            const auto [a, b] = opening.line;
+            const std::size_t used = std::erase_if(jambs->second, [&, a = a, b = b](Point2 p) {
+                return isNear(p, a) || isNear(p, b);
+            });
+            marked += used >= 2 ? 1 : 0;
+        }
+        if (marked < kMinMarkedDoors) return;
+        for (auto& [wall, jambs] : free) {
+            const Segment2& line = walls_[wall];
+            std::sort(jambs.begin(), jambs.end(), [&](Point2 p, Point2 q) {
+                return dot(p - line.a, line.b - line.a) < dot(q - line.a, line.b - line.a);
+            });
+            for (std::size_t i = 0; i + 1 < jambs.size(); ++i) {
+                const double width = distance(jambs[i], jambs[i + 1]);
+                if (width < kNarrowest || width > kWidestDoorway) continue;
+                keep({{wholeMicrometres(nearestPoint(line, jambs[i])),
+                       wholeMicrometres(nearestPoint(line, jambs[i + 1]))},
+                      wall,
+                      false,
+                      0});
+                ++i;
+            }
+        }
+    }
+
+  private:
+    /// The opening that a line means, and how far its ends are off the walls.
+    struct Candidate {
+        PlanOpening opening;
+        double apart = 0;
+    };
+
+    [[nodiscard]] std::optional<Candidate> candidate(const Segment2& line, int drawn_on,
+                                                     double on_wall = kOnWall) const {
+        if (distance(line.a, line.b) < kNarrowest) return std::nullopt;
+        if (const auto wall = walls_.wallUnder(line, on_wall)) {
+            const auto foot = [&](Point2 p) {
+                return wholeMicrometres(nearestPoint(walls_[*wall], p));
+            };
+            return Candidate{{{foot(line.a), foot(line.b)}, wall, are_windows_, drawn_on}, 0};
+        }
+        const auto a = walls_.anchor(line.a), b = walls_.anchor(line.b);
+        if (!a || !b || distance(a->place, b->place) < kNarrowest) return std::nullopt;
+        const Point2 middle = a->place + 0.5 * (b->place - a->place);
+        if (walls_.isOnWall(middle)) return std::nullopt;
+        return Candidate{{{a->place, b->place}, std::nullopt, are_windows_, drawn_on},
+                         a->apart + b->apart};
+    }
+
+    void keep(const PlanOpening& opening) {
+        const auto [a, b] = opening.line;
+        if (opening.wall) {
+            std::vector<Segment2>& others = on_wall_[*opening.wall];
+            const Segment2& wall = walls_[*opening.wall];
+            const auto extent = [&](const Segment2& s) {
+                return std::minmax(
+                    {dot(s.a - wall.a, wall.b - wall.a), dot(s.b - wall.a, wall.b - wall.a)});
+            };
+            const auto overlaps = [&, mine = extent(opening.line)](const Segment2& other) {
+                const auto [low, high] = extent(other);
+                return std::max(low, mine.first) < std::min(high, mine.second);
+            };
+            if (std::any_of(others.begin(), others.end(), overlaps)) return;
+            others.push_back(opening.line);
+        } else if (!across_gaps_
+                        .insert(lexLess(a, b) ? Ends{a.x, a.y, b.x, b.y} : Ends{b.x, b.y, a.x, a.y})
+                        .second) {
+            return;
+        }
+        found_.openings.push_back(opening);
+    }
+
+    bool add(const Segment2& line, int drawn_on) {
+        const auto found = candidate(line, drawn_on);
+        if (found) keep(found->opening);
+        return found.has_value();
+    }
+
+    void addSwing(const Swing& swing) {
+        const Point2 hinge = *swing.chord.center;
+        const auto [a, b] = swing.chord.line;
+        const double on_wall = swing.is_guess ? kNearWall : kOnWall;
+        const auto first = candidate({hinge, a}, swing.drawn_on, on_wall);
+        auto second = candidate({hinge, b}, swing.drawn_on, on_wall);
+        if (swing.is_guess) {
+            if (first && second && first->opening.wall && second->opening.wall) return;
+            second.reset();
+        }
+        if (!first && !second) {
+            open_swings_.push_back(swing);
+            return;
+        }
+        const bool takes_first = first && (!second || first->apart <= second->apart);
+        keep(takes_first ? first->opening : second->opening);
+        addLeaf({hinge, takes_first ? b : a});
+    }
+
+    /// Arcs that end off the walls: two that meet are a double door.
+    void joinDoubleDoors() {
+        if (open_swings_.size() > kMaxOpenSwings) {
+            for (const Swing& swing : open_swings_) found_.unused += swing.is_guess ? 0 : 1;
+            return;
+        }
+        std::vector<bool> used(open_swings_.size());
+        for (std::size_t i = 0; i < open_swings_.size(); ++i) {
+            for (std::size_t k = i + 1; k < open_swings_.size() && !used[i]; ++k)
+                if (!used[k] && joinLeaves(open_swings_[i], open_swings_[k]))
+                    used[i] = used[k] = true;
+            if (!used[i] && !open_swings_[i].is_guess) ++found_.unused;
+        }
+    }
+
+    bool joinLeaves(const Swing& left, const Swing& right) {
+        const Segment2 line{*left.chord.center, *right.chord.center};
+        const Segment2 &l = left.chord.line, &r = right.chord.line;
+        for (const auto& [p, other_p] : {std::pair{l.a, l.b}, std::pair{l.b, l.a}})
+            for (const auto& [q, other_q] : {std::pair{r.a, r.b}, std::pair{r.b, r.a}}) {
+                if (!isNear(p, q) || distance(p, line) > kReach) continue;
+                if (!add(line, left.drawn_on)) continue;
+                addLeaf({line.a, other_p});
+                addLeaf({line.b, other_q});
+                return true;
+            }
+        return false;
+    }
+
+    using Cell = std::pair<std::int64_t, std::int64_t>;
+    [[nodiscard]] static Cell cellOf(Point2 p) {
+        return {static_cast<std::int64_t>(std::floor(p.x / kReach)),
+                static_cast<std::int64_t>(std::floor(p.y / kReach))};
+    }
+    void addLeaf(const Segment2& leaf) { leaves_[cellOf(leaf.a)].push_back(leaf); }
+
+    [[nodiscard]] bool isLeaf(const Segment2& line) const {
+        return isLeafFrom(line.a, line.b) || isLeafFrom(line.b, line.a);
+    }
+    [[nodiscard]] bool isLeafFrom(Point2 hinge, Point2 end) const {
+        const Cell home = cellOf(hinge);
+        for (std::int64_t x = home.first - 1; x <= home.first + 1; ++x)
+            for (std::int64_t y = home.second - 1; y <= home.second + 1; ++y) {
+                const auto leaves = leaves_.find({x, y});
+                if (leaves != leaves_.end() &&
+                    std::any_of(leaves->second.begin(), leaves->second.end(),
+                                [&](const Segment2& leaf) {
+                                    return isNear(hinge, leaf.a) && isNear(end, leaf.b);
+                                }))
+                    return true;
+            }
+        return false;
+    }
+
+    using Ends = std::array<double, 4>;
+
+    Walls walls_;
+    PlanOpenings found_;
+    bool are_windows_ = false;
+    std::set<Ends> across_gaps_;
+    std::map<std::size_t, std::vector<Segment2>> on_wall_;
+    std::map<Cell, std::vector<Segment2>> leaves_;  // by hinge: from there to where it is drawn
+    std::vector<Swing> open_swings_;
+};
+
+}  // namespace
+
+PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
+                          std::span<const Segment2> walls) {
+    if (doors.empty() && windows.empty()) return {};
+    Finder finder(walls);
+    finder.find(doors, false);
+    if (std::any_of(doors.begin(), doors.end(),
+                    [](const PlanShape& door) { return door.is_guess; }))
+        finder.findJambs();
+    finder.find(windows, true);
+    return finder.take();
+}
+
+namespace {
+
+constexpr double kOnLine = 3 * kWeldDistance;
+
+/// Chords to half a circle.
+constexpr int kChords = 16;
+
+/// The disc's radius is met within this share; half of it goes to chords and simpler outlines.
+constexpr double kTolerance = 0.01;
+
+/// Slivers that rounding leaves between a wall and an offset of it are thinner than this share of
+/// the radius.
+constexpr double kSliver = 0.01;
+
+/// Outlines may move by this, in metres.
+constexpr double kSimplify = 2e-5;
+
+/// All points within the radius of the segment, arcs by chords.
+Polygon capsule(const Segment2& s, double radius) {
+    const Vec2 along = s.b - s.a;
+    const double start = along.x == 0 && along.y == 0 ? 0 : std::atan2(along.y, along.x);
+    Polygon outline;
+    const auto arc = [&](Point2 center, double from) {
+        for (int i = 0; i <= kChords; ++i) {
+            const double angle = from + std::numbers::pi * i / kChords;
+            outline.push_back(center + radius * Vec2{std::cos(angle), std::sin(angle)});
+        }
+    };
+    arc(s.b, start - std::numbers::pi / 2);
+    arc(s.a, start + std::numbers::pi / 2);
+    return outline;
+}
+
+/// Appends the region as triangles, which have no holes.
+void appendTriangles(const Region& region, std::vector<Polygon>& solids) {
+    const Triangulation all = triangulate(region);
+    for (const auto& [a, b, c] : all.triangles)
+        solids.push_back({all.vertices[a], all.vertices[b], all.vertices[c]});
+}
+
+bool isSliver(const Region& region, double radius) {
+    return 2 * region.area() < kSliver * radius * region.boundaryLength();
+}
+
+/// With fewer corners, and without the coinciding ones where arcs were cut.
+Region normalised(const Region& region, double tolerance) {
+    std::vector<Polygon> curves = simplified(curvesOf(region), tolerance);
+    const auto are_one = [](Point2 a, Point2 b) { return distance(a, b) <= kSimplify; };
+    for (Polygon& curve : curves) {
+        curve.erase(std::unique(curve.begin(), curve.end(), are_one), curve.end());
+        while (curve.size() > 1 && are_one(curve.front(), curve.back())) curve.pop_back();
+    }
+    Region result;
+    result.outline = std::move(curves.front());
+    result.holes.assign(std::make_move_iterator(curves.begin() + 1),
+                        std::make_move_iterator(curves.end()));
+    return result;
+}
+
+/// Where the disc's centre may be.
+std::vector<Region> centres(std::span<const Region> rooms, std::span<const Segment2> walls,
+                            double radius) {
+    Box2 box;
+    for (const Region& room : rooms) {
+        box.add(bounds(room.outline).low);
+        box.add(bounds(room.outline).high);
+    }
+    const Vec2 margin{radius, radius};
+    const Point2 low = box.low - margin, high = box.high + margin;
+    std::vector<Polygon> blocked;
+    blocked.reserve(walls.size());
+    for (const Segment2& wall : walls) blocked.push_back(capsule(wall, radius));
+    return difference({{low, {high.x, low.y}, high, {low.x, high.y}}, {}}, blocked);
+}
+
+}  // namespace
+
+std::vector<Region> reachedFloor(std::span<const Region> rooms, std::span<const Segment2> walls,
+                                 Point2 start, double radius) {
+    const std::vector<Region> pieces = centres(rooms, walls, radius);
+    const auto home = std::find_if(pieces.begin(), pieces.end(), [start](const Region& piece) {
+        return piece.locate(start) != Side::Outside;
+    });
+    if (home == pieces.end()) return {};
+    // Arcs keep only the corners that the tolerance needs; the sweep makes up for that.
+    const Region centre = normalised(*home, kTolerance / 2 * radius);
+    const double sweep = (1 + kTolerance) * radius;
+    std::vector<Polygon> swept;
+    appendTriangles(centre, swept);
+    centre.forEachEdge([&](const Segment2& edge) { swept.push_back(capsule(edge, sweep)); });
+    std::vector<Region> reached;
+    for (const Region& room : rooms) {
+        std::vector<Polygon> unreached;
+        for (const Region& piece : difference(room, swept))
+            if (!isSliver(piece, radius)) appendTriangles(piece, unreached);
+        if (unreached.empty()) {
+            reached.push_back(room);
+            continue;
+        }
+        for (Region& piece : difference(room, unreached))
+            if (!isSliver(piece, radius)) reached.push_back(normalised(piece, kSimplify));
+    }
+    return reached;
+}
+
+std::vector<Segment2> withoutPassages(std::span<const Segment2> lines,
+                                      std::span<const Segment2> passages) {
+    const NearSegments search(passages);
+    std::vector<Segment2> rest;
+    for (const Segment2& line : lines) {
+        const Vec2 along = line.b - line.a;
+        if (line.a == line.b) continue;
+        const auto share = [&](Point2 p) { return dot(p - line.a, along) / dot(along, along); };
+        std::vector<std::pair<double, double>> open;
+        for (const std::size_t i : search.near(bounds(line), kOnLine)) {
+            auto [from, to] = std::minmax({share(passages[i].a), share(passages[i].b)});
+            from = std::max(from, 0.0);
+            to = std::min(to, 1.0);
+            const Point2 a = line.a + from * along, b = line.a + to * along;
+            if (from < to && distance(a, passages[i]) <= kOnLine &&
+                distance(b, passages[i]) <= kOnLine)
+                open.emplace_back(from, to);
+        }
+        std::sort(open.begin(), open.end());
+        double at = 0;
+        for (const auto& [from, to] : open) {
+            if (from > at) rest.push_back({line.a + at * along, line.a + from * along});
+            at = std::max(at, to);
+        }
+        if (at < 1) rest.push_back({line.a + at * along, line.b});
+    }
+    return rest;
+}
+
+}  // namespace ispace

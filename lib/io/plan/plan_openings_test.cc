@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan/line_plan.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "io/importers.h"
+#include "support/test_dxf.h"
+#include "support/test_import.h"
+
+namespace ispace {
+namespace {
+
+using Lines = std::vector<Segment2>;
+
+/// A wall along x with a gap of 0.9 m from x = 2.
+Lines wallWithGap() { return {{{0, 0}, {2, 0}}, {{2.9, 0}, {6, 0}}}; }
+
+PlanShape straight(Point2 a, Point2 b) { return {{{a, b}, false, 5}, {{{a, b}, {}}}, "D"}; }
+PlanShape swing(Point2 hinge, Point2 a, Point2 b) {
+    return {{{a, b}, false, 6}, {{{a, b}, hinge}}, "D"};
+}
+
+TEST(PlanOpenings, ALineAcrossAGap) {
+    const auto found =
+        findOpenings(std::vector{straight({2.03, 0.02}, {2.88, 0})}, {}, wallWithGap());
+    ASSERT_EQ(found.openings.size(), 1U);
+    EXPECT_EQ(found.openings[0].line, (Segment2{{2, 0}, {2.9, 0}}));
+    EXPECT_FALSE(found.openings[0].wall);
+    EXPECT_FALSE(found.openings[0].is_window);
+    EXPECT_EQ(found.openings[0].drawn_on, 5);
+    EXPECT_EQ(found.unused, 0U);
+}
+
+TEST(PlanOpenings, ALineAlongAWall) {
+    const auto found =
+        findOpenings({}, std::vector{straight({3.5, 0.01}, {4.5, -0.01})}, wallWithGap());
+    ASSERT_EQ(found.openings.size(), 1U);
+    EXPECT_EQ(found.openings[0].line, (Segment2{{3.5, 0}, {4.5, 0}}));
+    EXPECT_EQ(found.openings[0].wall, 1U);
+    EXPECT_TRUE(found.openings[0].is_window);
+}
+
+TEST(PlanOpenings, SwingsOpenFromTheHingeToTheWall) {
+    // Hinged at the left end, drawn open upwards, with its leaf.
+    const auto found =
+        findOpenings(std::vector{swing({2, 0}, {2.9, 0}, {2, 0.9}), straight({2, 0}, {2, 0.9})}, {},
+                     wallWithGap());
+    ASSERT_EQ(found.openings.size(), 1U);
+    EXPECT_EQ(found.openings[0].line, (Segment2{{2, 0}, {2.9, 0}}));
+    EXPECT_EQ(found.unused, 0U) << "the leaf is no line that spans nothing";
+    // The leaf's end may be at a wall as well: it is still the leaf.
+    Lines walls = wallWithGap();
+    walls.push_back({{1, 0.9}, {2, 0.9}});
+    const auto corner = findOpenings(
+        std::vector{swing({2.9, 0}, {2.0, 0.02}, {2.9, 0.9}), straight({2.9, 0}, {2.9, 0.9})}, {},
+        walls);
+    ASSERT_EQ(corner.openings.size(), 1U);
+    EXPECT_EQ(corner.openings[0].line, (Segment2{{2.9, 0}, {2, 0}}));
+}
+
+TEST(PlanOpenings, DoubleDoors) {
+    const auto found = findOpenings(
+        std::vector{swing({2, 0}, {2.45, 0}, {2, 0.45}), swing({2.9, 0}, {2.9, 0.45}, {2.45, 0}),
+                    straight({2, 0}, {2, 0.45})},
+        {}, wallWithGap());
+    ASSERT_EQ(found.openings.size(), 1U);
+    EXPECT_EQ(found.openings[0].line, (Segment2{{2, 0}, {2.9, 0}}));
+    EXPECT_EQ(found.unused, 0U);
+}
+
+TEST(PlanOpenings, EachOnce) {
+    // An arc, the threshold, and it again from the other side; a window in the same gap.
+    const auto found = findOpenings(
+        std::vector{swing({2, 0}, {2.9, 0}, {2, 0.9}), straight({2, 0}, {2.9, 0}),
+                    straight({2.9, 0}, {2, 0}), straight({3, 0}, {4, 0}),
+                    straight({3.5, 0}, {4.5, 0})},
+        std::vector{straight({2, 0}, {2.9, 0}), straight({4, 0}, {5, 0})}, wallWithGap());
+    ASSERT_EQ(found.openings.size(), 3U);
+    EXPECT_EQ(found.openings[1].line, (Segment2{{3, 0}, {4, 0}}));
+    EXPECT_TRUE(found.openings[2].is_window);
+    EXPECT_EQ(found.openings[2].line, (Segment2{{4, 0}, {5, 0}}));
+}
+
+TEST(PlanOpenings, WhatSpansNothing) {
+    const auto found = findOpenings(std::vector{straight({2, 0}, {2, 1}),    // into the air
+                                                straight({2, 0}, {2.2, 0}),  // too short
+                                                straight({2, 5}, {2.9, 5}),  // far away
+                                                swing({10, 10}, {11, 10}, {10, 11})},
+                                    {}, wallWithGap());
+    EXPECT_TRUE(found.openings.empty());
+    EXPECT_EQ(found.unused, 4U);
+    EXPECT_EQ(findOpenings(std::vector{straight({0, 0}, {1, 0})}, {}, Lines{}).unused, 1U);
+}
+
+TEST(PlanOpenings, ManySymbolsInOnePlace) {
+    std::vector<PlanShape> symbols;
+    for (int i = 0; i < 20'000; ++i) {
+        symbols.push_back(swing({10, 10}, {11, 10}, {10, 11}));
+        symbols.push_back(straight({2, 0}, {2.9, 0}));
+    }
+    EXPECT_EQ(findOpenings(symbols, {}, wallWithGap()).openings.size(), 1U);
+}
+
+/// Two rooms of 3 m x 3 m with a gap in the wall between them, one in the outer wall, a door
+/// symbol and a window.
+std::string flat() {
+    return line("WALL", 0, 0, 6, 0) + line("WALL", 6, 0, 6, 3) + line("WALL", 6, 3, 5, 3) +
+           line("WALL", 4, 3, 0, 3) + line("WALL", 0, 3, 0, 0) + line("WALL", 3, 0, 3, 1) +
+           line("WALL", 3, 1.9, 3, 3) + insert("DOOR", "DOORS", 3, 1, group(50, 90)) +
+           line("WINDOWS", 4, 3, 5, 3) + line("WINDOWS", 1, 0, 2, 0) + line("DOORS", 6, 1, 6, 2);
+}
+/// A leaf along y and its swing from x, hinged at the origin.
+std::string doorBlock() {
+    return block("DOOR", 0, 0, line("0", 0, 0, 0, 0.9) + arc("0", 0, 0, 0.9, 0, 90));
+}
+ImportOptions layers() {
+    ImportOptions options;
+    options.door_layers = {"DOOR*"};
+    options.window_layers = {"win*"};
+    return options;
+}
+
+TEST(PlanOpenings, OfADrawing) {
+    const Document document =
+        readDxf(drawing(flat(), doorBlock(), 6), "flat.dxf", layers(), sceneSchemas());
+    EXPECT_EQ(writeRecordText(document),
+              "#env 1\n"
+              "fence id=f1 path=4,3;0,3;0,0;6,0;6,3;5,3\n"
+              "fence path=3,0;3,1\n"
+              "fence path=3,1.9;3,3\n"
+              "wall id=gap from=3,1 to=3,1.9\n"
+              "door wall=gap from=3,1 to=3,1.9 open=yes\n"
+              "door wall=f1 from=6,1 to=6,2 open=yes\n"
+              "wall id=gap-2 from=4,3 to=5,3\n"
+              "window wall=gap-2 from=4,3 to=5,3\n"
+              "window wall=f1 from=1,0 to=2,0\n"
+              "inside at=1.5,1.5\n");
+    EXPECT_NE(
+        notesOf(document).find("kept the largest region, 18.0 m2 in 2 rooms\n2 doors, 2 windows\n"),
+        std::string::npos)
+        << notesOf(document);
+}
+
+TEST(PlanOpenings, DrawingsCompile) {
+    const auto area_of = [](const ImportOptions& options) {
+        return environmentOf(
+                   readDxf(drawing(flat(), doorBlock(), 6), "flat.dxf", options, sceneSchemas()))
+            .indoor()
+            .area();
+    };
+    EXPECT_NEAR(area_of(layers()), 18, 1e-9);
+    ImportOptions low = layers();
+    low.wall_height = 0.5;
+    low.wall_thickness = 0.1;
+    EXPECT_NEAR(area_of(low), 18, 1e-9);
+}
+
+TEST(PlanOpenings, LowWallsHaveLowOpenings) {
+    ImportOptions options = layers();
+    options.wall_height = 1;
+    const Document document =
+        readDxf(drawing(flat(), doorBlock(), 6), "flat.dxf", options, sceneSchemas());
+    for (const Record& record : document.records) {
+        if (record.keyword() == "door") {
+            EXPECT_EQ(record.number("height"), 1);
+        } else if (record.keyword() == "window") {
+            EXPECT_LE(record.number("sill") + record.number("height"), 1);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,445 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan/plan_rooms.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "base/number.h"
+#include "env/environment.h"
+#include "geom/arrangement.h"
+#include "geom/planar_map.h"
+
+namespace ispace {
+
+namespace {
+
+/// Widths of gaps to close, tried in this order unless the user gives one.
+constexpr std::array kSmallGaps{0.01, 0.02, 0.05, 0.1, 0.2};
+constexpr std::array kDoorways{0.4, 0.7, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5};
+
+/// Drawings with more lines or faces are tried only once: many crossing lines take long enough.
+constexpr std::size_t kMaxLinesTried = 10'000, kMaxFacesTried = 1'000;
+
+/// A room below this share of the drawing's extent, or of what could be enclosed, is uncertain.
+constexpr double kSmallShare = 0.5;
+
+/// Wider gaps are doorways, between corners of thick walls, too.
+constexpr double kNarrowestDoorway = 0.3;
+
+/// If all rooms are kept, smaller ones are shafts, and smaller ones inside another room are things.
+constexpr double kMinRoom = 1, kMinInnerRoom = 4;
+
+/// Metres; smaller and larger plans are in other units.
+constexpr double kMinPlan = 2, kMaxPlan = 2000;
+
+/// Rooms left out are counted up to here.
+constexpr std::size_t kMaxGroups = 500;
+
+constexpr std::size_t kMaxPlaces = 6;  // in one message
+/// Metres; messages tell gaps to the millimetre.
+constexpr double kMinListedGap = 0.0005;
+
+/// Metres from the edge of the plan at which a room touches it.
+constexpr double kAtBorder = 1e-3;
+
+double areaOf(const Box2& box) { return box.width() * box.depth(); }
+
+std::string sizeText(const Box2& box) {
+    return formatFixed(box.width(), 1) + " x " + formatFixed(box.depth(), 1) + " m";
+}
+
+class RoomChooser {
+  public:
+    RoomChooser(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out)
+        : plan_(plan), options_(options), out_(out), lines_(plan.lines) {
+        lines_.insert(lines_.end(), options.known_walls.begin(), options.known_walls.end());
+        points_ = options.inside;
+        points_.insert(points_.end(), options.known_inside.begin(), options.known_inside.end());
+    }
+
+    PlanRooms choose() {
+        const Box2 box = boundsOf(plan_.lines);
+        const double extent = std::max(box.width(), box.depth());
+        is_odd_ = !plan_.lines.empty() && (extent < kMinPlan || extent > kMaxPlan);
+        if (is_odd_)
+            out_.warn("the plan is " + lengthText(extent) + " m wide: is its unit right?" +
+                      (plan_.unit_hint ? plan_.unit_hint(extent) : ""));
+        Attempt best = chosen();
+        PlanRooms rooms;
+        if (out_.wantsRooms()) handOver(best);
+        rooms.writes_inside = options_.known_inside.empty() || !options_.inside.empty();
+        if (best.groups.empty()) {
+            out_.note("nothing is enclosed: all lines are kept");
+            return rooms;
+        }
+        for (const PlanFaces::Group* group : best.groups) {
+            rooms.regions.push_back(best.faces.region(*group));
+            if (points_.empty() && plan_.home && best.faces.groupAt(*plan_.home) == group)
+                rooms.regions.back().inside = *plan_.home;
+            const auto closing = best.faces.closedBy(rooms.regions.back());
+            rooms.closing.insert(rooms.closing.end(), closing.begin(), closing.end());
+        }
+        for (const Segment2& gap : rooms.closing) out_.closedGap(gap);
+        report(best, rooms);
+        if (options_.reachable) rooms.reached = reach(rooms, *options_.reachable);
+        return rooms;
+    }
+
+  private:
+    /// The rooms with gaps up to a width closed.
+    struct Attempt {
+        double width;
+        std::size_t closings;  ///< lines that close gaps
+        PlanFaces faces;
+        std::vector<const PlanFaces::Group*> groups = {};
+        double area = 0;
+        bool is_whole = false;  ///< every requested point is in a room
+    };
+
+    /// Points choose among the rooms that there are without them; only if one of these lies in
+    /// none, gaps are closed for the points' sake.
+    Attempt chosen() {
+        const std::vector<Point2> points = std::exchange(points_, {});
+        Attempt best = likeliest();
+        if (points.empty()) return best;
+        points_ = points;
+        wider_.reset();
+        best.groups.clear();
+        take(best);
+        return best.is_whole ? std::move(best) : likeliest();
+    }
+
+    Attempt likeliest() {
+        const double width = options_.close_gaps.value_or(0);
+        Attempt best = attempt(width, waysUpTo(width));
+        if (!options_.close_gaps && isUncertain(best)) best = closed(std::move(best));
+        return best;
+    }
+
+    /// Hands over the rooms of the plan, besides those kept only the largest.
+    void handOver(const Attempt& taken) {
+        const Box2 all = boundsOf(plan_.lines);
+        const NearSegments walls(lines_);
+        std::size_t others = 0;
+        for (const PlanFaces::Group& group : taken.faces.groups()) {
+            const bool is_kept =
+                std::find(taken.groups.begin(), taken.groups.end(), &group) != taken.groups.end();
+            if (!is_kept && (others == FoundRooms::kMost || group.area < kMinRoom ||
+                             !isRoom(taken.faces, group)))
+                continue;
+            others += is_kept ? 0 : 1;
+            FoundRoom room{group.area, {}, {}, false, is_kept, {}};
+            Box2 box;
+            for (const std::size_t i : group.faces) {
+                room.floor.push_back(taken.faces.faces()[i]);
+                box.add(bounds(room.floor.back().outline).low);
+                box.add(bounds(room.floor.back().outline).high);
+            }
+            std::vector<Segment2> near;
+            for (const std::size_t i : walls.near(bounds(room.floor.front().outline), 0))
+                near.push_back(lines_[i]);
+            room.inside = shortPointIn(room.floor.front(), clearPoint(room.floor.front(), near));
+            room.touches_border =
+                std::min({box.low.x - all.low.x, box.low.y - all.low.y, all.high.x - box.high.x,
+                          all.high.y - box.high.y}) <= kAtBorder;
+            out_.room(std::move(room));
+        }
+    }
+
+    [[nodiscard]] bool isRoom(const PlanFaces& faces, const PlanFaces::Group& group) const {
+        if (faces.isHollow(group)) return false;
+        return !plan_.is_floor || plan_.is_floor(interiorPoint(faces.faces()[group.faces.front()]));
+    }
+
+    /// Lines that could close gaps, the narrowest first, so that those up to a width are a prefix.
+    struct Ways {
+        std::vector<Segment2> lines;
+        std::vector<double> widths;  // of the gaps, that grow
+
+        [[nodiscard]] std::span<const Segment2> upTo(double width) const {
+            const auto end = std::upper_bound(widths.begin(), widths.end(), width);
+            return std::span(lines).first(static_cast<std::size_t>(end - widths.begin()));
+        }
+    };
+
+    [[nodiscard]] Ways waysUpTo(double width) const {
+        Ways ways;
+        if (!(width > 0)) return ways;
+        std::vector<Point2> corners;
+        if (width >= kNarrowestDoorway) corners = PlanFaces(lines_).wallCorners();
+        for (const Closing& gap : closings(lines_, corners, width)) {
+            const Segment2 line{wholeMicrometres(gap.line.a), wholeMicrometres(gap.line.b)};
+            if (line.a == line.b) continue;
+            ways.lines.push_back(line);
+            ways.widths.push_back(gap.width);
+        }
+        return ways;
+    }
+
+    [[nodiscard]] Attempt attempt(double width, const Ways& ways) const {
+        const std::span<const Segment2> closing = ways.upTo(width);
+        return attemptOf(width, closing.size(), PlanFaces(lines_, plan_.doors, closing));
+    }
+
+    [[nodiscard]] Attempt attemptOf(double width, std::size_t closings, PlanFaces faces) const {
+        Attempt attempt{width, closings, std::move(faces)};
+        take(attempt);
+        return attempt;
+    }
+
+    void take(Attempt& attempt) const {
+        takeGroups(attempt);
+        attempt.area = 0;
+        for (const PlanFaces::Group* group : attempt.groups) attempt.area += group->area;
+    }
+
+    void takeGroups(Attempt& attempt) const {
+        const PlanFaces& faces = attempt.faces;
+        attempt.is_whole = true;
+        if (!points_.empty()) {
+            std::set<const PlanFaces::Group*> taken;
+            for (const Point2 p : points_) {
+                const PlanFaces::Group* group = faces.groupAt(p);
+                if (group == nullptr)
+                    attempt.is_whole = false;
+                else if (taken.insert(group).second)
+                    attempt.groups.push_back(group);
+            }
+            return;
+        }
+        if (options_.rooms == RoomChoice::All) return takeAll(attempt);
+        if (plan_.home) {
+            const PlanFaces::Group* group = faces.groupAt(*plan_.home);
+            attempt.is_whole = group != nullptr && isRoom(faces, *group);
+            if (attempt.is_whole) return attempt.groups.push_back(group);
+        }
+        for (const PlanFaces::Group& group : faces.groups())
+            if (isRoom(faces, group)) return attempt.groups.push_back(&group);
+    }
+
+    void takeAll(Attempt& attempt) const {
+        const PlanFaces& faces = attempt.faces;
+        for (const PlanFaces::Group& group : faces.groups()) {
+            if (group.area < kMinRoom || !isRoom(faces, group)) continue;
+            const Point2 corner = faces.faces()[group.faces.front()].outline.front();
+            const bool is_inner = std::any_of(
+                attempt.groups.begin(), attempt.groups.end(), [&](const PlanFaces::Group* outer) {
+                    const Region& room = faces.faces()[outer->faces.front()];
+                    return std::any_of(
+                        room.holes.begin(), room.holes.end(),
+                        [&](const Polygon& hole) { return locate(hole, corner) != Side::Outside; });
+                });
+            if (!is_inner || group.area >= kMinInnerRoom) attempt.groups.push_back(&group);
+        }
+    }
+
+    [[nodiscard]] bool isUncertain(const Attempt& attempt) const {
+        if (is_odd_) return false;  // one warning at a time
+        return attempt.groups.empty() || !attempt.is_whole ||
+               attempt.area < kSmallShare * areaOf(boundsOf(plan_.lines));
+    }
+
+    /// Attempts to compare: lines and closings are cut where they cross once for all widths, so
+    /// that finding faces is a walk. Rooms are those of attempt() up to rounding.
+    class Trials {
+      public:
+        Trials(const RoomChooser& chooser, const Ways& ways) : chooser_(chooser), ways_(ways) {
+            std::vector<Segment2> all = chooser.lines_;
+            all.insert(all.end(), ways.lines.begin(), ways.lines.end());
+            std::vector<LinePiece> cut = noded(linePieces(all));
+            std::stable_sort(cut.begin(), cut.end(), [](const LinePiece& p, const LinePiece& q) {
+                return p.line < q.line;
+            });
+            const std::size_t walls = chooser.lines_.size();
+            std::vector<Segment2> lines, closings;
+            std::vector<std::size_t> needs;
+            for (const LinePiece& piece : cut) {
+                (piece.line < walls ? lines : closings).push_back(piece.segment);
+                if (piece.line >= walls) needs.push_back(piece.line - walls + 1);
+            }
+            pieces_ = PlanFaces::weldedPieces(lines, closings);
+            for (const std::size_t closing : pieces_.closing_of) needs_.push_back(needs[closing]);
+        }
+
+        [[nodiscard]] Attempt at(double width) const {
+            const std::size_t count = ways_.upTo(width).size();
+            const auto end = std::upper_bound(needs_.begin(), needs_.end(), count);
+            const auto pieces = static_cast<std::size_t>(end - needs_.begin());
+            return chooser_.attemptOf(width, count,
+                                      PlanFaces(pieces_, chooser_.plan_.doors, pieces));
+        }
+
+      private:
+        const RoomChooser& chooser_;
+        const Ways& ways_;
+        PlanFaces::Pieces pieces_;
+        std::vector<std::size_t>
+            needs_;  // number of closed gaps from which a piece exists; ascending
+    };
+
+    /// The attempt with the smallest width that encloses half of the best, if that is better.
+    template <typename Widths>
+    std::optional<Attempt> smallestGood(const Widths& widths, const Attempt& open) {
+        std::vector<Attempt> attempts;
+        double best = 0;
+        bool any_whole = false;
+        const Ways ways = waysUpTo(widths.back());
+        const Trials trials(*this, ways);
+        for (const double width : widths) {
+            // Without a new gap the rooms are those of the width before.
+            const std::size_t count = ways.upTo(width).size();
+            if (!attempts.empty() && attempts.back().closings == count) continue;
+            attempts.push_back(trials.at(width));
+            any_whole = any_whole || attempts.back().is_whole;
+        }
+        for (const Attempt& a : attempts)
+            if (a.is_whole == any_whole) best = std::max(best, a.area);
+        // Halves are common where plans are regular, and the areas are rounded.
+        constexpr double kAlmost = 1 - 1e-9;
+        if (any_whole == open.is_whole && !(best * kSmallShare * kAlmost > open.area))
+            return std::nullopt;
+        for (const Attempt& a : attempts)
+            if (a.is_whole == any_whole && a.area > 0 && a.area >= best * kSmallShare * kAlmost)
+                return attempt(a.width, ways);
+        return std::nullopt;
+    }
+
+    Attempt closed(Attempt open) {
+        if (lines_.size() > kMaxLinesTried || open.faces.faces().size() > kMaxFacesTried)
+            return open;
+        if (auto better = smallestGood(kSmallGaps, open)) open = *std::move(better);
+        if (!isUncertain(open)) return open;
+        auto wide = smallestGood(kDoorways, open);
+        if (!wide) return open;
+        if (open.groups.empty() || !open.is_whole) return *std::move(wide);
+        wider_ = {wide->width, wide->area};
+        return open;
+    }
+
+    [[nodiscard]] std::vector<Region> reach(const PlanRooms& rooms, double radius) const {
+        std::vector<Segment2> walls = withoutPassages(lines_, plan_.doors);
+        walls.insert(walls.end(), rooms.closing.begin(), rooms.closing.end());
+        std::vector<Region> reached;
+        double floor = 0;
+        for (const PlanRegion& region : rooms.regions) {
+            Point2 start = region.inside;
+            for (const Point2 p : points_)
+                for (const Region& room : region.rooms)
+                    if (room.locate(p) == Side::Inside) start = p;
+            std::vector<Region> pieces = reachedFloor(region.rooms, walls, start, radius);
+            if (pieces.empty())
+                throw FormatError(Diagnostic{"", 0, 0,
+                                             "a disc of " + lengthText(radius) +
+                                                 " m does not fit at the inside point " +
+                                                 placeText(start) +
+                                                 ": give another with --inside, or a smaller "
+                                                 "--reachable"});
+            for (Region& piece : pieces) {
+                floor += piece.area();
+                reached.push_back(std::move(piece));
+            }
+        }
+        out_.note("a disc of " + lengthText(radius) + " m reaches " + areaText(floor) + " of " +
+                  areaText(rooms.area()));
+        return reached;
+    }
+
+    void report(const Attempt& taken, const PlanRooms& rooms) {
+        warnOfGaps(rooms.closing, taken.width);
+        std::size_t faces = 0;
+        Box2 kept;
+        for (const PlanRegion& region : rooms.regions)
+            for (const Region& room : region.rooms) {
+                ++faces;
+                kept.add(bounds(room.outline).low);
+                kept.add(bounds(room.outline).high);
+            }
+        const bool is_largest = points_.empty() && !plan_.home && rooms.regions.size() == 1;
+        out_.note((is_largest ? "kept the largest region, " : "kept ") + areaText(taken.area) +
+                  " in " + countText(faces, "room"));
+        if (wider_)
+            out_.warn("only " + areaText(taken.area) +
+                      " are enclosed, the walls are open; with --close-gaps " +
+                      formatDouble(wider_->first) + " it would be " + areaText(wider_->second));
+        if (points_.empty() && !is_odd_ && !wider_) warnOfTheRest(taken, kept);
+    }
+
+    void warnOfTheRest(const Attempt& taken, const Box2& kept) {
+        const Box2 all = boundsOf(plan_.lines);
+        const PlanFaces::Group* largest_other = nullptr;
+        double others = 0;
+        std::size_t looked_at = 0;
+        for (const PlanFaces::Group& group : taken.faces.groups()) {
+            if (std::find(taken.groups.begin(), taken.groups.end(), &group) != taken.groups.end())
+                continue;
+            if (++looked_at > kMaxGroups) break;
+            if (!isRoom(taken.faces, group)) continue;
+            if (largest_other == nullptr) largest_other = &group;
+            others += group.area;
+        }
+        if (areaOf(kept) >= kSmallShare * areaOf(all) && taken.area >= others) return;
+        std::string text = "kept " + areaText(taken.area) + " on " + sizeText(kept) +
+                           " of a drawing of " + sizeText(all);
+        if (largest_other != nullptr)
+            text += "; other rooms have " + areaText(others) + ", the largest of them " +
+                    areaText(largest_other->area) + " about " +
+                    placeText(interiorPoint(taken.faces.faces()[largest_other->faces.front()])) +
+                    ": --inside X,Y chooses rooms, --rooms all keeps all";
+        out_.warn(std::move(text));
+    }
+
+    void warnOfGaps(std::span<const Segment2> closing, double width) {
+        std::vector<std::pair<double, Point2>> gaps;
+        for (const Segment2& line : closing)
+            if (const double gap = distance(line.a, line.b); gap >= kMinListedGap)
+                gaps.emplace_back(gap, line.a + 0.5 * (line.b - line.a));
+        if (gaps.empty()) return;
+        std::stable_sort(gaps.begin(), gaps.end(),
+                         [](const auto& a, const auto& b) { return a.first > b.first; });
+        std::string text = "the walls do not close: closed " + countText(gaps.size(), "gap") +
+                           " of up to " + formatDouble(width) + " m (";
+        for (std::size_t i = 0; i < std::min(gaps.size(), kMaxPlaces); ++i)
+            text += (i == 0 ? "" : ", ") + formatFixed(gaps[i].first, 3) + " m at " +
+                    placeText(gaps[i].second);
+        if (gaps.size() > kMaxPlaces)
+            text += " and " + std::to_string(gaps.size() - kMaxPlaces) + " more";
+        out_.warn(text + "); --close-gaps M sets the widest");
+    }
+
+    const PlanWalls& plan_;
+    const ImportOptions& options_;
+    ImportRecords& out_;
+    std::vector<Segment2> lines_;  // with those of other inputs
+    std::vector<Point2> points_;
+    bool is_odd_ = false;                             // its size is no plan's
+    std::optional<std::pair<double, double>> wider_;  // width and area of the attempt not taken
+};
+
+}  // namespace
+
+double PlanRooms::area() const {
+    return std::accumulate(
+        regions.begin(), regions.end(), 0.0,
+        [](double sum, const PlanRegion& region) { return sum + region.area(); });
+}
+
+PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out) {
+    return RoomChooser(plan, options, out).choose();
+}
+
+void writeRooms(const PlanRooms& rooms, const ImportOptions& options, ImportRecords& out) {
+    for (const Region& floor : rooms.reached) out.outline(floor);
+    if (rooms.reached.empty())
+        for (const Segment2& line : rooms.closing)
+            out.fence({{wholeMicrometres(line.a), wholeMicrometres(line.b)}, false, 0});
+    if (!rooms.writes_inside) return;
+    for (const Point2 p : options.inside) out.inside(p);
+    if (!options.inside.empty()) return;
+    for (const PlanRegion& region : rooms.regions) out.inside(region.inside);
+}
+
+}  // namespace ispace

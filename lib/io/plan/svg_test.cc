@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/importers.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "geom/predicates.h"
+#include "io/plan/svg.h"
+#include "support/test_import.h"
+
+namespace ispace {
+namespace {
+
+Document read(const std::string& svg, const ImportOptions& options = {}) {
+    return readSvg(svg, "plan.svg", options, sceneSchemas());
+}
+std::string textOf(const std::string& svg, const ImportOptions& options = {}) {
+    return writeRecordText(read(svg, options));
+}
+std::string errorOf(const std::string& svg, const ImportOptions& options = {}) {
+    return errorsOf([&] { read(svg, options); });
+}
+double areaOf(const std::string& svg, const ImportOptions& options = {}) {
+    return environmentOf(read(svg, options)).indoor().area();
+}
+
+/// A page of 20 m x 10 m, in metres.
+std::string page(const std::string& content) {
+    return "<svg width=\"20000mm\" height=\"10000mm\" viewBox=\"0 0 20 10\">" + content + "</svg>";
+}
+std::string path(const std::string& data) { return page("<path d=\"" + data + "\"/>"); }
+
+TEST(Svg, Known) {
+    EXPECT_TRUE(isSvg("<svg/>"));
+    EXPECT_TRUE(
+        isSvg("\n<?xml version=\"1.0\"?>\n<!DOCTYPE svg PUBLIC \"x\">\n<!-- <g> -->\n<svg a='b'>"));
+    EXPECT_TRUE(isSvg("<svg:svg xmlns:svg=\"x\">"));
+    EXPECT_FALSE(isSvg("<?xml?><COLLADA>"));
+    EXPECT_FALSE(isSvg("<html><svg/></html>"));
+    EXPECT_FALSE(isSvg("<svgz>"));
+    EXPECT_FALSE(isSvg("<!-- <svg>"));
+    EXPECT_FALSE(isSvg("svg"));
+    EXPECT_FALSE(isSvg(""));
+}
+
+TEST(Svg, LowerLeftCornerIsTheOrigin) {
+    const std::string svg = page("<polygon points=\"1,2 5,2 5,5 1,5\"/>");
+    EXPECT_EQ(textOf(svg), "#env 1\nfence path=1,8;5,8;5,5;1,5 closed=yes\ninside at=3,6.5\n");
+    EXPECT_EQ(notesOf(read(svg)),
+              "a unit of the drawing is 1000 mm, as its size says\n"
+              "layers of walls: (none) (1)\n"
+              "kept the largest region, 12.0 m2 in 1 room\n");
+}
+
+TEST(Svg, PathCommands) {
+    EXPECT_EQ(textOf(path("M1 1H5V4H1Z")),
+              "#env 1\nfence path=1,9;5,9;5,6;1,6 closed=yes\ninside at=3,7.5\n");
+    for (const char* same :
+         {"m1,1h4v3h-4z", "M1 1 5 1 5 4 1 4Z", "m1 1 4 0 0 3-4 0z", "M1 1L5 1l0 3L1 4z",
+          "M0 0M1 1H5V4H1Z", "M1e0+1.0H5.V4h-40e-1Z", "M1,1C1 1 5 1 5 1V4H1Z"})
+        EXPECT_NEAR(areaOf(path(same)), 12, 1e-9) << same;
+    // Behind Z a path goes on where it began.
+    EXPECT_NEAR(areaOf(path("M1 1h4v3h-4z h9v8h-9z")), 60, 1e-9);
+}
+
+TEST(Svg, Curves) {
+    const double pi = std::numbers::pi;
+    // Half discs of radius 2, either way about; pieces lie inside by a millimetre at most.
+    for (const char* half : {"M2 5A2 2 0 0 1 6 5Z", "M2 5a2 2 0 1 1 4 0z", "M6 5A2,2 0 00 2,5z",
+                             "M2 5A1 1 0 0 1 6 5Z"})
+        EXPECT_NEAR(areaOf(path(half)), 2 * pi, 0.007) << half;
+    EXPECT_NEAR(areaOf(path("M2 5A4 2 90 0 1 6 5Z")), 4 * pi, 0.02);
+    EXPECT_NEAR(areaOf(page("<circle cx=\"10\" cy=\"5\" r=\"2\"/>")), 4 * pi, 0.014);
+    EXPECT_NEAR(areaOf(page("<ellipse cx=\"10\" cy=\"5\" rx=\"3\" ry=\"1\"/>")), 3 * pi, 0.014);
+    EXPECT_NEAR(areaOf(page("<rect x=\"1\" y=\"1\" width=\"6\" height=\"4\" rx=\"1\"/>")),
+                24 - (4 - pi), 0.007);
+    // A parabola's segment is two thirds of its box; T goes on to the other side of the base.
+    EXPECT_NEAR(areaOf(path("M2 5Q4 1 6 5Z")), 2.0 / 3 * 4 * 2, 0.007);
+    EXPECT_NEAR(areaOf(path("M2 5Q3 3 4 5T6 5Z")), 2.0 / 3 * 2 * 1, 0.005);
+    EXPECT_NEAR(areaOf(path("M2 5C2 2 6 2 6 5S2 8 2 5Z")), 2 * 0.6 * 4 * 3, 0.02);
+}
+
+TEST(Svg, CurvesStayWithinAMillimetre) {
+    const CubicCurve curve{Point2{0, 0}, Point2{9, 30}, Point2{-5, 12}, Point2{20, 1}};
+    Polygon points{curve[0]};
+    appendCubic(curve, points);
+    double worst = 0;
+    for (int i = 0; i <= 5000; ++i) {
+        const double t = i / 5000.0, s = 1 - t;
+        const double a = s * s * s, b = 3 * s * s * t, c = 3 * s * t * t, d = t * t * t;
+        const Point2 p{b * 9 - c * 5 + d * 20, b * 30 + c * 12 + d};
+        (void)a;
+        double nearest = 1e9;
+        for (std::size_t k = 1; k < points.size(); ++k)
+            nearest = std::min(nearest, distance(p, Segment2{points[k - 1], points[k]}));
+        worst = std::max(worst, nearest);
+    }
+    EXPECT_LE(worst, kCurveSagitta);
+    EXPECT_GT(worst, kCurveSagitta / 20);
+}
+
+TEST(Svg, CubicsThatAreArcs) {
+    const double k = 0.5522847498;
+    const auto center = arcCenter({Point2{1, 0}, Point2{1, k}, Point2{k, 1}, Point2{0, 1}});
+    ASSERT_TRUE(center);
+    EXPECT_NEAR(center->x, 0, 1e-9);
+    EXPECT_NEAR(center->y, 0, 1e-9);
+    EXPECT_FALSE(arcCenter({Point2{0, 0}, Point2{1, 0}, Point2{2, 0}, Point2{3, 0}}));
+    EXPECT_FALSE(arcCenter({Point2{1, 0}, Point2{1, 1}, Point2{1, 1}, Point2{0, 1}}));
+}
+
+TEST(Svg, TransformsNest) {
+    EXPECT_EQ(textOf(page("<g transform=\"translate(4,1) scale(2)\"><g transform='rotate(90)'>"
+                          "<rect width='3' height='1'/></g></g>")),
+              "#env 1\nfence path=4,9;4,3;2,3;2,9 closed=yes\ninside at=3,6\n");
+    EXPECT_NEAR(
+        areaOf(page("<rect transform='matrix(1 .5 0 2 3 1) skewX(20)' width='2' height='1'/>")), 4,
+        1e-4);
+    EXPECT_NEAR(
+        areaOf(page("<rect transform='rotate(30,10,5)' x='9' y='4' width='3' height='2'/>")), 6,
+        1e-4);
+    EXPECT_NEAR(areaOf(page("<svg x='2' y='1' width='8' height='4' viewBox='0 0 80 40'>"
+                            "<rect width='80' height='40'/></svg>")),
+                32, 1e-9);
+}
+
+TEST(Svg, Uses) {
+    const std::string defs =
+        "<defs><rect id='r' width='2' height='1'/><symbol id='s' viewBox='0 0 4 2'>"
+        "<rect width='4' height='2'/></symbol></defs>";
+    EXPECT_EQ(textOf(page(defs + "<use href='#r' x='3' y='4'/>")),
+              "#env 1\nfence path=3,6;5,6;5,5;3,5 closed=yes\ninside at=4,5.5\n");
+    EXPECT_EQ(textOf(page(defs + "<use xlink:href='#s' x='3' y='4' width='8' height='4'/>")),
+              "#env 1\nfence path=3,6;11,6;11,2;3,2 closed=yes\ninside at=7,4\n");
+    EXPECT_NE(notesOf(read(page(defs + "<use href='#r'/><use href='#none'/>")))
+                  .find("left out: uses of what the file lacks (1)"),
+              std::string::npos);
+}
+
+TEST(Svg, Scale) {
+    const std::string room = "<rect width='4' height='3'/></svg>";
+    EXPECT_NEAR(areaOf("<svg width='1000mm' height='100cm' viewBox='0 0 1 1'>" + room), 12, 1e-9);
+    EXPECT_NEAR(areaOf("<svg width='40in' viewBox='0 0 1 1'>" + room), 12 * 1.016 * 1.016, 1e-5);
+    EXPECT_NEAR(areaOf("<svg width='720pt' height='60pc' viewBox='0 0 1 1'>" + room),
+                12 * 0.254 * 0.254, 1e-6);
+    EXPECT_NEAR(areaOf("<svg width='1000px' height='1000mm' viewBox='0 0 1 1'>" + room), 12, 1e-9)
+        << "paper wins over pixels";
+    ImportOptions options;
+    options.units = "foot";
+    EXPECT_NEAR(areaOf("<svg width='1mm' height='1mm' viewBox='0 0 9 9'>" + room, options),
+                12 * 0.3048 * 0.3048, 1e-5);
+    EXPECT_NEAR(areaOf("<svg>" + room, options), 12 * 0.3048 * 0.3048, 1e-5);
+}
+
+TEST(Svg, WithoutAScale) {
+    const std::string room = "<rect width='400' height='300'/></svg>";
+    const std::string hint =
+        ": say its unit, for example with --units cm, or how wide it is, with --width-is 8.3m\n";
+    const std::string begin =
+        "plan.svg:1:1: error: `svg`: the drawing has no scale, as its size is ";
+    for (const char* size :
+         {"", "width='100%'", "viewBox='0 0 9 9'", "width='100%' viewBox='0 0 9 9'"})
+        EXPECT_EQ(errorOf("<svg " + std::string(size) + ">" + room), begin + "not said" + hint)
+            << size;
+    for (const char* size : {"width='800'", "width='100%' height='800px'"})
+        EXPECT_EQ(errorOf("<svg " + std::string(size) + ">" + room), begin + "in pixels" + hint)
+            << size;
+    ImportOptions options;
+    options.width_is = 8;
+    EXPECT_NEAR(areaOf("<svg width='800'>" + room, options), 8 * 6, 1e-5);
+    EXPECT_EQ(errorOf("<svg width='800'><path d='M1 1V9'/></svg>", options),
+              "plan.svg: error: the lines of walls have no width: --width-is needs some\n");
+    // Curves are measured at the scale they come to: a disc 8 m wide.
+    EXPECT_NEAR(areaOf("<svg><circle r='2'/></svg>", options), 16 * std::numbers::pi, 0.02);
+}
+
+TEST(Svg, OfNoBuildingsSize) {
+    const std::string paper = "<svg width='200mm' viewBox='0 0 10 10'>";
+    const std::string room = "<rect width='8' height='5'/></svg>";
+    EXPECT_EQ(errorOf(paper + room),
+              "plan.svg: error: the plan is 0.16 m wide: is its unit right? It is read in units of "
+              "20 mm; with --units m it would be 8.0 m wide and have 40.0 m2 of floor; or say how "
+              "wide it is, with --width-is 8.3m\n");
+    EXPECT_EQ(errorOf("<svg width='900cm' viewBox='0 0 1 1'><rect width='400' height='400'/></svg>")
+                  .find("plan.svg: error: the plan is 3600 m wide: is its unit right?"),
+              0U);
+    ImportOptions options;
+    options.units = "cm";
+    EXPECT_NEAR(areaOf(paper + room, options), 0.004, 1e-9) << "said, it is believed";
+}
+
+TEST(Svg, NamesOfWalls) {
+    // A room of 8 m x 4 m, and a cupboard that parts it.
+    const std::string walls = "<path d='M0 0H8V4H0Z'/>", rest = "<path d='M5 0V4'/>";
+    const auto warned = [](const std::string& svg) { return warningsOf(read(page(svg))); };
+    EXPECT_EQ(warned("<g id='plan'><g id='Walls'>" + walls + "</g>" + rest + "</g>"),
+              "plan.svg: warning: the drawing names its walls: with --wall-layer Walls it would "
+              "have 32.0 m2 of floor, not 20.0 m2\n");
+    EXPECT_NE(warned("<g id='g1' inkscape:label='W\u00c4NDE 1'>" + walls + "</g>" + rest)
+                  .find("--wall-layer 'W\u00c4NDE 1' "),
+              std::string::npos);
+    EXPECT_EQ(warned("<g id='Walls'>" + walls + rest + "</g>"), "") << "all are";
+    EXPECT_EQ(warned("<g id='Walls'>" + walls + "</g><path d='M1 1H2'/>"), "") << "the same room";
+    EXPECT_EQ(warned("<g id='wallpaper'>" + walls + "</g>" + rest), "");
+}
+
+TEST(Svg, Layers) {
+    const std::string svg = page(
+        "<g id='a' inkscape:groupmode='layer' inkscape:label='Walls'><g id='g1'><rect width='4' "
+        "height='3'/></g></g>"
+        "<g id='Furniture'><g id='g2'><path d='M1 0V3'/></g></g><rect id='odd' x='8' width='9' "
+        "height='9'/>");
+    EXPECT_NE(notesOf(read(svg)).find("layers of walls: (none) (1), Furniture (1), Walls (1)\n"),
+              std::string::npos);
+    ImportOptions options;
+    for (const char* glob : {"walls", "a", "g1"}) {
+        options.wall_layers = {glob};
+        EXPECT_NEAR(areaOf(svg, options), 12, 1e-9) << glob;
+    }
+    options.wall_layers = {"odd"};
+    EXPECT_NEAR(areaOf(svg, options), 81, 1e-9);
+    options.wall_layers = {"none of them"};
+    EXPECT_EQ(errorOf(svg, options),
+              "plan.svg: error: no line on the layers of walls; layers with lines: (none) (1), "
+              "Furniture (1), Walls (1)\n");
+}
+
+TEST(Svg, DoorsSwing) {
+    ImportOptions options;
+    options.wall_layers = {"W"};
+    options.door_layers = {"D"};
+    const std::string walls = "<g id='W'><path d='M0 0H8V4H0ZM4 0V1M4 2V4'/></g><g id='D'>";
+    for (const char* leaf :
+         {"<path d='M4 2A1 1 0 0 1 3 1'/>", "<path d='M4 2C3.4477 2 3 1.5523 3 1'/>",
+          "<line x1='4' y1='1' x2='4' y2='2'/>"}) {
+        const Document document = read(page(walls + leaf + "</g>"), options);
+        EXPECT_EQ(countOf(document, "door"), 1U) << leaf;
+        EXPECT_NEAR(environmentOf(document).indoor().area(), 32, 1e-6) << leaf;
+    }
+}
+
+TEST(Svg, LeavesOutWhatShowsNothing) {
+    const std::string room = "<rect x='1' y='1' width='4' height='3'/>";
+    for (const char* nothing :
+         {"<rect width='20' height='10' fill='white'/>", "<rect width='100%' height='100%'/>",
+          "<rect width='9' height='9' style='display:none'/>",
+          "<g display='none'><rect width='9' height='9'/></g>",
+          "<g visibility='hidden'><rect width='9' height='9'/></g>",
+          "<rect width='9' height='9' style=' stroke : none; fill:none'/>",
+          "<defs><rect width='9' height='9'/></defs>",
+          "<clipPath><rect width='9' height='9'/></clipPath>", "<text x='1'>a</text>",
+          "<rect width='0' height='9'/>", "<path d=''/>", "<path d='M9 9'/>", "<circle r='0'/>",
+          "<polyline points='3,4'/>"})
+        EXPECT_EQ(textOf(page(nothing + room)),
+                  "#env 1\nfence path=1,9;5,9;5,6;1,6 closed=yes\ninside at=3,7.5\n")
+            << nothing;
+    const std::string css =
+        "<style>/* .a{display:none} */ .b, g.c{fill:none;stroke : none} .d{display:none}"
+        "#e{visibility:hidden}.f{display:none}.f{display:inline}ellipse{display:none}</style>";
+    for (const char* hidden :
+         {"<rect class='b' width='9' height='9'/>",
+          "<g class='x d'><rect width='9' height='9'/></g>", "<rect id='e' width='9' height='9'/>",
+          "<ellipse cx='9' cy='5' rx='4' ry='4'/>"})
+        EXPECT_NEAR(areaOf(page(css + hidden + room)), 12, 1e-9) << hidden;
+    for (const char* shown :
+         {"<rect class='a' width='9' height='9'/>", "<rect class='f' width='9' height='9'/>",
+          "<rect class='b' style='stroke:red' width='9' height='9'/>",
+          "<g class='d' style='display:inline'><rect width='9' height='9'/></g>"})
+        EXPECT_NEAR(areaOf(page(css + shown)), 81, 1e-9) << shown;
+    // A frame is drawn.
+    EXPECT_NEAR(areaOf(page("<rect width='20' height='10' stroke='black'/>")), 200, 1e-9);
+}
+
+TEST(Svg, RefusesWithLine) {
+    const auto in_line_2 = [](const std::string& element) { return errorOf(page("\n" + element)); };
+    EXPECT_EQ(in_line_2("<path d='M1 1 L2 x'/>"),
+              "plan.svg:2:1: error: `path`: found `x`, wanted a number\n");
+    EXPECT_EQ(in_line_2("<path d='L2 2'/>"),
+              "plan.svg:2:1: error: `path`: it does not begin with M\n");
+    EXPECT_EQ(in_line_2("<path d='M1 1 B2'/>"),
+              "plan.svg:2:1: error: `path`: unknown command `B`\n");
+    EXPECT_EQ(in_line_2("<path d='M1 1 A1 1 0 2 0 3 3'/>"),
+              "plan.svg:2:1: error: `path`: found `2 0 3 3`, wanted a flag, 0 or 1\n");
+    EXPECT_EQ(in_line_2("<path d='M1 1 C1 2 3'/>"),
+              "plan.svg:2:1: error: `path`: it ends early, wanted a number\n");
+    EXPECT_EQ(in_line_2("<g transform='spin(3)'/>"),
+              "plan.svg:2:1: error: `g`: unknown transform `spin`\n");
+    EXPECT_EQ(in_line_2("<rect width='x' height='1'/>").find("plan.svg:2:1: error: `rect`: "), 0U);
+    EXPECT_EQ(in_line_2("<rect width='-1' height='1'/>"),
+              "plan.svg:2:1: error: `rect`: width is -1\n");
+    EXPECT_EQ(in_line_2("<polyline points='1,2 3'/>"),
+              "plan.svg:2:1: error: `polyline`: points: a number is missing\n");
+    EXPECT_NE(in_line_2("<path d='M0 0H1e9'/>").find("more than 900 km"), std::string::npos);
+    EXPECT_NE(in_line_2("<path d='M0 0H1e300'/>").find("wanted a number"), std::string::npos);
+    EXPECT_EQ(errorOf("<svg>\n<g>\n</svg>").find("plan.svg:3:1: error: bad XML: "), 0U);
+    EXPECT_NE(errorOf(page("")).find("no line to make a wall of"), std::string::npos);
+    EXPECT_NE(errorOf("<svg viewBox='0 0 0 9'/>").find("viewBox: wanted"), std::string::npos);
+}
+
+TEST(Svg, BombsAndNests) {
+    EXPECT_NE(errorOf(page("<g id='a'><use href='#a'/></g>")).find("does one use itself?"),
+              std::string::npos);
+    std::string deep, bomb = "<defs><rect id='x0' width='1' height='1'/>";
+    for (int i = 0; i < 100'000; ++i) deep += "<g>";
+    EXPECT_NE(errorOf("<svg width='1' height='1'>" + deep).find("bad XML"), std::string::npos);
+    for (int i = 0; i < 100'000; ++i) deep += "</g>";
+    EXPECT_NE(errorOf(page(deep)).find("nested more than 200 deep"), std::string::npos);
+    for (int i = 1; i < 12; ++i) {
+        const std::string use = "<use href='#x" + std::to_string(i - 1) + "'/>";
+        bomb += "<g id='x";
+        bomb += std::to_string(i) + "'>";
+        for (int k = 0; k < 10; ++k) bomb += use;
+        bomb += "</g>";
+    }
+    EXPECT_NE(errorOf(page(bomb + "</defs><use href='#x11'/>"))
+                  .find("uses and curves of the drawing make more"),
+              std::string::npos);
+    // Entities of the document's own are not expanded.
+    EXPECT_NE(errorOf("<!DOCTYPE svg [<!ENTITY a 'M0 0H9V9Z'>]><svg width='9mm' height='9mm'><path "
+                      "d='&a;'/></svg>")
+                  .find("`path`"),
+              std::string::npos);
+}
+
+TEST(Svg, SurvivesDamage) {
+    surviveDamage(
+        "<svg width='9m' height='9mm' viewBox='0 0 9 "
+        "9'>\n<style>.a,#r{fill:none}/*c*/</style>\n<defs><rect id='r' rx='.1' width='2' "
+        "height='1'/></defs>\n"
+        "<g transform='scale(2)rotate(3 4 5)' inkscape:label='W'>\n<path d='M1 1h4v3A2 1 9 0 1 1 "
+        "4C1 2 3 4 5 6Q1 2 3 4T1 1z'/>\n"
+        "<use href='#r' x='1'/><polygon points='1,2 3,4 5,1'/><circle r='.5'/></g></svg>\n",
+        [](const std::string& bytes) {
+            ImportOptions options;
+            options.units = "m";
+            options.max_work = 2000;
+            read(bytes, options);
+        });
+}
+
+}  // namespace
+}  // namespace ispace

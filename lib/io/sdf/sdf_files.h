@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <pugixml.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "base/budget.h"
+#include "geom/pose.h"
+
+namespace ispace {
+
+/// A file of XML in UTF-8, parsed, with the line of each node. Neither entities nor other documents
+/// are fetched. Not movable: its nodes point into it.
+class XmlFile {
+  public:
+    /// \param name for messages, as the user named it \throws FormatError with the line: bad XML
+    XmlFile(std::string_view bytes, std::string name);
+    XmlFile(const XmlFile&) = delete;
+    XmlFile& operator=(const XmlFile&) = delete;
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    /// The outermost element.
+    [[nodiscard]] pugi::xml_node root() const { return document_.document_element(); }
+    /// 1-based. O(log lines) \pre the node is of this file
+    [[nodiscard]] int lineOf(pugi::xml_node node) const { return lineAt(node.offset_debug()); }
+    /// \throws FormatError at the line of the node
+    [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;
+
+  private:
+    [[nodiscard]] int lineAt(std::ptrdiff_t offset) const;
+
+    std::string name_;
+    pugi::xml_document document_;
+    std::vector<std::ptrdiff_t> line_ends_;
+};
+
+/// A world in SDF and the files that it names: models and meshes. They lie, links followed, below
+/// one of its folders of models: its own one, `models` there and beside it, and those given.
+///
+/// The name in `model://NAME/…` and `package://NAME/…` is that of a folder in one of these, in this
+/// order, or beside the model that says so; or the world's own folder or package. `file://` leads
+/// to a file by its path, relative to the file that holds it or to one of the folders. Other paths
+/// are relative to the file that holds them. Of a model on Fuel only the name counts: nothing is
+/// fetched.
+class SdfFiles {
+  public:
+    /// \param model_folders relative to the current one \param max_work see Budget
+    /// \throws FormatError with the line: bad XML
+    SdfFiles(std::string_view bytes, std::string name, std::span<const std::string> model_folders,
+             std::optional<std::uint64_t> max_work);
+
+    [[nodiscard]] pugi::xml_node root() const { return files_.front()->xml.root(); }
+
+    /// Reads what the includes of a world or model put in it.
+    /// \throws FormatError with the line: some are not there, which one error names together, hold
+    ///         no model, light or actor, or include themselves, and as spend()
+    void loadIncludes(pugi::xml_node parent);
+    /// The model, light or actor of such an include. Nothing for the sun and the ground plane of
+    /// Gazebo where they are not found: neither stands in a room. \pre loadIncludes(its parent)
+    [[nodiscard]] pugi::xml_node included(pugi::xml_node include) const;
+
+    /// Files read besides the world, each once, as opened.
+    [[nodiscard]] const std::vector<std::string>& sources() const { return sources_; }
+    /// The file that a node names, relative to the folder of the world; nothing if it is not there.
+    [[nodiscard]] std::optional<std::string> fileNamed(pugi::xml_node node,
+                                                       std::string_view uri) const;
+    [[nodiscard]] int lineOf(pugi::xml_node node) const { return fileOf(node).xml.lineOf(node); }
+    /// Takes units of work that a node makes, see Budget. Each file is parsed anew wherever it is
+    /// included, and costs by its size. \throws FormatError at the node if there are not so many
+    void spend(pugi::xml_node node, std::size_t units);
+    /// \throws FormatError at the node's line of its file
+    [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const {
+        fileOf(node).xml.fail(node, message);
+    }
+
+    /// All numbers of a text. \throws FormatError unless there are `count`
+    [[nodiscard]] std::vector<double> numbersOf(pugi::xml_node node, std::string_view text,
+                                                std::size_t count) const;
+    /// The same of a child.
+    [[nodiscard]] std::vector<double> numbersIn(pugi::xml_node parent, const char* key,
+                                                std::size_t count) const;
+    /// A number above 0.
+    [[nodiscard]] double lengthIn(pugi::xml_node parent, const char* key) const;
+
+  private:
+    struct File {
+        XmlFile xml;
+        std::string folder;    // relative to that of the world
+        std::string identity;  // its path without links and detours
+        const File* includer = nullptr;
+    };
+    [[nodiscard]] const File& fileOf(pugi::xml_node node) const;
+    /// Paths relative to the folder of the world that a URI may mean, the likeliest first.
+    [[nodiscard]] std::vector<std::string> pathsOf(pugi::xml_node node, std::string_view uri) const;
+    [[nodiscard]] bool isThere(const std::string& path) const;
+    std::optional<std::string> modelFile(pugi::xml_node include, const std::string& path);
+    std::optional<std::string> includedFile(pugi::xml_node include);
+    /// \throws FormatError as spend()
+    std::string read(pugi::xml_node user, const std::string& path);
+    void load(pugi::xml_node include, const std::string& path);
+    void checkCycle(pugi::xml_node include, const std::string& file,
+                    const std::string& identity) const;
+    [[nodiscard]] const std::string& name() const { return files_.front()->xml.name(); }
+
+    std::vector<std::string> roots_;            // folders of models, relative to the world's
+    std::vector<std::unique_ptr<File>> files_;  // the world first
+    std::unordered_map<std::size_t, const File*> by_document_;
+    std::unordered_map<std::size_t, pugi::xml_node> included_;  // by the include
+    std::vector<std::string> sources_;
+    Budget budget_;
+};
+
+/// A world or model of SDF: what its children's poses may be relative to.
+struct SdfScope {
+    pugi::xml_node node;  ///< of a model included, in its own file
+    /// With a pose, by name; models that are included by their `include`.
+    std::unordered_map<std::string_view, pugi::xml_node> children = {};
+    std::vector<pugi::xml_node> merged = {};  ///< includes whose children count as its own
+};
+
+/// Poses of SDF 1.0 to 1.11, each in the scope's own frame: nested models, frames, `relative_to`,
+/// `attached_to`, `placement_frame`, and includes with their own pose. O(1) for each pose, as none
+/// is resolved twice.
+///
+/// All throw FormatError with the line: numbers that are none, frames that are not there or depend
+/// on each other, and what SdfFiles throws.
+class SdfFrames {
+  public:
+    using Transform = Eigen::Isometry3d;
+
+    explicit SdfFrames(SdfFiles& files) : files_(files) {}
+
+    /// Of a world, a `model`, or an `include` with one.
+    const SdfScope& scopeOf(pugi::xml_node node);
+    /// The frame of a link, joint, frame, model or include in the scope. \param length of the chain
+    /// of frames that led to it
+    const Transform& frameOf(pugi::xml_node node, const SdfScope& scope, int length = 0);
+    /// The frame that an attribute of `user` names; "": the scope's own.
+    Transform frameCalled(std::string_view name, const SdfScope& scope, pugi::xml_node user,
+                          int length = 0);
+    /// What a `pose` in the node says, in whatever frame.
+    [[nodiscard]] Transform poseIn(pugi::xml_node node) const;
+    [[nodiscard]] std::string_view nameOf(pugi::xml_node node) const;
+
+  private:
+    [[nodiscard]] pugi::xml_node modelOf(pugi::xml_node node) const;
+    [[nodiscard]] pugi::xml_node poseNode(pugi::xml_node node) const;
+
+    SdfFiles& files_;
+    std::unordered_map<std::size_t, std::unique_ptr<SdfScope>> scopes_;  // by node
+    std::unordered_map<std::size_t, std::unique_ptr<Transform>> frames_;
+};
+
+}  // namespace ispace

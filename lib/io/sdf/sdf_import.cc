@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "io/import_records.h"
+#include "io/importers.h"
+#include "io/plan/line_plan.h"
+#include "io/plan/plan_rooms.h"
+#include "io/sdf/sdf_import.h"
+#include "io/sdf/sdf_parts.h"
+#include "io/sdf/sdf_shapes.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kFloorTop = 0.02;  // metres: a box that ends below this is floor
+constexpr double kMeshCut = 0.3;    // metres: over most feet, under most sills
+
+/// Doors, in metres; wider ones have two leaves.
+constexpr double kNarrowestDoor = 0.6, kWidestDoor = 2, kDoorHeight = 2;
+
+class SdfImporter {
+  public:
+    SdfImporter(SdfWorld world, const std::string& name, const ImportOptions& options,
+                const Schemas& schemas, ImportRecords& out)
+        : world_(std::move(world)), name_(name), options_(options), schemas_(schemas), out_(out) {}
+
+    void write() {
+        for (std::string& source : world_.sources) out_.source(std::move(source));
+        sortShapes();
+        joinEnds(walls_);
+        cutIntoWalls();
+        addMeshes();
+        if (walls_.empty() && fences_.empty() && blocks_.empty() && meshes_ == 0) failEmpty();
+        chooseRoom();
+        for (const SdfBlock& block : blocks_)
+            if (isOutside(block))
+                ++blocks_outside_;
+            else
+                addBlock(block);
+        note();
+    }
+
+  private:
+    [[noreturn]] void failEmpty() const {
+        failFile(name_, "no box, cylinder, polyline or mesh in it");
+    }
+
+    void sortShapes() {
+        for (SdfShape& shape : world_.shapes) {
+            if (auto* polyline = std::get_if<SdfPolyline>(&shape.shape))
+                addPolyline(shape, *polyline);
+            else if (const auto* box = std::get_if<SdfBox>(&shape.shape))
+                sortBlock(blockOf(shape, *box));
+            else if (const auto* cylinder = std::get_if<SdfCylinder>(&shape.shape))
+                sortBlock(blockOf(shape, *cylinder));
+        }
+    }
+
+    void sortBlock(const std::optional<SdfBlock>& block) {
+        if (!block)
+            ++world_.left_out["box or cylinder that leans"];
+        else if (block->top <= kFloorTop)
+            ++floors_;
+        else if (isWall(*block, options_.slice_walls))
+            walls_.push_back(wallOf(*block));
+        else
+            blocks_.push_back(*block);
+    }
+
+    /// What is extruded from the floor is a closed fence: nothing in it is room.
+    void addPolyline(const SdfShape& shape, const SdfPolyline& polyline) {
+        const Eigen::Isometry3d& pose = shape.world_from_shape;
+        const double bottom = pose.translation().z();
+        const double foot = options_.slice_walls.value_or(kHighestFoot);
+        if (!isUpright(pose.linear().col(2)) || pose.linear()(2, 2) < 0 || bottom > foot ||
+            polyline.points.size() < 3) {
+            ++world_.left_out["polyline off the floor"];
+            return;
+        }
+        if (bottom + polyline.height <= kFloorTop) {
+            ++floors_;
+            return;
+        }
+        PlanPath path{{}, true, shape.line};
+        for (const Point2 p : polyline.points)
+            path.points.push_back(floorOf(pose * Eigen::Vector3d(p.x, p.y, 0)));
+        if (path.points.front() == path.points.back()) path.points.pop_back();
+        fences_.push_back({std::move(path), bottom + polyline.height, shape.model});
+    }
+
+    /// Meshes stand in for walls where others enclose no room, or as the user says.
+    void cutIntoWalls() {
+        const auto choose = [this](std::span<const Segment2> lines) {
+            return roomsAmong(lines).rooms;
+        };
+        const std::vector<Segment2> lines = ownLines();
+        if (!options_.slice_walls) {
+            uncut_ = roomsAmong(lines);
+            if (!uncut_->rooms.regions.empty()) return;
+        }
+        if (options_.slice_top) failFile(name_, "meshes are cut at one height: --slice-walls M");
+        const double height = options_.slice_walls.value_or(kMeshCut);
+        std::vector<SdfMeshCut> cuts = cutMeshes(world_.shapes, name_, height, schemas_);
+        if (!cuts.empty()) cuts = wallsAmong(std::move(cuts), lines, choose);
+        std::vector<Segment2> all = lines;
+        for (const SdfMeshCut& cut : cuts)
+            for (const Segment2& piece : pathPieces(cut.wall.paths)) all.push_back(piece);
+        if (!options_.slice_walls && choose(all).regions.empty()) return;  // it were no use
+        uncut_.reset();
+        for (SdfMeshCut& cut : cuts) {
+            walls_.push_back(std::move(cut.wall));
+            is_cut_.insert(cut.shape);
+        }
+        const std::string text = std::to_string(cuts.size()) +
+                                 (cuts.size() == 1 ? " mesh" : " meshes") + " cut at a height of " +
+                                 formatDouble(height) + " m into walls";
+        if (options_.slice_walls)
+            out_.note(text);
+        else
+            out_.warn("boxes and polylines enclose no room: " + text +
+                      "; --slice-walls sets the height");
+    }
+
+    void addMeshes() {
+        for (std::size_t i = 0; i < world_.shapes.size(); ++i)
+            if (const auto* mesh = std::get_if<SdfMesh>(&world_.shapes[i].shape);
+                mesh != nullptr && !is_cut_.contains(i))
+                addMesh(world_.shapes[i], *mesh);
+    }
+
+    void addMesh(const SdfShape& shape, const SdfMesh& mesh) {
+        const Eigen::Isometry3d& pose = shape.world_from_shape;
+        const auto [scale, scale_y, scale_z] = mesh.scale;
+        const bool is_even = scale == scale_y && scale == scale_z;
+        if (!isUpright(pose.linear().col(2)) || pose.linear()(2, 2) < 0 || !is_even ||
+            !(scale > 0)) {
+            ++world_.left_out["mesh that leans or is stretched"];
+            return;
+        }
+        if (!mesh.file) {
+            ++missing_[printable(mesh.uri)];
+            return;
+        }
+        Record& record = out_.add("mesh", shape.line);
+        record.set("id", out_.freeId(shape.model, "mesh"));
+        const Eigen::Vector3d& place = pose.translation();
+        record.set("at", placeOf(floorOf(place), place.z()));
+        record.set("heading", headingOf(pose.linear().col(0)).degrees());
+        record.set("file", *mesh.file);
+        record.set("up", sdfMeshUp(*mesh.file));
+        record.set("scale", scale);
+        ++meshes_;
+    }
+
+    static Tuple placeOf(Point2 at, double z) {
+        Tuple place{wholeMicrometres(at.x), wholeMicrometres(at.y)};
+        if (wholeMicrometres(z) != 0) place.push_back(wholeMicrometres(z));
+        return place;
+    }
+
+    /// The lines of all walls, then of all fences.
+    [[nodiscard]] std::vector<Segment2> ownLines() const {
+        std::vector<Segment2> lines;
+        for (const SdfWall& wall : walls_)
+            for (const Segment2& piece : pathPieces(wall.paths)) lines.push_back(piece);
+        for (const Fence& fence : fences_)
+            for (const Segment2& piece : pathPieces({fence.path})) lines.push_back(piece);
+        return lines;
+    }
+
+    /// Tried rooms; their messages are reported once the rooms are kept.
+    struct Trial {
+        PlanRooms rooms;
+        FoundRooms found;
+        Document messages;
+    };
+
+    [[nodiscard]] Trial roomsAmong(std::span<const Segment2> lines) const {
+        Trial trial;
+        if (lines.empty()) return trial;
+        if (crossTooOften(lines)) failFile(name_, "its walls cross too often to be a plan");
+        ImportOptions options = options_;
+        if (options.found != nullptr) options.found = &trial.found;
+        ImportRecords out(schemas_, name_, options);
+        trial.rooms = withFileName(name_, [&] {
+            return chooseRooms({{lines.begin(), lines.end()}, {}, {}, {}, {}}, options, out);
+        });
+        trial.messages = out.take();
+        return trial;
+    }
+
+    PlanRooms keep(Trial trial) {
+        for (FoundRoom& room : trial.found.rooms) out_.room(std::move(room));
+        for (const Segment2& gap : trial.found.closed_gaps) out_.closedGap(gap);
+        for (std::string& note : trial.messages.notes) out_.note(std::move(note));
+        for (Diagnostic& warning : trial.messages.warnings) out_.warn(std::move(warning.message));
+        return std::move(trial.rooms);
+    }
+
+    /// Walls of the rooms that are meant, and what closes them.
+    void chooseRoom() {
+        const std::vector<Segment2> lines = ownLines();
+        if (lines.empty()) return;
+        PlanRooms rooms = keep(uncut_ ? *std::move(uncut_) : roomsAmong(lines));
+        std::vector<bool> belongs(lines.size(), true);
+        if (!rooms.regions.empty()) belongs = belongsTo(rooms.regions, lines);
+        auto kept = belongs.begin();
+        const auto take = [&kept](const std::vector<PlanPath>& paths) {
+            std::size_t count = 0;
+            for (const PlanPath& path : paths) count += path.pieceCount();
+            const std::vector<bool> these(kept, kept + static_cast<std::ptrdiff_t>(count));
+            kept += static_cast<std::ptrdiff_t>(count);
+            return withPieces(paths, these);
+        };
+        for (SdfWall& wall : walls_) {
+            wall.paths = take(wall.paths);
+            if (wall.paths.empty())
+                ++outside_;
+            else if (rooms.reached.empty())
+                addWall(wall);
+        }
+        for (const Fence& fence : fences_)
+            if (!take({fence.path}).empty() && rooms.reached.empty()) addFence(fence);
+        if (rooms.reached.empty()) addDoors(rooms.closing);
+        writeRooms(rooms, options_, out_);
+        regions_ = std::move(rooms.regions);
+    }
+
+    /// Gaps that were closed and are as wide as doors are open doors; takes them from `gaps`.
+    void addDoors(std::vector<Segment2>& gaps) {
+        std::erase_if(gaps, [this](const Segment2& gap) {
+            const double width = distance(gap.a, gap.b);
+            if (width < kNarrowestDoor || width > kWidestDoor) return false;
+            const Segment2 line{wholeMicrometres(gap.a), wholeMicrometres(gap.b)};
+            const std::string wall = out_.freeId("gap", "gap");
+            out_.wall(line, wall, 0);
+            Record& door = out_.add("door", 0);
+            door.set("wall", wall);
+            ImportRecords::setPoint(door, "from", line.a);
+            ImportRecords::setPoint(door, "to", line.b);
+            door.set("height", std::min(kDoorHeight, options_.wall_height));
+            door.set("open", true);
+            ++doors_;
+            return true;
+        });
+    }
+
+    /// True if neither its middle nor a corner lies in a room, nor a corner of a room in it.
+    [[nodiscard]] bool isOutside(const SdfBlock& block) const {
+        if (regions_.empty()) return false;
+        Polygon places = rectangle(block.center, block.length, block.width, block.heading);
+        const Polygon footprint = places;
+        places.push_back(block.center);
+        for (const PlanRegion& region : regions_)
+            for (const Region& room : region.rooms) {
+                const auto is_in_room = [&](Point2 p) { return room.locate(p) == Side::Inside; };
+                const auto is_in_block = [&](Point2 p) {
+                    return locate(footprint, p) == Side::Inside;
+                };
+                if (std::any_of(places.begin(), places.end(), is_in_room) ||
+                    std::any_of(room.outline.begin(), room.outline.end(), is_in_block))
+                    return false;
+            }
+        return true;
+    }
+
+    struct Fence {
+        PlanPath path;
+        double top = 0;
+        std::string model;
+    };
+
+    /// A box is a wall, what is cut from a mesh are fences.
+    void addWall(const SdfWall& wall) {
+        for (const PlanPath& path : wall.paths) {
+            const std::string id = out_.freeId(wall.model, "wall");
+            if (path.closed || path.points.size() > 2)
+                out_.fence(path, id);
+            else
+                out_.wall(path.piece(0), id, wall.line);
+            out_.last().set("height", wholeMicrometres(wall.top));
+            out_.last().set("thickness", wholeMicrometres(wall.thickness));
+        }
+    }
+
+    void addFence(const Fence& fence) {
+        out_.fence(fence.path, out_.freeId(fence.model, "fence"));
+        out_.last().set("height", wholeMicrometres(fence.top));
+        out_.last().set("thickness", 0.0);
+    }
+
+    void addBlock(const SdfBlock& block) {
+        Record& record = out_.add(block.is_round ? "cylinder" : "cube", block.line);
+        record.set("id", out_.freeId(block.model, block.is_round ? "cylinder" : "cube"));
+        const double bottom = std::max(0.0, block.bottom);
+        record.set("at", placeOf(block.center, bottom));
+        record.set("heading", block.heading.degrees());
+        record.set("size", Tuple{wholeMicrometres(block.length), wholeMicrometres(block.width),
+                                 wholeMicrometres(block.top - bottom)});
+    }
+
+    void note() {
+        if (!missing_.empty())
+            out_.warn(
+                "meshes left out that are not in the folders of models (--models DIR names "
+                "more): " +
+                listText(missing_));
+        if (!world_.left_out.empty()) out_.note("left out: " + listText(world_.left_out));
+        if (floors_ > 0) out_.note(countText(floors_, "slab") + " of floor left out");
+        if (outside_ + blocks_outside_ > 0)
+            out_.note("left out outside of the room: " + countText(outside_, "wall") + " and " +
+                      countText(blocks_outside_, "thing"));
+        out_.note("walls: " + std::to_string(walls_.size() - outside_) + ", doors: " +
+                  std::to_string(doors_) + ", fences: " + std::to_string(fences_.size()) +
+                  ", cubes and cylinders: " + std::to_string(blocks_.size() - blocks_outside_) +
+                  ", meshes: " + std::to_string(meshes_));
+    }
+
+    SdfWorld world_;
+    const std::string& name_;
+    const ImportOptions& options_;
+    const Schemas& schemas_;
+    ImportRecords& out_;
+    std::vector<SdfWall> walls_;
+    std::set<std::size_t> is_cut_;  // shapes that are walls now
+    std::optional<Trial> uncut_;    // rooms of the walls as they are: no mesh is cut
+    std::vector<Fence> fences_;
+    std::vector<SdfBlock> blocks_;
+    std::map<std::string, std::size_t> missing_;
+    std::vector<PlanRegion> regions_;  // that are kept
+    std::size_t meshes_ = 0, floors_ = 0, outside_ = 0, blocks_outside_ = 0, doors_ = 0;
+};
+
+}  // namespace
+
+bool isSdf(std::string_view bytes) { return xmlRootName(bytes) == "sdf"; }
+
+Document readSdf(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                 const Schemas& schemas) {
+    ImportRecords out(schemas, name, options);
+    SdfImporter(readSdfShapes(bytes, name, options.model_folders, options.max_work), name, options,
+                schemas, out)
+        .write();
+    return out.take();
+}
+
+}  // namespace ispace

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geom/polygon.h"
+#include "io/plan/plan_rooms.h"
+#include "io/sdf/sdf_shapes.h"
+#include "record/schema.h"
+
+namespace ispace {
+
+/// How far from the floor, in metres, what stands on it may begin.
+constexpr double kHighestFoot = 0.1;
+
+/// True for an axis, of length 1, that points up or down.
+bool isUpright(const Eigen::Vector3d& axis);
+/// The direction on the floor, without the rounding of poses.
+Angle headingOf(const Eigen::Vector3d& axis);
+Point2 floorOf(const Eigen::Vector3d& place);
+
+/// An upright box or cylinder of a world of SDF.
+struct SdfBlock {
+    Point2 center;
+    Angle heading;  ///< of the length
+    double length = 0, width = 0;
+    double bottom = 0, top = 0;
+    bool is_round = false;
+    std::string model;
+    int line = 0;  ///< of the file
+};
+
+/// A box or cylinder as a block; nothing for one that leans.
+std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfBox& box);
+std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfCylinder& cylinder);
+
+/// A wall of a world, as lines of a plan.
+struct SdfWall {
+    std::vector<PlanPath> paths;  ///< of a box its mid-line
+    double thickness = 0, top = 0;
+    std::string model;
+    int line = 0;  ///< of the file
+};
+
+/// True for a box with the form of a wall: at most 0.5 m thick, three times as long and twice as
+/// high. It stands on the floor, or reaches through the height of a cut.
+bool isWall(const SdfBlock& block, std::optional<double> cut);
+SdfWall wallOf(const SdfBlock& block);
+/// Moves the end of a mid-line along it onto that of another wall in whose thickness it ends: boxes
+/// meet at their faces, rooms at mid-lines. \pre each wall is one straight piece
+void joinEnds(std::vector<SdfWall>& walls);
+
+/// The upward axis of a mesh file as a `mesh` record has it: Gazebo takes COLLADA and OBJ as
+/// they are, whatever axis those name.
+std::string sdfMeshUp(const std::string& file);
+
+/// A mesh of a world, cut into lines.
+struct SdfMeshCut {
+    std::size_t shape = 0;  ///< index in SdfWorld::shapes
+    SdfWall wall;
+};
+
+/// Cuts the meshes that are there at a height of the world; those that do not reach it are left
+/// out, and so are bad files. \param name the world's file \throws std::system_error as loadMesh
+std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::string& name,
+                                  double height, const Schemas& schemas);
+
+/// The cuts that are walls, others being things in the room: the one that, with other walls of the
+/// world, encloses half of the world's extent; else those at the edge of the room that all enclose
+/// together; else all. \param choose the rooms among lines
+std::vector<SdfMeshCut> wallsAmong(
+    std::vector<SdfMeshCut> cuts, std::span<const Segment2> others,
+    const std::function<PlanRooms(std::span<const Segment2>)>& choose);
+
+}  // namespace ispace

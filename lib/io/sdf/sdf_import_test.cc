@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "io/importers.h"
+#include "record/text.h"
+#include "scene/placement_schemas.h"
+#include "support/test_folder.h"
+#include "support/test_import.h"
+
+namespace ispace {
+namespace {
+
+std::string worldOf(const std::string& models) {
+    return "<sdf version='1.9'>\n<world name='w'>\n" + models + "\n</world>\n</sdf>\n";
+}
+
+/// A model with one box.
+std::string boxModel(const std::string& name, const std::string& pose, const std::string& size) {
+    return "<model name='" + name + "'><pose>" + pose +
+           "</pose><link name='l'><collision name='c'><geometry><box><size>" + size +
+           "</size></box></geometry></collision></link></model>";
+}
+
+std::string recordsOf(const std::string& sdf) {
+    Document document = readSdf(sdf, "test.sdf", {}, sceneSchemas());
+    document.history = {};
+    const std::string text = writeRecordText(document);
+    return text.substr(text.find('\n') + 1);
+}
+
+std::string errorOf(const std::string& sdf) {
+    try {
+        readSdf(sdf, "test.sdf", {}, sceneSchemas());
+    } catch (const FormatError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(SdfImport, KnowsItsRoot) {
+    EXPECT_TRUE(isSdf("<?xml version='1.0'?>\n<!-- a world -->\n<sdf version='1.6'>"));
+    EXPECT_FALSE(isSdf("<svg xmlns='http://www.w3.org/2000/svg'/>"));
+    EXPECT_FALSE(isSdf("sdf"));
+    EXPECT_FALSE(isSdf(""));
+}
+
+TEST(SdfImport, BoxesStandWhereAllPosesTogetherPutThem) {
+    // Nested twice, each turned by a quarter: 1 m ahead of what looks along -x.
+    EXPECT_EQ(recordsOf(worldOf("<model name='a'><pose>5 5 0 0 0 1.57079632679</pose>"
+                                "<model name='b'><pose>0 0 0.2 0 0 1.57079632679</pose>"
+                                "<link name='l'><pose>1 0 0.3 0 0 0</pose>"
+                                "<collision name='c'><geometry><box><size>0.5 0.4 0.6</size></box>"
+                                "</geometry></collision></link></model></model>")),
+              "cube id=a at=4,5,0.2 heading=180 size=0.5,0.4,0.6\n");
+    // On its side: y is up.
+    EXPECT_EQ(recordsOf(worldOf(boxModel("c", "1 2 0.5 1.5708 0 0", "0.4 1 0.3"))),
+              "cube id=c at=1,2 size=0.4,0.3,1\n");
+}
+
+TEST(SdfImport, RelativePosesFollowFramesInAnyOrder) {
+    // The first link names the second, which names a frame attached to a nested model's link.
+    EXPECT_EQ(
+        recordsOf(worldOf(
+            "<model name='m'><pose>1 1 0 0 0 0</pose>"
+            "<link name='one'><pose relative_to='two'>0 0 0 0 0 0</pose><visual name='v'><geometry>"
+            "<cylinder><radius>0.2</radius><length>1</length></cylinder></geometry></visual></link>"
+            "<link name='two'><pose relative_to='f'>0 1 0 0 0 0</pose></link>"
+            "<frame name='f' attached_to='n::deep'><pose>0 0 0.5 0 0 0</pose></frame>"
+            "<model name='n'><pose>1 0 0 0 0 0</pose><link name='deep'/></model></model>")),
+        "cylinder id=m at=2,2 size=0.4,0.4,1\n");
+}
+
+TEST(SdfImport, ThinHighBoxesAreWallsThatMeetAtMidLines) {
+    const std::string records = recordsOf(worldOf(
+        boxModel("s", "2 0 1 0 0 0", "4.2 0.2 2") + boxModel("n", "2 3 1 0 0 0", "4.2 0.2 2") +
+        boxModel("w", "0 1.5 1 0 0 1.5708", "2.8 0.2 2") +
+        boxModel("e", "4 1.5 1 0 0 1.5708", "2.8 0.2 2") +
+        boxModel("shelf", "1 1 0.3 0 0 0", "0.9 0.4 0.6")));
+    EXPECT_NE(records.find("wall id=w from=0,0 to=0,3 height=2 thickness=0.2"), std::string::npos)
+        << records;
+    EXPECT_NE(records.find("cube id=shelf at=1,1 size=0.9,0.4,0.6"), std::string::npos) << records;
+    EXPECT_NE(records.find("inside at="), std::string::npos) << records;
+    Document document =
+        readSdf(worldOf(boxModel("s", "2 0 1 0 0 0", "4 0.2 2")), "test.sdf", {}, sceneSchemas());
+    EXPECT_EQ(document.records.front().keyword(), "wall");
+}
+
+/// A room of 6 m x 4 m whose east wall has a gap from y = 1 up.
+std::string roomWithGap(double gap) {
+    const double rest = 3 - gap;
+    return worldOf(boxModel("south", "3 0 1.25 0 0 0", "6 0.1 2.5") +
+                   boxModel("north", "3 4 1.25 0 0 0", "6 0.1 2.5") +
+                   boxModel("west", "0 2 1.25 0 0 0", "0.1 4 2.5") +
+                   boxModel("low", "6 0.5 1.25 0 0 0", "0.1 1 2.5") +
+                   boxModel("high", "6 " + formatDouble(4 - rest / 2) + " 1.25 0 0 0",
+                            "0.1 " + formatDouble(rest) + " 2.5"));
+}
+
+TEST(SdfImport, GapsOfADoorsWidthAreDoors) {
+    const Document door = readSdf(roomWithGap(0.9), "test.sdf", {}, sceneSchemas());
+    EXPECT_NEAR(environmentOf(door).indoor().area(), 24, 1e-6);
+    EXPECT_EQ(countOf(door, "door"), 1U);
+    EXPECT_EQ(countOf(door, "fence"), 0U);
+    const std::string records = recordsOf(roomWithGap(0.9));
+    EXPECT_NE(records.find("door wall=gap from=6,1 to=6,1.9 open=yes"), std::string::npos)
+        << records;
+    // Cracks and missing walls are none.
+    for (const double gap : {0.3, 2.3}) {
+        const Document none = readSdf(roomWithGap(gap), "test.sdf", {}, sceneSchemas());
+        EXPECT_EQ(countOf(none, "door"), 0U) << gap;
+        EXPECT_EQ(countOf(none, "fence"), 1U) << gap;
+    }
+}
+
+TEST(SdfImport, RoomsAreListedOnce) {
+    FoundRooms found;
+    ImportOptions options;
+    options.found = &found;
+    (void)readSdf(roomWithGap(0.9), "test.sdf", options, sceneSchemas());
+    EXPECT_EQ(found.rooms.size(), 1U);
+    EXPECT_EQ(found.closed_gaps.size(), 1U);
+}
+
+TEST(SdfImport, ErrorsNameTheLine) {
+    EXPECT_EQ(errorOf("<sdf version='1.9'/>"),
+              "test.sdf:1:1: error: no `world` and no `model` in it");
+    EXPECT_EQ(errorOf(worldOf("")), "test.sdf: error: no box, cylinder, polyline or mesh in it");
+    EXPECT_EQ(errorOf(worldOf(boxModel("m", "1 2", "1 1 1"))),
+              "test.sdf:3:1: error: `pose`: found `1 2`, wanted 6 numbers");
+    EXPECT_EQ(errorOf(worldOf(boxModel("m", "0 0 0 0 0 nan", "1 1 1"))),
+              "test.sdf:3:1: error: `pose`: found `0 0 0 0 0 nan`, wanted 6 numbers");
+    EXPECT_EQ(errorOf(worldOf(boxModel("m", "", "1 1 0"))),
+              "test.sdf:3:1: error: a box with a side of 0");
+    EXPECT_EQ(errorOf(worldOf(boxModel("m", "1e7 0 0 0 0 0", "1 1 1"))),
+              "test.sdf:3:1: error: lies more than 900 km from the origin");
+    EXPECT_EQ(errorOf(worldOf("<model name='m'><pose relative_to='x'/><link name='l'/></model>")),
+              "test.sdf:3:1: error: no frame called `x` beside it");
+    EXPECT_NE(errorOf("<sdf version='1.9'><world name='w'><model").find("bad XML"),
+              std::string::npos);
+}
+
+TEST(SdfImport, HostileWorldsAreRefused) {
+    const std::string loop =
+        "<model name='a'><pose relative_to='b'>1 0 0 0 0 0</pose><link name='l'/></model>\n"
+        "<model name='b'><pose relative_to='a'>1 0 0 0 0 0</pose><link name='l'/></model>";
+    EXPECT_NE(errorOf(worldOf(loop)).find("its pose is relative to itself"), std::string::npos);
+    std::string deep;
+    for (int i = 0; i < 1000; ++i) deep += "<model name='m'>";
+    for (int i = 0; i < 1000; ++i) deep += "</model>";
+    EXPECT_NE(errorOf(worldOf(deep)).find("nested more than 64 deep"), std::string::npos);
+    ImportOptions few;
+    few.max_work = 170;
+    const std::string box = boxModel("m", "", "1 1 1");
+    EXPECT_THROW(readSdf(worldOf(box + box + box), "test.sdf", few, sceneSchemas()), FormatError);
+    // Entities are not expanded.
+    EXPECT_NE(errorOf("<!DOCTYPE sdf [<!ENTITY a 'ha'><!ENTITY b '&a;&a;&a;'>]><sdf><world "
+                      "name='w'>&b;</world></sdf>")
+                  .find("no box"),
+              std::string::npos);
+}
+
+TEST(SdfImport, SurvivesDamage) {
+    surviveDamage(
+        worldOf("<model name='a' placement_frame='f'><pose degrees='true'>1 1 0 0 0 30</pose>\n"
+                "<frame name='f' attached_to='l'><pose relative_to='l'>0 0 0 0 0 0</pose></frame>\n"
+                "<link name='l'><collision name='c'>\n"
+                "<geometry><box><size>1 2 3</size></box></geometry></collision>\n"
+                "<collision name='d'><geometry><polyline><point>0 0</point><point>1 0</point>\n"
+                "<point>0 1</point><height>1</height></polyline></geometry></collision>\n"
+                "</link></model>"),
+        [](const std::string& bytes) { readSdf(bytes, "test.sdf", {}, sceneSchemas()); });
+}
+
+TEST(SdfImport, FilesOutsideOfItsFolderAreNotOpened) {
+    const Document document = readSdf(
+        worldOf(boxModel("m", "", "1 1 1") +
+                "<model name='x'><link name='l'><visual name='v'><geometry><mesh><uri>"
+                "file:///etc/../etc/mesh.stl</uri></mesh></geometry></visual></link></model>"),
+        "test.sdf", {}, sceneSchemas());
+    EXPECT_EQ(document.records.size(), 1U);
+    ASSERT_EQ(document.warnings.size(), 1U);
+    EXPECT_NE(document.warnings.front().message.find("/etc/../etc/mesh.stl (1)"),
+              std::string::npos);
+}
+
+/// A world of one model whose walls are a mesh: a ring of walls 0.2 m thick and 2 m high around
+/// 6 m x 4 m, with a doorway of the given width in the south.
+class SdfMeshWalls : public ::testing::Test {
+  protected:
+    void writeWalls(double door) const {
+        const double left = -door / 2, right = door / 2;
+        const std::array<std::array<double, 4>, 5> boxes{{{-3.2, -2.2, left, -2},
+                                                          {right, -2.2, 3.2, -2},
+                                                          {-3.2, 2, 3.2, 2.2},
+                                                          {-3.2, -2.2, -3, 2.2},
+                                                          {3, -2.2, 3.2, 2.2}}};
+        std::string obj;
+        int first = 1;
+        for (const auto& [x0, y0, x1, y1] : boxes) {
+            for (const double z : {0.0, 2.0})
+                for (const auto& [x, y] : {std::pair{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}})
+                    obj += "v " + formatDouble(x) + ' ' + formatDouble(y) + ' ' + formatDouble(z) +
+                           '\n';
+            for (const char* face : {"0321", "4567", "0154", "1265", "2376", "3047"}) {
+                obj += 'f';
+                for (int i = 0; i < 4; ++i) obj += ' ' + std::to_string(first + face[i] - '0');
+                obj += '\n';
+            }
+            first += 8;
+        }
+        writeAll((folder_ / "walls.obj").string(), obj);
+    }
+    [[nodiscard]] Document read(const std::string& more = "",
+                                const ImportOptions& options = {}) const {
+        const std::string mesh =
+            "<model name='house'><link name='l'><collision name='c'><geometry><mesh><uri>"
+            "walls.obj</uri></mesh></geometry></collision></link></model>";
+        return readSdf(worldOf(mesh + more), (folder_ / "w.sdf").string(), options, sceneSchemas());
+    }
+
+    const testing::TestFolder folder_;
+};
+
+TEST_F(SdfMeshWalls, AreCutWhereBoxesEncloseNoRoom) {
+    writeWalls(0.9);
+    const Document document = read(boxModel("crate", "1 1 0.5 0 0 0", "0.8 0.8 1"));
+    EXPECT_NEAR(environmentOf(document).indoor().area(), 24.09, 0.1);  // the doorway is closed
+    EXPECT_EQ(countOf(document, "mesh"), 0U);
+    EXPECT_EQ(countOf(document, "cube"), 1U);
+    EXPECT_NE(warningsOf(document).find("boxes and polylines enclose no room: 1 mesh cut at a "
+                                        "height of 0.3 m into walls; --slice-walls sets the"),
+              std::string::npos)
+        << warningsOf(document);
+    const Record& wall = document.records.front();
+    EXPECT_EQ(wall.text("id"), "house");
+    EXPECT_EQ(wall.number("height"), 2);
+}
+
+TEST_F(SdfMeshWalls, StayMeshesWhereBoxesDo) {
+    writeWalls(0.9);
+    const std::string room =
+        boxModel("s", "0 -5 1 0 0 0", "10 0.2 2") + boxModel("n", "0 5 1 0 0 0", "10 0.2 2") +
+        boxModel("w", "-5 0 1 0 0 0", "0.2 10 2") + boxModel("e", "5 0 1 0 0 0", "0.2 10 2");
+    EXPECT_EQ(countOf(read(room), "mesh"), 1U);
+    // Unless the user says otherwise.
+    ImportOptions cut;
+    cut.slice_walls = 1;
+    const Document document = read(room, cut);
+    EXPECT_EQ(countOf(document, "mesh"), 0U);
+    EXPECT_GT(countOf(document, "fence"), 0U);
+    EXPECT_NE(notesOf(document).find("1 mesh cut at a height of 1 m"), std::string::npos);
+    cut.slice_walls = 3;  // above all of them
+    EXPECT_NE(notesOf(read(room, cut)).find("0 meshes cut at a height of 3 m"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ispace

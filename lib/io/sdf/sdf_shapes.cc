@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/sdf/sdf_shapes.h"
+
+#include <pugixml.hpp>
+#include <utility>
+
+#include "base/message.h"
+#include "base/number.h"
+#include "io/import_records.h"
+#include "io/mesh/mesh_parts.h"
+#include "io/sdf/sdf_files.h"
+
+namespace ispace {
+
+namespace {
+
+using Transform = Eigen::Isometry3d;
+
+constexpr int kDeepest = 64;  // models in models
+
+/// Units of Budget for a shape, which may become a wall, and for a point of a polyline.
+constexpr std::size_t kShapeWork = 80, kPointWork = 10;
+
+class SdfReader {
+  public:
+    SdfReader(std::string_view bytes, const std::string& name,
+              std::span<const std::string> model_folders, std::optional<std::uint64_t> max_work)
+        : files_(bytes, name, model_folders, max_work) {}
+
+    SdfWorld read() {
+        const pugi::xml_node root = files_.root();
+        const pugi::xml_node world = root.child("world");
+        if (world.next_sibling("world"))
+            files_.fail(world.next_sibling("world"), "a second world in one file, wanted one");
+        if (!world && !root.child("model")) files_.fail(root, "no `world` and no `model` in it");
+        addModels(frames_.scopeOf(world ? world : root), Transform::Identity(), {});
+        found_.sources = files_.sources();
+        return std::move(found_);
+    }
+
+  private:
+    /// What is around a link.
+    struct Around {
+        std::string model = "";  // the outermost one
+        int line = 0;            // of the outermost include; 0: there is none
+        int depth = 0;
+    };
+
+    void addModels(const SdfScope& scope, const Transform& world_from_scope, const Around& around) {
+        if (around.depth > kDeepest)
+            files_.fail(scope.node,
+                        "models nested more than " + std::to_string(kDeepest) + " deep");
+        for (const pugi::xml_node node : scope.node.children()) {
+            std::string_view kind = node.name();
+            const bool is_include = kind == "include";
+            if (is_include) kind = files_.included(node).name();
+            if (kind == "model")
+                addModel(node, scope, world_from_scope, around, is_include);
+            else if (kind == "actor" || kind == "light" || kind == "population" || kind == "road")
+                ++found_.left_out[std::string(kind)];
+        }
+    }
+
+    void addModel(pugi::xml_node node, const SdfScope& scope, const Transform& world_from_scope,
+                  Around around, bool is_include) {
+        const SdfScope& inner = frames_.scopeOf(node);
+        const Transform frame = world_from_scope * frames_.frameOf(node, scope);
+        if (around.model.empty()) around.model = frames_.nameOf(node);
+        if (is_include && around.line == 0) around.line = files_.lineOf(node);
+        ++around.depth;
+        for (const pugi::xml_node link : inner.node.children("link"))
+            addLink(link, frame, inner, around);
+        addModels(inner, frame, around);
+    }
+
+    void addLink(pugi::xml_node link, const Transform& world_from_model, const SdfScope& model,
+                 const Around& around) {
+        const Transform& frame = frames_.frameOf(link, model);
+        const char* kind = link.child("collision") ? "collision" : "visual";
+        for (const pugi::xml_node node : link.children(kind)) {
+            // Some sensors do not see it: it is a mark, or the body of a sensor.
+            if (node.child("visibility_flags")) continue;
+            const std::string_view base = node.child("pose").attribute("relative_to").value();
+            const bool is_own = base.empty() || base == frames_.nameOf(link);
+            const Transform pose =
+                (is_own ? frame : frames_.frameCalled(base, model, node)) * frames_.poseIn(node);
+            addShape(node.child("geometry").first_child(), world_from_model * pose, around);
+        }
+        for (const pugi::xml_node sensor : link.children("sensor")) {
+            static_cast<void>(sensor);
+            ++found_.left_out["sensor"];
+        }
+    }
+
+    void addShape(pugi::xml_node node, const Transform& pose, const Around& around) {
+        while (node && node.type() != pugi::node_element) node = node.next_sibling();
+        if (!node) return;
+        const std::string_view kind = node.name();
+        SdfShape shape{SdfBox(), pose, around.model,
+                       around.line == 0 ? files_.lineOf(node) : around.line};
+        files_.spend(node, kShapeWork);
+        if (kind == "box") {
+            const std::vector<double> size = files_.numbersIn(node, "size", 3);
+            for (const double side : size)
+                if (!(side > 0)) files_.fail(node, "a box with a side of " + formatDouble(side));
+            shape.shape = SdfBox{{size[0], size[1], size[2]}};
+        } else if (kind == "cylinder") {
+            shape.shape =
+                SdfCylinder{files_.lengthIn(node, "radius"), files_.lengthIn(node, "length")};
+        } else if (kind == "polyline") {
+            SdfPolyline polyline{{}, files_.lengthIn(node, "height")};
+            for (const pugi::xml_node point : node.children("point")) {
+                const std::vector<double> at = files_.numbersOf(point, point.child_value(), 2);
+                polyline.points.push_back({at[0], at[1]});
+            }
+            files_.spend(node, kPointWork * polyline.points.size());
+            shape.shape = std::move(polyline);
+        } else if (kind == "mesh") {
+            SdfMesh mesh{std::string(trimmed(node.child_value("uri"))), {}};
+            if (hasMeshSuffix(mesh.uri)) mesh.file = files_.fileNamed(node, mesh.uri);
+            if (node.child("scale")) {
+                const std::vector<double> scale = files_.numbersIn(node, "scale", 3);
+                mesh.scale = {scale[0], scale[1], scale[2]};
+            }
+            if (node.child("submesh")) {
+                ++found_.left_out["part of a mesh"];
+                return;
+            }
+            shape.shape = std::move(mesh);
+        } else {
+            if (kind != "plane" && kind != "empty") ++found_.left_out[printable(kind)];
+            return;
+        }
+        if (!pose.matrix().allFinite() || !(pose.translation().norm() <= kFarthestPlan))
+            files_.fail(node, "lies more than " + formatDouble(kFarthestPlan / 1000) +
+                                  " km from the origin");
+        found_.shapes.push_back(std::move(shape));
+    }
+
+    SdfFiles files_;
+    SdfFrames frames_{files_};
+    SdfWorld found_;
+};
+
+}  // namespace
+
+SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
+                       std::span<const std::string> model_folders,
+                       std::optional<std::uint64_t> max_work) {
+    return SdfReader(bytes, name, model_folders, max_work).read();
+}
+
+}  // namespace ispace

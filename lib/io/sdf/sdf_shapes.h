@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "geom/polygon.h"
+#include "geom/pose.h"
+
+namespace ispace {
+
+/// Shapes of SDF, in their own frames: middle in the origin, z along a cylinder and out of a
+/// polyline's plane.
+struct SdfBox {
+    std::array<double, 3> size{};  ///< along x, y and z
+};
+struct SdfCylinder {
+    double radius = 0, length = 0;
+};
+struct SdfPolyline {
+    Polygon points;
+    double height = 0;  ///< from the origin up
+};
+struct SdfMesh {
+    std::string uri;
+    std::optional<std::string> file;  ///< relative to the world's folder; nothing if it is missing
+    std::array<double, 3> scale{1, 1, 1};
+};
+
+struct SdfShape {
+    std::variant<SdfBox, SdfCylinder, SdfPolyline, SdfMesh> shape;
+    Eigen::Isometry3d world_from_shape;
+    std::string model;  ///< name of the outermost model
+    int line = 0;       ///< of the world; of what is included, that of the `include`
+};
+
+/// The shapes of a world, or of a model without one.
+struct SdfWorld {
+    std::vector<SdfShape> shapes;
+    std::map<std::string, std::size_t> left_out;  ///< by what they are
+    std::vector<std::string> sources;             ///< files read besides it, as opened
+};
+
+/// Reads the collision shapes of all links, or where a link has none its visuals that every sensor
+/// sees (without `visibility_flags`), in the world and in the models that it includes, with the
+/// poses of SdfFrames. Entities are not resolved.
+/// \param name the world's file \param model_folders see SdfFiles
+/// \param max_work see Budget
+/// \throws FormatError with the line: bad XML, no world and no model, numbers that are none, frames
+///         that are not there or depend on each other, models nested too deep, includes that are
+///         not there or include themselves, more work than the budget has
+SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
+                       std::span<const std::string> model_folders,
+                       std::optional<std::uint64_t> max_work);
+
+}  // namespace ispace

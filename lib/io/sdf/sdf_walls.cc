@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/sdf/sdf_import.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <compare>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include "base/error.h"
+#include "env/body.h"
+#include "env/slice.h"
+#include "io/exporters.h"
+#include "io/mesh/mesh_cut.h"
+#include "io/mesh/mesh_file.h"
+#include "io/sdf/sdf_parts.h"
+#include "record/record.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kUpright = 1e-6;   // of a unit vector, how far an axis may lean
+constexpr double kRoundTurn = 1e9;  // steps a degree
+
+// What makes a wall of a box: metres, and shares of its thickness.
+constexpr double kThickestWall = 0.5, kLeastLength = 3, kLeastHeight = 2;
+/// How far beyond the face of a wall another one may end that is meant to meet it.
+constexpr double kLooseEnd = 0.02;
+
+/// A mesh that encloses this share of the world's extent is its walls; so many are tried, by size.
+constexpr double kShareOfWorld = 0.5;
+constexpr std::size_t kMostTried = 4;
+constexpr double kOnEdge = 1e-5;  // metres
+
+std::vector<Segment2> linesOf(std::span<const Segment2> others, std::span<const SdfMeshCut> cuts) {
+    std::vector<Segment2> lines(others.begin(), others.end());
+    for (const SdfMeshCut& cut : cuts)
+        for (const PlanPath& path : cut.wall.paths)
+            for (std::size_t i = 0; i < path.pieceCount(); ++i) lines.push_back(path.piece(i));
+    return lines;
+}
+
+double areaOf(const Box2& box) { return box.width() * box.depth(); }
+
+Box2 boxOf(const SdfMeshCut& cut) { return boundsOf(pathPieces(cut.wall.paths)); }
+
+/// The triangles in the world, loaded as a `mesh` record would be.
+Body bodyOf(const SdfShape& shape, const TriangleMesh& mesh, const Schemas& schemas) {
+    const auto& [x, y, z] = std::get<SdfMesh>(shape.shape).scale;
+    auto placed = std::make_shared<TriangleMesh>();
+    placed->triangles = mesh.triangles;
+    placed->vertices.reserve(mesh.vertices.size());
+    for (const auto& v : mesh.vertices) {
+        const Eigen::Vector3d p =
+            shape.world_from_shape * Eigen::Vector3d(x * v[0], y * v[1], z * v[2]);
+        placed->vertices.push_back(
+            {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+    }
+    Record record(*schemas.find("mesh"), {});
+    record.setMesh(std::move(placed));
+    return meshBody(record);
+}
+
+/// Bad files are told where records load them: a thing that is no wall need not keep others out.
+std::shared_ptr<const TriangleMesh> meshOrNothing(const std::string& path) {
+    try {
+        return loadMesh(path, {sdfMeshUp(path)});
+    } catch (const FormatError&) {
+        return std::make_shared<TriangleMesh>();
+    }
+}
+
+/// Whether a line of the cut lies on the outline of a room.
+bool isAtEdge(const SdfMeshCut& cut, const PlanRooms& rooms) {
+    const std::vector<Segment2> lines = pathPieces(cut.wall.paths);
+    for (const PlanRegion& region : rooms.regions)
+        for (const Region& room : region.rooms)
+            for (const Segment2& line : lines) {
+                const Point2 middle = line.a + 0.5 * (line.b - line.a);
+                for (std::size_t i = 0; i < room.outline.size(); ++i)
+                    if (distance(middle, {room.outline[i],
+                                          room.outline[(i + 1) % room.outline.size()]}) < kOnEdge)
+                        return true;
+            }
+    return false;
+}
+
+}  // namespace
+
+bool isUpright(const Eigen::Vector3d& axis) { return std::hypot(axis.x(), axis.y()) <= kUpright; }
+
+Angle headingOf(const Eigen::Vector3d& axis) {
+    const double degrees = directionOf(axis.x(), axis.y()).degrees();
+    return Angle::degrees(std::round(degrees * kRoundTurn) / kRoundTurn);
+}
+
+Point2 floorOf(const Eigen::Vector3d& place) { return {place.x(), place.y()}; }
+
+std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfBox& box) {
+    const Eigen::Matrix3d& axes = shape.world_from_shape.linear();
+    for (std::size_t up = 0; up < 3; ++up) {
+        const auto axis = [&axes](std::size_t i) { return axes.col(static_cast<Eigen::Index>(i)); };
+        if (!isUpright(axis(up))) continue;
+        std::size_t along = (up + 1) % 3, across = (up + 2) % 3;
+        if (box.size[across] > box.size[along]) std::swap(along, across);
+        const Eigen::Vector3d& place = shape.world_from_shape.translation();
+        return SdfBlock{floorOf(place),
+                        headingOf(axis(along)),
+                        box.size[along],
+                        box.size[across],
+                        place.z() - box.size[up] / 2,
+                        place.z() + box.size[up] / 2,
+                        false,
+                        shape.model,
+                        shape.line};
+    }
+    return std::nullopt;
+}
+
+std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfCylinder& cylinder) {
+    if (!isUpright(shape.world_from_shape.linear().col(2))) return std::nullopt;
+    const Eigen::Vector3d& place = shape.world_from_shape.translation();
+    return SdfBlock{floorOf(place),
+                    Angle(),
+                    2 * cylinder.radius,
+                    2 * cylinder.radius,
+                    place.z() - cylinder.length / 2,
+                    place.z() + cylinder.length / 2,
+                    true,
+                    shape.model,
+                    shape.line};
+}
+
+bool isWall(const SdfBlock& block, std::optional<double> cut) {
+    const bool reaches =
+        cut ? block.bottom <= *cut && *cut <= block.top : block.bottom <= kHighestFoot;
+    return !block.is_round && reaches && block.width <= kThickestWall &&
+           block.length >= kLeastLength * block.width &&
+           block.top - block.bottom >= kLeastHeight * block.width;
+}
+
+SdfWall wallOf(const SdfBlock& block) {
+    const Vec2 half = block.length / 2 * unitVector(block.heading);
+    // Sheets that this program wrote are such again.
+    const bool is_sheet = block.width <= kSheetThickness * (1 + kUpright);
+    return {{{{block.center - half, block.center + half}, false, block.line}},
+            is_sheet ? 0 : block.width,
+            block.top,
+            block.model,
+            block.line};
+}
+
+namespace {
+
+/// A wall's line, and what decides how far its ends may move.
+struct BoxLine {
+    Segment2 line;
+    double thickness = 0;
+
+    friend auto operator<=>(const BoxLine& a, const BoxLine& b) {
+        const auto key = [](const BoxLine& wall) {
+            return std::array{wall.line.a.x, wall.line.a.y, wall.line.b.x, wall.line.b.y,
+                              wall.thickness};
+        };
+        return key(a) <=> key(b);
+    }
+};
+
+/// Moves the ends of one line onto those of `walls` that it may be meant to meet.
+Segment2 joinedEnds(const BoxLine& wall, std::span<const BoxLine> walls, const NearSegments& search,
+                    double reach) {
+    const Vec2 whole = wall.line.b - wall.line.a;
+    const Vec2 along = 1 / length(whole) * whole;
+    Segment2 joined = wall.line;
+    for (const bool at_b : {false, true}) {
+        const Point2 end = at_b ? wall.line.b : wall.line.a;
+        const Vec2 outward = at_b ? along : -along;
+        double best = HUGE_VAL;
+        for (const std::size_t i : search.near(end, reach)) {
+            const BoxLine& other = walls[i];
+            const Vec2 its = other.line.b - other.line.a;
+            const double turn = cross(outward, its);
+            if (std::abs(turn) < 0.1 * length(its)) continue;  // nearly parallel, or itself
+            const Vec2 way = other.line.a - end;
+            const double ahead = cross(way, its) / turn, share = cross(way, outward) / turn;
+            const double its_reach = other.thickness / 2 + kLooseEnd;
+            const double slack = (wall.thickness / 2 + kLooseEnd) / length(its);
+            if (std::abs(ahead) <= its_reach * length(its) / std::abs(turn) && share >= -slack &&
+                share <= 1 + slack && std::abs(ahead) < std::abs(best))
+                best = ahead;
+        }
+        if (std::isfinite(best) && best != 0) (at_b ? joined.b : joined.a) = end + best * outward;
+    }
+    return joined;
+}
+
+}  // namespace
+
+void joinEnds(std::vector<SdfWall>& walls) {
+    // Models that are included where they stand already make walls by the thousand that coincide.
+    std::map<BoxLine, std::size_t> known;
+    std::vector<BoxLine> distinct;
+    std::vector<Segment2> lines;
+    std::vector<std::size_t> line_of;  // of each wall
+    double thickest = 0;
+    for (const SdfWall& wall : walls) {
+        const BoxLine line{wall.paths.front().piece(0), wall.thickness};
+        const auto [at, is_new] = known.try_emplace(line, distinct.size());
+        line_of.push_back(at->second);
+        if (!is_new) continue;
+        distinct.push_back(line);
+        lines.push_back(line.line);
+        thickest = std::max(thickest, wall.thickness);
+    }
+    const NearSegments search(lines);
+    for (std::size_t i = 0; i < distinct.size(); ++i)
+        lines[i] = joinedEnds(distinct[i], distinct, search, thickest / 2 + kLooseEnd);
+    for (std::size_t i = 0; i < walls.size(); ++i)
+        walls[i].paths.front().points = {lines[line_of[i]].a, lines[line_of[i]].b};
+}
+
+std::string sdfMeshUp(const std::string& file) {
+    const std::string suffix = meshSuffix(file);
+    return suffix == ".dae" || suffix == ".obj" ? "z" : "auto";
+}
+
+std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::string& name,
+                                  double height, const Schemas& schemas) {
+    std::map<std::string, std::shared_ptr<const TriangleMesh>> loaded;
+    std::vector<SdfMeshCut> cuts;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const auto* const mesh = std::get_if<SdfMesh>(&shapes[i].shape);
+        if (mesh == nullptr || !mesh->file) continue;
+        std::shared_ptr<const TriangleMesh>& triangles = loaded[*mesh->file];
+        if (triangles == nullptr) triangles = meshOrNothing(sideFilePath(name, *mesh->file));
+        const Body body = bodyOf(shapes[i], *triangles, schemas);
+        Slice slice{height, {}, {}};
+        cutMeshes(body, height, slice);
+        std::vector<PlanPath> paths = cutPaths(std::move(slice));
+        if (!paths.empty())
+            cuts.push_back(
+                {i, {std::move(paths), 0, topOf(body), shapes[i].model, shapes[i].line}});
+    }
+    return cuts;
+}
+
+std::vector<SdfMeshCut> wallsAmong(
+    std::vector<SdfMeshCut> cuts, std::span<const Segment2> others,
+    const std::function<PlanRooms(std::span<const Segment2>)>& choose) {
+    const Box2 world = boundsOf(linesOf(others, cuts));
+    std::vector<std::size_t> order(cuts.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return areaOf(boxOf(cuts[a])) > areaOf(boxOf(cuts[b]));
+    });
+    order.resize(std::min(order.size(), kMostTried));
+    for (const std::size_t i : order)
+        if (choose(linesOf(others, {&cuts[i], 1})).area() >= kShareOfWorld * areaOf(world))
+            return {std::move(cuts[i])};
+    const PlanRooms rooms = choose(linesOf(others, cuts));
+    if (!rooms.regions.empty())
+        std::erase_if(cuts, [&](const SdfMeshCut& cut) { return !isAtEdge(cut, rooms); });
+    return cuts;
+}
+
+}  // namespace ispace

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/coverage_report.h"
+
+#include <algorithm>
+
+#include "base/json_writer.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "report/run_report.h"
+
+namespace ispace {
+
+namespace {
+
+/// Null for what is not known.
+void write(JsonWriter& json, const char* key, const std::optional<double>& metric) {
+    json.key(key);
+    if (metric)
+        json.value(roundSignificant(*metric));
+    else
+        json.null();
+}
+
+void write(JsonWriter& json, const char* key, std::vector<double> metrics) {
+    for (double& metric : metrics) metric = roundSignificant(metric);
+    json.key(key).value(metrics);
+}
+
+void write(JsonWriter& json, const char* key, const Metric& metric) {
+    json.key(key).beginObject();
+    write(json, "grid", metric.grid);
+    write(json, "exact", metric.exact);
+    json.endObject();
+}
+
+/// One for each class, or nothing.
+void writeClasses(JsonWriter& json, const char* key, const char* figure,
+                  const std::vector<Metric>& metrics) {
+    if (metrics.empty()) return;
+    json.key(key).beginArray();
+    for (std::size_t i = 0; i < metrics.size(); ++i) {
+        const PixelDensity& one = pixelDensities()[i];
+        json.beginObject();
+        json.key("class").value(std::string(one.name));
+        write(json, "pixels_per_metre", one.pixels_per_metre);
+        write(json, figure, metrics[i]);
+        json.endObject();
+    }
+    json.endArray();
+}
+
+void write(JsonWriter& json, const PictureMetrics& picture) {
+    json.key("picture").beginObject();
+    writeClasses(json, "areas", "area", picture.areas);
+    write(json, "nearest", picture.nearest);
+    write(json, "farthest", picture.farthest);
+    write(json, "mean_density", picture.mean_density);
+    json.endObject();
+}
+
+void write(JsonWriter& json, const SensorMetrics& sensor) {
+    json.beginObject();
+    json.key("id").value(sensor.id);
+    json.key("model");
+    if (sensor.model.empty())
+        json.null();
+    else
+        json.value(sensor.model);
+    write(json, "slice_area", sensor.slice_area);
+    write(json, "exact_area", sensor.area.exact);
+    write(json, "marginal_area", sensor.marginal.grid);
+    json.key("kind").value(sensor.kind->keyword);
+    write(json, "area", sensor.area);
+    write(json, "marginal", sensor.marginal);
+    write(json, "overlap", sensor.overlap);
+    if (sensor.picture) write(json, *sensor.picture);
+    json.endObject();
+}
+
+void write(JsonWriter& json, const ZoneMetrics& zone) {
+    json.beginObject();
+    json.key("id").value(zone.id);
+    write(json, "area", zone.area);
+    write(json, "coverage", zone.coverage);
+    writeClasses(json, "densities", "coverage", zone.densities);
+    json.endObject();
+}
+
+void write(JsonWriter& json, const UnseenSpot& spot) {
+    json.beginObject();
+    write(json, "x", spot.place.x);
+    write(json, "y", spot.place.y);
+    write(json, "area", spot.area);
+    json.endObject();
+}
+
+void write(JsonWriter& json, const Comparison& comparison) {
+    json.key("comparison").beginObject();
+    json.key("with").value(comparison.name);
+    write(json, "coverage", comparison.coverage);
+    write(json, "gained_area", comparison.gained);
+    write(json, "lost_area", comparison.lost);
+    json.endObject();
+}
+
+template <typename Item>
+void writeList(JsonWriter& json, const char* key, const std::vector<Item>& items) {
+    json.key(key).beginArray();
+    for (const Item& item : items) write(json, item);
+    json.endArray();
+}
+
+}  // namespace
+
+std::string coverageJson(const CoverageReport& report, const RunSight* run) {
+    const Box2& limits = report.limits;
+    JsonWriter json;
+    beginReport(json, "ispace-coverage/1", "coverage");
+    json.key("digest").value(report.digest);
+    write(json, "limits", {limits.low.x, limits.low.y, limits.high.x, limits.high.y});
+    json.key("grid").value(std::vector<int>{report.grid.columns, report.grid.rows});
+    json.key("height").value(report.height);
+    json.key("plane").value(report.plane);
+    if (report.density > 0) write(json, "density", report.density);
+    write(json, "indoor_area", report.indoor_area);
+    write(json, "free_area", report.free_area);
+    writeList(json, "sensors", report.sensors);
+    write(json, "total_effective_area", report.total_effective_area);
+    write(json, "overlap_area", report.overlap);
+    write(json, "coverage", report.coverage);
+    write(json, "free_coverage", report.free_coverage);
+    if (report.coverage.grid)
+        write(json, "redundancy", report.redundancy);
+    else
+        json.key("redundancy").null();
+    if (report.redundancy_exact)
+        write(json, "redundancy_exact", *report.redundancy_exact);
+    else
+        json.key("redundancy_exact").null();
+    writeList(json, "zones", report.zones);
+    json.key("pieces").beginObject();
+    json.key("count").value(report.pieces);
+    write(json, "largest_share", report.largest_piece);
+    json.endObject();
+    writeList(json, "unseen", report.unseen);
+    json.key("exact_missing");
+    if (report.exact_missing.empty())
+        json.null();
+    else
+        json.value(report.exact_missing);
+    if (!report.densities.indoor.empty()) {
+        write(json, "camera_coverage", report.densities.seen);
+        writeClasses(json, "densities", "coverage", report.densities.indoor);
+    }
+    if (report.parallax) {
+        json.key("parallax").beginObject();
+        write(json, "angle", report.parallax->least.degrees());
+        json.key("cameras").value(report.parallax->cameras);
+        write(json, "coverage", report.parallax_coverage);
+        json.endObject();
+    }
+    if (report.comparison) write(json, *report.comparison);
+    if (run != nullptr) writeRun(json, *run);
+    json.endObject();
+    return json.take() + "\n";
+}
+
+namespace {
+
+constexpr std::size_t kSpotsListed = 5;
+
+std::string metres(double value) { return formatFixed(value, 2); }
+std::string area(double value) { return formatFixed(value, 2) + " m2"; }
+std::string percent(double share) { return percentText(share); }
+
+template <typename Format>
+std::string withSign(double value, Format format) {
+    const std::string text = format(value);
+    return text.front() == '-' || text.front() == '+' ? text : "+" + text;
+}
+
+/// A metric three ways: by cells, exact, and by how much cells are off.
+template <typename Format>
+TextRow row(std::string name, const Metric& metric, Format format) {
+    TextRow row = {std::move(name), metric.grid ? format(*metric.grid) : "-",
+                   metric.exact ? format(*metric.exact) : "-"};
+    if (!metric.grid || !metric.exact) {
+        row.emplace_back("-");
+        return row;
+    }
+    row.push_back(withSign(*metric.grid - *metric.exact, format));
+    return row;
+}
+
+std::string seenBy(std::size_t first, std::size_t last) {
+    if (last == 0) return "seen by no sensor";
+    if (last == 1) return "seen by 1 sensor";
+    std::string text = "seen by ";
+    if (first != last) text += std::to_string(first) + " to ";
+    return text + std::to_string(last) + " sensors";
+}
+
+/// A row for each number of sensors, of many the greater ones together.
+void addRedundancy(const CoverageReport& report, std::vector<TextRow>& rows) {
+    constexpr std::size_t kMaxRows = 8;
+    const auto exact = [&report](std::size_t k) { return (*report.redundancy_exact)[k]; };
+    std::size_t end = report.redundancy.size();
+    while (end > 1 && report.redundancy[end - 1] == 0 &&
+           (!report.redundancy_exact || exact(end - 1) < 1e-9))
+        --end;
+    for (std::size_t k = 0; k < end; ++k) {
+        const std::size_t last = k + 1 == kMaxRows ? end - 1 : k;
+        Metric share;
+        if (report.coverage.grid) share.grid = 0;
+        if (report.redundancy_exact) share.exact = 0;
+        for (std::size_t i = k; i <= last; ++i) {
+            if (share.grid) *share.grid += report.redundancy[i];
+            if (share.exact) *share.exact += exact(i);
+        }
+        rows.push_back(row(seenBy(k, last), share, percent));
+        k = last;
+    }
+}
+
+std::string classText(std::size_t index) {
+    const PixelDensity& one = pixelDensities()[index];
+    return std::string(one.name) + ", " + formatDouble(one.pixels_per_metre) + " px/m";
+}
+
+std::string metricTable(const CoverageReport& report) {
+    std::vector<TextRow> rows = {{"", "by cells", "exact", "difference"},
+                                 row("total effective area", report.total_effective_area, area),
+                                 row("seen by several", report.overlap, area),
+                                 row("coverage", report.coverage, percent),
+                                 row("free coverage", report.free_coverage, percent)};
+    addRedundancy(report, rows);
+    for (std::size_t i = 0; i < report.densities.indoor.size(); ++i)
+        rows.push_back(row(classText(i), report.densities.indoor[i], percent));
+    if (report.parallax)
+        rows.push_back(row(
+            "by " + std::to_string(report.parallax->cameras) + " cameras, axes at least " +
+                formatDouble(roundSignificant(report.parallax->least.degrees())) + " degrees apart",
+            report.parallax_coverage, percent));
+    for (const ZoneMetrics& zone : report.zones) {
+        if (zone.area > 0)
+            rows.push_back(row("zone " + printable(zone.id), zone.coverage, percent));
+        else
+            rows.push_back({"zone " + printable(zone.id), "outside the room"});
+    }
+    return aligned(rows, "lr");
+}
+
+std::string sensorTable(const std::vector<SensorMetrics>& sensors) {
+    const auto cell = [](const std::optional<double>& value) { return value ? area(*value) : "-"; };
+    std::vector<TextRow> rows = {{"sensor", "model", "slice area", "by cells", "exact",
+                                  "difference", "marginal", "exact", "difference", "overlap"}};
+    for (const SensorMetrics& sensor : sensors) {
+        const TextRow region = row("", sensor.area, area), alone = row("", sensor.marginal, area);
+        rows.push_back(
+            {printable(sensor.id),
+             sensor.model.empty() ? std::string(sensor.kind->keyword) : printable(sensor.model),
+             cell(sensor.slice_area), region[1], region[2], region[3], alone[1], alone[2], alone[3],
+             cell(sensor.overlap.exact ? sensor.overlap.exact : sensor.overlap.grid)});
+    }
+    return aligned(rows, "llr");
+}
+
+/// How far cameras see, and with how many pixels; "" without any. Areas are exact where they can
+/// be.
+std::string cameraTable(const std::vector<SensorMetrics>& sensors) {
+    const auto best = [](const Metric& metric) {
+        return metric.exact ? metric.exact : metric.grid;
+    };
+    const auto text = [](const std::optional<double>& value, const char* unit, int decimals) {
+        return value ? formatFixed(*value, decimals) + unit : "-";
+    };
+    std::vector<TextRow> rows = {{"camera", "nearest", "farthest", "mean density"}};
+    for (const PixelDensity& one : pixelDensities()) rows.front().emplace_back(one.name);
+    for (const SensorMetrics& sensor : sensors) {
+        if (!sensor.picture) continue;
+        const PictureMetrics& picture = *sensor.picture;
+        TextRow row = {printable(sensor.id), text(picture.nearest, " m", 2),
+                       text(picture.farthest, " m", 2),
+                       text(best(picture.mean_density), " px/m", 1)};
+        for (const Metric& metric : picture.areas) row.push_back(text(best(metric), " m2", 2));
+        rows.push_back(std::move(row));
+    }
+    return rows.size() > 1 ? "\n" + aligned(rows, "lr") : "";
+}
+
+std::string piecesText(const CoverageReport& report) {
+    std::string text;
+    if (report.pieces == 1) {
+        text += "covered floor is in one piece\n";
+    } else if (report.pieces > 1) {
+        text += "covered floor is in " + std::to_string(report.pieces) +
+                " pieces, the largest has " + percent(report.largest_piece) + " of it\n";
+    }
+    if (report.unseen.empty()) return text;
+    text += "largest spots of free floor that no sensor sees:\n";
+    std::vector<TextRow> rows;
+    for (std::size_t i = 0; i < std::min(kSpotsListed, report.unseen.size()); ++i) {
+        const UnseenSpot& spot = report.unseen[i];
+        rows.push_back({" ", area(spot.area), "around",
+                        "(" + metres(spot.place.x) + ", " + metres(spot.place.y) + ")"});
+    }
+    text += aligned(rows, "lrl");
+    if (report.unseen.size() > kSpotsListed)
+        text += "   and " + std::to_string(report.unseen.size() - kSpotsListed) + " smaller\n";
+    return text;
+}
+
+std::string comparisonText(const CoverageReport& report) {
+    const Comparison& other = *report.comparison;
+    const auto gain = [](const std::optional<double>& now, const std::optional<double>& then) {
+        return now && then ? std::optional(*now - *then) : std::nullopt;
+    };
+    const Metric change{.grid = gain(report.coverage.grid, other.coverage.grid),
+                        .exact = gain(report.coverage.exact, other.coverage.exact)};
+    return "\n" + aligned({{"beside " + printable(other.name), "by cells", "exact", "difference"},
+                           row("its coverage", other.coverage, percent),
+                           row("change of coverage", change,
+                               [](double share) { return withSign(share, percent); }),
+                           row("gained", other.gained, area),
+                           row("lost", other.lost, area)},
+                          "lr");
+}
+
+}  // namespace
+
+std::string coverageText(const CoverageReport& report) {
+    const Box2& limits = report.limits;
+    std::string text = aligned(
+        {{"environment", printable(report.digest)},
+         {"limits", "x " + metres(limits.low.x) + " to " + metres(limits.high.x) + " m, y " +
+                        metres(limits.low.y) + " to " + metres(limits.high.y) + " m"},
+         {"grid", cellsText(report.grid)},
+         {"indoor area", area(report.indoor_area)},
+         {"free floor", area(report.free_area) + " at " + metres(report.height) + " m"}},
+        "l");
+    if (report.density > 0)
+        text +=
+            "cameras cover where they have " + formatDouble(report.density) + " pixels a metre\n";
+    text += "\n" + metricTable(report);
+    if (!report.exact_missing.empty())
+        text += "no exact figures of all together: " + printable(report.exact_missing) + "\n";
+    if (report.comparison) text += comparisonText(report);
+    text += "\n";
+    if (report.sensors.empty())
+        text += "no laser, ranger, camera or ultrasonic receiver is placed\n";
+    else
+        text +=
+            sensorTable(report.sensors) + cameraTable(report.sensors) + "\n" + piecesText(report);
+    return text;
+}
+
+std::string aligned(const std::vector<TextRow>& rows, const std::string& sides) {
+    std::vector<std::size_t> widths;
+    const auto side = [&sides](std::size_t i) {
+        return i < sides.size() ? sides[i] : sides.back();
+    };
+    for (const TextRow& row : rows) {
+        widths.resize(std::max(widths.size(), row.size()));
+        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    }
+    std::string text;
+    for (const TextRow& row : rows) {
+        std::string line;
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            const std::string blanks(widths[i] - row[i].size(), ' ');
+            if (i > 0) line += "  ";
+            line += side(i) == 'r' ? blanks + row[i] : row[i] + blanks;
+        }
+        text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    }
+    return text;
+}
+
+std::string percentText(double share, int decimals) {
+    return formatFixed(100 * share, decimals) + '%';
+}
+
+}  // namespace ispace

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Curves of what is seen, thinned and cut for the page, and the floor in their colours.
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "geom/polyline.h"
+#include "geom/predicates.h"
+#include "raster/contour.h"
+#include "report/map/map_parts.h"
+
+namespace ispace {
+
+namespace {
+
+/// One side of a box: what has a coordinate of at least (or at most) `bound`.
+struct HalfPlane {
+    bool along_x;
+    bool above;
+    double bound;
+
+    [[nodiscard]] double coordinate(Point2 p) const { return along_x ? p.x : p.y; }
+    [[nodiscard]] bool holds(Point2 p) const {
+        return above ? coordinate(p) >= bound : coordinate(p) <= bound;
+    }
+    /// Where a -> b passes the bound. \pre one of the ends is held
+    [[nodiscard]] Point2 crossing(Point2 a, Point2 b) const {
+        const double share = (bound - coordinate(a)) / (coordinate(b) - coordinate(a));
+        const Point2 p = a + share * (b - a);
+        return along_x ? Point2{bound, p.y} : Point2{p.x, bound};
+    }
+};
+
+std::array<HalfPlane, 4> sidesOf(const Box2& box) {
+    return {HalfPlane{true, true, box.low.x}, HalfPlane{true, false, box.high.x},
+            HalfPlane{false, true, box.low.y}, HalfPlane{false, false, box.high.y}};
+}
+
+bool within(const Box2& inner, const Box2& outer) {
+    return outer.low.x <= inner.low.x && outer.low.y <= inner.low.y &&
+           inner.high.x <= outer.high.x && inner.high.y <= outer.high.y;
+}
+
+/// A closed curve thinned in two halves, which meet at vertices far apart.
+Polygon thinnedCurve(const Polygon& curve, double tolerance) {
+    if (curve.size() < 4) return curve;
+    const auto farther = [&](Point2 a, Point2 b) {
+        return distance(curve.front(), a) < distance(curve.front(), b);
+    };
+    const auto middle = std::max_element(curve.begin(), curve.end(), farther);
+    Polygon result = thinned(Polygon(curve.begin(), middle + 1), tolerance);
+    Polygon rest(middle, curve.end());
+    rest.push_back(curve.front());
+    rest = thinned(rest, tolerance);
+    result.insert(result.end(), rest.begin() + 1, rest.end() - 1);
+    return result;
+}
+
+using Curves = std::vector<Polygon>;
+
+/// Indoor cells of a set. Cells that do not count, with the centre off the free floor, are added
+/// beside free ones of the set, so that the colour of the floor reaches walls and objects, which
+/// are drawn over it.
+CellSet shownCells(const CellSet& seen, const Target& target) {
+    const Grid& grid = target.grid;
+    const auto columns = static_cast<std::size_t>(grid.columns);
+    CellSet result = seen;
+    result &= target.indoor;
+    CellSet free = seen;
+    free &= target.free;
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) {
+            const std::size_t cell = grid.cell(column, row);
+            if (target.free.test(cell)) continue;
+            if ((column > 0 && free.test(cell - 1)) ||
+                (column + 1 < grid.columns && free.test(cell + 1)) ||
+                (row > 0 && free.test(cell - columns)) ||
+                (row + 1 < grid.rows && free.test(cell + columns)))
+                result.set(cell);
+        }
+    }
+    return result;
+}
+
+Curves curvesOfCells(const MapPicture& map, const CellSet& seen) {
+    return drawable(map, contours(map.coverage.target.grid, shownCells(seen, map.coverage.target)));
+}
+
+/// Indoor floor that at least so many sets see: its exact curves.
+Curves exactCurves(const MapPicture& map, const Overlay& overlay, std::uint32_t least) {
+    const auto is_seen = [least](const LayerLabel& label) {
+        return (label.marks & kIndoorMark) != 0 && label.count >= static_cast<std::int32_t>(least);
+    };
+    return drawable(map, curvesOf(overlay.regions(is_seen)));
+}
+
+/// The same, exact where that is known, else by cells.
+Curves seenCurves(const MapPicture& map, std::uint32_t least) {
+    if (map.coverage.overlay) return exactCurves(map, *map.coverage.overlay, least);
+    const std::vector<std::uint32_t> times = timesSeen(map.coverage);
+    CellSet cells(times.size());
+    for (std::size_t cell = 0; cell < times.size(); ++cell)
+        if (times[cell] >= least) cells.set(cell);
+    return curvesOfCells(map, cells);
+}
+
+Curves curvesOfSet(const MapPicture& map, const SeenSet& set) {
+    // Both kinds are never mixed: stripes would show steps where they meet.
+    if (map.coverage.overlay && set.region) return drawable(map, *set.region);
+    return curvesOfCells(map, set.cells);
+}
+
+void drawRedundancy(Picture& picture, const MapPicture& map) {
+    const Shades shades = shadesFor(map.coverage.report);
+    // Each class is laid over those below it, so that no seam shows between two.
+    for (int shade = 1; shade <= shades.count; ++shade)
+        picture.area(seenCurves(map, shades.least(shade)), {shades.color(shade)});
+}
+
+/// Floor that several see: stripes in their colours, or without colours if there are many.
+void drawShared(Picture& picture, const MapPicture& map, const std::vector<Curves>& sets) {
+    const Curves shared = seenCurves(map, 2);
+    picture.area(shared, {palette::kShared});
+    if (sets.size() > kMaxStriped) {
+        picture.area(shared, {Hatch{palette::kSharedHatch, 0.6 * map.em, 0.08 * map.em}});
+        return;
+    }
+    picture.pushClip(std::span(shared));
+    const auto count = static_cast<double>(sets.size());
+    const double width = std::max(1.2 / count, 0.3) * map.em;
+    for (std::size_t i = 0; i < sets.size(); ++i)
+        picture.area(sets[i], {Hatch{stripeColor(map, i), count * width, width,
+                                     static_cast<double>(i) * width}});
+    picture.pop();
+}
+
+void drawBySensor(Picture& picture, const MapPicture& map) {
+    std::vector<Curves> sets;
+    sets.reserve(map.coverage.sets.size());
+    for (const SeenSet& set : map.coverage.sets) sets.push_back(curvesOfSet(map, set));
+    for (std::size_t i = 0; i < sets.size(); ++i) picture.area(sets[i], {floorColor(map, i)});
+    if (sets.size() > 1) drawShared(picture, map, sets);
+}
+
+/// Indoor floor that cameras see with the pixels of a class, exact where that is known.
+Curves densityCurves(const MapPicture& map, std::size_t density_class) {
+    const Coverage& coverage = map.coverage;
+    if (!coverage.density_overlays.empty()) {
+        const std::uint64_t wanted =
+            kIndoorMark | (density_class == 0 ? kCameraMark : classMark(density_class - 1));
+        return drawable(
+            map,
+            curvesOf(coverage.density_overlays.front().regions(
+                [wanted](const LayerLabel& label) { return (label.marks & wanted) == wanted; })));
+    }
+    if (density_class > 0) return curvesOfCells(map, cellsOfClass(coverage, density_class - 1));
+    CellSet cells(coverage.target.grid.size());
+    for (const SensorView& view : coverage.sensors)
+        if (!view.classes.empty()) cells |= view.cells;
+    return curvesOfCells(map, cells);
+}
+
+void drawDensity(Picture& picture, const MapPicture& map) {
+    for (std::size_t i = 0; i <= pixelDensities().size(); ++i)
+        picture.area(densityCurves(map, i), {densityColor(i)});
+}
+
+/// Both, gained and lost. Those that one sees alone are drawn over what both do: where the curves
+/// of the two run together, no seam shows.
+void drawComparison(Picture& picture, const MapPicture& map) {
+    const bool exact = map.coverage.overlay && map.other->overlay;
+    const Curves now = exact ? exactCurves(map, *map.coverage.overlay, 1)
+                             : curvesOfCells(map, coveredCells(map.coverage));
+    const Curves before = exact ? exactCurves(map, *map.other->overlay, 1)
+                                : curvesOfCells(map, coveredCells(*map.other));
+    const auto outside = [&map](Curves curves) {
+        const double far = map.limits().width() + map.limits().depth();
+        const Point2 low = map.limits().low, high = map.limits().high;
+        curves.push_back({{low.x - far, low.y - far},
+                          {high.x + far, low.y - far},
+                          {high.x + far, high.y + far},
+                          {low.x - far, high.y + far}});
+        return curves;
+    };
+    picture.area(now, {palette::kBoth});
+    picture.area(before, {palette::kBoth});
+    picture.pushClip(std::span<const Polygon>(outside(before)));
+    picture.area(now, {palette::kGained});
+    picture.pop();
+    picture.pushClip(std::span<const Polygon>(outside(now)));
+    picture.area(before, {palette::kLost});
+    picture.area(before, {Hatch{palette::kLostHatch, 0.55 * map.em, 0.1 * map.em}});
+    picture.pop();
+}
+
+}  // namespace
+
+std::vector<Point2> thinned(const std::vector<Point2>& points, double tolerance) {
+    if (points.size() < 3) return points;
+    std::vector<Point2> kept{points.front()};
+    thinPolyline(
+        0, points.size() - 1, [&points](std::size_t i) { return points[i]; },
+        [tolerance](std::size_t, std::size_t, double apart) { return apart <= tolerance; },
+        [&](std::size_t i) { kept.push_back(points[i]); });
+    return kept;
+}
+
+Polygon clipped(const Polygon& curve, const Box2& box) {
+    if (curve.empty() || within(bounds(curve), box)) return curve;
+    Polygon result = curve;
+    for (const HalfPlane& side : sidesOf(box)) {
+        Polygon kept;
+        kept.reserve(result.size() + 4);
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            const Point2 from = result[i == 0 ? result.size() - 1 : i - 1], to = result[i];
+            if (side.holds(from) != side.holds(to)) kept.push_back(side.crossing(from, to));
+            if (side.holds(to)) kept.push_back(to);
+        }
+        result = std::move(kept);
+    }
+    return result;
+}
+
+std::optional<Segment2> clipped(const Segment2& segment, const Box2& box) {
+    Segment2 part = segment;
+    for (const HalfPlane& side : sidesOf(box)) {
+        const bool from = side.holds(part.a), to = side.holds(part.b);
+        if (!from && !to) return std::nullopt;
+        if (from && to) continue;
+        (from ? part.b : part.a) = side.crossing(part.a, part.b);
+    }
+    return part;
+}
+
+std::vector<Polygon> drawable(const MapPicture& map, std::vector<Polygon> curves) {
+    // Far enough outside for strokes along the box not to be seen.
+    const double rim = 4 * map.em / map.view.scale, tolerance = 0.03 / map.view.scale;
+    const Box2 box{{map.limits().low.x - rim, map.limits().low.y - rim},
+                   {map.limits().high.x + rim, map.limits().high.y + rim}};
+    for (Polygon& curve : curves) curve = thinnedCurve(clipped(curve, box), tolerance);
+    std::erase_if(curves, [](const Polygon& curve) { return curve.size() < 3; });
+    return curves;
+}
+
+std::vector<Polygon> drawable(const MapPicture& map, const std::vector<Curve>& curves) {
+    std::vector<Polygon> polygons;
+    polygons.reserve(curves.size());
+    for (const Curve& curve : curves) polygons.push_back(chords(curve, 0.03 / map.view.scale));
+    return drawable(map, std::move(polygons));
+}
+
+Shades shadesFor(const CoverageReport& report) {
+    constexpr std::uint32_t kMaxShades = 6;
+    constexpr double kMinShare = 1e-6;  // slivers of exact regions make no class
+    const std::vector<double>& shares =
+        report.redundancy_exact ? *report.redundancy_exact : report.redundancy;
+    std::uint32_t most = 1;
+    for (std::uint32_t k = 1; k < shares.size(); ++k)
+        if (shares[k] > kMinShare) most = k;
+    Shades shades;
+    shades.width = (most + kMaxShades - 1) / kMaxShades;
+    shades.count = shades.of(most);
+    return shades;
+}
+
+Color densityColor(std::size_t density_class) {
+    return sequentialColor(static_cast<int>(density_class) + 1,
+                           static_cast<int>(pixelDensities().size()) + 1);
+}
+
+Metric shareOfDensity(const CoverageReport& report, std::size_t density_class) {
+    const DensityMetrics& all = report.densities;
+    if (all.indoor.empty()) return {.grid = 0, .exact = 0};
+    const Metric& least = density_class == 0 ? all.seen : all.indoor[density_class - 1];
+    if (density_class == all.indoor.size()) return least;
+    const Metric& better = all.indoor[density_class];
+    const auto difference = [](const std::optional<double>& a, const std::optional<double>& b) {
+        return a && b ? std::optional(std::max(0.0, *a - *b)) : std::nullopt;
+    };
+    return {difference(least.grid, better.grid), difference(least.exact, better.exact)};
+}
+
+Color setColor(const MapPicture& map, std::size_t set) {
+    if (map.options.color != MapColor::Sensor) return seriesColor(set);
+    // Green and purple are greys to many colour-blind people: as floor they come late and apart.
+    constexpr std::array<std::size_t, kSeriesColors> kOrder = {0, 3, 1, 4, 6, 2, 5};
+    return seriesColor(kOrder[set % kSeriesColors]);
+}
+
+Color floorColor(const MapPicture& map, std::size_t set) {
+    const Color color = setColor(map, set);
+    // Dark colours become as light as the others: marks and lines on the floor stay readable.
+    return tint(color, std::min(0.4, 0.25 / (1 - lightness(color))));
+}
+
+Color stripeColor(const MapPicture& map, std::size_t set) { return tint(setColor(map, set), 0.7); }
+
+void drawCoverage(Picture& picture, const MapPicture& map) {
+    if (map.other != nullptr)
+        drawComparison(picture, map);
+    else if (map.options.color == MapColor::Sensor)
+        drawBySensor(picture, map);
+    else if (map.options.color == MapColor::Density)
+        drawDensity(picture, map);
+    else
+        drawRedundancy(picture, map);
+}
+
+}  // namespace ispace

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sensors on a map: what each sees, its mark and its id; signs of what none sees.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "base/message.h"
+#include "raster/contour.h"
+#include "report/map/map_parts.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::size_t kCrowd = 40;  // marks and labels of more sensors are smaller
+/// Receivers make one set: what one of them hears counts for nothing alone.
+bool countsInSet(const SensorView& view) { return view.isPartial(); }
+
+constexpr std::size_t kManySensors = 2 * kSeriesColors;  // lines become finer
+
+/// Contours of what a sensor or a set sees.
+template <typename View>
+std::vector<Polygon> contoursOf(const MapPicture& map, const View& view) {
+    if (view.region) return drawable(map, *view.region);
+    return drawable(map, contours(map.coverage.target.grid, view.cells));
+}
+
+void drawContours(Picture& picture, const MapPicture& map, const std::vector<Polygon>& curves,
+                  const Stroke& line) {
+    constexpr std::size_t kMaxBands = 12;  // soft rims help to tell few views apart, and hide many
+    const bool plain = map.other == nullptr && map.options.color != MapColor::Sensor;
+    if (plain && map.coverage.sets.size() <= kMaxBands) {
+        const Box2& limits = map.limits();
+        const double rim = std::min(
+            0.9 * map.em, 0.04 * map.view.scale * std::min(limits.width(), limits.depth()));
+        picture.pushClip(std::span(curves));
+        picture.area(curves, {Stroke{line.color.faded(0.16), rim}});
+        picture.pop();
+    }
+    // A pale rim lifts the line off stripes.
+    if (map.other == nullptr && map.options.color == MapColor::Sensor)
+        picture.area(curves, {Stroke{palette::kWhite.faded(0.7), line.width + map.em / 9}});
+    picture.area(curves, {line});
+}
+
+/// The beams on the plan, from above: each to what it meets, or to the maximum range. Where the
+/// ends of neighbours would lie too near each other, every second one is left out, or three of
+/// four, ...
+std::vector<Segment2> beamsOf(const MapPicture& map, const SensorView& view) {
+    const Laser& laser = map.scene.sensors[view.index].as<Laser>();
+    const double least_gap = std::max(2.0, map.em / 6) / map.view.scale;
+    const Point3 origin = view.pose.position;
+    std::vector<Segment2> beams;
+    for (std::size_t k = 0; k < view.beams.size(); ++k) {
+        const double range = std::min<double>(view.beams[k], view.max_range);
+        const Vec3 way = range * view.pose.beam(laser.bearing(static_cast<int>(k)));
+        const double gap = length(Vec2{way.x, way.y}) * std::abs(laser.step.radians());
+        std::size_t stride = 1;
+        while (static_cast<double>(stride) * gap < least_gap && stride < view.beams.size())
+            stride *= 2;
+        if (k % stride != 0) continue;
+        const Segment2 beam{origin.onFloor(), (origin + way).onFloor()};
+        if (const auto part = clipped(beam, map.limits())) beams.push_back(*part);
+    }
+    return beams;
+}
+
+/// A sweep has the beams of many scans: they would hide all.
+bool showsBeams(const MapPicture& map, const SensorView& view) {
+    return map.options.fans == FanStyle::Beams && !view.beams.empty() &&
+           map.scene.sensors[view.index].as<Laser>().sweep == SweepAxis::None;
+}
+
+void drawBeams(Picture& picture, const MapPicture& map, std::size_t sensor) {
+    Stroke line = sensorStroke(map, sensor);
+    line.dashes.clear();
+    line.width = map.em / 24;
+    line.color = line.color.faded(0.6);
+    picture.lines(beamsOf(map, map.coverage.sensors[sensor]), {line});
+}
+
+bool contains(const Box2& outer, const Box2& inner) {
+    return outer.low.x <= inner.low.x && inner.high.x <= outer.high.x &&
+           outer.low.y <= inner.low.y && inner.high.y <= outer.high.y;
+}
+
+Point2 pageOf(const MapPicture& map, const SensorView& sensor) {
+    return map.view * sensor.pose.position.onFloor();
+}
+
+/// Marks of those that stand on the plan; `hollow`: of the layout that this one is compared with.
+void drawSensors(Picture& picture, const MapPicture& map, const Box2& frame, bool hollow,
+                 LabelPlacer& places) {
+    const std::vector<SensorView>& sensors = map.coverage.sensors;
+    const double radius = map.em * (sensors.size() > kCrowd ? 0.24
+                                    : sensors.size() > 14   ? 0.3
+                                                            : 0.36);
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        const Point2 page = pageOf(map, sensors[i]);
+        if (!contains(frame, {page, page})) continue;
+        SensorMark mark = markOf(map, i);
+        mark.hollow = hollow;
+        if (hollow) mark.color = palette::kOtherSensor;
+        // On top of another one it is smaller, so that both are seen.
+        const auto is_here = [&](const SensorView& sensor) {
+            return distance(pageOf(map, sensor), page) < 0.4 * radius;
+        };
+        const auto end = sensors.begin() + static_cast<std::ptrdiff_t>(i);
+        const bool on_top = std::any_of(sensors.begin(), end, is_here);
+        picture.pushGroup(hollow ? "" : sensors[i].id,
+                          sensors[i].id + ": " + std::string(sensors[i].kind->keyword));
+        drawSensorMark(picture, page, mark, on_top ? 0.5 * radius : radius);
+        picture.pop();
+        places.addMark(page, mark.heading);
+    }
+}
+
+void drawIds(Picture& picture, const MapPicture& map, const Box2& frame, LabelPlacer& places) {
+    const std::vector<SensorView>& sensors = map.coverage.sensors;
+    const bool crowd = sensors.size() > kCrowd;
+    const double size = crowd ? std::max(10.0, 0.7 * map.em) : map.em;
+    const TextStyle style{size, true, Align::Center, palette::kInk, palette::kWhite.faded(0.85)};
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        const Point2 page = pageOf(map, sensors[i]);
+        if (!contains(frame, {page, page})) continue;
+        const std::string id = fitText(sensors[i].id, 10 * size, style);
+        const Angle heading = markOf(map, i).heading.value_or(Angle());
+        if (const auto middle = places.placeLabel(page, heading, textWidth(id, style), size, crowd))
+            picture.text({middle->x, middle->y + 0.36 * size}, id, style);
+    }
+}
+
+/// Names of zones in their first free corner; the legend names those that have no room.
+void drawZoneNames(Picture& picture, const MapPicture& map, LabelPlacer& places) {
+    const double size = std::max(10.0, 0.85 * map.em), inset = 0.4 * map.em;
+    const TextStyle style{size, false, Align::Left, palette::kZone, palette::kWhite.faded(0.8)};
+    for (const Element& element : map.scene.environment.elements()) {
+        if (element.record.keyword() != "zone") continue;
+        const Box2 zone = bounds(zoneOutline(element.record));
+        const Point2 low = map.view * Point2{zone.low.x, zone.high.y};  // y is down on the page
+        const Point2 high = map.view * Point2{zone.high.x, zone.low.y};
+        const double room = high.x - low.x - 2 * inset;
+        const std::string name = fitText(element.id, room, style);
+        const double width = textWidth(name, style);
+        if (width > room || (room < 5 * size && name != printable(element.id))) continue;
+        for (const Point2 corner :
+             {Point2{low.x + inset, high.y - inset - size}, Point2{low.x + inset, low.y + inset},
+              Point2{high.x - inset - width, high.y - inset - size},
+              Point2{high.x - inset - width, low.y + inset}}) {
+            if (!places.take({corner, {corner.x + width, corner.y + size}})) continue;
+            picture.text({corner.x, corner.y + 0.86 * size}, name, style);
+            break;
+        }
+    }
+}
+
+}  // namespace
+
+std::size_t setOf(const Coverage& coverage, std::size_t sensor) {
+    if (!countsInSet(coverage.sensors[sensor])) return sensor;
+    const auto first = std::find_if(coverage.sensors.begin(), coverage.sensors.end(), countsInSet);
+    return static_cast<std::size_t>(first - coverage.sensors.begin());
+}
+
+Color sensorColor(const MapPicture& map, std::size_t sensor) {
+    return map.other != nullptr ? palette::kInk : setColor(map, setOf(map.coverage, sensor));
+}
+
+Stroke sensorStroke(const MapPicture& map, std::size_t sensor) {
+    const double em = map.em;
+    const std::vector<SensorView>& sensors = map.coverage.sensors;
+    const bool many = map.coverage.sets.size() > kManySensors;
+    if (map.other != nullptr) return {palette::kInk.faded(many ? 0.3 : 0.55), em / 16};
+    const Color color = sensorColor(map, sensor);
+    Stroke stroke{color.faded(0.95), em / 9};
+    if (many) stroke = {color.faded(sensors.size() > 3 * kManySensors ? 0.4 : 0.6), em / 18};
+    const std::size_t set = setOf(map.coverage, sensor);
+    std::size_t dashes = set / kSeriesColors % 2;
+    if (map.options.color == MapColor::Sensor) dashes = set % 4;
+    if (dashes == 1) stroke.dashes = {em / 2, em / 4};
+    if (dashes == 2) stroke.dashes = {em / 6, em / 4};
+    if (dashes == 3) stroke.dashes = {0.8 * em, em / 4, em / 6, em / 4};
+    return stroke;
+}
+
+void drawViews(Picture& picture, const MapPicture& map) {
+    const std::vector<SensorView>& sensors = map.coverage.sensors;
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        const SensorView& view = sensors[i];
+        const Stroke line = sensorStroke(map, i);
+        picture.pushGroup("", "field of view of " + view.id);
+        if (countsInSet(view)) {
+            const Color faint = line.color.faded(0.5 * line.color.alpha);
+            picture.area(contoursOf(map, view), {Stroke{faint, map.em / 24}});
+        } else if (showsBeams(map, view)) {
+            drawBeams(picture, map, i);
+        } else {
+            drawContours(picture, map, contoursOf(map, view), line);
+        }
+        picture.pop();
+    }
+    if (!sensors.empty() && countsInSet(sensors.back()))
+        drawContours(picture, map, contoursOf(map, map.coverage.sets.back()),
+                     sensorStroke(map, sensors.size() - 1));
+}
+
+SensorMark markOf(const MapPicture& map, std::size_t sensor) {
+    const SensorView& view = map.coverage.sensors[sensor];
+    return {view.kind->sign, headingOf(view.pose), sensorColor(map, sensor)};
+}
+
+void drawSpotSign(Picture& picture, Point2 page, const std::string& number, double em) {
+    picture.circle(page, kSpotRadius * em, {palette::kWhite});
+    picture.circle(page, kSpotRadius * em, {Stroke{palette::kInk, em / 12}});
+    const TextStyle style{std::max(10.0, 0.85 * em), true, Align::Center, palette::kInk, {}};
+    picture.text({page.x, page.y + 0.36 * style.size}, number, style);
+}
+
+std::size_t markedSpots(const MapPicture& map) {
+    constexpr double kMinShare = 0.0025;  // of the room
+    const CoverageReport& report = map.coverage.report;
+    const std::size_t most = std::min<std::size_t>(map.terse ? 3 : 5, report.unseen.size());
+    std::size_t count = 0;
+    while (count < most && report.unseen[count].area >= kMinShare * report.indoor_area) ++count;
+    return count;
+}
+
+void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame) {
+    LabelPlacer places(frame, map.em);
+    picture.pushLayer("sensors");
+    if (map.other != nullptr) {
+        const MapPicture other{map.scene, *map.other, map.options, nullptr, map.em, map.view};
+        drawSensors(picture, other, frame, true, places);
+    }
+    drawSensors(picture, map, frame, false, places);
+    picture.pop();
+    picture.pushLayer("unseen spots");
+    for (std::size_t i = 0; i < markedSpots(map); ++i) {
+        const Point2 page = map.view * map.coverage.report.unseen[i].place;
+        drawSpotSign(picture, places.placeSign(page, kSpotRadius * map.em), std::to_string(i + 1),
+                     map.em);
+    }
+    picture.pop();
+    picture.pushLayer("labels");
+    drawIds(picture, map, frame, places);
+    drawZoneNames(picture, map, places);
+    picture.pop();
+}
+
+namespace {
+
+/// Colours that are told apart when places are drawn: all of one make one path.
+constexpr int kLevels = 32;
+
+/// Dots of less than this radius (page units) have neither tick nor rim: nobody would see them.
+constexpr double kMinTicked = 2;
+
+/// Radius of a dot on the page: dots of a lattice over the plan leave room between them.
+double dotRadius(const MapPicture& map, std::size_t places) {
+    const Box2& limits = map.limits();
+    const double area = map.view.scale * map.view.scale * limits.width() * limits.depth();
+    const double spacing = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, places)));
+    const double ticked = 0.24 * spacing;  // with room for the tick
+    return ticked > kMinTicked ? std::min(ticked, 0.26 * map.em)
+                               : std::clamp(0.38 * spacing, 0.6, kMinTicked);
+}
+
+/// Dots and ticks of one colour.
+struct Dots {
+    std::vector<Segment2> dots, ticks;
+};
+
+}  // namespace
+
+std::vector<TriedPlace> placesTried(const std::vector<TriedPose>& trace) {
+    std::vector<TriedPlace> places;
+    std::map<std::pair<double, double>, std::size_t> at;
+    for (const TriedPose& tried : trace) {
+        const Point2 place = tried.pose.position.onFloor();
+        const auto [entry, is_new] = at.try_emplace({place.x, place.y}, places.size());
+        if (is_new) places.push_back({place, tried.value, headingOf(tried.pose), false});
+        TriedPlace& own = places[entry->second];
+        own.is_chosen = own.is_chosen || tried.is_chosen;
+        if (tried.value > own.value) {
+            own.value = tried.value;
+            own.heading = headingOf(tried.pose);
+        }
+    }
+    std::stable_sort(places.begin(), places.end(),
+                     [](const TriedPlace& a, const TriedPlace& b) { return a.value < b.value; });
+    return places;
+}
+
+Color triedColor(double share) {
+    constexpr std::array<std::uint32_t, 5> kStops = {0xF2CF4E, 0xF2A83A, 0xE26D14, 0xA83A05,
+                                                     0x4A1600};
+    return rampColor(kStops, share);
+}
+
+void drawChosenRing(Picture& picture, Point2 page, double radius, double em) {
+    picture.circle(page, radius, {Stroke{palette::kWhite, em / 4}});
+    picture.circle(page, radius, {Stroke{palette::kInk, em / 9}});
+}
+
+void drawTrace(Picture& picture, const MapPicture& map, const Box2& frame) {
+    const std::vector<TriedPlace> places = placesTried(map.options.trace);
+    if (places.empty()) return;
+    const double radius = dotRadius(map, places.size());
+    const double least = places.front().value, span = places.back().value - least;
+    std::array<Dots, kLevels> levels;
+    std::vector<Point2> chosen;
+    for (const TriedPlace& tried : places) {
+        const Point2 page = map.view * tried.place;
+        if (page.x < frame.low.x || page.x > frame.high.x || page.y < frame.low.y ||
+            page.y > frame.high.y)
+            continue;
+        const double share = span > 0 ? (tried.value - least) / span : 1;
+        Dots& own = levels[static_cast<std::size_t>(std::lround(share * (kLevels - 1)))];
+        own.dots.push_back({page, page});  // a line without length has round ends
+        if (tried.heading) {
+            const Vec2 way = 2.2 * radius * unitVector(*tried.heading);
+            own.ticks.push_back({page, {page.x + way.x, page.y - way.y}});
+        }
+        if (tried.is_chosen) chosen.push_back(page);
+    }
+    for (int i = 0; i < kLevels; ++i) {
+        const Dots& own = levels[static_cast<std::size_t>(i)];
+        const Color color = triedColor(i / (kLevels - 1.0));
+        if (radius > kMinTicked) {
+            // Pale rims lift dots off dark floor; the palest dot is darker than any pale floor.
+            const double rim = std::min(0.25 * radius, map.em / 16);
+            picture.lines(own.dots, {Stroke{palette::kWhite, 2 * (radius + rim)}});
+            picture.lines(own.ticks, {Stroke{palette::kWhite, 0.55 * radius + 2 * rim}});
+            picture.lines(own.ticks, {Stroke{color, 0.55 * radius}});
+        }
+        picture.lines(own.dots, {Stroke{color, 2 * radius}});
+    }
+    for (const Point2 page : chosen) drawChosenRing(picture, page, 0.68 * map.em, map.em);
+}
+
+}  // namespace ispace

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The ways of robots and people on a map, coloured by how many sensors saw them.
+#include "report/run_report.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/json_writer.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "report/coverage_report.h"
+#include "report/map/map_parts.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::size_t kColumns = 4;  // numbers of sensors, the last one and more
+constexpr std::size_t kLossesListed = 5;
+
+std::string seconds(double time) { return formatFixed(time, 2) + " s"; }
+std::string pointText(Point2 place) {
+    return "(" + formatFixed(place.x, 2) + ", " + formatFixed(place.y, 2) + ")";
+}
+
+void write(JsonWriter& json, const char* key, double value) {
+    json.key(key).value(roundSignificant(value));
+}
+
+void write(JsonWriter& json, const char* key, std::vector<double> values) {
+    for (double& value : values) value = roundSignificant(value);
+    json.key(key).value(values);
+}
+
+void write(JsonWriter& json, const RunSightMetrics& metrics) {
+    json.beginObject();
+    if (!metrics.id.empty()) {
+        json.key("id").value(metrics.id);
+        json.key("kind").value(metrics.is_person ? "person" : "robot");
+    }
+    write(json, "duration", metrics.duration);
+    write(json, "length", metrics.length);
+    write(json, "time_shares", metrics.time_shares);
+    write(json, "way_shares", metrics.way_shares);
+    json.key("losses").value(metrics.losses);
+    json.key("longest_unseen");
+    if (const auto& gap = metrics.longest_gap) {
+        json.beginObject();
+        write(json, "begin", gap->begin);
+        write(json, "end", gap->end);
+        write(json, "from", {gap->from.x, gap->from.y});
+        write(json, "to", {gap->to.x, gap->to.y});
+        json.endObject();
+    } else {
+        json.null();
+    }
+    json.endObject();
+}
+
+/// Of exactly k sensors, of the last column of so many and more.
+double shareOf(const std::vector<double>& shares, std::size_t k, bool and_more) {
+    double sum = 0;
+    for (std::size_t i = k; i < shares.size() && (i == k || and_more); ++i) sum += shares[i];
+    return sum;
+}
+
+std::size_t columnsOf(const RunSight& run) {
+    return std::clamp<std::size_t>(run.all.time_shares.size(), 2, kColumns);
+}
+
+TextRow rowOf(const RunSight& run, const RunSightMetrics& metrics, bool is_way) {
+    const std::vector<double>& shares = is_way ? metrics.way_shares : metrics.time_shares;
+    const std::string who =
+        metrics.id.empty() ? "all"
+                           : (metrics.is_person ? "person " : "robot ") + printable(metrics.id);
+    TextRow row = {who, is_way ? formatFixed(metrics.length, 2) + " m" : seconds(metrics.duration)};
+    const std::size_t columns = columnsOf(run);
+    for (std::size_t k = 0; k < columns; ++k)
+        row.push_back(shares.empty() ? "-" : percentText(shareOf(shares, k, k + 1 == columns), 1));
+    if (is_way) return row;
+    row.push_back(std::to_string(metrics.losses));
+    const auto& gap = metrics.longest_gap;
+    row.push_back(gap ? seconds(gap->end - gap->begin) : "-");
+    if (gap) row.push_back("from t=" + formatFixed(gap->begin, 2) + " at " + pointText(gap->from));
+    return row;
+}
+
+std::string tableOf(const RunSight& run, bool is_way) {
+    TextRow head = {is_way ? "share of its way" : "share of its time", is_way ? "way" : "there",
+                    "unseen"};
+    const std::size_t columns = columnsOf(run);
+    for (std::size_t k = 1; k < columns; ++k) {
+        const bool and_more = k + 1 == columns && run.all.time_shares.size() > columns;
+        head.push_back("by " + std::to_string(k) + (and_more ? " and more" : ""));
+    }
+    if (!is_way) head.insert(head.end(), {"lost", "longest unseen"});
+    std::vector<TextRow> rows = {head};
+    for (const RunSightMetrics& member : run.members) rows.push_back(rowOf(run, member, is_way));
+    if (run.members.size() > 1) rows.push_back(rowOf(run, run.all, is_way));
+    std::string sides = "l" + std::string(columns + 3, 'r');
+    return aligned(rows, sides + "l");
+}
+
+}  // namespace
+
+void writeRun(JsonWriter& json, const RunSight& run) {
+    json.key("run").beginObject();
+    json.key("record").value(run.name);
+    write(json, "begin", run.begin);
+    write(json, "end", run.end);
+    json.key("members").beginArray();
+    for (const RunSightMetrics& member : run.members) write(json, member);
+    json.endArray();
+    json.key("all");
+    write(json, run.all);
+    json.key("losses").beginArray();
+    for (const SightLoss& loss : run.losses) {
+        json.beginObject();
+        json.key("id").value(run.members[loss.who].id);
+        write(json, "begin", loss.begin);
+        write(json, "duration", loss.duration);
+        write(json, "place", {loss.place.x, loss.place.y});
+        json.endObject();
+    }
+    json.endArray().endObject();
+}
+
+std::string runText(const RunSight& run) {
+    std::string text = "run " + printable(run.name) + ", t=" + formatFixed(run.begin, 2) + " to " +
+                       formatFixed(run.end, 2) + " s: seen by so many sensors\n" +
+                       tableOf(run, false) + "\n" + tableOf(run, true);
+    if (run.losses.empty()) return text;
+    text += "\nwhere sight was lost:\n";
+    std::vector<TextRow> rows;
+    for (std::size_t i = 0; i < std::min(kLossesListed, run.losses.size()); ++i) {
+        const SightLoss& loss = run.losses[i];
+        rows.push_back({" ", printable(run.members[loss.who].id), "at " + pointText(loss.place),
+                        "t=" + formatFixed(loss.begin, 2), "for " + seconds(loss.duration)});
+    }
+    text += aligned(rows, "lllrr");
+    if (run.losses.size() > kLossesListed)
+        text += "   and " + std::to_string(run.losses.size() - kLossesListed) + " shorter\n";
+    return text;
+}
+
+namespace {
+
+/// Of no sensor, one, two, and more: Okabe and Ito's vermilion, orange, green, and ink. All lie on
+/// a white rim, as floor has the blues; in grey it is the dashes of the first that tell.
+constexpr std::array<std::uint32_t, 4> kRunColors = {0xD55E00, 0xF0A000, 0x00845F, 0x1F2328};
+
+std::size_t classOf(std::size_t sensors) { return std::min(sensors, kRunColors.size() - 1); }
+
+Stroke strokeOf(std::size_t run_class, double em) {
+    Stroke stroke{Color::rgb(kRunColors[run_class]), em / 5};
+    if (run_class == 0) stroke.dashes = {em / 2, em / 4};
+    return stroke;
+}
+
+constexpr std::size_t kMaxMarked = 50;
+
+}  // namespace
+
+void drawRun(Picture& picture, const MapPicture& map) {
+    const RunSight* run = map.options.run;
+    if (run == nullptr) return;
+    std::array<std::vector<std::vector<Point2>>, kRunColors.size()> chains;
+    const double tolerance = 0.2 / map.view.scale;
+    for (const SeenWay& way : run->ways)
+        if (way.points.size() > 1)
+            chains[classOf(way.sensors)].push_back(thinned(way.points, tolerance));
+    picture.pushView(map.view);
+    for (const auto& some : chains)
+        picture.lines(some, {Stroke{palette::kWhite.faded(0.8), map.em / 2.6}});
+    for (std::size_t i = chains.size(); i-- > 0;) picture.lines(chains[i], {strokeOf(i, map.em)});
+    picture.pop();
+    for (std::size_t i = 0; i < std::min(kMaxMarked, run->losses.size()); ++i)
+        drawChosenRing(picture, map.view * run->losses[i].place, 0.5 * map.em, map.em);
+}
+
+LegendBlock runBlock(const RunSight& run) {
+    using Sign = LegendItem::Sign;
+    LegendBlock block{"Ways in the run, seen by", {}, {"time", "way"}};
+    const auto share = [](const std::vector<double>& shares, std::size_t k) {
+        double sum = 0;
+        for (std::size_t i = k; i < shares.size(); ++i)
+            if (classOf(i) == k) sum += shares[i];
+        return shares.empty() ? std::string("–") : formatFixed(100 * sum, 1) + "%";
+    };
+    for (std::size_t k = 0; k < kRunColors.size(); ++k) {
+        if (k > 1 && k >= run.all.time_shares.size()) break;
+        std::string text = k == 0 ? "no sensor" : std::to_string(k);
+        if (k > 0) text += k == 1 ? " sensor" : " sensors";
+        if (k + 1 == kRunColors.size()) text = std::to_string(k) + " and more";
+        LegendItem item{
+            k == 0 ? Sign::Dashes : Sign::Line, Color::rgb(kRunColors[k]), {}, text, ""};
+        item.value = share(run.all.time_shares, k);
+        item.second = share(run.all.way_shares, k);
+        block.items.push_back(std::move(item));
+    }
+    if (!run.losses.empty())
+        block.items.push_back(
+            {Sign::Ring, {}, {}, "sight was lost", std::to_string(run.losses.size()) + " ×"});
+    if (const auto& gap = run.all.longest_gap)
+        block.items.push_back(
+            {Sign::None, {}, {}, "longest unseen", formatFixed(gap->end - gap->begin, 1) + " s"});
+    return block;
+}
+
+}  // namespace ispace

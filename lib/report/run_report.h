@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "coverage/run_coverage.h"
+
+namespace ispace {
+
+class JsonWriter;
+
+/// The metrics of a run as aligned lines of text.
+std::string runText(const RunSight& run);
+/// Writes the member `run` of coverageJson().
+void writeRun(JsonWriter& json, const RunSight& run);
+
+}  // namespace ispace

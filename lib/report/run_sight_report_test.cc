@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/run_report.h"
+
+#include <gtest/gtest.h>
+
+#include "report/coverage_report.h"
+#include "support/test_scenes.h"
+
+namespace ispace {
+namespace {
+
+/// A robot drives for `end` seconds at 1 m/s past a laser that sees 1 m around (0, 0).
+RunSight runOf(int end) {
+    std::string robots = "t,id,x,y,heading_deg\n";
+    for (int i = 0; i <= 50 * end; ++i)
+        robots += std::to_string(i / 50.0) + ",r1," + std::to_string(-3 + i / 50.0) + ",0,0\n";
+    RunReader reader(robots, "");
+    RunSight run =
+        measureRun(sceneOf("ispace size=8,6\nlaser at=0,0 range=1 fov=360\nrobot id=r1 at=-3,0\n"),
+                   reader, {});
+    run.name = "drive";
+    return run;
+}
+
+TEST(RunSightReport, HasTextAndJson) {
+    const RunSight run = runOf(6);
+    const std::string text = runText(run);
+    EXPECT_NE(text.find("run drive, t=0.00 to 6.00 s"), std::string::npos) << text;
+    EXPECT_NE(text.find("robot r1"), std::string::npos);
+    EXPECT_NE(text.find("where sight was lost:"), std::string::npos);
+    const std::string json = coverageJson({}, &run);
+    EXPECT_NE(
+        json.find(
+            R"("run":{"record":"drive","begin":0,"end":6,"members":[{"id":"r1","kind":"robot")"),
+        std::string::npos)
+        << json;
+    EXPECT_EQ(coverageJson({}).find("\"run\""), std::string::npos);
+}
+
+TEST(RunSightReport, OfAMoment) {
+    EXPECT_NE(runText(runOf(0)).find("t=0.00 to 0.00 s"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ispace

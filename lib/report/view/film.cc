@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/view/film.h"
+
+#include <tbb/global_control.h>
+#include <tbb/task_group.h>
+
+#include <gif_lib.h>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "drawing/drawing.h"
+#include "report/view/run_picture.h"
+
+namespace ispace {
+
+ContactSheet::ContactSheet(const std::vector<PictureSize>& shapes)
+    : page_(shapes.front()), em_(std::max(9.0, shapes.front().columns / 80.0)) {
+    places_.push_back({{0, 0}, shapes.front()});
+    constexpr std::size_t kMostARow = 4;
+    const std::size_t others = shapes.size() - 1;
+    if (others == 0) return;
+    // Rows alike: five are three and two.
+    const std::size_t rows = (others + kMostARow - 1) / kMostARow;
+    const auto a_row = static_cast<int>((others + rows - 1) / rows);
+    const int gap = std::max(2, page_.columns / 100);
+    const int width = std::max(1, (page_.columns - (a_row - 1) * gap) / a_row);
+    const int name = static_cast<int>(std::ceil(1.7 * em_));
+    int top = page_.rows + gap, highest = 0, column = 0;
+    for (std::size_t i = 1; i < shapes.size(); ++i) {
+        const double shape = 1.0 * shapes[i].rows / shapes[i].columns;
+        const int height = std::max(1, static_cast<int>(std::lround(width * shape)));
+        places_.push_back({{1.0 * column * (width + gap), 1.0 * top + name}, {width, height}});
+        highest = std::max(highest, height);
+        if (++column < a_row && i + 1 < shapes.size()) continue;
+        top += name + highest + gap;
+        column = highest = 0;
+    }
+    page_.rows = top - gap;
+}
+
+Image ContactSheet::draw(const std::vector<Image>& images,
+                         const std::vector<std::string>& names) const {
+    Picture page(page_.columns, page_.rows);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        page.image(places_[i].corner, images[i], 1, 1);
+        const TextStyle style{em_, true, Align::Left, palette::kInk, {}};
+        if (i > 0)
+            page.text(places_[i].corner + Vec2{0, -0.45 * em_},
+                      fitText(names[i], places_[i].size.columns, style), style);
+    }
+    return rasterOf(page);
+}
+
+struct EncodeAhead::Job {
+    std::string file;
+    Image image;
+    std::string bytes;
+    tbb::task_group task;
+};
+
+struct EncodeAhead::Queue {
+    static constexpr std::size_t kMostPixels = 64'000'000;
+
+    Encode encode;
+    Write write;
+    std::deque<std::unique_ptr<Job>> jobs = {};
+    std::size_t pixels = 0;  // of all jobs
+
+    void writeFirst() {
+        const std::unique_ptr<Job> job = std::move(jobs.front());
+        jobs.pop_front();
+        pixels -= job->image.pixels.size();
+        job->task.wait();
+        write(job->file, job->bytes);
+    }
+};
+
+EncodeAhead::EncodeAhead(Encode encode, Write write)
+    : queue_(std::make_unique<Queue>(Queue{std::move(encode), std::move(write)})) {}
+
+EncodeAhead::~EncodeAhead() {
+    while (!queue_->jobs.empty()) {
+        try {
+            queue_->writeFirst();
+        } catch (...) {  // another error is on its way already
+        }
+    }
+}
+
+void EncodeAhead::add(std::string file, Image image) {
+    Queue& queue = *queue_;
+    queue.pixels += image.pixels.size();
+    Job& job = *queue.jobs.emplace_back(std::make_unique<Job>());
+    job.file = std::move(file);
+    job.image = std::move(image);
+    job.task.run([&job, &queue] { job.bytes = queue.encode(job.image); });
+    const std::size_t cores =
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    while (queue.jobs.size() > cores || queue.pixels > Queue::kMostPixels) {
+        queue.writeFirst();
+        if (queue.jobs.empty()) return;
+    }
+}
+
+void EncodeAhead::finish() {
+    while (!queue_->jobs.empty()) queue_->writeFirst();
+}
+
+namespace {
+
+constexpr std::size_t kMostColors = 256;
+constexpr int kLargest = 65535;
+
+/// Part of a picture: columns and rows from a first one to before a last.
+struct Part {
+    int left = 0, top = 0, right = 0, bottom = 0;
+
+    [[nodiscard]] int width() const { return right - left; }
+    [[nodiscard]] int height() const { return bottom - top; }
+};
+
+/// What differs; one pixel where nothing does, since the format knows no empty picture.
+Part changeOf(const Image& before, const Image& image) {
+    Part part{image.width, image.height, 0, 0};
+    for (int y = 0; y < image.height; ++y) {
+        const auto row = static_cast<std::ptrdiff_t>(y) * image.width;
+        const auto begin = image.pixels.begin() + row, end = begin + image.width;
+        const auto first = std::mismatch(begin, end, before.pixels.begin() + row).first;
+        if (first == end) continue;
+        int last = image.width - 1;
+        while (image.at(last, y) == before.at(last, y)) --last;
+        part.left = std::min(part.left, static_cast<int>(first - begin));
+        part.right = std::max(part.right, last + 1);
+        part.top = std::min(part.top, y);
+        part.bottom = y + 1;
+    }
+    return part.right == 0 ? Part{0, 0, 1, 1} : part;
+}
+
+int distanceOf(std::uint32_t a, std::uint32_t b) {
+    constexpr std::uint32_t kByte = 255;
+    int sum = 0;
+    for (const std::uint32_t shift : {0U, 8U, 16U}) {
+        const int d = static_cast<int>(a >> shift & kByte) - static_cast<int>(b >> shift & kByte);
+        sum += d * d;
+    }
+    return sum;
+}
+
+/// The colours of a part of a picture, and which of them each of its pixels has.
+class Palette {
+  public:
+    Palette(const Image& image, const Part& part) {
+        std::unordered_map<std::uint32_t, int> counts;
+        for (int y = part.top; y < part.bottom; ++y)
+            for (int x = part.left; x < part.right; ++x) ++counts[image.at(x, y)];
+        std::vector<Shade> shades;
+        shades.reserve(counts.size());
+        for (const auto& [color, count] : counts) shades.push_back({color, count});
+        std::sort(shades.begin(), shades.end(), [](const Shade& a, const Shade& b) {
+            return a.count != b.count ? a.count > b.count : a.color < b.color;
+        });
+        while (colors_.size() < std::min(kMostColors, shades.size())) choose(shades);
+        for (const Shade& shade : shades) index_.emplace(shade.color, shade.nearest);
+    }
+    [[nodiscard]] GifPixelType of(std::uint32_t color) const { return index_.at(color); }
+    /// In as many places as a power of two.
+    [[nodiscard]] std::vector<GifColorType> table() const {
+        std::vector<GifColorType> table(std::max(std::bit_ceil(colors_.size()), std::size_t{2}));
+        for (std::size_t i = 0; i < colors_.size(); ++i)
+            table[i] = {static_cast<GifByteType>(colors_[i] >> 16U),
+                        static_cast<GifByteType>(colors_[i] >> 8U),
+                        static_cast<GifByteType>(colors_[i])};
+        return table;
+    }
+
+  private:
+    struct Shade {
+        std::uint32_t color = 0;
+        int count = 0;
+        int distance = std::numeric_limits<int>::max();  // from the nearest of those chosen
+        GifPixelType nearest = 0;
+    };
+
+    /// One more: half are the most frequent, the others those farthest from all before them, so
+    /// that no colour is far off. \pre shades are in the order of their frequency
+    void choose(std::vector<Shade>& shades) {
+        const std::size_t index = colors_.size();
+        const std::uint32_t color =
+            index < kMostColors / 2
+                ? shades[index].color
+                : std::max_element(shades.begin(), shades.end(), [](const auto& a, const auto& b) {
+                      return a.distance < b.distance;
+                  })->color;
+        colors_.push_back(color);
+        for (Shade& shade : shades) {
+            const int distance = distanceOf(shade.color, color);
+            if (distance >= shade.distance) continue;
+            shade.distance = distance;
+            shade.nearest = static_cast<GifPixelType>(index);
+        }
+    }
+
+    std::vector<std::uint32_t> colors_;
+    std::unordered_map<std::uint32_t, GifPixelType> index_;
+};
+
+}  // namespace
+
+struct GifFilm::Data {
+    explicit Data(double the_fps) : fps(the_fps) {}
+    ~Data() { close(); }
+    Data(const Data&) = delete;
+    Data& operator=(const Data&) = delete;
+
+    void begin(const Image& image);
+    void write(const Image& image, const Part& part);
+    void close() {
+        int ignored = 0;
+        if (file != nullptr) EGifCloseFile(std::exchange(file, nullptr), &ignored);
+    }
+    /// The library's answer: it writes into memory, which either works or throws.
+    static void check(int answer) {
+        if (answer == GIF_ERROR) throw std::bad_alloc();
+    }
+
+    double fps;
+    std::string bytes;  // not taken yet
+    GifFileType* file = nullptr;
+    Image before;
+    int count = 0;
+};
+
+void GifFilm::Data::begin(const Image& image) {
+    if (image.width > kLargest || image.height > kLargest)
+        throw FormatError({"", 0, 0,
+                           "a GIF has at most 65535 x 65535 pixels, this film " +
+                               std::to_string(image.width) + " x " + std::to_string(image.height)});
+    const auto append = [](GifFileType* gif, const GifByteType* data, int size) {
+        static_cast<std::string*>(gif->UserData)
+            ->append(reinterpret_cast<const char*>(data), static_cast<std::size_t>(size));
+        return size;
+    };
+    int error = 0;
+    file = EGifOpen(&bytes, append, &error);
+    if (file == nullptr) throw std::bad_alloc();
+    EGifSetGifVersion(file, true);
+    constexpr int kBits = 8;
+    check(EGifPutScreenDesc(file, image.width, image.height, kBits, 0, nullptr));
+    // Round and round, as Netscape began to do.
+    constexpr std::array<GifByteType, 3> kForEver{1, 0, 0};
+    check(EGifPutExtensionLeader(file, APPLICATION_EXT_FUNC_CODE));
+    check(EGifPutExtensionBlock(file, 11, "NETSCAPE2.0"));
+    check(EGifPutExtensionBlock(file, kForEver.size(), kForEver.data()));
+    check(EGifPutExtensionTrailer(file));
+}
+
+void GifFilm::Data::write(const Image& image, const Part& part) {
+    constexpr double kHundredths = 100;
+    const auto time_of = [this](int picture) {
+        return static_cast<int>(std::lround(picture * kHundredths / fps));
+    };
+    // From its own beginning to that of the next, so that rounding does not add up.
+    const GraphicsControlBlock control{DISPOSE_DO_NOT, false, time_of(count + 1) - time_of(count),
+                                       NO_TRANSPARENT_COLOR};
+    std::array<GifByteType, 4> block{};
+    EGifGCBToExtension(&control, block.data());
+    check(EGifPutExtension(file, GRAPHICS_EXT_FUNC_CODE, block.size(), block.data()));
+    const Palette palette(image, part);
+    const std::vector<GifColorType> table = palette.table();
+    const std::unique_ptr<ColorMapObject, decltype(&GifFreeMapObject)> map(
+        GifMakeMapObject(static_cast<int>(table.size()), table.data()), &GifFreeMapObject);
+    if (!map) throw std::bad_alloc();
+    check(
+        EGifPutImageDesc(file, part.left, part.top, part.width(), part.height(), false, map.get()));
+    std::vector<GifPixelType> row(static_cast<std::size_t>(part.width()));
+    for (int y = part.top; y < part.bottom; ++y) {
+        for (int x = part.left; x < part.right; ++x)
+            row[static_cast<std::size_t>(x - part.left)] = palette.of(image.at(x, y));
+        check(EGifPutLine(file, row.data(), part.width()));
+    }
+}
+
+GifFilm::GifFilm(double fps) : data_(std::make_unique<Data>(fps)) {
+    assert(fps >= kSlowest && fps <= kFastest);
+}
+
+GifFilm::~GifFilm() = default;
+
+std::string GifFilm::add(const Image& image) {
+    const bool is_first = data_->count == 0;
+    if (is_first) data_->begin(image);
+    data_->write(image,
+                 is_first ? Part{0, 0, image.width, image.height} : changeOf(data_->before, image));
+    data_->before = image;
+    ++data_->count;
+    return std::exchange(data_->bytes, {});
+}
+
+std::string GifFilm::end() {
+    assert(data_->count > 0);
+    data_->close();
+    return std::exchange(data_->bytes, {});
+}
+
+// The format: https://wiki.multimedia.cx/index.php/YUV4MPEG2
+std::string y4mHeader(int width, int height, double fps) {
+    constexpr double kParts = 1000;
+    return "YUV4MPEG2 W" + std::to_string(width) + " H" + std::to_string(height) + " F" +
+           std::to_string(std::lround(fps * kParts)) + ":1000 Ip A1:1 C420jpeg\n";
+}
+
+namespace {
+
+/// ITU-R BT.601 in video range, times 256.
+struct Luma {
+    int red, green, blue, offset;
+
+    [[nodiscard]] char of(int r, int g, int b) const {
+        constexpr int kHalf = 128;
+        return static_cast<char>(
+            static_cast<std::uint8_t>(((red * r + green * g + blue * b + kHalf) >> 8) + offset));
+    }
+};
+constexpr Luma kY{66, 129, 25, 16}, kCb{-38, -74, 112, 128}, kCr{112, -94, -18, 128};
+
+struct Rgb {
+    int red = 0, green = 0, blue = 0;
+};
+
+Rgb rgbOf(std::uint32_t pixel) {
+    return {static_cast<int>(pixel >> 16U & 255U), static_cast<int>(pixel >> 8U & 255U),
+            static_cast<int>(pixel & 255U)};
+}
+
+/// The mean of a square of four pixels.
+Rgb meanOf(const Image& image, int x, int y) {
+    Rgb sum;
+    for (const int dy : {0, 1})
+        for (const int dx : {0, 1}) {
+            const Rgb pixel = rgbOf(image.at(x + dx, y + dy));
+            sum.red += pixel.red;
+            sum.green += pixel.green;
+            sum.blue += pixel.blue;
+        }
+    return {(sum.red + 2) / 4, (sum.green + 2) / 4, (sum.blue + 2) / 4};
+}
+
+}  // namespace
+
+std::string y4mFrame(const Image& image) {
+    assert(image.width % 2 == 0 && image.height % 2 == 0);
+    std::string bytes = "FRAME\n";
+    bytes.reserve(bytes.size() + image.pixels.size() * 3 / 2);
+    for (const std::uint32_t pixel : image.pixels) {
+        const auto [red, green, blue] = rgbOf(pixel);
+        bytes += kY.of(red, green, blue);
+    }
+    for (const Luma& plane : {kCb, kCr})
+        for (int y = 0; y < image.height; y += 2)
+            for (int x = 0; x < image.width; x += 2) {
+                const auto [red, green, blue] = meanOf(image, x, y);
+                bytes += plane.of(red, green, blue);
+            }
+    return bytes;
+}
+
+}  // namespace ispace

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/bodies.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "env/body.h"
+#include "scene/sensor/field_of_view.h"
+#include "scene/sensor/sensor.h"
+
+namespace ispace {
+
+namespace {
+
+using Index = std::uint32_t;
+
+Mesh meshOf(Material material) { return {material, {}, {}}; }
+
+/// A pyramid that points forward from a rectangle across x, closed.
+void addNose(Mesh& mesh, double from, double to, double half_width, double low, double high) {
+    const auto first = static_cast<Index>(mesh.vertices.size());
+    for (const double z : {low, high})
+        for (const double y : {-half_width, half_width}) mesh.vertices.push_back({from, y, z});
+    mesh.vertices.push_back({to, 0, low + (high - low) / 2});
+    using Triangle = std::array<Index, 3>;
+    for (const auto& [i, j, k] : {Triangle{0, 2, 3}, Triangle{0, 3, 1}, Triangle{0, 1, 4},
+                                  Triangle{1, 3, 4}, Triangle{3, 2, 4}, Triangle{2, 0, 4}})
+        mesh.triangles.push_back({first + i, first + j, first + k});
+}
+
+using Meshes = std::vector<Mesh>;
+
+Meshes matBody(const Scene& scene, const Placed& placed) {
+    constexpr double kThickness = 0.01;
+    const Tuple& size = scene.records[placed.record].tuple("size");
+    Mesh plate = meshOf(Material::Mat);
+    addBox(plate, {-size[0] / 2, -size[1] / 2, 0}, {size[0] / 2, size[1] / 2, kThickness});
+    return {std::move(plate)};
+}
+
+Meshes gateBody(const Scene& scene, const Placed& placed) {
+    constexpr double kPost = 0.04, kHead = 0.06;
+    const Record& record = scene.records[placed.record];
+    const double beside = record.number("width") / 2, height = record.number("height");
+    Mesh posts = meshOf(Material::Metal), heads = meshOf(Material::Sensor);
+    for (const double side : {-1.0, 1.0}) {
+        // What lies between them is the width.
+        const auto add = [&](Mesh& mesh, double edge, double low, double high) {
+            const double near = side * beside, far = side * (beside + edge);
+            addBox(mesh, {-edge / 2, std::min(near, far), low},
+                   {edge / 2, std::max(near, far), high});
+        };
+        add(posts, kPost, 0, height);
+        add(heads, kHead, std::max(0.0, height - kHead / 2), height + kHead / 2);
+    }
+    return {std::move(posts), std::move(heads)};
+}
+
+Meshes robotBody(const Scene& scene, const Placed& placed) {
+    return {robotMesh(scene.robots[placed.index].model)};
+}
+
+Meshes humanBody(const Scene& scene, const Placed& placed) {
+    return humanBodyOf(scene.records[placed.record].number("height"));
+}
+
+struct BodyRow {
+    std::string_view keyword;
+    Meshes (*make)(const Scene&, const Placed&);
+};
+
+constexpr BodyRow kBodies[] = {
+    {"mat", matBody}, {"gate", gateBody}, {"robot", robotBody}, {"human", humanBody}};
+
+// Of a person, as shares of the height: half a metre broad and 1.70 m high.
+constexpr double kHead = 0.065;  // radius
+constexpr double kHip = 0.48, kShoulder = 1 - 2 * kHead;
+constexpr double kBodyWidth = 0.2, kBodyDepth = 0.12;
+constexpr double kArm = 0.05, kWrist = 0.45, kFingers = 0.39;
+constexpr double kLeg = 0.035, kLegPlace = 0.055;  // radius, and distance from the middle
+
+}  // namespace
+
+std::vector<Mesh> bodyOf(const Scene& scene, const Placed& placed) {
+    const std::string& keyword = scene.records[placed.record].keyword();
+    if (const SensorKind* kind = sensorKind(keyword)) return kind->body();
+    const auto* row = std::find_if(std::begin(kBodies), std::end(kBodies),
+                                   [&](const BodyRow& known) { return known.keyword == keyword; });
+    return row == std::end(kBodies) ? Meshes() : row->make(scene, placed);
+}
+
+std::optional<Mesh> viewOf(const Scene& scene, const Placed& placed) {
+    const SensorKind* kind = sensorKind(scene.records[placed.record].keyword());
+    if (kind == nullptr || kind->view == nullptr) return std::nullopt;
+    const Box2 plan = scene.environment.limits();
+    const double widest = plan.empty() ? 1 : std::max(plan.width(), plan.depth());
+    return kind->view(scene.sensors[placed.index], widest);
+}
+
+Mesh robotMesh(const RobotModel& model) {
+    const bool is_box = model.length > 0;
+    const double length = is_box ? model.length : 2 * model.radius;
+    const double width = is_box ? model.width : 2 * model.radius;
+    const Point2 middle{model.center, 0};
+    Body body;
+    body.prisms.push_back(
+        {is_box ? rectangle(middle, length, width, {}) : ellipse(middle, length, width, {}), 0,
+         model.height, Material::Robot});
+    Mesh mesh = std::move(meshesOf(body, Surfaces::Drawn).front());
+    // It begins within the body, round or not, and stands out by as much.
+    const double nose = std::min(length, width) / 8, front = model.center + length / 2;
+    addNose(mesh, front - nose, front + nose, nose, 0.5 * model.height, 0.75 * model.height);
+    return mesh;
+}
+
+std::vector<BodyPart> humanParts(double height, Angle swing) {
+    const double h = height, slope = std::tan(swing.radians());
+    std::vector<BodyPart> parts;
+    parts.reserve(8);
+    for (const double side : {-1.0, 1.0}) {
+        // `ahead`: metres per metre below the joint.
+        const auto add = [&](double place, double radius, double low, double high, double joint,
+                             double ahead, Material material) {
+            parts.push_back({.center = {ahead * (joint - (low + high) / 2) * h, side * place * h},
+                             .radius = radius * h,
+                             .bottom = low * h,
+                             .top = high * h,
+                             .lean = -ahead,
+                             .material = material});
+        };
+        constexpr double kBeside = (kBodyWidth + kArm) / 2;
+        add(kLegPlace, kLeg, 0, kHip, kHip, side * slope, Material::Cloth);
+        add(kBeside, kArm / 2, kWrist, kShoulder, kShoulder, -side * slope, Material::Cloth);
+        add(kBeside, kArm / 2, kFingers, kWrist, kShoulder, -side * slope, Material::Skin);
+    }
+    parts.push_back({.half_length = kBodyDepth / 2 * h,
+                     .half_width = kBodyWidth / 2 * h,
+                     .bottom = kHip * h,
+                     .top = kShoulder * h});
+    parts.push_back({.radius = kHead * h,
+                     .bottom = kShoulder * h,
+                     .top = h,
+                     .is_ball = true,
+                     .material = Material::Skin});
+    return parts;
+}
+
+std::vector<Mesh> humanBodyOf(double height) {
+    Body body;
+    std::vector<BodyPart> balls;
+    for (const BodyPart& part : humanParts(height)) {
+        if (part.is_ball) {
+            balls.push_back(part);
+            continue;
+        }
+        const double round = 2 * part.radius;
+        body.prisms.push_back(
+            {round > 0 ? ellipse(part.center, round, round, {})
+                       : rectangle(part.center, 2 * part.half_length, 2 * part.half_width, {}),
+             part.bottom, part.top, part.material});
+    }
+    std::vector<Mesh> meshes = meshesOf(body, Surfaces::Drawn);
+    for (Mesh& mesh : meshes)
+        for (const BodyPart& ball : balls)
+            if (ball.material == mesh.material)
+                addBall(mesh, {ball.center.x, ball.center.y, (ball.bottom + ball.top) / 2},
+                        ball.radius);
+    return meshes;
+}
+
+double strideOf(double height) {
+    return 4 * kHip * height * std::tan(Angle::degrees(kMaxSwingDegrees).radians());
+}
+
+double humanRadius(double height) { return (kBodyWidth / 2 + kArm) * height; }
+
+}  // namespace ispace

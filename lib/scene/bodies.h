@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "env/mesh.h"
+#include "scene/robot.h"
+#include "scene/scene.h"
+
+namespace ispace {
+
+/// The triangles of what is placed, one mesh a material, in its own frame: x forward, z up, origin
+/// at its pose (a sensor's optical centre, on the floor for the others). All are closed and seen
+/// from outside only. They are drawn, but stop neither rays nor robots.
+///
+/// A sensor's is that of its kind; a mat is a thin plate; a gate two posts across its heading with
+/// a head each at the beam's height; a robot is what sensors see of it, with a nose; a human is
+/// humanBodyOf().
+std::vector<Mesh> bodyOf(const Scene& scene, const Placed& placed);
+
+/// What a placed sensor looks at, as a translucent sheet in its frame, see SensorKind::view; no
+/// farther than the plan is wide, so that a model stays in scale. Nothing for everything else.
+std::optional<Mesh> viewOf(const Scene& scene, const Placed& placed);
+
+/// Body of a robot, centre of rotation on the floor at the origin: the box or cylinder that sensors
+/// see, with a nose.
+Mesh robotMesh(const RobotModel& model);
+
+/// A closed solid on the floor: an upright box, a ball, or a cylinder with level ends.
+///
+/// A cylinder stands upright or slanted: every level cut is a disc of the same radius, and its
+/// centre moves ahead by `lean` metres per metre of height. Across its axis a slanted one is
+/// elliptic.
+struct BodyPart {
+    Point2 center = {};                      ///< of the level cut at mid-height
+    double half_length = 0, half_width = 0;  ///< of a box, along x and y
+    double radius = 0;                       ///< of a cylinder or ball; 0: a box
+    double bottom = 0, top = 0;              ///< heights
+    double lean = 0;                         ///< of a cylinder, along x
+    bool is_ball = false;
+    Material material = Material::Cloth;
+};
+
+/// A person as in the thesis (fig. 5.10), facing +x, standing on the floor at the origin: a ball
+/// for the head, a box for the trunk, cylinders for legs, sleeves and hands. Proportions do not
+/// change with `height`. All sensors meet exactly these solids.
+///
+/// Walking, the left leg is ahead of the hip by the angle `swing` and the right one behind it; arms
+/// swing the other way. Limbs are slanted, not turned: level cuts stay discs, and the feet stay on
+/// the floor.
+std::vector<BodyPart> humanParts(double height, Angle swing = {});
+
+/// humanParts() of a standing person as triangles, for models: vertices of round parts lie on
+/// their surfaces.
+std::vector<Mesh> humanBodyOf(double height);
+
+/// How far limbs swing at most (thesis 5.3.1), and how long a stride, two steps, is with that: the
+/// feet stay where they are put down.
+constexpr double kMaxSwingDegrees = 15;
+double strideOf(double height);
+
+/// Radius of the circle about a person of that height that no thing may reach into.
+double humanRadius(double height);
+
+}  // namespace ispace

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "record/record.h"
+#include "scene/sensor/sensor.h"
+
+namespace ispace {
+
+/// The models of share/devices: text files in the language of `.3dm`, one record a device, with
+/// its parameters, their `source` and `confidence`.
+class DeviceCatalogue {
+  public:
+    DeviceCatalogue() = default;
+    explicit DeviceCatalogue(std::vector<Record> records) : records_(std::move(records)) {}
+
+    /// The record of a model, or null. Models are unique over all keywords.
+    [[nodiscard]] const Record* find(std::string_view model) const;
+    /// All devices, in catalogue order: by file, then as written.
+    [[nodiscard]] const std::vector<Record>& devices() const { return records_; }
+    /// All model names, in catalogue order.
+    [[nodiscard]] std::vector<std::string> models() const;
+    /// Those of one keyword.
+    [[nodiscard]] std::vector<std::string> models(std::string_view keyword) const;
+
+  private:
+    std::vector<Record> records_;
+};
+
+/// Reads all `*.3dm` files of a folder in the order of their names.
+/// \throws FormatError for bad files and doubled models, std::system_error if it cannot be read
+DeviceCatalogue loadDevices(const std::string& folder);
+
+/// The device that `model` of a record names, or null where the record has no model.
+/// \throws FormatError for an unknown model (with the nearest name of the record's kind) and for
+///         one of another kind
+const Record* deviceOf(const Record& record, const DeviceCatalogue& devices);
+
+/// The model of a sensor's record. \pre its kind is simulated (SensorKind::read)
+/// \throws FormatError as the kind's and deviceOf
+SensorModel sensorModelOf(const Record& record, const DeviceCatalogue& devices);
+
+/// All devices of sensors for people: a line each with model, kind, name, range, field of view,
+/// beams or pixels, rate and confidence, in columns, with a header line; by kind, then in catalogue
+/// order.
+std::string deviceTable(const DeviceCatalogue& devices);
+
+}  // namespace ispace

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "base/number.h"
+#include "env/slice.h"
+#include "geom/predicates.h"
+#include "geom/visibility/visibility.h"
+#include "scene/bodies.h"
+#include "scene/findings/findings.h"
+#include "scene/sensor/sensor.h"
+
+namespace ispace {
+
+namespace {
+
+Box2 boxAbout(Point2 center, double radius) {
+    const Vec2 margin{radius, radius};
+    return {center - margin, center + margin};
+}
+
+/// The place of a polygon or line nearest to p.
+Point2 nearestOf(const Polygon& polygon, Point2 p) {
+    Point2 best = polygon.front();
+    forEachEdge(polygon, [&](const Segment2& edge) {
+        const Point2 q = nearestPoint(edge, p);
+        if (distance(p, q) < distance(p, best)) best = q;
+    });
+    return best;
+}
+
+}  // namespace
+
+void checkUnplaced(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    if (record == context.scene.records.size()) return;
+    const Record& sensor = context.scene.records[record];
+    const SensorKind* const kind = sensorKind(sensor.keyword());
+    if (kind == nullptr || !kind->is_read || sensor.has("at") || sensor.has("on")) return;
+    findings.push_back(context.finding(record, Severity::Warning, {},
+                                       " has no position and takes no readings",
+                                       std::string("give it `at` or `on`") +
+                                           (kind->is_arranged ? ", or let arrange place it" : "")));
+}
+
+void checkOutside(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    const Placed* const placed = context.placed_of[record];
+    if (placed == nullptr || placed->mount) return;
+    const Point3 p = placed->pose.position;
+    const bool is_out = context.isOut(p.onFloor());
+    if (!is_out && p.z >= -kTouching) return;
+    findings.push_back(
+        context.finding(record, Severity::Error, p.onFloor(),
+                        (is_out ? " stands outside the room at " : " stands below the floor at ") +
+                            placeText(p.onFloor()),
+                        is_out ? "move it in" : "raise it by " + wayText(-p.z)));
+}
+
+void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    const Placed* const placed = context.placed_of[record];
+    if (placed == nullptr || context.scene.records[record].schema().find("on") == nullptr) return;
+    const Point3 p = placed->pose.position;
+    const Point2 at = p.onFloor();
+    // A level laser measures in the plane of its height, where tops and bottoms count as solid.
+    const double slack = context.scene.records[record].keyword() == "laser" ? 0 : kTouching;
+    std::map<std::size_t, double> tops;  // of the solids around it, by element
+    context.parts().search({at, at}, [&](const Part& part) {
+        if (part.isSheet() || p.z < part.bottom + slack || p.z > part.top - slack) return;
+        if (!containsWithMargin(part.footprint, at, kRayEpsilon)) return;
+        tops[part.element] = std::max(tops[part.element], part.top);
+    });
+    for (auto& [element, mesh] : context.meshes()) {
+        if (!meets(mesh.box(), {at, at}) || p.z <= mesh.heights().bottom ||
+            p.z >= mesh.heights().top)
+            continue;
+        for (const Polygon& solid : mesh.at(p.z).solids)
+            if (containsWithMargin(solid, at, kRayEpsilon)) tops[element] = mesh.heights().top;
+    }
+    for (const auto& [element, top] : tops)
+        findings.push_back(context.finding(
+            record, Severity::Error, at,
+            " stands inside " + context.elementName(element) + " at " + placeText(at),
+            "move it, or raise it above " + formatFixed(top, 2) + " m"));
+}
+
+void checkPath(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    const Placed* const placed = context.placed_of[record];
+    if (placed == nullptr) return;
+    const Scene& scene = context.scene;
+    const std::string& keyword = scene.records[record].keyword();
+    if (keyword != "robot" && keyword != "human") return;
+    const std::vector<Point2>& path = keyword == "robot" ? scene.robots[placed->index].course.path
+                                                         : scene.people[placed->index].course.path;
+    if (context.isOut(placed->pose.position.onFloor())) return;
+    const auto lost =
+        std::find_if(path.begin(), path.end(), [&context](Point2 p) { return context.isOut(p); });
+    if (lost == path.end()) return;
+    findings.push_back(context.finding(record, Severity::Warning, *lost,
+                                       " has a path that leaves the room at " + placeText(*lost),
+                                       "move that point in"));
+}
+
+CircleCheck::CircleCheck(CheckContext& context) : context_(&context) {
+    const Scene& scene = context.scene;
+    std::vector<Box2> boxes;
+    for (const Placed& placed : scene.placed) {
+        const Record& record = scene.records[placed.record];
+        const Point2 center = placed.pose.position.onFloor();
+        if (record.keyword() == "robot") {
+            const RobotModel& model = scene.robots[placed.index].model;
+            circles_.push_back({placed.record, center, model.radius, model.height});
+        } else if (record.keyword() == "human") {
+            const double height = record.number("height");
+            circles_.push_back({placed.record, center, humanRadius(height), height});
+        } else {
+            continue;
+        }
+        boxes.push_back(boxAbout(center, circles_.back().radius));
+    }
+    tree_ = BoxTree(boxes);
+}
+
+const CircleCheck::MeshBand& CircleCheck::bandOf(std::size_t element, double height) {
+    constexpr std::size_t kKept = 16;
+    const auto known = bands_.find({element, height});
+    if (known != bands_.end()) return known->second;
+    if (bands_.size() >= kKept) bands_.clear();
+    MeshBand& near = bands_[{element, height}];
+    bandOfMeshes(context_->element(element).body, 0, height, near.band, element);
+    std::vector<Box2> boxes;
+    boxes.reserve(near.band.solids.size());
+    for (const Polygon& solid : near.band.solids) boxes.push_back(bounds(solid));
+    near.solids = BoxTree(boxes);
+    boxes.clear();
+    for (const Segment2& sheet : near.band.sheets) boxes.push_back(bounds(sheet));
+    near.sheets = BoxTree(boxes);
+    return near;
+}
+
+std::map<std::size_t, CircleCheck::Met> CircleCheck::metBy(const Circle& circle) {
+    std::map<std::size_t, Met> met;
+    const HeightRange heights{0, circle.height};
+    const auto look = [&](std::size_t element, const Polygon& footprint) {
+        const bool is_line = footprint.size() == 2;
+        const Point2 nearest = nearestOf(footprint, circle.center);
+        const double away = distance(circle.center, nearest);
+        const bool inside = !is_line && locate(footprint, circle.center) == Side::Inside;
+        if (!inside && away >= circle.radius - kTouching) return;
+        const double way = inside ? circle.radius + away : circle.radius - away;
+        const auto [place, is_new] = met.try_emplace(element, Met{nearest, way});
+        if (!is_new && way > place->second.way) place->second = {nearest, way};
+    };
+    const Box2 box = boxAbout(circle.center, circle.radius);
+    context_->parts().search(box, [&](const Part& part) {
+        if (sharedHeights(part, heights).isShared()) look(part.element, part.footprint);
+    });
+    for (const auto& entry : context_->meshes()) {
+        const std::size_t element = entry.first;
+        const MeshCuts& mesh = entry.second;
+        if (!meets(mesh.box(), box) || !sharedHeights(mesh.heights(), heights).isShared()) continue;
+        const MeshBand& near = bandOf(element, circle.height);
+        near.solids.search(box, [&](std::size_t i) { look(element, near.band.solids[i]); });
+        near.sheets.search(box, [&](std::size_t i) {
+            look(element, {near.band.sheets[i].a, near.band.sheets[i].b});
+        });
+    }
+    return met;
+}
+
+void CircleCheck::check(std::size_t record, std::vector<Finding>& findings) {
+    const auto found =
+        std::lower_bound(circles_.begin(), circles_.end(), record,
+                         [](const Circle& c, std::size_t i) { return c.record < i; });
+    if (found == circles_.end() || found->record != record) return;
+    const Circle& circle = *found;
+    for (const auto& [element, met] : metBy(circle)) {
+        if (isFull(findings)) return;
+        findings.push_back(context_->finding(
+            record, Severity::Error, met.place,
+            " stands in " + context_->elementName(element) + " near " + placeText(met.place),
+            "move it, e.g. by " + wayText(met.way)));
+    }
+    std::vector<const Circle*> others;
+    tree_.search(boxAbout(circle.center, circle.radius), [&](std::size_t i) {
+        const Circle& other = circles_[i];
+        if (other.record > circle.record &&
+            distance(circle.center, other.center) < circle.radius + other.radius - kTouching)
+            others.push_back(&other);
+    });
+    std::sort(others.begin(), others.end(),
+              [](const Circle* a, const Circle* b) { return a->record < b->record; });
+    for (const Circle* other : others) {
+        if (isFull(findings)) return;
+        const double away = distance(circle.center, other->center);
+        const Point2 middle = circle.center + 0.5 * (other->center - circle.center);
+        findings.push_back(context_->finding(
+            record, Severity::Error, middle,
+            " overlaps " + context_->name(other->record) + " near " + placeText(middle),
+            "move one, e.g. by " + wayText(circle.radius + other->radius - away)));
+    }
+}
+
+}  // namespace ispace

@@ -1,0 +1,437 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/placement_schemas.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "env/element_schemas.h"
+#include "scene/sensor/sensor.h"
+#include "scene/sensor/sensor_keys.h"
+
+namespace ispace {
+
+namespace {
+
+/// Above what any robot is or does: metres, metres a second (a second), degrees a second (a
+/// second).
+constexpr double kLargest = 100, kFastest = 1000, kFastestTurn = 1e5;
+
+/// How motion and odometry stray with simrun --noise.
+void addStrayKeys(std::vector<KeySpec>& keys) {
+    constexpr double kMost = 100;
+    const auto alphas = [&](std::string name, std::string help) {
+        keys.push_back({.name = std::move(name),
+                        .type = KeyType::Tuple,
+                        .help = std::move(help),
+                        .min_count = 4,
+                        .max_count = 4,
+                        .lower = 0,
+                        .upper = kMost});
+    };
+    alphas("motion_noise", "alpha 1 to 4 of the robot's motion relative to that of its wheels");
+    alphas("odometry_noise",
+           "alpha 1 to 4 of the robot's odometry relative to the motion of its wheels");
+    keys.push_back({.name = "start_noise",
+                    .type = KeyType::Tuple,
+                    .help = "standard deviation of x and y in metres, and of the heading in "
+                            "degrees, at the start",
+                    .min_count = 1,
+                    .max_count = 2,
+                    .lower = 0,
+                    .upper = kMost});
+}
+
+/// What a robot feels by itself.
+void addContactKeys(std::vector<KeySpec>& keys) {
+    constexpr double kMost = 1000;
+    constexpr double kTurn = 360, kWidestCone = 90;
+    const auto list = [&](std::string name, std::string help, std::size_t count) {
+        keys.push_back({.name = std::move(name),
+                        .type = KeyType::TupleList,
+                        .help = std::move(help),
+                        .min_count = count,
+                        .max_count = count,
+                        .lower = -kTurn,
+                        .upper = kTurn});
+    };
+    list("sonar", "its sonars: x,y in metres from the centre of rotation, bearing in degrees", 3);
+    keys.push_back({.name = "sonar_range",
+                    .type = KeyType::Tuple,
+                    .unit = Unit::Length,
+                    .help = "least and greatest distance that they measure, or the greatest alone",
+                    .min_count = 1,
+                    .max_count = 2,
+                    .lower = 0,
+                    .upper = kMost});
+    keys.push_back(
+        positiveKey("sonar_fov", Unit::Angle, "full angle of the cone of a sonar", kWidestCone));
+    list("bumpers", "parts of its rim that feel: bearings from,to in degrees, counter-clockwise",
+         2);
+}
+
+/// Parameters that a model gives too; none has a default, as its absence means "as the model".
+/// Speeds are lengths and angles a second, with the suffixes of those.
+void addRobotParameters(std::vector<KeySpec>& keys) {
+    keys.push_back(positiveKey("radius", Unit::Length,
+                               "of the circle about the centre of rotation that collides",
+                               kLargest));
+    keys.push_back({.name = "size",
+                    .type = KeyType::Tuple,
+                    .unit = Unit::Length,
+                    .help = "length,width[,height] of the body; without it a cylinder of radius",
+                    .min_count = 2,
+                    .max_count = 3,
+                    .lower = 0,
+                    .upper = kLargest,
+                    .lower_open = true});
+    keys.push_back({.name = "center",
+                    .type = KeyType::Number,
+                    .unit = Unit::Length,
+                    .help = "how far the middle of the body lies ahead of the centre of rotation",
+                    .lower = -kLargest,
+                    .upper = kLargest});
+    keys.push_back(
+        positiveKey("height", Unit::Length, "height of the body, unless size holds it", kLargest));
+    keys.push_back(
+        positiveKey("speed", Unit::Length, "metres a second of FORWARD and BACKWARD", kFastest));
+    keys.push_back(
+        positiveKey("rotspeed", Unit::Angle, "degrees a second of LEFT and RIGHT", kFastestTurn));
+    keys.push_back(
+        positiveKey("max_speed", Unit::Length, "greatest speed, metres a second", kFastest));
+    keys.push_back(positiveKey("max_rotspeed", Unit::Angle,
+                               "greatest speed of turning, degrees a second", kFastestTurn));
+    keys.push_back(positiveKey("accel", Unit::Length,
+                               "speeding up and braking, metres a second a second", kFastest));
+    keys.push_back(positiveKey("rotaccel", Unit::Angle,
+                               "the same for turning, degrees a second a second", kFastestTurn));
+    keys.push_back({.name = "drive",
+                    .type = KeyType::Choice,
+                    .help = "two driven wheels, or omnidirectional: sideways, too",
+                    .choices = {"differential", "omni"}});
+    keys.push_back({.name = "p2os",
+                    .type = KeyType::Choice,
+                    .help = "type of Pioneer that programs for such robots find (simrun --p2os)",
+                    .choices = {"p3dx-sh", "p3dx", "p2dx", "p3at-sh", "p3at"}});
+    keys.push_back(positiveKey("max_sidespeed", Unit::Length,
+                               "greatest speed to a side with drive=omni, metres a second; "
+                               "without it max_speed",
+                               kFastest));
+    addStrayKeys(keys);
+    addContactKeys(keys);
+}
+
+/// A key of a fixed place on the floor, 0,0 without it.
+KeySpec floorAtKey(std::string help) {
+    return {.name = "at",
+            .type = KeyType::Tuple,
+            .unit = Unit::Length,
+            .help = std::move(help),
+            .default_value = Tuple{0, 0},
+            .min_count = 2,
+            .max_count = 2,
+            .lower = -kFarthest,
+            .upper = kFarthest,
+            .role = Role::Place};
+}
+
+/// Where robots and humans go by themselves.
+void addCourse(std::vector<KeySpec>& keys) {
+    keys.push_back({.name = "path",
+                    .type = KeyType::TupleList,
+                    .unit = Unit::Length,
+                    .help = "points x,y of the way, one after another",
+                    .min_count = 2,
+                    .max_count = 2,
+                    .lower = -kFarthest,
+                    .upper = kFarthest,
+                    .role = Role::Course});
+    keys.push_back({.name = "loop",
+                    .type = KeyType::Flag,
+                    .help = "from the last point of path to the first, again and again",
+                    .default_value = false});
+    KeySpec pause{.name = "pause",
+                  .type = KeyType::Number,
+                  .unit = Unit::Time,
+                  .help = "to stay at each point of path",
+                  .default_value = 0.0,
+                  .lower = 0,
+                  .upper = 1e6};
+    keys.push_back(std::move(pause));
+    keys.push_back({.name = "walk",
+                    .type = KeyType::Choice,
+                    .help = "stand until a client drives it, or wander about; after path, if both "
+                            "are given",
+                    .default_value = "stand",
+                    .choices = {"stand", "wander"}});
+}
+
+Schema robotSchema() {
+    Schema schema{.keyword = "robot",
+                  .type = RecordType::Placement,
+                  .help = "a robot on wheels; bare: a cylinder of radius 0.3",
+                  .keys = {}};
+    schema.keys.push_back(idKey());
+    schema.keys.push_back(modelKey());
+    schema.keys.push_back(floorAtKey("centre of rotation x,y at the start"));
+    schema.keys.push_back(headingKey("where it faces at the start, from +x"));
+    addRobotParameters(schema.keys);
+    addCourse(schema.keys);
+    return schema;
+}
+
+Schema humanSchema() {
+    Schema schema{.keyword = "human",
+                  .type = RecordType::Placement,
+                  .help = "a person; legs are two circles at scanning height",
+                  .keys = {}};
+    schema.keys.push_back(idKey());
+    schema.keys.push_back(floorAtKey("where the person stands at the start"));
+    schema.keys.push_back(headingKey("where the person faces at the start, from +x"));
+    KeySpec height = positiveKey("height", Unit::Length, "of the person", 3);
+    height.default_value = 1.7;
+    schema.keys.push_back(std::move(height));
+    KeySpec speed = positiveKey("speed", Unit::Length, "metres a second when walking", 20);
+    speed.default_value = 1.2;
+    schema.keys.push_back(std::move(speed));
+    addCourse(schema.keys);
+    return schema;
+}
+
+KeySpec areaSizeKey(std::string help, Tuple standard) {
+    return {.name = "size",
+            .type = KeyType::Tuple,
+            .unit = Unit::Length,
+            .help = std::move(help),
+            .default_value = std::move(standard),
+            .min_count = 2,
+            .max_count = 2,
+            .lower = 0,
+            .upper = kFarthest,
+            .lower_open = true};
+}
+
+KeySpec rateKey() {
+    KeySpec rate = positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate);
+    rate.default_value = 10.0;
+    return rate;
+}
+
+Schema matSchema() {
+    return {.keyword = "mat",
+            .type = RecordType::Placement,
+            .help = "a pressure mat on the floor: reports the robots and people on it",
+            .keys = {idKey(), floorAtKey("centre x,y"), headingKey("direction of the length"),
+                     areaSizeKey("length,width", {1, 1}), rateKey()}};
+}
+
+Schema gateSchema() {
+    KeySpec height = positiveKey("height", Unit::Length, "of the beam above the floor", kFarthest);
+    height.default_value = 0.5;
+    KeySpec width = positiveKey("width", Unit::Length, "distance between its posts", kFarthest);
+    width.default_value = 1.0;
+    return {.keyword = "gate",
+            .type = RecordType::Placement,
+            .help = "a light gate: reports bodies between its posts",
+            .keys = {idKey(), floorAtKey("middle between the posts"),
+                     headingKey("direction in which one passes"), std::move(width),
+                     std::move(height), rateKey()}};
+}
+
+Schema environmentSchema() {
+    return {.keyword = "environment",
+            .type = RecordType::Meta,
+            .help = "the environment a layout was made for",
+            .keys = {idKey(),
+                     {.name = "file",
+                      .type = KeyType::Text,
+                      .help = "its file, relative to the folder of the layout",
+                      .role = Role::File},
+                     {.name = "digest",
+                      .type = KeyType::Text,
+                      .help = "sha256: and 64 hex digits over its records"}}};
+}
+
+Schema resultSchema() {
+    const auto share = [](std::string name, std::string help) {
+        return KeySpec{.name = std::move(name),
+                       .type = KeyType::Number,
+                       .unit = Unit::Share,
+                       .help = std::move(help),
+                       .lower = 0,
+                       .upper = 1};
+    };
+    return {
+        .keyword = "result",
+        .type = RecordType::Meta,
+        .help = "how good a layout is, and how it was found",
+        .keys = {
+            idKey(),
+            share("coverage", "covered share of the target"),
+            {.name = "area",
+             .type = KeyType::Number,
+             .unit = Unit::Area,
+             .help = "total effective area, eq. (4.6)",
+             .lower = 0},
+            share("value",
+                  "weighted share of the required floor (zones, weights, redundancy), if that is "
+                  "not the coverage"),
+            share("bound",
+                  "upper bound on the value, or on the coverage without a value: of layouts of the "
+                  "candidates or, after refinement, of any poses"),
+            share("candidates_bound",
+                  "where sensors were refined: the same of the candidates, proven before"),
+            {.name = "strategy", .type = KeyType::Word, .help = "strategy that proposed the sites"},
+            {.name = "optimize", .type = KeyType::Word, .help = "how they were chosen"},
+            {.name = "candidates",
+             .type = KeyType::Number,
+             .help = "poses to choose from, of all kinds of sensors",
+             .lower = 0,
+             .whole = true},
+            {.name = "least",
+             .type = KeyType::Number,
+             .help = "no fewer sensors reach the target (no less cost, with a budget or costs)",
+             .lower = 0},
+            {.name = "complete",
+             .type = KeyType::Flag,
+             .help = "no if a time limit or a signal cut the search",
+             .default_value = true}}};
+}
+
+}  // namespace
+
+std::vector<Schema> layoutSchemas() {
+    std::vector<Schema> schemas = sensorSchemas();
+    std::vector<Schema> others = {matSchema(),   gateSchema(),        robotSchema(),
+                                  humanSchema(), environmentSchema(), resultSchema()};
+    std::move(others.begin(), others.end(), std::back_inserter(schemas));
+    return schemas;
+}
+
+std::vector<Schema> deviceSchemas() {
+    std::vector<Schema> schemas = sensorDeviceSchemas();
+    schemas.push_back(deviceSchema("robot", "a robot one can buy", addRobotParameters));
+    return schemas;
+}
+
+const Schemas& sceneSchemas() {
+    static const Schemas schemas = [] {
+        std::vector<Schema> all = environmentSchemas();
+        std::vector<Schema> placements = layoutSchemas();
+        std::move(placements.begin(), placements.end(), std::back_inserter(all));
+        return Schemas(std::move(all));
+    }();
+    return schemas;
+}
+
+namespace {
+
+using Kinds = std::span<const std::string_view>;
+
+constexpr std::int64_t kMaxSensors = 10000;
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> pieces(1);
+    for (const char c : text) {
+        if (c == separator)
+            pieces.emplace_back();
+        else
+            pieces.back() += c;
+    }
+    return pieces;
+}
+
+/// The pieces after the model, each `KEY=VALUE` with its continuations joined again.
+std::vector<std::string> settings(const std::vector<std::string>& pieces) {
+    std::vector<std::string> joined;
+    for (std::size_t i = 1; i < pieces.size(); ++i) {
+        if (pieces[i].find('=') != std::string::npos)
+            joined.push_back(pieces[i]);
+        else if (joined.empty())
+            throw UsageError("`" + pieces[i] + "` is no KEY=VALUE");
+        else
+            joined.back() += ',' + pieces[i];
+    }
+    return joined;
+}
+
+/// What `--sensor` can name: devices first, then bare kinds.
+std::vector<std::string> knownSensors(Kinds kinds, const DeviceCatalogue& devices) {
+    std::vector<std::string> known;
+    for (const std::string_view kind : kinds)
+        for (std::string& model : devices.models(kind)) known.push_back(std::move(model));
+    known.insert(known.end(), kinds.begin(), kinds.end());
+    return known;
+}
+
+bool contains(Kinds kinds, std::string_view keyword) {
+    return std::find(kinds.begin(), kinds.end(), keyword) != kinds.end();
+}
+
+UsageError unknownSensor(const std::string& model, Kinds kinds, const DeviceCatalogue& devices) {
+    if (const Record* const other = devices.find(model)) {
+        std::string wanted;
+        for (const std::string_view kind : kinds)
+            wanted.append(wanted.empty() ? "" : " or ").append(kind);
+        return UsageError("`" + model + "` is a device of kind " + other->keyword() + ", and " +
+                          wanted + " is wanted");
+    }
+    const std::vector<std::string> known = knownSensors(kinds, devices);
+    std::string list;
+    for (const std::string_view kind : kinds) list.append(list.empty() ? "" : ", ").append(kind);
+    return UsageError("unknown sensor `" + model + "`" + didYouMean(model, known) + " (" + list +
+                      ", or a device: scan --list-models names all)");
+}
+
+Record recordFor(const std::string& model, Kinds kinds, const Schemas& schemas,
+                 const DeviceCatalogue& devices) {
+    const Schema* const kind = schemas.find(model);
+    if (kind != nullptr && contains(kinds, model)) return Record(*kind);
+    const Record* const device = devices.find(model);
+    if (device == nullptr || !contains(kinds, device->keyword()))
+        throw unknownSensor(model, kinds, devices);
+    Record record(*schemas.find(device->keyword()));
+    record.set("model", Value(model));
+    return record;
+}
+
+}  // namespace
+
+SensorSpec readSensorSpec(const std::string& text, Kinds kinds, const Schemas& schemas,
+                          const DeviceCatalogue& devices) {
+    std::string body = text;
+    std::optional<int> count;
+    if (const auto colon = text.rfind(':'); colon != std::string::npos) {
+        const auto number = parseInteger(text.substr(colon + 1));
+        if (!number || *number < 1 || *number > kMaxSensors)
+            throw UsageError("`" + text.substr(colon + 1) + "` is no count from 1 to " +
+                             std::to_string(kMaxSensors));
+        count = static_cast<int>(*number);
+        body.resize(colon);
+    }
+    const std::vector<std::string> pieces = split(body, ',');
+    Record record = recordFor(pieces.front(), kinds, schemas, devices);
+    for (const std::string& setting : settings(pieces)) {
+        const auto equals = setting.find('=');
+        const std::string name = setting.substr(0, equals);
+        const KeySpec* const key = record.schema().find(name);
+        if (key == nullptr)
+            throw UsageError("unknown key `" + name + "`" +
+                             didYouMean(name, record.schema().keyNames()));
+        if (record.has(name)) throw UsageError("`" + name + "` is given twice");
+        try {
+            record.set(name, parseValue(*key, setting.substr(equals + 1)));
+        } catch (const FormatError& error) {
+            throw UsageError(error.diagnostics().front().message);
+        }
+    }
+    if (count.value_or(1) > 1 && record.has("id"))
+        throw UsageError("`id` names one sensor, not several");
+    return {std::move(record), count};
+}
+
+}  // namespace ispace

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How limbs of people, and sensors that robots and people carry, follow their movement.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "geom/pose.h"
+#include "record/record.h"
+#include "scene/devices.h"
+
+namespace ispace {
+
+/// Share of kMaxSwingDegrees by which a person's limbs swing at a speed, m/s: 1 from half a metre a
+/// second on.
+double shareOfSwing(double speed);
+
+/// Angle of a walking person's left leg ahead of the hip, as humanParts() takes it. \param phase
+/// share of the stride in [0, 1); the left leg is ahead in its first half \param speed m/s
+Angle limbSwing(double phase, double speed);
+
+/// A pose in the frame of a carrier on the floor: mountedPose() undone.
+Pose3 poseOn(const Pose2& carrier, const Pose3& pose);
+
+/// What a robot's wheels let it do.
+enum class Drive {
+    Differential,  ///< drive along the heading and turn
+    Omni           ///< sideways, too, at the same time
+};
+
+/// How a robot's motion and odometry stray, see lib/sim/odometry.h. All zero: not at all.
+struct MotionNoise {
+    /// Thrun's alpha 1 to 4 of the true motion against what the wheels do, and of what the robot
+    /// counts.
+    std::array<double, 4> motion{}, odometry{};
+    double start_place = 0;  ///< standard deviation of x and of y at the start, metres
+    Angle start_heading;     ///< standard deviation of the heading at the start
+    friend bool operator==(const MotionNoise&, const MotionNoise&) = default;
+};
+
+/// A part of the rim of a robot that feels what it runs into, counter-clockwise.
+struct Bumper {
+    Angle from, to;  ///< bearings in the robot's frame
+    friend bool operator==(const Bumper&, const Bumper&) = default;
+};
+
+/// The ring of sonars of a robot, all of one kind.
+struct SonarRing {
+    std::vector<Pose2> places;              ///< in the robot's frame
+    double min_range = 0.1, max_range = 5;  ///< nearer echoes read as the least
+    Angle fov = Angle::degrees(15);         ///< full angle of the cone
+    friend bool operator==(const SonarRing&, const SonarRing&) = default;
+};
+
+/// A robot on wheels. Its frame has the origin on the floor at the centre of rotation and x
+/// forward. The bare robot, without model, turns in a circle of 0.3 m as the thesis' does and
+/// moves like a Pioneer.
+struct RobotModel {
+    std::string model;    ///< "" for the bare robot
+    double radius = 0.3;  ///< of the circle about the centre of rotation that hits things
+    /// The body that sensors see: a box of this length and width, without length a cylinder of
+    /// `radius`; its middle lies `center` ahead of the centre of rotation.
+    double length = 0, width = 0, center = 0;
+    double height = 0.22;                      ///< of the body, from the floor
+    double speed = 0.5;                        ///< m/s of FORWARD and BACKWARD
+    Angle rotspeed = Angle::degrees(100);      ///< a second, of LEFT and RIGHT
+    double max_speed = 1.6;                    ///< m/s, forward and backward
+    Angle max_rotspeed = Angle::degrees(300);  ///< a second, either way
+    double accel = 0.3;                        ///< m/s^2, speeding up and braking
+    Angle rotaccel = Angle::degrees(100);      ///< a second a second
+    Drive drive = Drive::Differential;
+    double max_sidespeed = 0;  ///< m/s, to either side; 0 but for Drive::Omni
+    MotionNoise noise;
+    SonarRing sonar;
+    std::vector<Bumper> bumpers;
+    friend bool operator==(const RobotModel&, const RobotModel&) = default;
+};
+
+/// Where a robot or a person goes without being told.
+struct Course {
+    std::vector<Point2> path;  ///< places to go to, one after another
+    bool loop = false;         ///< from the last place to the first, again and again
+    double pause = 0;          ///< seconds to stay at each place
+    bool wander = false;       ///< wherever the way is free; with a path once that has ended
+    friend bool operator==(const Course&, const Course&) = default;
+};
+
+/// A robot where it starts.
+struct PlacedRobot {
+    std::string id;
+    RobotModel model;
+    Pose2 pose;   ///< of the centre of rotation
+    Place place;  ///< of its record, for messages
+    Course course = {};
+};
+
+/// A person where she starts.
+struct PlacedPerson {
+    std::string id;
+    double height = 1.7;
+    double speed = 1.2;  ///< m/s, when walking
+    Pose2 pose;
+    Place place;  ///< of the record, for messages
+    Course course = {};
+};
+
+/// Parameters of a `robot` record: its explicit keys, else its model's, else the bare robot's.
+/// \throws FormatError with all findings: an unknown model, a model of another kind, a speed above
+///         its maximum
+RobotModel robotOf(const Record& record, const DeviceCatalogue& devices);
+
+/// `base` with the parameters written in a record in place of its own; the model stays. A written
+/// max_speed below the speed of `base` lowers that; the same holds for the turn. One that becomes
+/// omnidirectional goes sideways as fast as forward unless told otherwise.
+/// \throws FormatError as robotOf
+RobotModel withParameters(RobotModel base, const Record& record);
+
+/// Keys of a `robot` or `human` record that say where it goes by itself.
+Course courseOf(const Record& record);
+
+/// Pose of a `robot` record, or of any other with `at` and `heading`; without `at` at 0,0.
+Pose2 floorPoseOf(const Record& record);
+
+}  // namespace ispace

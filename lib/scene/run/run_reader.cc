@@ -1,0 +1,448 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/run/run_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string_view>
+#include <system_error>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "base/run_files.h"
+#include "geom/tolerance.h"
+#include "scene/run/run_changes.h"
+
+namespace ispace {
+
+RecordedFiles::RecordedFiles(const std::string& folder) {
+    const auto in_folder = [&folder](const char* file) {
+        return (std::filesystem::path(folder) / file).string();
+    };
+    robots = in_folder("robots.csv");
+    odometry = in_folder("odometry.csv");
+    bumpers = in_folder("bumpers.csv");
+    people = in_folder("people.csv");
+    events = in_folder("events.csv");
+    info = in_folder("info.csv");
+}
+
+std::string fileOfRecord(const std::string& folder, const std::string& name) {
+    std::string file = (std::filesystem::path(folder) / name).string();
+    std::error_code error;
+    static_cast<void>(std::filesystem::status(file, error));
+    if (error) throw std::system_error(error, file);
+    if (!liesOpenlyIn(folder, file))
+        throw FormatError(
+            {displayName(file), 0, 0,
+             "it is no regular file in the folder of the record, or is hidden there"});
+    return file;
+}
+
+std::string sceneOfRecord(const std::string& folder) {
+    const char* const name = "scene.env";
+    // A link to a pipe is there, too.
+    return std::filesystem::exists(
+               std::filesystem::symlink_status(std::filesystem::path(folder) / name))
+               ? fileOfRecord(folder, name)
+               : "";
+}
+
+std::optional<RunInfo> recordedInfo(const std::string& folder) {
+    const std::string name = RecordedFiles(folder).info;
+    if (!std::filesystem::exists(name)) return std::nullopt;
+    const std::string text = readAll(name, InputKind::Regular);
+    if (text.empty()) return std::nullopt;
+    std::vector<std::string_view> columns, fields;
+    const std::string_view all(text);
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    splitFields(all.substr(0, end), columns);
+    const std::string_view rest = all.substr(std::min(end + 1, text.size()));
+    splitFields(rest.substr(0, rest.find('\n')), fields);
+    const auto text_of = [&](std::string_view column) -> std::string_view {
+        const auto found = std::find(columns.begin(), columns.end(), column);
+        const auto at = static_cast<std::size_t>(found - columns.begin());
+        return at < fields.size() ? fields[at] : std::string_view();
+    };
+    const auto field = [&](std::string_view column) { return parseDouble(text_of(column)); };
+    const auto step = field("dt");
+    if (!step || *step <= 0 || *step > 1)
+        throw FormatError({name, 2, 0,
+                           "no length of a step: wanted the columns dt,control_interval,steps, as "
+                           "`simrun --record` writes"});
+    RunInfo info{.step = *step};
+    info.steps = std::llround(std::clamp(field("steps").value_or(0), 0.0, 1e15));
+    // Too large for a double.
+    info.seed = static_cast<std::uint64_t>(parseInteger(text_of("seed")).value_or(0));
+    info.noise = field("noise").value_or(0) != 0;
+    return info;
+}
+
+namespace {
+
+/// Columns, the needed ones first and in this order; others may be anywhere behind them or missing.
+constexpr std::array<std::string_view, 12> kColumns = {
+    "t",     "id",           "x",     "y",     "heading_deg", "speed", "rotspeed_deg",
+    "accel", "rotaccel_deg", "stall", "phase", "sidespeed"};
+constexpr std::size_t kNeeded = 5;
+enum Column {
+    kTime,
+    kId,
+    kX,
+    kY,
+    kHeading,
+    kSpeed,
+    kRotspeed,
+    kAccel,
+    kRotaccel,
+    kStall,
+    kPhase,
+    kSidespeed
+};
+
+/// The moments of one file.
+class MomentFile {
+  public:
+    /// Members are added to `who`, which outlives it.
+    MomentFile(std::string name, LineSource lines, bool is_people, std::vector<RunMember>& who)
+        : name_(std::move(name)), lines_(std::move(lines)), is_people_(is_people), who_(&who) {
+        readHeader();
+        readLine();
+    }
+
+    /// Where the next moment begins; nothing at the end.
+    [[nodiscard]] std::optional<double> upcoming() const {
+        return row_ ? std::optional(row_->time) : std::nullopt;
+    }
+    /// Appends its states. False if it is the last one and not whole. \pre there is one
+    bool read(std::vector<RunState>& states);
+
+    [[nodiscard]] bool isCut() const { return is_cut_; }
+    /// Members come and go: a last moment with fewer than before may be whole.
+    void letGo() { may_lack_ = true; }
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[noreturn]] void fail(const std::string& what) const {
+        throw FormatError({name_, lines_.number(), 0, what});
+    }
+
+  private:
+    struct Row {
+        double time = 0;
+        RunState state;
+    };
+
+    void readHeader();
+    void readLine();
+    [[nodiscard]] double number(Column column) const;
+    std::size_t indexOf(std::string_view id);
+
+    std::string name_;
+    LineSource lines_;
+    bool is_people_;
+    std::vector<RunMember>* who_;
+    std::unordered_map<std::string, std::size_t> index_;
+    std::array<std::size_t, kColumns.size()> place_{};  // of each column; npos: it is missing
+    std::size_t columns_ = 0;
+    std::vector<std::string_view> fields_;
+    std::optional<Row> row_;  // read ahead
+    std::unordered_map<std::size_t, double> latest_;
+    std::size_t count_ = 0;  // of the last moment
+    bool is_cut_ = false, may_lack_ = false;
+};
+
+void MomentFile::readHeader() {
+    constexpr auto kMissing = std::string_view::npos;
+    std::optional<std::string_view> line;
+    do {
+        line = lines_.next();
+    } while (line && (line->empty() || line->front() == '#'));
+    if (line) splitFields(*line, fields_);
+    if (!line || fields_.size() < kNeeded ||
+        !std::equal(kColumns.begin(), kColumns.begin() + kNeeded, fields_.begin()))
+        fail(
+            "no record of a run: wanted the columns t,id,x,y,heading_deg,…, as `simrun --record` "
+            "writes");
+    columns_ = fields_.size();
+    for (std::size_t i = 0; i < kColumns.size(); ++i) {
+        const auto found = std::find(fields_.begin(), fields_.end(), kColumns[i]);
+        place_[i] =
+            found == fields_.end() ? kMissing : static_cast<std::size_t>(found - fields_.begin());
+    }
+}
+
+double MomentFile::number(Column column) const {
+    if (place_[column] == std::string_view::npos) return 0;
+    const std::string_view text = fields_[place_[column]];
+    const auto value = parseDouble(text);
+    if (!value) fail(std::string(kColumns[column]) + " is " + excerpt(text) + ", wanted a number");
+    return *value;
+}
+
+std::size_t MomentFile::indexOf(std::string_view id) {
+    const auto [found, is_new] = index_.try_emplace(std::string(id), who_->size());
+    if (is_new) who_->push_back({std::string(id), is_people_});
+    return found->second;
+}
+
+void MomentFile::readLine() {
+    std::optional<std::string_view> line;
+    do {
+        line = lines_.next();
+    } while (line && line->empty());
+    const std::optional<Row> before = std::exchange(row_, std::nullopt);
+    if (!line) {
+        if (lines_.isTooLong())
+            fail("a line is longer than " + std::to_string(kLongestLine) + " bytes");
+        is_cut_ = is_cut_ || lines_.isCut();
+        return;
+    }
+    splitFields(*line, fields_);
+    if (fields_.size() != columns_)
+        fail("has " + std::to_string(fields_.size()) + " columns, wanted " +
+             std::to_string(columns_) + ": " + excerpt(*line));
+    Row row;
+    row.time = number(kTime);
+    if (!parseRunTime(fields_[0])) fail("t is out of bounds: " + excerpt(fields_[0]));
+    if (before && row.time < before->time) fail("time runs backwards");
+    row.state.who = indexOf(fields_[place_[kId]]);
+    row.state.pose = {{number(kX), number(kY)}, Angle::degrees(number(kHeading))};
+    row.state.speed = number(kSpeed);
+    row.state.rotspeed = Angle::degrees(number(kRotspeed));
+    row.state.accel = number(kAccel);
+    row.state.rotaccel = Angle::degrees(number(kRotaccel));
+    row.state.is_stalled = number(kStall) != 0;
+    row.state.phase = number(kPhase);
+    row.state.sidespeed = number(kSidespeed);
+    row_ = row;
+}
+
+bool MomentFile::read(std::vector<RunState>& states) {
+    const double time = row_->time;
+    std::size_t count = 0;
+    for (; row_ && row_->time == time; ++count) {
+        const auto [latest, is_new] = latest_.try_emplace(row_->state.who, time);
+        if (!is_new && latest->second == time)
+            fail((*who_)[row_->state.who].id + " is there twice at t=" + formatDouble(time));
+        latest->second = time;
+        states.push_back(row_->state);
+        readLine();
+    }
+    const bool is_whole = row_ || count >= count_ || may_lack_;
+    is_cut_ = is_cut_ || !is_whole;
+    count_ = count;
+    return is_whole;
+}
+
+/// The collisions of a table of events, t,kind,id,other,…, or what else is of one kind.
+class EventFile {
+  public:
+    EventFile(std::string name, LineSource lines, std::string_view kind = "collision")
+        : name_(std::move(name)), lines_(std::move(lines)), kind_(kind) {
+        const auto head = lines_.next();
+        if (head && !head->starts_with("t,kind,id,other"))
+            throw FormatError({name_, 1, 0, "no events of a run: wanted t,kind,id,other,…"});
+        readLine();
+    }
+
+    /// When the next one is.
+    [[nodiscard]] std::optional<double> upcoming() const {
+        return row_ ? std::optional(row_->first) : std::nullopt;
+    }
+    /// Those up to a time that were not read yet.
+    void read(double time, std::vector<RunCollision>& collisions) {
+        for (; row_ && row_->first <= time; readLine())
+            collisions.push_back(std::move(row_->second));
+    }
+
+  private:
+    void readLine() {
+        row_.reset();
+        while (const auto line = lines_.next()) {
+            splitFields(*line, fields_);
+            if (fields_.size() < 4 || fields_[1] != kind_) continue;
+            const auto time = parseRunTime(fields_[0]);
+            if (!time)
+                throw FormatError({name_, lines_.number(), 0,
+                                   "t is " + excerpt(fields_[0]) + ", wanted seconds from 0 on"});
+            row_.emplace(*time, RunCollision{std::string(fields_[2]), std::string(fields_[3])});
+            return;
+        }
+    }
+
+    std::string name_;
+    LineSource lines_;
+    std::string_view kind_;
+    std::vector<std::string_view> fields_;
+    std::optional<std::pair<double, RunCollision>> row_;  // read ahead
+};
+
+bool exists(const std::string& file) { return std::filesystem::exists(file); }
+
+}  // namespace
+
+struct RunReader::Data {
+    void add(const std::string& name, LineSource lines, bool is_people) {
+        files.emplace_back(name, std::move(lines), is_people, who);
+        if (files.size() > 1 && !files.front().upcoming()) files.erase(files.begin());
+        if (files.size() > 1 && !files.back().upcoming()) files.pop_back();
+    }
+
+    void addOdometry(const std::string& name, LineSource lines) {
+        odometry.emplace(name, std::move(lines), false, believers);
+        if (!odometry->upcoming()) odometry.reset();
+    }
+    /// The world was changed: there may be moments without robots, or without people.
+    void letGo(double last) {
+        end = last;
+        for (MomentFile& file : files) file.letGo();
+        if (odometry) odometry->letGo();
+    }
+    [[nodiscard]] bool readOdometry();
+    /// When the next moment is; nothing at the end.
+    [[nodiscard]] std::optional<double> upcoming();
+
+    std::string name;
+    std::vector<RunMember> who;
+    std::vector<MomentFile> files;
+    std::optional<EventFile> events;
+    // Rows of the robots of `files`, by members of its own.
+    std::vector<RunMember> believers;
+    std::optional<MomentFile> odometry;
+    std::vector<RunState> beliefs;
+    std::vector<RunState> states;
+    std::vector<RunCollision> collisions;
+    std::optional<BumperFile> bumper_file;
+    std::vector<RunBumpers> bumpers;
+    double time = 0;
+    /// Of a changed world, the last moment that all files have.
+    std::optional<double> end;
+    bool is_cut = false;
+};
+
+std::optional<double> RunReader::Data::upcoming() {
+    std::optional<double> next;
+    bool is_over = false;
+    for (const MomentFile& file : files) {
+        const auto start = file.upcoming();
+        is_over = is_over || !start;
+        if (start && (!next || *start < *next)) next = start;
+    }
+    // One of the files of a killed run may be behind the other.
+    for (const MomentFile& file : files)
+        is_cut = is_cut || file.isCut() || (!end && is_over && file.upcoming());
+    if (!end) return is_over ? std::nullopt : files.front().upcoming();
+    if (next && *next > *end + 0.5 * kTimeTolerance) is_cut = true;
+    return next && *next <= *end + 0.5 * kTimeTolerance ? next : std::nullopt;
+}
+
+RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()) {
+    const RecordedFiles files(folder);
+    data_->name = files.robots;
+    data_->add(files.robots, tableOf(files.robots), false);
+    if (exists(files.people)) data_->add(files.people, tableOf(files.people), true);
+    if (exists(files.odometry)) data_->addOdometry(files.odometry, tableOf(files.odometry));
+    if (exists(files.bumpers)) data_->bumper_file.emplace(files.bumpers, tableOf(files.bumpers));
+    if (!exists(files.events)) return;
+    data_->events.emplace(files.events, tableOf(files.events));
+    if (!recordedChange(folder)) return;
+    const auto info = recordedInfo(folder);
+    data_->letGo(info && info->steps > 0 ? info->step * static_cast<double>(info->steps)
+                                         : std::numeric_limits<double>::infinity());
+}
+
+RunReader::RunReader(std::string robots, std::string people, std::string events,
+                     std::string odometry, std::string bumpers)
+    : data_(std::make_unique<Data>()) {
+    data_->name = "robots.csv";
+    data_->add("robots.csv", LineSource({}, std::move(robots)), false);
+    if (!people.empty()) data_->add("people.csv", LineSource({}, std::move(people)), true);
+    if (!odometry.empty()) data_->addOdometry("odometry.csv", LineSource({}, std::move(odometry)));
+    if (!bumpers.empty())
+        data_->bumper_file.emplace("bumpers.csv", LineSource({}, std::move(bumpers)));
+    if (events.find(",change,") != std::string::npos)
+        data_->letGo(std::numeric_limits<double>::infinity());
+    if (!events.empty()) data_->events.emplace("events.csv", LineSource({}, std::move(events)));
+}
+
+/// Gives the robots of the moment what they believed at it; false if that was not recorded whole.
+bool RunReader::Data::readOdometry() {
+    const bool has_robots =
+        std::any_of(states.begin(), states.end(),
+                    [this](const RunState& state) { return !who[state.who].is_person; });
+    if (!has_robots) return true;
+    if (!odometry->upcoming()) return false;
+    if (*odometry->upcoming() != time)
+        odometry->fail("the moment t=" + formatDouble(*odometry->upcoming()) + " is none of " +
+                       name + ", which goes on at t=" + formatDouble(time));
+    beliefs.clear();
+    if (!odometry->read(beliefs)) return false;
+    // The same robots in the same order.
+    auto belief = beliefs.begin();
+    for (RunState& state : states) {
+        if (who[state.who].is_person) continue;
+        if (belief == beliefs.end() || believers[belief->who].id != who[state.who].id)
+            odometry->fail("the robots at t=" + formatDouble(time) + " are not those of " + name);
+        state.odometry = (belief++)->pose;
+    }
+    return true;
+}
+
+RunReader::~RunReader() = default;
+RunReader::RunReader(RunReader&&) noexcept = default;
+RunReader& RunReader::operator=(RunReader&&) noexcept = default;
+
+bool RunReader::next() {
+    Data& data = *data_;
+    const auto next = data.upcoming();
+    if (!next) return false;
+    const double time = *next;
+    std::vector<RunState> states;
+    for (MomentFile& file : data.files) {
+        if (data.end && file.upcoming() != time) continue;
+        if (*file.upcoming() != time)
+            file.fail("the moment t=" + formatDouble(*file.upcoming()) + " is none of " +
+                      data.name + ", which goes on at t=" + formatDouble(time));
+        if (!file.read(states)) {
+            data.is_cut = true;
+            return false;
+        }
+    }
+    data.states = std::move(states);
+    data.time = time;
+    if (data.odometry && !data.readOdometry()) {
+        data.is_cut = true;
+        return false;
+    }
+    data.collisions.clear();
+    if (data.events) data.events->read(time, data.collisions);
+    data.bumpers.clear();
+    if (data.bumper_file) data.bumper_file->read(time, data.bumpers);
+    return true;
+}
+
+double RunReader::time() const { return data_->time; }
+std::span<const RunState> RunReader::states() const { return data_->states; }
+std::optional<std::span<const RunCollision>> RunReader::collisions() const {
+    return data_->events ? std::optional<std::span<const RunCollision>>(data_->collisions)
+                         : std::nullopt;
+}
+std::span<const RunBumpers> RunReader::bumpers() const { return data_->bumpers; }
+const std::vector<RunMember>& RunReader::who() const { return data_->who; }
+bool RunReader::isCut() const { return data_->is_cut; }
+bool RunReader::hasOdometry() const { return data_->odometry.has_value(); }
+const std::string& RunReader::name() const { return data_->name; }
+
+std::optional<double> recordedChange(const std::string& folder) {
+    const std::string name = RecordedFiles(folder).events;
+    if (!exists(name)) return std::nullopt;
+    return EventFile(name, tableOf(name), "change").upcoming();
+}
+
+}  // namespace ispace

@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "env/body.h"
+#include "record/record.h"
+#include "record/text.h"
+#include "scene/placement_schemas.h"
+#include "scene/robot.h"
+#include "scene/sensor/sensor.h"
+#include "scene/sensor/sensor_keys.h"
+
+namespace ispace {
+
+namespace {
+
+/// Everything in a scene by its id: what `on` of a sensor may mean.
+class Carriers {
+  public:
+    Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids);
+
+    struct Place {
+        Pose3 pose;  ///< in the world; on a robot where that starts
+        std::optional<Mount> mount;
+        std::optional<std::size_t> person = {};
+    };
+    /// Where a sensor with `on` is. \throws FormatError if that names no carrier
+    [[nodiscard]] Place place(const Record& sensor);
+
+  private:
+    struct Thing {
+        const Record* record;
+        std::size_t index;  // among the robots or the people, if it is one of them
+        std::optional<double> top = {};
+    };
+
+    std::map<std::string, Thing> things_;
+    std::vector<std::string> candidates_;  // ids, for hints
+};
+
+/// Furniture, pillars and the like: they have a top, and stand somewhere.
+bool isObject(const Record& record) {
+    const RecordType type = record.schema().type;
+    return type == RecordType::Other || type == RecordType::Infra;
+}
+
+bool isCarrier(const Record& record) {
+    return record.keyword() == "robot" || record.keyword() == "human" || isObject(record);
+}
+
+/// Where a sensor on a person is that has no height of its own: at the eyes.
+constexpr double kEyes = 0.94;
+
+Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids) {
+    const auto is_carried = [](const Record& record) { return record.has("on"); };
+    if (std::none_of(records.begin(), records.end(), is_carried)) return;
+    std::size_t robots = 0, people = 0;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const bool is_human = records[i].keyword() == "human";
+        things_.emplace(ids[i], Thing{&records[i], is_human ? people : robots});
+        if (records[i].keyword() == "robot") ++robots;
+        if (is_human) ++people;
+        if (isCarrier(records[i])) candidates_.push_back(ids[i]);
+    }
+}
+
+Carriers::Place Carriers::place(const Record& sensor) {
+    const std::string& on = sensor.text("on");
+    const auto found = things_.find(on);
+    if (found == things_.end())
+        throw FormatError(sensor.finding(
+            "on", "`on`: nothing has the id `" + on + '`' + didYouMean(on, candidates_)));
+    auto& [record, index, top] = found->second;
+    if (!isCarrier(*record))
+        throw FormatError(
+            sensor.finding("on", "`on`: `" + on + "` is a `" + record->keyword() +
+                                     "`; only robots, people and objects carry sensors"));
+    const Pose2 carrier = floorPoseOf(*record);
+    Pose3 local = poseOf(sensor);
+    if (record->keyword() == "robot") return {mountedPose(carrier, local), Mount{index, local}};
+    if (record->keyword() == "human") {
+        const bool has_height = sensor.has("at") && sensor.tuple("at").size() > 2;
+        if (!has_height) local.position.z = kEyes * record->number("height");
+        return {mountedPose(carrier, local), std::nullopt, index};
+    }
+    if (!top) top = topOf(bodyOf(*record));
+    local.position.z += *top;
+    return {mountedPose(carrier, local), std::nullopt};
+}
+
+bool isMeta(const Record& record) { return record.schema().type == RecordType::Meta; }
+
+/// What is placed, and the sensors that are not.
+struct Placements {
+    std::vector<Sensor> sensors;
+    std::vector<PendingSensor> pending;
+    std::vector<PlacedRobot> robots;
+    std::vector<PlacedPerson> people;
+    std::vector<Placed> placed;
+};
+
+Pose3 onFloor(const Pose2& pose) {
+    return {{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
+}
+
+/// Resolves the placement records, one after another.
+class Resolver {
+  public:
+    Resolver(const std::vector<Record>& records, const std::vector<std::string>& ids,
+             const DeviceCatalogue& devices)
+        : records_(records), ids_(ids), devices_(devices), carriers_(records, ids) {}
+
+    Placements resolve(Diagnostics& findings) {
+        for (std::size_t i = 0; i < records_.size(); ++i) {
+            if (records_[i].schema().type != RecordType::Placement) continue;
+            try {
+                add(i);
+            } catch (const FormatError& error) {
+                findings.add(error);
+            }
+        }
+        return std::move(out_);
+    }
+
+  private:
+    void add(std::size_t i) {
+        const Record& record = records_[i];
+        if (const SensorKind* kind = sensorKind(record.keyword())) {
+            addSensor(i, *kind);
+        } else if (record.keyword() == "robot") {
+            RobotModel model = robotOf(record, devices_);
+            const Pose2 pose = floorPoseOf(record);
+            out_.placed.push_back({i, onFloor(pose), out_.robots.size()});
+            out_.robots.push_back(
+                {ids_[i], std::move(model), pose, record.place(), courseOf(record)});
+        } else if (record.keyword() == "human") {
+            const Pose2 pose = floorPoseOf(record);
+            out_.placed.push_back({i, onFloor(pose), out_.people.size()});
+            out_.people.push_back({ids_[i], record.number("height"), record.number("speed"), pose,
+                                   record.place(), courseOf(record)});
+        } else {
+            out_.placed.push_back({i, onFloor(floorPoseOf(record))});
+        }
+    }
+
+    /// One that has its place, or waits for it.
+    void addSensor(std::size_t i, const SensorKind& kind) {
+        const Record& record = records_[i];
+        SensorModel model = kind.read(record, deviceOf(record, devices_));
+        const auto place = placeOf(record);
+        if (!place) {
+            if (kind.is_arranged) out_.pending.push_back({ids_[i], record, std::move(model)});
+            return;
+        }
+        out_.placed.push_back({i, place->pose, out_.sensors.size(), place->mount});
+        out_.sensors.push_back(
+            {ids_[i], std::move(model), place->pose, place->mount, place->person});
+    }
+
+    /// Of a sensor; nothing if it is still to be placed.
+    std::optional<Carriers::Place> placeOf(const Record& sensor) {
+        if (sensor.has("on")) return carriers_.place(sensor);
+        if (sensor.has("at")) return Carriers::Place{poseOf(sensor), std::nullopt};
+        return std::nullopt;
+    }
+
+    const std::vector<Record>& records_;
+    const std::vector<std::string>& ids_;
+    const DeviceCatalogue& devices_;
+    Carriers carriers_;
+    Placements out_;
+};
+
+/// Throws what is wrong with the room together with the findings about sensors.
+Environment makeEnvironment(const std::vector<Record>& records, const std::vector<std::string>& ids,
+                            Diagnostics& findings) {
+    std::optional<Environment> environment;
+    try {
+        environment.emplace(records, ids);
+    } catch (const FormatError& error) {
+        findings.add(error);
+    }
+    findings.throwIfAny();
+    return std::move(*environment);
+}
+
+/// True if all records of the room are the same, with the same ids and files.
+bool isSameRoom(const Scene& before, const std::vector<Record>& records,
+                const std::vector<std::string>& ids) {
+    const auto next = [](const std::vector<Record>& all, std::size_t i) {
+        while (i < all.size() && !all[i].schema().isEnvironment()) ++i;
+        return i;
+    };
+    std::size_t i = next(before.records, 0), j = next(records, 0);
+    while (i < before.records.size() && j < records.size()) {
+        const Record &was = before.records[i], &is = records[j];
+        if (before.ids[i] != ids[j] || was.mesh() != is.mesh() || !(was == is)) return false;
+        i = next(before.records, i + 1);
+        j = next(records, j + 1);
+    }
+    return i == before.records.size() && j == records.size();
+}
+
+/// The scene of records without those that are meta, but for `records` and `digest`.
+Scene sceneOf(const std::vector<Record>& records, const Scene* before,
+              const DeviceCatalogue& devices) {
+    std::vector<std::string> ids = assignIds(records);
+    Diagnostics findings;
+    Placements placements = Resolver(records, ids, devices).resolve(findings);
+    const bool is_same = before != nullptr && isSameRoom(*before, records, ids);
+    if (is_same) findings.throwIfAny();
+    Environment room = is_same ? before->environment : makeEnvironment(records, ids, findings);
+    return {.records = {},
+            .ids = std::move(ids),
+            .environment = std::move(room),
+            .sensors = std::move(placements.sensors),
+            .pending = std::move(placements.pending),
+            .robots = std::move(placements.robots),
+            .people = std::move(placements.people),
+            .placed = std::move(placements.placed)};
+}
+
+}  // namespace
+
+std::vector<Record> joinRecords(const std::vector<Record>& environment,
+                                const std::vector<Record>& layout) {
+    std::vector<Record> joined = environment;
+    // Where the first of the environment with an id of the layout is, which has few.
+    constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
+    std::unordered_map<std::string, std::size_t> places;
+    for (const Record& record : layout)
+        if (std::string id = record.writtenId(); !id.empty())
+            places.emplace(std::move(id), kNowhere);
+    for (std::size_t i = 0; !places.empty() && i < joined.size(); ++i) {
+        if (!joined[i].has("id")) continue;
+        const auto place = places.find(joined[i].text("id"));
+        if (place != places.end() && place->second == kNowhere) place->second = i;
+    }
+    for (const Record& record : layout) {
+        const std::string id = record.writtenId();
+        const auto place = places.find(id);
+        if (place == places.end() || place->second == kNowhere) {
+            joined.push_back(record);
+            continue;
+        }
+        Record& replaced = joined[place->second];
+        if (replaced.keyword() != record.keyword())
+            throw FormatError(record.finding(
+                "id", "`" + id + "` is the id of the environment's " + replaced.keyword() +
+                          ", and a record takes the place of one of its kind; give it another"));
+        replaced = record;
+    }
+    return joined;
+}
+
+Scene makeScene(const Document& environment, const Document* layout, const DeviceCatalogue& devices,
+                const Scene* before) {
+    checkIds(environment.records);
+    if (layout != nullptr) checkIds(layout->records);
+    std::vector<Record> records =
+        layout == nullptr ? environment.records : joinRecords(environment.records, layout->records);
+    std::erase_if(records, isMeta);
+    Scene scene = sceneOf(records, before, devices);
+    scene.records = std::move(records);
+    const auto is_of_room = [](const Record& record) { return record.schema().isEnvironment(); };
+    if (layout != nullptr &&
+        std::any_of(layout->records.begin(), layout->records.end(), is_of_room))
+        scene.digest_of_other = environmentDigest(environment.records);
+    return scene;
+}
+
+Scene makeScene(std::vector<Record> records, const Scene& before, const DeviceCatalogue& devices) {
+    std::erase_if(records, isMeta);
+    Scene scene = sceneOf(records, &before, devices);
+    scene.records = std::move(records);
+    const bool is_same = &scene.environment.elements() == &before.environment.elements();
+    scene.digest_of_other = is_same ? before.digest_of_other : before.digest();
+    return scene;
+}
+
+std::optional<EnvironmentReference> environmentReference(const Document& layout) {
+    std::optional<EnvironmentReference> reference;
+    for (const Record& record : layout.records) {
+        if (record.keyword() != "environment") continue;
+        if (reference) {
+            if (record == reference->record) continue;
+            throw FormatError(record.finding("a second, other `environment`; a layout has one"));
+        }
+        reference = EnvironmentReference{record.has("file") ? record.text("file") : "",
+                                         record.has("digest") ? record.text("digest") : "", record};
+    }
+    return reference;
+}
+
+std::string leftOutText(std::string_view name, std::string_view done,
+                        const std::vector<std::string>& ids) {
+    constexpr std::size_t kMax = 3;
+    std::string text = "`";
+    text.append(name).append("` is not ").append(done).append(" yet, left out: ");
+    for (std::size_t i = 0; i < std::min(kMax, ids.size()); ++i)
+        text.append(i == 0 ? "" : ", ").append(ids[i]);
+    if (ids.size() > kMax)
+        text.append(" and ").append(std::to_string(ids.size() - kMax)).append(" more");
+    return text;
+}
+
+std::vector<std::string> leftOut(const Scene& scene, std::span<const std::string_view> keywords,
+                                 std::string_view done,
+                                 const std::function<bool(std::size_t)>& is_meant) {
+    std::vector<std::string> phrases;
+    for (const std::string_view keyword : keywords) {
+        std::vector<std::string> ids;
+        for (std::size_t i = 0; i < scene.records.size(); ++i)
+            if (scene.records[i].keyword() == keyword && (!is_meant || is_meant(i)))
+                ids.push_back(scene.ids[i]);
+        if (!ids.empty()) phrases.push_back(leftOutText(keyword, done, ids));
+    }
+    return phrases;
+}
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t";
+
+/// Takes the first word of a text.
+std::string_view takeWord(std::string_view& rest) {
+    rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
+    const std::string_view word = rest.substr(0, rest.find_first_of(kBlanks));
+    rest.remove_prefix(word.size());
+    rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
+    return word;
+}
+
+/// True if the edit says anew where what it names is.
+bool places(const Edit& edit, const Record& record) {
+    if (edit.kind != Edit::Kind::Set) return false;
+    const KeySpec* const key = record.schema().find(edit.key);
+    return key != nullptr && (key->role == Role::Place || key->role == Role::Heading);
+}
+
+bool isMover(const Record& record) {
+    return record.keyword() == "robot" || record.keyword() == "human";
+}
+
+}  // namespace
+
+std::vector<Edit> parseEdits(std::string_view request) {
+    std::string_view rest = request;
+    const std::string_view verb = takeWord(rest);
+    if (verb == "ADD") return {parseEdit(Edit::Kind::Add, rest)};
+    if (verb == "SET") return {parseEdit(Edit::Kind::Set, rest)};
+    if (verb != "DELETE") throw UsageError(excerpt(verb) + " is no change of a world");
+    std::vector<Edit> edits;
+    while (!rest.empty()) edits.push_back(parseEdit(Edit::Kind::Delete, takeWord(rest)));
+    return edits;
+}
+
+bool isAbout(const Edit& edit, const std::string& id) { return edit.ids.matches(id); }
+
+const char* fileKeyOf(const Record& record) {
+    for (const KeySpec& key : record.schema().keys)
+        if (key.role == Role::File && record.has(key.name)) return key.name.c_str();
+    return nullptr;
+}
+
+bool touchFiles(const std::vector<Edit>& edits, const Scene& scene) {
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        if (fileKeyOf(scene.records[i]) == nullptr) continue;
+        const bool is_last = i + 1 == scene.records.size();
+        const auto touches = [&](const Edit& edit) {
+            return edit.kind == Edit::Kind::Add ? is_last : isAbout(edit, scene.ids[i]);
+        };
+        if (std::any_of(edits.begin(), edits.end(), touches)) return true;
+    }
+    return false;
+}
+
+std::vector<Record> editedRecords(const Scene& scene, const std::vector<Edit>& edits,
+                                  const MoverPlaces& where) {
+    std::vector<Record> records = scene.records;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (!isMover(records[i])) continue;
+        const auto moves = [&](const Edit& edit) {
+            return places(edit, records[i]) && isAbout(edit, scene.ids[i]);
+        };
+        if (std::none_of(edits.begin(), edits.end(), moves)) continue;
+        const auto pose = where(scene.ids[i]);
+        if (!pose) continue;
+        records[i].set("at", Tuple{pose->position.x, pose->position.y});
+        records[i].set("heading", pose->heading.degrees());
+    }
+    return edited(std::move(records), edits, sceneSchemas());
+}
+
+void placeAgain(std::vector<Record>& records, std::span<const std::string> ids,
+                const std::vector<Edit>& edits, const MoverPlaces& where) {
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (!isMover(records[i])) continue;
+        const auto sets = [&](std::string_view key) {
+            return std::any_of(edits.begin(), edits.end(), [&](const Edit& edit) {
+                return places(edit, records[i]) && (key.empty() || edit.key == key) &&
+                       isAbout(edit, ids[i]);
+            });
+        };
+        if (!sets("")) continue;
+        const auto pose = where(ids[i]);
+        if (!pose) continue;
+        if (!sets("at")) records[i].set("at", Tuple{pose->position.x, pose->position.y});
+        if (!sets("heading")) records[i].set("heading", pose->heading.degrees());
+    }
+}
+
+std::vector<std::string> placedBy(const std::vector<Edit>& edits, const Scene& scene) {
+    std::vector<std::string> placed;
+    for (const Edit& edit : edits) {
+        if (edit.kind != Edit::Kind::Set) continue;
+        for (std::size_t i = 0; i < scene.ids.size(); ++i)
+            if (isAbout(edit, scene.ids[i]) && places(edit, scene.records[i]))
+                placed.push_back(scene.ids[i]);
+    }
+    return placed;
+}
+
+}  // namespace ispace

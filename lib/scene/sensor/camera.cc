@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/sensor/camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+/// A pinhole's picture plane ends here.
+constexpr double kWidestPinhole = 89.9 * std::numbers::pi / 180;
+
+/// Distance from the centre of the picture plane, over the focal length, of what lies `angle`
+/// radians off the axis; radial distortion alone.
+double radiusOf(const Camera& camera, double angle) {
+    const auto& d = camera.distortion;
+    const double square = angle * angle;
+    switch (camera.lens) {
+        case Lens::Pinhole: {
+            const double r = std::tan(angle), s = r * r;
+            return r * (1 + s * (d[0] + s * (d[1] + s * d[4])));
+        }
+        case Lens::Fisheye:
+            return angle *
+                   (1 + square * (d[0] + square * (d[1] + square * (d[2] + square * d[3]))));
+        case Lens::Mirror:
+            return std::sin(angle) / (std::cos(angle) + camera.mirror);
+    }
+    return 0;
+}
+
+/// Beyond this angle, in radians, the picture of a ray moves back towards the centre.
+double turningAngle(const Camera& camera) {
+    double end = std::numbers::pi;
+    if (camera.lens == Lens::Pinhole) end = kWidestPinhole;
+    if (camera.lens == Lens::Mirror)
+        // Where the sphere's ray leaves the plane, or touches the sphere.
+        end = std::acos(-std::min(camera.mirror, 1 / std::max(camera.mirror, 1e-9))) - 1e-6;
+    constexpr int kSteps = 2048;
+    const auto rises = [&](double angle) {
+        constexpr double kSmall = 1e-7;
+        return radiusOf(camera, angle + kSmall) > radiusOf(camera, angle);
+    };
+    for (int i = 1; i < kSteps; ++i) {
+        if (rises(end * i / kSteps)) continue;
+        double low = end * (i - 1) / kSteps, high = end * i / kSteps;
+        for (int halving = 0; halving < 30; ++halving) {
+            const double middle = (low + high) / 2;
+            (rises(middle) ? low : high) = middle;
+        }
+        return low;
+    }
+    return end;
+}
+
+/// The angle off the axis, in radians, at which a radius stands. \pre radius is 0 or more
+std::optional<double> angleOf(const Camera& camera, double radius) {
+    double low = 0, high = camera.widest.radians();
+    if (radius > radiusOf(camera, high)) return std::nullopt;
+    if (camera.lens == Lens::Mirror) {
+        const double square = radius * radius, xi = camera.mirror;
+        const double scale = (xi + std::sqrt(1 + (1 - xi * xi) * square)) / (1 + square);
+        return std::atan2(scale * radius, scale - xi);
+    }
+    // Newton's steps, kept between bounds that close in.
+    double angle = std::min(radius, high);
+    for (int i = 0; i < 60; ++i) {
+        const double value = radiusOf(camera, angle) - radius;
+        if (value == 0) return angle;
+        (value > 0 ? high : low) = angle;
+        constexpr double kSmall = 1e-6;
+        const double slope =
+            (radiusOf(camera, angle + kSmall) - radiusOf(camera, angle - kSmall)) / (2 * kSmall);
+        double next = angle - value / slope;
+        if (!(next > low && next < high)) next = (low + high) / 2;
+        if (std::fabs(next - angle) <= 1e-16 * (1 + angle)) return next;
+        angle = next;
+    }
+    return angle;
+}
+
+/// `plumb_bob` of a place on the plane x = 1.
+Vec2 bent(const std::array<double, 5>& d, Vec2 p) {
+    const double s = p.x * p.x + p.y * p.y, radial = 1 + s * (d[0] + s * (d[1] + s * d[4]));
+    return {p.x * radial + 2 * d[2] * p.x * p.y + d[3] * (s + 2 * p.x * p.x),
+            p.y * radial + d[2] * (s + 2 * p.y * p.y) + 2 * d[3] * p.x * p.y};
+}
+
+/// The place that is bent to `to`, by Newton's method; nothing if it does not get there.
+std::optional<Vec2> unbent(const std::array<double, 5>& d, Vec2 to, double most) {
+    Vec2 p = to;
+    const double radius = std::hypot(p.x, p.y);
+    if (radius > most) p = (most / radius) * p;
+    for (int i = 0; i < 50; ++i) {
+        const Vec2 off = bent(d, p) - to;
+        if (std::hypot(off.x, off.y) < 1e-14 * (1 + radius))
+            return std::hypot(p.x, p.y) <= most * (1 + 1e-9) ? std::optional(p) : std::nullopt;
+        constexpr double kSmall = 1e-7;
+        const Vec2 a =
+            (0.5 / kSmall) * (bent(d, {p.x + kSmall, p.y}) - bent(d, {p.x - kSmall, p.y}));
+        const Vec2 b =
+            (0.5 / kSmall) * (bent(d, {p.x, p.y + kSmall}) - bent(d, {p.x, p.y - kSmall}));
+        const double det = a.x * b.y - a.y * b.x;
+        if (!(std::fabs(det) > 1e-12)) return std::nullopt;
+        Vec2 step = {(off.x * b.y - off.y * b.x) / det, (a.x * off.y - a.y * off.x) / det};
+        const double size = std::hypot(step.x, step.y), bound = 0.5 * (1 + std::hypot(p.x, p.y));
+        if (size > bound) step = (bound / size) * step;
+        p = p - step;
+    }
+    const Vec2 off = bent(d, p) - to;
+    const bool there = std::hypot(off.x, off.y) < 1e-9 && std::hypot(p.x, p.y) <= most;
+    return there ? std::optional(p) : std::nullopt;
+}
+
+}  // namespace
+
+Camera::Camera() {
+    fx = fy = focalFor(columns, Angle::degrees(45));
+    center();
+    widest = Angle::radians(kWidestPinhole);
+}
+
+void Camera::center() {
+    cx = (columns - 1) / 2.0;
+    cy = (rows - 1) / 2.0;
+}
+
+double Camera::focalFor(double side, Angle fov) const {
+    return side / 2 / radiusOf(*this, fov.radians() / 2);
+}
+
+Angle Camera::turningAngle() const { return Angle::radians(ispace::turningAngle(*this)); }
+
+std::optional<Vec3> Camera::ray(PixelPoint place) const {
+    const Vec2 p{(place.column - cx) / fx, (place.row - cy) / fy};
+    if (lens == Lens::Pinhole) {
+        const double most = tan(widest);
+        const auto flat = isDistorted() ? unbent(distortion, p, most) : std::optional(p);
+        if (!flat || std::hypot(flat->x, flat->y) > most) return std::nullopt;
+        return (1 / std::sqrt(1 + flat->x * flat->x + flat->y * flat->y)) *
+               Vec3{1, -flat->x, -flat->y};
+    }
+    const double radius = std::hypot(p.x, p.y);
+    if (radius == 0) return Vec3{1, 0, 0};
+    const auto angle = angleOf(*this, radius);
+    if (!angle) return std::nullopt;
+    const double s = std::sin(*angle) / radius;
+    return Vec3{std::cos(*angle), -s * p.x, -s * p.y};
+}
+
+std::optional<PixelPoint> Camera::project(Vec3 direction) const {
+    const double across = std::hypot(direction.y, direction.z);
+    const double angle = std::atan2(across, direction.x);
+    if (angle > widest.radians()) return std::nullopt;
+    if (across == 0) return PixelPoint{cx, cy};
+    Vec2 p;
+    if (lens == Lens::Pinhole) {
+        p = {-direction.y / direction.x, -direction.z / direction.x};
+        if (isDistorted()) p = bent(distortion, p);
+    } else {
+        const double s = radiusOf(*this, angle) / across;
+        p = {-s * direction.y, -s * direction.z};
+    }
+    return PixelPoint{cx + fx * p.x, cy + fy * p.y};
+}
+
+namespace {
+
+Angle angleBetween(const Camera& camera, PixelPoint a, PixelPoint b) {
+    const auto off = [&](PixelPoint p) {
+        const auto ray = camera.ray(p);
+        return ray ? std::atan2(std::hypot(ray->y, ray->z), ray->x) : camera.widest.radians();
+    };
+    return Angle::radians(off(a) + off(b));
+}
+
+}  // namespace
+
+Angle Camera::fovX() const { return angleBetween(*this, {-0.5, cy}, {columns - 0.5, cy}); }
+Angle Camera::fovY() const { return angleBetween(*this, {cx, -0.5}, {cx, rows - 0.5}); }
+
+Angle Camera::widestInPicture() const {
+    // The farthest is a corner, but for what the tangential terms of distortion bend.
+    constexpr double kSlack = 1.01;
+    double most = 0;
+    for (const double column : {-0.5, columns - 0.5})
+        for (const double row : {-0.5, rows - 0.5}) {
+            const auto corner = ray({column, row});
+            if (!corner) return widest;
+            most = std::max(most, std::hypot(corner->y, corner->z) / corner->x);
+            if (!(corner->x > 0)) return widest;
+        }
+    return std::min(widest, Angle::radians(std::atan(kSlack * most)));
+}
+
+bool Camera::fillsPicture() const {
+    constexpr int kSteps = 256;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double share = static_cast<double>(i) / kSteps;
+        const double column = share * columns - 0.5, row = share * rows - 0.5;
+        for (const PixelPoint place :
+             {PixelPoint{column, -0.5}, {column, rows - 0.5}, {-0.5, row}, {columns - 0.5, row}})
+            if (!ray(place)) return false;
+    }
+    return true;
+}
+
+bool Camera::looksAround(const Pose3& mount) const {
+    if (lens == Lens::Pinhole || fx != fy) return false;
+    const double radius = fx * radiusOf(*this, widest.radians()) * (1 - 1e-9);
+    const bool whole = holds({cx - radius, cy}) && holds({cx + radius, cy}) &&
+                       holds({cx, cy - radius}) && holds({cx, cy + radius});
+    return whole && std::fabs(mount.tilt.degrees()) == 90;
+}
+std::span<const PixelDensity> pixelDensities() {
+    static constexpr std::array<PixelDensity, 6> kClasses = {{{"monitor", 12.5},
+                                                              {"detect", 25},
+                                                              {"observe", 62.5},
+                                                              {"recognise", 125},
+                                                              {"identify", 250},
+                                                              {"inspect", 1000}}};
+    return kClasses;
+}
+
+std::optional<double> pixelDensityOf(std::string_view text) {
+    if (text == "recognize") text = "recognise";
+    for (const PixelDensity& density : pixelDensities())
+        if (density.name == text) return density.pixels_per_metre;
+    const auto number = parseDouble(text);
+    return number && *number > 0 && std::isfinite(*number) ? number : std::nullopt;
+}
+
+double rangeOf(const Camera& camera, double pixels_per_metre) {
+    // Pixels a radian in the middle, where all these lenses have fewest.
+    const double focal = std::min(camera.fx, camera.fy) / (1 + camera.mirror);
+    return focal / pixels_per_metre;
+}
+
+Camera withDensity(Camera camera, double pixels_per_metre) {
+    if (pixels_per_metre > 0)
+        camera.max_range = std::min(camera.max_range, rangeOf(camera, pixels_per_metre));
+    return camera;
+}
+
+FieldOfView fieldOfView(const Camera& camera, const Pose3& pose) {
+    if (!camera.isStraight()) return FieldOfView::picture(pose, camera);
+    const double left = (camera.cx + 0.5) / camera.fx, up = (camera.cy + 0.5) / camera.fy;
+    return FieldOfView::pyramid(
+        pose, {left, camera.columns / camera.fx - left, up, camera.rows / camera.fy - up},
+        camera.max_range, true);
+}
+
+}  // namespace ispace

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "geom/pose.h"
+#include "record/record.h"
+#include "scene/sensor/field_of_view.h"
+#include "scene/sensor/sensor_keys.h"
+
+namespace ispace {
+
+/// Which ray belongs to a pixel.
+enum class Projection {
+    Pinhole,    ///< a lens: equal steps in the picture's plane
+    Spherical,  ///< a turning head: equal steps in bearing and elevation
+};
+
+/// A 3-D range camera or a scanner with many rings. Pixel (column, row), row 0 at the top and
+/// column 0 at the left, looks along its centre. In the sensor's frame (x forward, y left, z up)
+/// that is (1, -(column - cx) / fx, -(row - cy) / fy) of a pinhole; of a spherical one bearing
+/// fov_x/2 - (column + 1/2) fov_x/columns and elevation fov_y/2 - (row + 1/2) fov_y/rows.
+struct Ranger {
+    std::string model;  ///< "" for the bare ranger
+    Projection projection = Projection::Pinhole;
+    double min_range = 0, max_range = 5;
+    Angle fov_x = Angle::degrees(47.5), fov_y = Angle::degrees(39.6);
+    int columns = 176, rows = 144;
+    double rate = 25;  ///< pictures a second
+    /// What the device measures and its limits and noise refer to: the depth along its axis, or the
+    /// distance along the ray (time of flight; always so for a spherical one).
+    bool measures_depth = false;
+    /// Distances are known up to multiples of this (phase of modulated light): a surface at
+    /// ambiguity + d reads d if d is within the limits. 0: unambiguous.
+    double ambiguity = 0;
+    RangeNoise noise;
+
+    [[nodiscard]] std::size_t pixels() const {
+        return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    }
+    /// Where the pixels of a column and of a row look. \pre a spherical one
+    [[nodiscard]] Angle bearing(double column) const {
+        return ((columns - 1 - 2 * column) / (2.0 * columns)) * fov_x;
+    }
+    [[nodiscard]] Angle elevation(double row) const {
+        return ((rows - 1 - 2 * row) / (2.0 * rows)) * fov_y;
+    }
+    /// Focal lengths in pixels, and the optical centre (pixel centres are whole numbers).
+    /// \pre a pinhole
+    [[nodiscard]] double fx() const;
+    [[nodiscard]] double fy() const;
+    [[nodiscard]] double cx() const { return (columns - 1) / 2.0; }
+    [[nodiscard]] double cy() const { return (rows - 1) / 2.0; }
+    /// The ray of a pixel in the sensor's frame. A pinhole's has forward component 1 (times a depth
+    /// it is a place), a spherical one's has unit length (times a distance it is a place).
+    [[nodiscard]] Vec3 ray(double column, double row) const;
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    [[nodiscard]] std::size_t rays() const { return pixels(); }
+    [[nodiscard]] bool looksAround(const Pose3& mount) const {
+        return projection == Projection::Spherical && fov_x >= Angle::degrees(360) &&
+               mount.isLevel();
+    }
+    friend bool operator==(const Ranger&, const Ranger&) = default;
+};
+
+/// Parameters of a `ranger` record: its explicit keys, else its model's, else the bare ranger's. A
+/// `fov` of one number gives the other by square pixels; one number in `range` is the maximum.
+/// \throws FormatError with all findings: an unknown model, min above max, a pinhole of 180 degrees
+///         or more, more than kMaxPixels
+Ranger rangerOf(const Record& record, const Record* device = nullptr);
+Ranger withParameters(Ranger base, const Record& record);
+constexpr std::size_t kMaxPixels = 1U << 26U;
+
+/// What it sees at a pose if nothing is in the way.
+FieldOfView fieldOfView(const Ranger& ranger, const Pose3& pose);
+
+struct SensorKind;
+extern const SensorKind kRangerKind;
+
+}  // namespace ispace

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/sensor/sensor.h"
+
+#include <algorithm>
+#include <array>
+
+#include "env/environment.h"
+#include "scene/sensor/sensor_keys.h"
+
+namespace ispace {
+
+const std::string& deviceName(const SensorModel& model) {
+    return std::visit([](const auto& one) -> const std::string& { return one.model; }, model);
+}
+
+double maxRange(const SensorModel& model) {
+    return std::visit([](const auto& one) { return one.max_range; }, model);
+}
+
+double readingRate(const SensorModel& model) {
+    return std::visit([](const auto& one) { return one.readingRate(); }, model);
+}
+
+double readingTime(const SensorModel& model) {
+    return std::visit([](const auto& one) { return one.readingTime(); }, model);
+}
+
+std::size_t raysOf(const SensorModel& model) {
+    return std::visit([](const auto& one) { return one.rays(); }, model);
+}
+
+bool looksAround(const SensorModel& model, const Pose3& mount) {
+    return std::visit([&](const auto& one) { return one.looksAround(mount); }, model);
+}
+
+std::optional<FieldOfView> fieldOfView(const Sensor& sensor) {
+    if (sensor.is<Ranger>()) return fieldOfView(sensor.as<Ranger>(), sensor.pose);
+    if (sensor.is<Camera>()) return fieldOfView(sensor.as<Camera>(), sensor.pose);
+    if (sensor.is<Receiver>()) return fieldOfView(sensor.as<Receiver>(), sensor.pose);
+    return std::nullopt;
+}
+
+Pose3 poseOf(const Record& record) {
+    const bool placed = record.has("at");
+    const Tuple at = placed ? record.tuple("at") : Tuple{0, 0};
+    return {{at[0], at[1], at.size() > 2 ? at[2] : kScanHeight},
+            record.angle("heading"),
+            record.angle("tilt"),
+            record.angle("roll")};
+}
+
+Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor) {
+    const Point2 place = world_from_robot * robot_from_sensor.position.onFloor();
+    // Adding 0 makes -0 plain 0.
+    const Angle heading = wrapped(world_from_robot.heading + robot_from_sensor.heading) + Angle();
+    return {{place.x, place.y, robot_from_sensor.position.z},
+            heading,
+            robot_from_sensor.tilt,
+            robot_from_sensor.roll};
+}
+
+namespace {
+
+/// The table, in the order of the alternatives of SensorModel.
+constexpr std::array<const SensorKind*, 5> kKinds = {&kLaserKind, &kRangerKind, &kUltrasoundKind,
+                                                     &kTagKind, &kCameraKind};
+/// The order in which manuals list their records.
+constexpr std::array<const SensorKind*, 5> kSchemaOrder = {&kLaserKind, &kRangerKind, &kCameraKind,
+                                                           &kUltrasoundKind, &kTagKind};
+
+Schema schemaOf(const SensorKind& kind) {
+    Schema schema{.keyword = std::string(kind.keyword),
+                  .type = RecordType::Placement,
+                  .help = std::string(kind.help),
+                  .keys = {}};
+    schema.keys.push_back(idKey());
+    schema.keys.push_back(modelKey());
+    addSensorPose(schema.keys, std::string(kind.heading_help));
+    kind.add_keys(schema.keys);
+    schema.keys.push_back(onKey());
+    schema.keys.push_back(costKey());
+    return schema;
+}
+
+}  // namespace
+
+std::span<const SensorKind* const> sensorKinds() { return kKinds; }
+
+const SensorKind* sensorKind(std::string_view keyword) {
+    const auto* const found =
+        std::find_if(kKinds.begin(), kKinds.end(),
+                     [&](const SensorKind* kind) { return kind->keyword == keyword; });
+    return found == kKinds.end() ? nullptr : *found;
+}
+
+const SensorKind& kindOf(const SensorModel& model) { return *kKinds[model.index()]; }
+
+std::vector<std::string_view> keywordsOf(bool SensorKind::*flag) {
+    std::vector<std::string_view> keywords;
+    for (const SensorKind* kind : kKinds)
+        if (kind->*flag) keywords.push_back(kind->keyword);
+    return keywords;
+}
+
+std::vector<Schema> sensorSchemas() {
+    std::vector<Schema> schemas;
+    schemas.reserve(kSchemaOrder.size());
+    for (const SensorKind* kind : kSchemaOrder) schemas.push_back(schemaOf(*kind));
+    return schemas;
+}
+
+std::vector<Schema> sensorDeviceSchemas() {
+    std::vector<Schema> schemas;
+    for (const SensorKind* kind : kSchemaOrder)
+        if (!kind->device_help.empty())
+            schemas.push_back(deviceSchema(std::string(kind->keyword),
+                                           std::string(kind->device_help), kind->add_keys));
+    return schemas;
+}
+
+Schema deviceSchema(std::string keyword, std::string help,
+                    void (*add_keys)(std::vector<KeySpec>&)) {
+    Schema schema{.keyword = std::move(keyword),
+                  .type = RecordType::Placement,
+                  .help = std::move(help),
+                  .keys = {}};
+    schema.keys.push_back(idKey());
+    schema.keys.push_back({.name = "model",
+                           .type = KeyType::Word,
+                           .help = "what " + schema.keyword + " records call it",
+                           .required = true});
+    schema.keys.push_back({.name = "name", .type = KeyType::Text, .help = "maker and type"});
+    add_keys(schema.keys);
+    schema.keys.push_back({.name = "source",
+                           .type = KeyType::Text,
+                           .help = "public documents the parameters come from",
+                           .required = true});
+    schema.keys.push_back({.name = "confidence",
+                           .type = KeyType::Choice,
+                           .help = "A maker's document, B second source, U unsure",
+                           .choices = {"A", "B", "U"},
+                           .required = true});
+    return schema;
+}
+
+}  // namespace ispace

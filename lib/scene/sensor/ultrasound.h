@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include "geom/pose.h"
+#include "record/record.h"
+#include "scene/sensor/field_of_view.h"
+#include "scene/sensor/sensor_keys.h"
+
+namespace ispace {
+
+/// Receivers needed to locate a tag (thesis 3.4.3): floor is covered where this many hear.
+constexpr std::size_t kMinReceivers = 4;
+
+/// An ultrasonic receiver: hears a tag in range, within a cone about its axis, and in sight.
+struct Receiver {
+    std::string model;  ///< "" for the bare receiver
+    double min_range = 0, max_range = 8;
+    Angle fov = Angle::degrees(120);  ///< full angle of the cone
+    double rate = 10;                 ///< measurements a second
+    RangeNoise noise;                 ///< of the distance computed from the time of flight
+
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    [[nodiscard]] static std::size_t rays() { return 1; }
+    [[nodiscard]] static bool looksAround(const Pose3& mount);
+    friend bool operator==(const Receiver&, const Receiver&) = default;
+};
+
+/// An ultrasonic emitter.
+struct Tag {
+    std::string model;                ///< "" for the bare tag
+    double rate = 10;                 ///< bursts a second
+    Angle fov = Angle::degrees(360);  ///< full angle of the cone into which it emits
+    /// Located by the thesis' simple model, eq. (3.7)-(3.10): its true x and y with independent
+    /// noise of this standard deviation. Else from times of flight.
+    bool is_simple = false;
+    double simple_sigma = 0.1;
+
+    /// Receivers have a range; a tag has none.
+    double max_range = std::numeric_limits<double>::infinity();
+
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    [[nodiscard]] static std::size_t rays() { return 64; }  ///< one for each of some receivers
+    [[nodiscard]] static bool looksAround(const Pose3& /*mount*/) { return false; }
+    friend bool operator==(const Tag&, const Tag&) = default;
+};
+
+/// Parameters of an `ultrasound` record: its explicit keys, else its model's, else the bare one's.
+/// \throws FormatError with all findings
+Receiver receiverOf(const Record& record, const Record* device = nullptr);
+Receiver withParameters(Receiver base, const Record& record);
+/// The same for a `tag` record.
+Tag tagOf(const Record& record, const Record* device = nullptr);
+Tag withParameters(Tag base, const Record& record);
+
+/// What it hears at a pose if nothing is in the way.
+FieldOfView fieldOfView(const Receiver& receiver, const Pose3& pose);
+
+struct SensorKind;
+extern const SensorKind kUltrasoundKind, kTagKind;
+
+}  // namespace ispace

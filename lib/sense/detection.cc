@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/detection.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "env/level.h"
+#include "scene/robot.h"
+#include "scene/sensor/sensor.h"
+#include "sense/scan.h"
+#include "sense/selection.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+namespace {
+
+/// A sensor with what can be computed once for all its poses.
+struct Watcher {
+    Sensor sensor;  // where it starts
+    std::uint32_t carrier = MovingBodies::kNobody;
+    Pose3 from_carrier;                   // of one that rides on something
+    std::optional<FieldOfView> view;      // of all but lasers, where it starts
+    std::optional<BearingWindow> window;  // of lasers
+    std::size_t together = 1;             // of its kind, before a place counts as seen
+    bool is_blind = false;                // it stands in something
+
+    [[nodiscard]] bool rides() const { return carrier != MovingBodies::kNobody; }
+    [[nodiscard]] Pose3 poseAt(const WatchMoment& moment) const;
+};
+
+Pose3 Watcher::poseAt(const WatchMoment& moment) const {
+    if (!rides()) return sensor.pose;
+    const std::span<const Pose2> poses = sensor.mount ? moment.robots : moment.people;
+    const std::size_t index = sensor.mount ? sensor.mount->robot : *sensor.person;
+    return index < poses.size() ? mountedPose(poses[index], from_carrier) : sensor.pose;
+}
+
+/// Where the people of a scene start, in its order.
+std::vector<Pose2> peopleOf(const Scene& scene) {
+    std::vector<Pose2> people;
+    for (const Placed& placed : scene.placed)
+        if (scene.records[placed.record].keyword() == "human")
+            people.push_back({placed.pose.position.onFloor(), placed.pose.heading});
+    return people;
+}
+
+Watcher watcherOf(const Sensor& sensor, const std::vector<Pose2>& people, double density) {
+    Watcher watcher;
+    watcher.sensor = sensor;
+    watcher.carrier = carrierOf(sensor);
+    if (Camera* camera = std::get_if<Camera>(&watcher.sensor.model))
+        *camera = withDensity(*camera, density);
+    watcher.view = fieldOfView(watcher.sensor);
+    if (const Laser* laser = std::get_if<Laser>(&watcher.sensor.model))
+        // One that turns counter-clockwise adds the whole sweep to its first bearing.
+        watcher.window.emplace(*laser, laser->sweptSpan() - laser->span());
+    watcher.together = kindOf(sensor.model).together;
+    if (sensor.mount)
+        watcher.from_carrier = sensor.mount->robot_from_sensor;
+    else if (sensor.person)
+        watcher.from_carrier = poseOn(people[*sensor.person], sensor.pose);
+    return watcher;
+}
+
+}  // namespace
+
+struct Watch::Data {
+    Data(const Scene& scene, const WatchOptions& options);
+
+    [[nodiscard]] bool sees(const Watcher& watcher, Point2 place, const WatchMoment& moment) const;
+    [[nodiscard]] bool scans(const Watcher& watcher, const Pose3& pose, Point2 place) const;
+    [[nodiscard]] bool scansAslant(const Watcher& watcher, const Pose3& pose, Point2 place) const;
+    [[nodiscard]] bool isClear(const Sensor& sensor, Point3 origin, Point3 target) const;
+
+    double plane;
+    Worlds worlds;
+    std::vector<Watcher> watchers;
+};
+
+Watch::Data::Data(const Scene& scene, const WatchOptions& options)
+    : plane(options.plane), worlds(scene.environment) {
+    const std::vector<Pose2> people = peopleOf(scene);
+    for (const Sensor& sensor : scene.sensors) {
+        if (!kindOf(sensor.model).perceives) continue;
+        Watcher& watcher = watchers.emplace_back(watcherOf(sensor, people, options.density));
+        const Point3 place = sensor.pose.position;
+        watcher.is_blind =
+            !watcher.rides() && scene.environment.level(place.z)->isBuried(place.onFloor());
+        if (scansSlice(sensor))
+            worlds.prepare(sensor.pose);
+        else
+            worlds.prepareMesh(kindOf(sensor.model).stopped_by);
+    }
+}
+
+bool Watch::Data::isClear(const Sensor& sensor, Point3 origin, Point3 target) const {
+    if (target == origin) return true;
+    const std::array<Point3, 1> targets = {target};
+    std::array<std::uint8_t, 1> seen = {0};
+    worlds.mesh(kindOf(sensor.model).stopped_by).query(origin, targets, seen);
+    return seen[0] != 0;
+}
+
+/// A level scan: in its slice, or, if there are too many of these, in the mesh.
+bool Watch::Data::scans(const Watcher& watcher, const Pose3& pose, Point2 place) const {
+    const Vec2 way = place - pose.position.onFloor();
+    const double distance = std::hypot(way.x, way.y);
+    const Laser& laser = watcher.sensor.as<Laser>();
+    const auto [c, s] = cosSin(pose.heading);
+    if (!withinRange(distance, laser.max_range) ||
+        !watcher.window->holds({way.x * c + way.y * s, way.y * c - way.x * s, 0}))
+        return false;
+    if (distance <= kRayEpsilon) return true;
+    Directions direction;
+    direction.resize(1);
+    direction.set(0, {way.x / distance, way.y / distance, 0});
+    std::array<float, 1> range = {kNoReturn};
+    worlds.at(pose).cast(pose.position, direction, distance, range);
+    return static_cast<double>(range[0]) >= distance * (1 - kFarSlack) - kRayEpsilon;
+}
+
+/// A scan in a plane that is not level sees somebody where it passes over the floor.
+bool Watch::Data::scansAslant(const Watcher& watcher, const Pose3& pose, Point2 place) const {
+    const Laser& laser = watcher.sensor.as<Laser>();
+    const auto is_near = [&](Point3 target) {
+        const Vec3 way = target - pose.position;
+        return withinRange(std::sqrt(dot(way, way)), laser.max_range);
+    };
+    if (laser.sweep != SweepAxis::None) {
+        const Point3 target{place.x, place.y, plane};
+        Sensor moved = watcher.sensor;
+        moved.pose = pose;
+        return is_near(target) && SweptScan(moved).passes(target) &&
+               isClear(watcher.sensor, pose.position, target);
+    }
+    const ScanPlane scan(pose);
+    if (scan.up() == 0) return false;  // upright: seen from above, a line
+    const Point3 target{place.x, place.y, scan.heightAt(place)};
+    return target.z >= 0 && is_near(target) &&
+           watcher.window->holds(scan.frame().toLocal(target)) &&
+           isClear(watcher.sensor, pose.position, target);
+}
+
+bool Watch::Data::sees(const Watcher& watcher, Point2 place, const WatchMoment& moment) const {
+    if (watcher.is_blind) return false;
+    const Pose3 pose = watcher.poseAt(moment);
+    if (!watcher.view) {
+        const bool is_level = scansSlice(watcher.sensor.as<Laser>(), pose);
+        return is_level ? scans(watcher, pose, place) : scansAslant(watcher, pose, place);
+    }
+    const Point3 target{place.x, place.y, plane};
+    if (!watcher.rides())
+        return watcher.view->holds(target) && isClear(watcher.sensor, pose.position, target);
+    FieldOfView view = *watcher.view;
+    view.frame = Frame3(pose);
+    return view.holds(target) && isClear(watcher.sensor, pose.position, target);
+}
+
+Watch::Watch(const Scene& scene, const WatchOptions& options)
+    : data_(std::make_unique<Data>(scene, options)) {}
+Watch::~Watch() = default;
+Watch::Watch(Watch&&) noexcept = default;
+Watch& Watch::operator=(Watch&&) noexcept = default;
+
+std::size_t Watch::sensors() const {
+    std::size_t alone = 0, parts = 0, together = 0;
+    for (const Watcher& watcher : data_->watchers) {
+        (watcher.together > 1 ? parts : alone) += 1;
+        together = std::max(together, watcher.together);
+    }
+    return alone + (parts > 0 && parts >= together ? 1 : 0);
+}
+
+bool Watch::rides() const {
+    const auto& watchers = data_->watchers;
+    return std::any_of(watchers.begin(), watchers.end(),
+                       [](const Watcher& watcher) { return watcher.rides(); });
+}
+
+std::size_t Watch::seenBy(const Target& target, const WatchMoment& moment) const {
+    std::size_t count = 0, parts = 0, together = 0;
+    for (const Watcher& watcher : data_->watchers) {
+        const bool is_own = watcher.rides() && watcher.carrier == target.owner;
+        if (is_own || !data_->sees(watcher, target.place, moment)) continue;
+        if (watcher.together == 1) {
+            ++count;
+        } else {
+            ++parts;
+            together = watcher.together;
+        }
+    }
+    return count + (parts > 0 && parts >= together ? 1 : 0);
+}
+
+}  // namespace ispace

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/file.h"
+
+namespace ispace {
+
+/// How the messages of a channel are to be read.
+struct McapSchema {
+    std::string name, encoding, text;
+};
+
+struct McapChannel {
+    std::uint16_t schema = 0;  ///< index of the schemas
+    std::string topic;
+};
+
+/// Appends a message record of the channel with this index; add() takes such records.
+void appendMcapMessage(std::string& out, std::uint16_t channel, std::uint32_t sequence,
+                       std::uint64_t nanoseconds, std::string_view message);
+
+/// How the chunks of a file are packed.
+enum class McapCompression { None, Zstd };
+
+/// Writes an MCAP file (mcap.dev, version 0) piece by piece: chunks, each with an index of its
+/// messages, then a summary with statistics; CRCs everywhere. Equal messages give
+/// equal bytes, however they are handed over. Memory: one chunk, and some 100 bytes for each that
+/// was written.
+///
+/// Our own, since Debian has no library for it.
+class McapWriter {
+  public:
+    /// \param encoding of the messages, "cdr"
+    McapWriter(ByteSink write, std::string_view profile, std::string_view encoding,
+               std::vector<McapSchema> schemas, std::vector<McapChannel> channels,
+               McapCompression compression = McapCompression::None);
+
+    /// Whole records of appendMcapMessage(), one behind another.
+    void add(std::string_view messages);
+    /// The rest of the file.
+    void finish();
+
+  private:
+    using IndexEntry = std::pair<std::uint64_t, std::uint64_t>;
+    struct ChunkIndex {
+        std::uint64_t first = 0, last = 0, at = 0, length = 0, index_length = 0, size = 0,
+                      packed_size = 0;
+        std::vector<std::pair<std::uint16_t, std::uint64_t>> indices;
+    };
+
+    void put(std::string_view bytes);
+    void addOne(std::string_view record);
+    void finishChunk();
+    [[nodiscard]] std::string_view compressionName() const;
+    [[nodiscard]] std::string schemaRecords() const;
+    [[nodiscard]] std::string channelRecords() const;
+    [[nodiscard]] std::string statisticsRecord() const;
+    [[nodiscard]] std::string chunkIndexRecords() const;
+
+    ByteSink write_;
+    std::string encoding_;
+    std::vector<McapSchema> schemas_;
+    std::vector<McapChannel> channels_;
+    McapCompression compression_;
+    std::uint64_t at_ = 0;
+    std::uint32_t crc_ = 0;
+
+    std::string chunk_;
+    std::uint64_t chunk_first_ = 0, chunk_last_ = 0;
+    std::map<std::uint16_t, std::vector<IndexEntry>> chunk_index_;
+
+    std::vector<ChunkIndex> chunks_;
+    std::map<std::uint16_t, std::uint64_t> counts_;
+    std::uint64_t messages_ = 0, first_ = 0, last_ = 0;
+};
+
+}  // namespace ispace

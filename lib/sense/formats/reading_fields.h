@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The table of readings: what each kind of sensor measures, under which names formats write it.
+// Formats and records read the table; they know no kinds.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "sense/formats/ros_messages.h"
+#include "sense/reading.h"
+
+namespace ispace {
+
+/// A reading, or one scan of a sweep, with all that its fields are computed from. Refers to its
+/// arguments.
+struct ReadingView {
+    using Value =
+        std::variant<std::monostate, const Scan*, const DepthFrame*, const Photo*, const Burst*>;
+
+    const Sensor& sensor;
+    Value value = {};  ///< std::monostate: none yet, for fields of the sensor alone
+    std::span<const Sensor> receivers = {};  ///< those that a tag's burst refers to
+    double time = 0;                         ///< seconds
+    std::int64_t frame = 0;
+    Pose3 pose = {};
+
+    template <typename One>
+    [[nodiscard]] const One& as() const {
+        return *std::get<const One*>(value);
+    }
+};
+
+template <typename One>
+ReadingView viewOf(const Sensor& sensor, const One& one, std::span<const Sensor> receivers = {}) {
+    return {sensor, &one, receivers, one.time, one.frame, one.pose};
+}
+/// The scans of a sweep, or the one view of another reading.
+std::vector<ReadingView> viewsOf(const Sensor& sensor, const Reading& reading,
+                                 std::span<const Sensor> receivers = {});
+
+/// A measured number, which JSON rounds to 12 digits.
+struct Measured {
+    std::optional<double> value = {};  ///< empty: unknown
+};
+/// A computed number, with nine decimals in JSON.
+struct Computed {
+    double value = 0;
+};
+struct FieldRecord;
+using FieldText = std::optional<std::string>;  ///< empty: unknown
+/// std::monostate: this sensor or reading lacks the field. Floats are ranges, infinite without a
+/// return. Spans belong to the reading.
+using FieldValue =
+    std::variant<std::monostate, std::int64_t, double, Angle, Measured, Computed, FieldText,
+                 std::vector<double>, std::vector<Angle>, std::vector<Measured>,
+                 std::vector<std::string>, std::vector<float>, std::span<const float>,
+                 std::span<const std::uint8_t>, std::vector<FieldRecord>>;
+/// Named values: of each receiver, of each tag.
+struct FieldRecord {
+    std::vector<std::pair<std::string_view, FieldValue>> values;
+};
+
+/// Formats that have a field, as bits.
+enum FieldUse : unsigned {
+    kInJson = 1,    ///< a line of JSON, of `scan` and of records; angles in radians
+    kInColumn = 2,  ///< CSV: a value a row, or floats, one for each element
+    kInArray = 4,   ///< NumPy: a row a reading
+    kInFixed = 8,   ///< NumPy: an array of the sensor
+    kIsFrame = 16   ///< JSON names a file instead where the frame has one
+};
+
+struct ReadingField {
+    std::string_view name;
+    unsigned uses = 0;  ///< of FieldUse
+    FieldValue (*value)(const ReadingView& reading) = nullptr;
+    std::string_view type = {};  ///< of a NumPy row: "<f4", "<f8", "|u1"
+    /// Of a NumPy row or array; null: as many values as there are.
+    std::vector<std::uint64_t> (*shape)(const ReadingView& reading) = nullptr;
+};
+
+/// The frame of ROS that a message is in.
+enum class RosFrame { Sensor, Optical, World };
+
+/// A topic of a sensor in ROS.
+struct RosTopic {
+    RosType type;
+    std::string_view name;
+    RosFrame frame;
+    /// "": this reading has no message. Null: one message for all scans of a sweep, their points.
+    std::string (*message)(const RosHeader& header, const ReadingView& reading) = nullptr;
+    bool (*is_sent)(const Sensor& sensor) = nullptr;  ///< null: always
+};
+
+/// Readings of one kind of sensor.
+struct ReadingKind {
+    std::span<const ReadingField> fields;
+    std::span<const RosTopic> topics = {};
+    /// Columns of CSV that count elements, the fastest first; empty: a row is a whole reading.
+    std::span<const std::string_view> indices = {};
+    /// Numbers of elements in the order of `indices`; null without.
+    std::vector<std::size_t> (*counts)(const Sensor& sensor) = nullptr;
+    /// A point for each element; null: none.
+    PointCloud (*points)(const Sensor& sensor, const Reading& reading, Coordinates in) = nullptr;
+    /// Scans of a sweep (0: a reading is one scan), and the number of this one; null: readings have
+    /// no parts.
+    int (*parts)(const Sensor& sensor) = nullptr;
+    int (*part)(const ReadingView& reading) = nullptr;
+    /// Seconds from a reading's time to an element, and the pose then; null: all at once.
+    double (*delay)(const Sensor& sensor, std::size_t element) = nullptr;
+    const Pose3& (*pose)(const ReadingView& reading, std::size_t element) = nullptr;
+};
+
+/// The table's row of a sensor.
+const ReadingKind& readingKind(const SensorModel& model);
+/// Parts of each of its readings; 0: it is whole.
+int partsOf(const Sensor& sensor);
+bool isSwept(const Sensor& sensor);
+
+}  // namespace ispace

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/selection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/glob.h"
+#include "scene/bodies.h"
+#include "scene/sensor/sensor.h"
+
+namespace ispace {
+
+bool isSelected(const std::string& id, const std::vector<std::string>& globs) {
+    return globs.empty() || std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
+               return Glob(glob).matches(id);
+           });
+}
+
+namespace {
+
+bool isRead(const Record& record) {
+    const SensorKind* kind = sensorKind(record.keyword());
+    return kind != nullptr && kind->is_read;
+}
+
+void checkGlobs(const Scene& scene, const std::vector<std::string>& globs) {
+    for (const std::string& glob : globs) {
+        bool known = false;
+        std::string ids;
+        for (std::size_t i = 0; i < scene.records.size(); ++i) {
+            if (!isRead(scene.records[i])) continue;
+            known = known || isSelected(scene.ids[i], {glob});
+            ids.append(ids.empty() ? "" : ", ").append(scene.ids[i]);
+        }
+        if (!known)
+            throw UsageError("no sensor matches `" + glob + "`" +
+                             (ids.empty() ? "" : " (there are " + ids + ")"));
+    }
+}
+
+}  // namespace
+
+Sensors sensorsOf(const Scene& scene, const std::vector<std::string>& globs) {
+    checkGlobs(scene, globs);
+    Sensors sensors;
+    for (const Sensor& sensor : scene.sensors)
+        if (kindOf(sensor.model).is_read && isSelected(sensor.id, globs))
+            (sensor.is<Receiver>() ? sensors.receivers : sensors.read).push_back(sensor);
+    // A choice of tags alone is not a choice of receivers.
+    if (sensors.receivers.empty()) sensors.receivers = sensorsOf<Receiver>(scene);
+    return sensors;
+}
+
+std::vector<std::size_t> sensorRecords(const Scene& scene, std::span<const std::string_view> kinds,
+                                       const std::vector<std::string>& globs) {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < scene.records.size(); ++i)
+        if (std::find(kinds.begin(), kinds.end(), scene.records[i].keyword()) != kinds.end() &&
+            isSelected(scene.ids[i], globs))
+            found.push_back(i);
+    return found;
+}
+
+double wholeNanoseconds(double seconds) {
+    constexpr double kNano = 1e9, kMax = 9e6;  // whole numbers of doubles end at 9e15
+    return std::fabs(seconds) < kMax ? std::round(seconds * kNano) / kNano : seconds;
+}
+
+std::uint32_t carrierOf(const Sensor& sensor) {
+    if (sensor.mount) return static_cast<std::uint32_t>(sensor.mount->robot);
+    if (sensor.person) return kFirstPerson + static_cast<std::uint32_t>(*sensor.person);
+    return MovingBodies::kNobody;
+}
+
+MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner) {
+    MovingBody body;
+    body.pose = {pose * Point2{model.center, 0}, pose.heading};
+    if (model.length > 0) {
+        body.half_length = model.length / 2;
+        body.half_width = model.width / 2;
+    } else {
+        body.radius = model.radius;
+    }
+    body.top = model.height;
+    body.owner = owner;
+    return body;
+}
+
+bool isAtSome(const MovingBody& body, std::span<const double> heights) {
+    return heights.empty() || std::any_of(heights.begin(), heights.end(), [&body](double z) {
+               return body.bottom <= z && z <= body.top;
+           });
+}
+
+void addHumanBodies(double height, const Pose2& pose, std::uint32_t owner, Angle swing,
+                    std::span<const double> heights, std::vector<MovingBody>& bodies) {
+    const CosSin axes = cosSin(pose.heading);
+    for (const BodyPart& part : humanParts(height, swing)) {
+        const MovingBody body = movingBody(part, pose, axes, owner);
+        if (isAtSome(body, heights)) bodies.push_back(body);
+    }
+}
+
+std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner,
+                                    Angle swing) {
+    std::vector<MovingBody> bodies;
+    addHumanBodies(height, pose, owner, swing, {}, bodies);
+    return bodies;
+}
+
+std::vector<MovingBody> bodiesOf(const Scene& scene) {
+    std::vector<MovingBody> bodies;
+    bodies.reserve(scene.robots.size());
+    for (const PlacedRobot& robot : scene.robots)
+        bodies.push_back(
+            robotBody(robot.model, robot.pose, static_cast<std::uint32_t>(bodies.size())));
+    std::uint32_t owner = kFirstPerson;
+    for (const PlacedPerson& person : scene.people) {
+        const std::vector<MovingBody> parts = humanBodies(person.height, person.pose, owner++);
+        bodies.insert(bodies.end(), parts.begin(), parts.end());
+    }
+    return bodies;
+}
+
+}  // namespace ispace

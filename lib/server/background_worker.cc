@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/background_worker.h"
+
+#include <system_error>
+#include <utility>
+
+namespace ispace {
+
+Workshop::Workshop(std::function<void()> wake) : wake_(std::move(wake)) {}
+
+Workshop::~Workshop() {
+    {
+        const std::lock_guard lock(mutex_);
+        ends_ = true;
+        waiting_.clear();
+    }
+    changed_.notify_all();
+    if (thread_.joinable()) thread_.join();
+}
+
+/// Starts it if that has not been done.
+bool Workshop::hasThread() {
+    if (thread_.joinable() || is_refused_) return !is_refused_;
+    try {
+        thread_ = std::thread([this] { run(); });
+    } catch (const std::system_error&) {
+        is_refused_ = true;
+    }
+    return !is_refused_;
+}
+
+void Workshop::give(Job job) {
+    ++open_;
+    if (!hasThread()) {
+        Done done = doneNow(std::move(job));
+        {
+            const std::lock_guard lock(mutex_);
+            done_.push_back(std::move(done));
+        }
+        wake_();
+        return;
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        waiting_.push_back(std::move(job));
+    }
+    changed_.notify_all();
+}
+
+void Workshop::doNow(Job job) {
+    const Done done = doneNow(std::move(job));
+    done.job.deliver(done.failure);
+}
+
+bool Workshop::collect() {
+    std::vector<Done> done;
+    {
+        const std::lock_guard lock(mutex_);
+        done.swap(done_);
+    }
+    open_ -= done.size();
+    for (const Done& each : done) each.job.deliver(each.failure);
+    return !done.empty();
+}
+
+void Workshop::collectWithin(std::chrono::nanoseconds patience) {
+    if (open_ > 0) {
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, patience, [this] { return !done_.empty(); });
+    }
+    collect();
+}
+
+void Workshop::collectAll() {
+    while (open_ > 0) collectWithin(std::chrono::seconds(1));
+}
+
+Workshop::Done Workshop::doneNow(Job job) {
+    Done done{std::move(job), nullptr};
+    try {
+        done.job.work();
+    } catch (...) {
+        done.failure = std::current_exception();
+    }
+    done.job.work = nullptr;
+    return done;
+}
+
+void Workshop::run() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [this] { return ends_ || !waiting_.empty(); });
+        if (ends_) return;
+        Job job = std::move(waiting_.front());
+        waiting_.pop_front();
+        lock.unlock();
+        Done done = doneNow(std::move(job));
+        lock.lock();
+        done_.push_back(std::move(done));
+        changed_.notify_all();
+        lock.unlock();
+        wake_();
+        lock.lock();
+    }
+}
+
+}  // namespace ispace

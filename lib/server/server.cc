@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/server.h"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/system/system_error.hpp>
+
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <list>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "server/client_connection.h"
+#include "server/device/device_port.h"
+#include "server/web_server.h"
+
+namespace ispace {
+
+namespace {
+
+using asio::ip::tcp;
+using std::chrono::steady_clock;
+
+/// Of the world, and of the clients, before it is the other's turn; of clients when the world's
+/// next step is due sooner.
+constexpr auto kTurn = std::chrono::milliseconds(2);
+constexpr auto kShortTurn = std::chrono::microseconds(500);
+/// Connections beyond those served that get a last message.
+constexpr std::size_t kMaxLingering = 64;
+/// Marks and changes between steps are told to all so often at most.
+constexpr auto kNewsEvery = std::chrono::milliseconds(10);
+constexpr auto kLastFlush = std::chrono::milliseconds(500);
+
+}  // namespace
+
+struct Server::Data {
+    Data(Simulation& the_simulation, const Endpoint& endpoint, const ServerLimits& the_limits)
+        : simulation(the_simulation),
+          limits(the_limits),
+          state(the_simulation, the_limits),
+          acceptor(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }) {
+        state.makeAside([this] { asio::post(io, [] {}); }, [this] { return isStopped(); });
+    }
+    ~Data() {
+        state.endAside();
+        closeAll();
+    }
+
+    void welcome(tcp::socket socket);
+    bool makeRoom();
+    void stepped();
+    [[nodiscard]] WallTime nextTurn() const;
+    [[nodiscard]] std::chrono::nanoseconds turn() const;
+    void serveClients();
+    void sleepUntil(WallTime time);
+    void relieve();
+    void sweep();
+    [[nodiscard]] bool isStopped();
+    void finishRecord();
+    void end();
+    void closeAll();
+
+    Simulation& simulation;
+    ServerLimits limits;
+    ServerState state;
+    bool has_news = false;  // between steps, that not all clients were told
+    WallTime next_news{};
+    asio::io_context io{1};  // one thread runs it
+    Acceptor acceptor;
+    asio::steady_timer alarm{io};
+    asio::posix::stream_descriptor stopper{io};
+    std::optional<WallTime> alarm_time;
+    std::vector<std::shared_ptr<ClientConnection>> connections;  // in the order of their coming
+    std::atomic<std::size_t> serving = 0;
+    std::optional<WebServer> web;
+    DeviceHost host{state};
+    std::list<DevicePort> devices;
+};
+
+void Server::Data::welcome(tcp::socket socket) {
+    sweep();
+    const bool full = serving >= limits.clients && !makeRoom();
+    if (connections.size() >= limits.clients + kMaxLingering) {
+        // Of those that only have to close, the oldest has had the most time for it.
+        const auto told = std::find_if(connections.begin(), connections.end(),
+                                       [](const auto& connection) { return connection->told(); });
+        if (told == connections.end()) return;
+        (*told)->close();
+    }
+    const auto connection = std::make_shared<ClientConnection>(std::move(socket), limits);
+    connections.push_back(connection);
+    if (!full) {
+        connection->serve(state);
+    } else {
+        std::string text = "ERR 429 too many clients (";
+        connection->refuse(
+            text.append(std::to_string(limits.clients)).append("): try again later\n"));
+    }
+    sweep();
+}
+
+/// Ends the connection that has gone longest without a role. True if there is a place now.
+bool Server::Data::makeRoom() {
+    const WallTime since = steady_clock::now() - limits.roleless_grace;
+    std::vector<std::shared_ptr<ClientConnection>> idle;
+    for (const auto& connection : connections)
+        if (connection->roleless() && connection->heard() <= since) idle.push_back(connection);
+    std::sort(idle.begin(), idle.end(),
+              [](const auto& a, const auto& b) { return a->heard() < b->heard(); });
+    for (const auto& connection : idle) {
+        connection->makeWay(since);
+        sweep();
+        if (serving < limits.clients) return true;
+    }
+    return false;
+}
+
+void Server::Data::stepped() {
+    // Writing to a thousand clients takes longer than the next step may be late. Only a clock that
+    // waits leaves everybody a turn before the next scan. A few are served in any case: a machine
+    // that is busy elsewhere must not cost them a scan.
+    constexpr std::size_t kFew = 32;
+    const bool may_be_late =
+        simulation.clock().kind != Clock::Kind::Real || connections.size() <= kFew;
+    const WallTime end = steady_clock::now() + kTurn / 4;
+    for (const auto& connection : connections)
+        connection->stepped(may_be_late || steady_clock::now() < end);
+    for (DevicePort& device : devices) device.stepped();
+    if (web) web->stepped();
+    static_cast<void>(state.hasNews());
+    has_news = false;
+    next_news = steady_clock::now() + kNewsEvery;
+}
+
+/// When a client that says nothing has something to be done for it.
+WallTime Server::Data::nextTurn() const {
+    if (state.isOnTheWay()) return steady_clock::now();
+    WallTime next = has_news ? next_news : WallTime::max();
+    bool may_change = false;
+    for (const auto& connection : connections) {
+        if (connection->waitsToChange()) may_change = true;
+        if (limits.watchdog.count() > 0 && connection->watched())
+            next = std::min(next, connection->heard() + limits.watchdog);
+    }
+    for (const DevicePort& device : devices) may_change = may_change || device.waitsToChange();
+    may_change = may_change || (web && web->waitsToChange());
+    if (const auto change = state.nextChange(); may_change && change)
+        next = std::min(next, *change);
+    return next;
+}
+
+/// Of the world: a single step where it may have to wait for the frames of that step.
+std::chrono::nanoseconds Server::Data::turn() const {
+    const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay() ||
+                          simulation.paused();
+    if (!may_hold || (serving == 0 && !web && devices.empty())) return kTurn;
+    const auto sensors = simulation.world().sensors();
+    const bool has_heavy = std::any_of(sensors.begin(), sensors.end(),
+                                       [](const RunSensor& sensor) { return sensor.isHeavy(); });
+    return has_heavy ? std::chrono::nanoseconds(0) : kTurn;
+}
+
+/// Runs handlers that are ready, for one turn at most, or until the world's next step is due.
+void Server::Data::serveClients() {
+    const WallTime now = steady_clock::now();
+    WallTime end = now + kTurn;
+    if (const auto due = simulation.due()) end = std::min(end, std::max(*due, now + kShortTurn));
+    while (io.poll_one() > 0 && steady_clock::now() < end) continue;
+    const bool has_made = state.collect();
+    for (const auto& connection : connections)
+        if (has_made || connection->waiting()) connection->proceed();
+    if (web && has_made) web->stepped();
+    if (web) web->serve();
+    for (DevicePort& device : devices) {
+        device.serve(steady_clock::now());
+        if (has_made) device.stepped();
+    }
+    has_news = state.hasNews() || has_news;
+    if (has_news && steady_clock::now() >= next_news) stepped();
+    if (limits.watchdog.count() > 0) {
+        const WallTime since = steady_clock::now() - limits.watchdog;
+        for (const auto& connection : connections) connection->watch(since);
+    }
+    relieve();
+    sweep();
+}
+
+/// Keeps what clients leave unread within its limit: the slowest readers go. Not one that holds no
+/// more than an equal share: all others then exceed theirs.
+void Server::Data::relieve() {
+    std::size_t replies = 0;
+    for (const auto& connection : connections) replies += connection->memory();
+    if (replies + state.staleBytes() <= limits.unread) return;
+    const std::size_t share = limits.unread / (limits.clients + kMaxLingering);
+    std::vector<std::shared_ptr<ClientConnection>> slow;
+    for (const auto& connection : connections)
+        if (connection->holds() > share) slow.push_back(connection);
+    std::sort(slow.begin(), slow.end(),
+              [](const auto& a, const auto& b) { return a->waitingSince() < b->waitingSince(); });
+    for (const auto& connection : slow) {
+        if (replies + state.staleBytes() <= limits.unread) return;
+        replies -= connection->memory();
+        connection->cutOff("ERR 429 too much unread: the slowest readers are disconnected\n");
+        replies += connection->memory();
+    }
+}
+
+/// Until then, or until one handler has run.
+void Server::Data::sleepUntil(WallTime time) {
+    if (alarm_time != time) {
+        // Once for each time: moving a timer makes a handler ready, which would end the sleep.
+        alarm_time = time;
+        alarm.expires_at(time);
+        alarm.async_wait([](error_code) {});
+    }
+    io.run_one();
+}
+
+/// Forgets connections that are closed.
+void Server::Data::sweep() {
+    std::erase_if(connections, [](const auto& connection) { return connection->closed(); });
+    serving = static_cast<std::size_t>(
+        std::count_if(connections.begin(), connections.end(),
+                      [](const auto& connection) { return connection->serving(); }));
+}
+
+/// A signal has come, which the loop may not have noticed.
+bool Server::Data::isStopped() {
+    if (!stopper.is_open()) return false;
+    pollfd signal{stopper.native_handle(), POLLIN, 0};
+    return ::poll(&signal, 1, 0) > 0;
+}
+
+/// The last step, with its frames unless a signal has ended the run.
+void Server::Data::finishRecord() {
+    while (!simulation.finishRecord(WallTime::max()) && state.await()) continue;
+}
+
+void Server::Data::end() {
+    acceptor.close();
+    for (const auto& connection : connections) connection->end();
+    if (web) web->end();
+    for (DevicePort& device : devices) device.end();
+    sweep();
+    const auto busy = [this] {
+        return !connections.empty() || (web && web->busy()) ||
+               std::any_of(devices.begin(), devices.end(),
+                           [](DevicePort& device) { return device.busy(); });
+    };
+    const WallTime deadline = steady_clock::now() + kLastFlush;
+    while (busy() && steady_clock::now() < deadline) {
+        io.run_one_until(deadline);
+        sweep();
+    }
+    closeAll();
+}
+
+void Server::Data::closeAll() {
+    for (const auto& connection : connections) connection->close();
+    if (web) web->closeAll();
+    for (DevicePort& device : devices) device.closeAll();
+    sweep();
+}
+
+Server::Server(Simulation& simulation, const Endpoint& endpoint, const ServerLimits& limits)
+    : data_(std::make_unique<Data>(simulation, endpoint, limits)) {}
+
+Server::~Server() = default;
+
+std::string Server::address() const { return data_->acceptor.address(); }
+
+std::uint16_t Server::port() const { return data_->acceptor.port(); }
+
+std::string Server::serveWeb(const Endpoint& endpoint, const std::string& title) {
+    return data_->web.emplace(data_->io, data_->state, endpoint, title).url();
+}
+
+std::string Server::serveDevice(const WireProtocol& protocol, const std::string& id,
+                                const Endpoint& endpoint) {
+    Data& data = *data_;
+    const std::string refusal = protocol.refusal(data.simulation.world(), id);
+    if (!refusal.empty()) throw UsageError(refusal);
+    return data.devices.emplace_back(data.io, data.host, data.limits, protocol, id, endpoint)
+        .address();
+}
+
+FrameTaker Server::frameTaker() {
+    return [data = data_.get()](FrameJob job) { data->state.takeFrame(std::move(job)); };
+}
+
+bool Server::isBusy() const { return data_->state.isBusy(); }
+
+std::size_t Server::clients() const { return data_->serving; }
+
+void Server::run() {
+    Data& data = *data_;
+    Simulation& simulation = data.simulation;
+    simulation.onStep([&data] { data.stepped(); });
+    while (!simulation.finished()) {
+        data.serveClients();
+        if (simulation.isDue(steady_clock::now())) data.state.prepareStep();
+        // Last before sleeping: what clients asked for decides for how long.
+        std::optional<WallTime> next;
+        next = data.state.holdsWorld() ? simulation.flushRecord()
+                                       : simulation.run(steady_clock::now(), data.turn());
+        if (simulation.finished()) break;
+        if (const WallTime turn = data.nextTurn(); turn < WallTime::max())
+            next = std::min(next.value_or(turn), turn);
+        if (!next)
+            data.io.run_one();
+        else if (*next > steady_clock::now())
+            data.sleepUntil(*next);
+    }
+    data.serveClients();
+    data.finishRecord();
+    data.end();
+}
+
+void Server::stop() {
+    asio::post(data_->io, [data = data_.get()] { data->simulation.finish(); });
+}
+
+void Server::stopOn(int descriptor) {
+    // A number of its own, for it closes what it watches.
+    const int own = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+    if (own < 0) throw std::system_error(errno, std::system_category(), "signals");
+    data_->stopper.assign(own);
+    data_->stopper.async_wait(asio::posix::descriptor_base::wait_read,
+                              [data = data_.get()](error_code error) {
+                                  if (!error) data->simulation.finish();
+                              });
+}
+
+namespace {
+
+constexpr std::int64_t kLastPort = 65535;
+
+bool isPort(std::string_view text) {
+    const bool digits = !text.empty() && std::all_of(text.begin(), text.end(),
+                                                     [](char c) { return c >= '0' && c <= '9'; });
+    return digits && parseInteger(text).value_or(kLastPort + 1) <= kLastPort;
+}
+
+[[noreturn]] void fail(std::string_view text, std::string_view what) {
+    throw UsageError(excerpt(text).append(what));
+}
+
+}  // namespace
+
+Endpoint parseEndpoint(const std::string& text) {
+    const auto colon = text.rfind(':');
+    if (colon == std::string::npos) {
+        std::string hint = " is no ADDR:PORT";
+        if (isPort(text)) hint.append(", did you mean 127.0.0.1:").append(text).append("?");
+        fail(text, hint);
+    }
+    std::string host = text.substr(0, colon);
+    const std::string port = text.substr(colon + 1);
+    if (!isPort(port)) fail(text, " has no port from 0 to 65535 behind the last colon");
+    if (host.empty())
+        fail(text,
+             std::string(" has no address, did you mean 127.0.0.1:").append(port).append("?"));
+    const bool bracketed = host.starts_with('[') && host.ends_with(']');
+    if (bracketed) host = host.substr(1, host.size() - 2);
+    if (host == "localhost" && !bracketed) host = "127.0.0.1";
+    error_code bad;
+    const auto address = asio::ip::make_address(host, bad);
+    if (bad || address.is_v6() != bracketed)
+        fail(text,
+             ": wanted a numeric address or localhost before the port, like 127.0.0.1:8000 "
+             "or [::1]:8000");
+    return {address.to_string(), static_cast<std::uint16_t>(parseInteger(port).value()),
+            address.is_loopback()};
+}
+
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+/// What the system may hold for a client: much of it would be scans that are no longer new.
+constexpr int kSendBuffer = 1 << 16;
+/// A peer that is gone without a word: asked after a minute of silence, given up after another.
+constexpr int kKeepIdle = 60, kKeepInterval = 10, kKeepCount = 6;
+constexpr auto kAcceptPause = std::chrono::milliseconds(100);
+
+template <int kName>
+using TcpOption = asio::detail::socket_option::integer<IPPROTO_TCP, kName>;
+
+void prepare(tcp::socket& socket) {
+    error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
+    socket.set_option(tcp::socket::keep_alive(true), ignored);
+    socket.set_option(TcpOption<TCP_KEEPIDLE>(kKeepIdle), ignored);
+    socket.set_option(TcpOption<TCP_KEEPINTVL>(kKeepInterval), ignored);
+    socket.set_option(TcpOption<TCP_KEEPCNT>(kKeepCount), ignored);
+    socket.non_blocking(true, ignored);
+}
+
+}  // namespace
+
+Acceptor::Acceptor(asio::io_context& io, const Endpoint& endpoint, Welcome welcome)
+    : acceptor_(io), pause_(io), welcome_(std::move(welcome)) {
+    try {
+        const tcp::endpoint wanted(asio::ip::make_address(endpoint.address), endpoint.port);
+        acceptor_.open(wanted.protocol());
+        acceptor_.set_option(tcp::acceptor::reuse_address(true));
+        acceptor_.bind(wanted);
+        acceptor_.listen();
+        local_ = acceptor_.local_endpoint();
+    } catch (const boost::system::system_error& error) {
+        std::string where = "cannot listen on ";
+        where.append(endpoint.address).append(":").append(std::to_string(endpoint.port));
+        // Asio's own category knows no std::errc.
+        throw std::system_error(error.code().value(), std::system_category(), where);
+    }
+    accept();
+}
+
+std::string Acceptor::host() const {
+    std::string out = local_.address().to_string();
+    if (local_.address().is_v6()) out.insert(0, 1, '[').append("]");
+    return out;
+}
+
+void Acceptor::close() {
+    error_code ignored;
+    acceptor_.close(ignored);
+    pause_.cancel();
+}
+
+void Acceptor::accept() {
+    acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+        if (error == asio::error::operation_aborted) return;
+        if (!error) {
+            prepare(socket);
+            welcome_(std::move(socket));
+            return accept();
+        }
+        // Out of descriptors, or a client that is gone already: it may go better in a while.
+        pause_.expires_after(kAcceptPause);
+        pause_.async_wait([this](error_code aborted) {
+            if (!aborted) accept();
+        });
+    });
+}
+
+}  // namespace ispace

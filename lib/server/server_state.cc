@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/server_state.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <utility>
+
+#include "base/number.h"
+#include "server/session.h"
+#include "sim/run_limits.h"
+
+namespace ispace {
+
+bool TokenBucket::has(WallTime now) {
+    if (now > filled_) {
+        const double seconds = std::chrono::duration<double>(now - filled_).count();
+        left_ = std::min(limits_.burst, left_ + limits_.rate * seconds);
+        filled_ = now;
+    }
+    return left_ >= 1;
+}
+
+StepQueue::StepQueue(Simulation& simulation)
+    : simulation_(&simulation), seen_(simulation.world().steps()) {}
+
+std::shared_ptr<const StepQueue::Ticket> StepQueue::ask(std::int64_t count) {
+    settle();
+    simulation_->allow(count);
+    auto ticket = std::make_shared<Ticket>(Ticket{.count = count, .left = count});
+    tickets_.push_back(ticket);
+    if (simulation_->isHeld()) end();
+    return ticket;
+}
+
+void StepQueue::settle() {
+    const std::int64_t steps = simulation_->world().steps();
+    std::int64_t taken = steps - std::exchange(seen_, steps);
+    while (taken > 0 && !tickets_.empty()) {
+        Ticket& ticket = *tickets_.front();
+        const std::int64_t share = std::min(taken, ticket.left);
+        ticket.left -= share;
+        taken -= share;
+        if (ticket.left > 0) break;
+        ticket.over = true;
+        tickets_.pop_front();
+    }
+    if (simulation_->finished() || simulation_->isHeld()) end();
+}
+
+void StepQueue::cut() {
+    settle();
+    end();
+}
+
+void StepQueue::end() {
+    for (const auto& ticket : tickets_) ticket->over = true;
+    tickets_.clear();
+}
+
+void StepQueue::drop(const std::shared_ptr<const Ticket>& ticket) {
+    settle();
+    const auto found = std::find(tickets_.begin(), tickets_.end(), ticket);
+    if (found == tickets_.end()) return;
+    simulation_->forgo(ticket->left);
+    tickets_.erase(found);
+}
+
+ServerState::ServerState(Simulation& simulation, const ServerLimits& limits)
+    : simulation_(&simulation),
+      limits_(limits),
+      steps_(simulation),
+      seen_changes_(simulation.world().changes()),
+      pauses_(limits.all_pauses),
+      wrong_tokens_(limits.wrong_tokens),
+      texts_(simulation.world().sensors().size()) {
+    if (limits.source) editor_.emplace(simulation, limits.source);
+}
+
+std::optional<std::int64_t> ServerState::hold(std::string_view id) {
+    const auto [held, is_new] = held_.try_emplace(std::string(id), holds_ + 1);
+    if (!is_new) return std::nullopt;
+    return ++holds_;
+}
+
+bool ServerState::holds(std::string_view id, std::int64_t hold) const {
+    const auto held = held_.find(id);
+    return held != held_.end() && held->second == hold;
+}
+
+void ServerState::release(std::string_view id, std::int64_t hold) {
+    if (!holds(id, hold)) return;
+    held_.erase(held_.find(id));
+    if (const auto mover = simulation_->world().moverNamed(id))
+        simulation_->world().command(*mover, {Verb::Stop, 0});
+}
+
+void ServerState::sync() {
+    const World& world = simulation_->world();
+    if (std::exchange(seen_changes_, world.changes()) == world.changes()) return;
+    std::erase_if(held_, [&](const auto& held) { return !world.moverNamed(held.first); });
+    // The same period may have another reading now.
+    texts_.clear();
+    texts_.resize(world.sensors().size());
+    kept_ = 0;
+}
+
+bool ServerState::hasNews() {
+    const std::int64_t changes = simulation_->world().changes();
+    const std::int64_t event = simulation_->events().next();
+    const bool none = told_changes_ == changes && told_event_ == event;
+    told_changes_ = changes;
+    told_event_ = event;
+    return !none;
+}
+
+std::shared_ptr<const std::string> ServerState::scan(std::size_t sensor, const ReplyForm& form) {
+    World& world = simulation_->world();
+    const SensorReading& reading = world.take(sensor);
+    Text& text = textOf(sensor, form);
+    if (text.seq == reading.seq && text.bytes) return text.bytes;
+    auto bytes = counted(scanText(world.sensors()[sensor], reading, form));
+    keep(text, reading.seq, bytes);
+    return bytes;
+}
+
+ServerState::Text& ServerState::textOf(std::size_t sensor, const ReplyForm& form) {
+    std::vector<Text>& forms = texts_[sensor];
+    const auto found = std::find_if(forms.begin(), forms.end(),
+                                    [&form](const Text& known) { return known.form == form; });
+    return found != forms.end() ? *found : forms.emplace_back(Text{form, -1, nullptr});
+}
+
+bool ServerState::holdsWorld() const {
+    // Who steps a paused world means that which was changed before.
+    const bool may_wait = simulation_->clock().kind != Clock::Kind::Real ||
+                          simulation_->isReplay() || simulation_->paused();
+    return may_wait && !isAtRest();
+}
+
+void ServerState::doAside(Workshop::Job job) {
+    if (workshop_)
+        workshop_->give(std::move(job));
+    else
+        Workshop::doNow(std::move(job));
+}
+
+bool ServerState::collect() {
+    const bool has_made = workshop_ && workshop_->collect();
+    const bool has_built = builders_ && builders_->collect();
+    return goOnSeeking() || has_built || has_made;
+}
+
+/// In the thread that builds, if there is one.
+void ServerState::build(Workshop::Job job) {
+    if (builders_)
+        builders_->give(std::move(job));
+    else
+        Workshop::doNow(std::move(job));
+}
+
+/// To end a world takes long, too.
+void ServerState::endLater(std::shared_ptr<const void> old) {
+    if (builders_ && old) builders_->give({[old = std::move(old)] {}, [](const auto&) {}});
+}
+
+std::shared_ptr<const Seek> ServerState::seek(SimTime to) {
+    const auto seek = seek_ = std::make_shared<Seek>(Seek{to, false, ""});
+    goOnSeeking();
+    return seek;
+}
+
+/// \returns true if the world has come where it was to go
+bool ServerState::goOnSeeking() {
+    // A part of it takes no longer than others may wait.
+    constexpr auto kPart = std::chrono::milliseconds(5);
+    if (!isOnTheWay()) return false;
+    try {
+        while (seek_->failure.empty() && prepare(seek_->to))
+            if (is_changing_) return false;
+        if (seek_->failure.empty() &&
+            !simulation_->seekSome(seek_->to, std::chrono::steady_clock::now() + kPart))
+            return false;
+    } catch (const FormatError& failure) {
+        seek_->failure = failure.what();
+    }
+    sync();
+    seek_->is_over = true;
+    seek_.reset();
+    return true;
+}
+
+/// \returns false if there is nothing to prepare
+bool ServerState::prepare(std::optional<SimTime> to) {
+    auto work = simulation_->preparation(to);
+    if (!work) return false;
+    is_changing_ = true;
+    build({std::move(work), [this](const std::exception_ptr& failure) {
+               is_changing_ = false;
+               try {
+                   if (failure) std::rethrow_exception(failure);
+                   endLater(simulation_->adoptPrepared());
+               } catch (const std::exception& error) {
+                   if (!seek_) throw;
+                   seek_->failure = error.what();
+               }
+               sync();
+           }});
+    return true;
+}
+
+bool ServerState::await() {
+    // How soon the end of all patience is noticed.
+    constexpr auto kSlice = std::chrono::milliseconds(20);
+    if (!workshop_ || (stopped_ && stopped_())) return false;
+    workshop_->collectWithin(kSlice);
+    return true;
+}
+
+void ServerState::change(WorldChange change,
+                         std::function<void(const std::exception_ptr& failure)> end) {
+    is_changing_ = true;
+    const WallTime began = std::chrono::steady_clock::now();
+    auto prepare = std::exchange(change.prepare, nullptr);
+    auto adopted = [this, change = std::move(change), began,
+                    end = std::move(end)](const std::exception_ptr& failure) mutable {
+        adopt(std::move(change), failure, began, end);
+    };
+    build({std::move(prepare), std::move(adopted)});
+}
+
+void ServerState::adopt(WorldChange change, std::exception_ptr failure, WallTime began,
+                        const std::function<void(const std::exception_ptr& failure)>& end) {
+    std::shared_ptr<const void> old;
+    try {
+        // The record follows the sensors by their numbers; frames may come later.
+        simulation_->finishRecord(WallTime::max());
+        if (!failure) old = change.adopt();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    is_changing_ = false;
+    end(failure);
+    changes_.spend(began, std::chrono::steady_clock::now());
+    sync();
+    endLater(std::make_shared<const std::pair<WorldChange, std::shared_ptr<const void>>>(
+        std::move(change), std::move(old)));
+}
+
+std::shared_ptr<const ServerState::Asked> ServerState::ask(std::size_t sensor,
+                                                           const ReplyForm& form) {
+    World& world = simulation_->world();
+    const bool may_wait = workshop_ && world.sensors()[sensor].isHeavy();
+    const std::int64_t seq = world.period(sensor);
+    const bool is_taken = world.isTaken(sensor);
+    const Text& text = textOf(sensor, form);
+    if (!may_wait || (is_taken && text.seq == seq && text.bytes))
+        return std::make_shared<const Asked>(Asked{scan(sensor, form)});
+    Making making{sensor, world.changes(), seq, form, std::make_shared<Asked>(), nullptr, 0};
+    for (const Making& other : makings_)
+        if (other.sensor == sensor && other.changes == making.changes && other.seq == seq &&
+            other.form == form)
+            return other.asked;
+    if (auto refused = refusal(sensor)) return refused;
+    auto take = beginMaking(making);
+    make(making, std::move(take));
+    return making.asked;
+}
+
+/// Of a picture more than may wait; null: it may.
+std::shared_ptr<const ServerState::Asked> ServerState::refusal(std::size_t sensor) const {
+    const auto sensors = simulation_->world().sensors();
+    double pixels = pixelsOf(sensors[sensor]);
+    for (const Making& making : makings_) pixels += making.pixels;
+    if (makings_.empty() || pixels <= kMostWaitingPixels) return nullptr;
+    return std::make_shared<const Asked>(Asked{
+        counted(errorLine(
+            409, {"pictures of ", formatFixed(pixels, 0), " pixels would wait to be made, at most ",
+                  formatFixed(kMostWaitingPixels, 0), " may: ask again later"})),
+        true});
+}
+
+void ServerState::takeFrame(FrameJob job) {
+    World& world = simulation_->world();
+    Making making{job.sensor, world.changes(),           world.period(job.sensor),
+                  {},         std::make_shared<Asked>(), nullptr,
+                  0};
+    auto take = beginMaking(making);
+    make(making, std::move(take), std::move(job));
+}
+
+/// Finds the reading, or \returns how to take it.
+std::function<SensorReading()> ServerState::beginMaking(Making& making) {
+    World& world = simulation_->world();
+    for (const Making& other : makings_)
+        if (other.sensor == making.sensor && other.changes == making.changes &&
+            other.seq == making.seq)
+            making.reading = other.reading;
+    std::function<SensorReading()> take;
+    if (!making.reading && world.isTaken(making.sensor)) {
+        making.reading = std::make_shared<SensorReading>(world.reading(making.sensor));
+    } else if (!making.reading) {
+        making.reading = std::make_shared<SensorReading>();
+        take = world.takeLater(making.sensor);
+    }
+    making.pixels = pixelsOf(world.sensors()[making.sensor]);
+    makings_.push_back(making);
+    return take;
+}
+
+/// Jobs are done in order: later ones find the reading of the first.
+void ServerState::make(const Making& making, std::function<SensorReading()> take, FrameJob frame) {
+    World& world = simulation_->world();
+    const auto text = std::make_shared<std::string>();
+    const bool takes = take != nullptr;
+    doAside({[making, text, take = std::move(take), sensor = world.sensors()[making.sensor],
+              use = std::move(frame.use)] {
+                 if (take) *making.reading = take();
+                 if (use) use(*making.reading);
+                 if (making.form) *text = scanText(sensor, *making.reading, *making.form);
+             },
+             [this, making, text, takes,
+              deliver = std::move(frame.deliver)](const std::exception_ptr& failure) {
+                 std::erase_if(makings_,
+                               [&](const Making& other) { return other.asked == making.asked; });
+                 const bool is_same = making.changes == simulation_->world().changes();
+                 if (!failure && takes && is_same)
+                     simulation_->world().put(making.sensor, *making.reading);
+                 if (deliver) return deliver(failure);
+                 making.asked->is_error = failure != nullptr;
+                 making.asked->bytes = counted(failure ? errorLineOf(failure) : std::move(*text));
+                 if (is_same && !failure)
+                     keep(textOf(making.sensor, *making.form), making.seq, making.asked->bytes);
+             }});
+}
+
+std::shared_ptr<const std::string> ServerState::counted(std::string text) const {
+    text.shrink_to_fit();
+    *alive_ += text.size();
+    return {new std::string(std::move(text)), [alive = alive_](const std::string* old) {
+                *alive -= old->size();
+                delete old;
+            }};
+}
+
+void ServerState::keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string> bytes) {
+    const auto size_of = [](const Text& kept) { return kept.bytes ? kept.bytes->size() : 0; };
+    kept_ += bytes->size() - size_of(text);
+    text.seq = seq;
+    text.bytes = std::move(bytes);
+    if (kept_ <= limits_.unread / 2) return;
+    // Many big readings in every form: what nobody asks for again need not stay.
+    kept_ = size_of(text);
+    for (auto& forms : texts_)
+        for (Text& other : forms)
+            if (&other != &text) other.bytes = nullptr;
+}
+
+}  // namespace ispace

@@ -1,0 +1,460 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <initializer_list>
+#include <limits>
+#include <new>
+#include <stdexcept>
+
+#include "base/message.h"
+#include "base/number.h"
+#include "server/server_state.h"
+#include "sim/command.h"
+
+namespace ispace {
+
+namespace {
+
+/// Far more than anybody waits for; sums of them stay far from overflow.
+constexpr std::int64_t kMaxCount = 1'000'000'000;
+
+}  // namespace
+
+Count parseCount(std::string_view text, std::string_view what) {
+    const auto value = parseInteger(text);
+    std::string found = ", found ";
+    found += excerpt(text);
+    std::string message(what);
+    // Too many digits for an integer are a number all the same.
+    const bool is_whole = value || text.find_first_not_of("0123456789") == std::string_view::npos;
+    if (!is_whole || text.empty())
+        return {0, 400, message.append(" is a whole number").append(found)};
+    if (!value || *value < 1 || *value > kMaxCount) {
+        message.append(" is from 1 to ").append(std::to_string(kMaxCount)).append(found);
+        return {0, 416, message};
+    }
+    return {*value, 0, ""};
+}
+
+std::string errorLine(int code, std::initializer_list<std::string_view> text) {
+    std::string line = "ERR ";
+    line.append(std::to_string(code)).append(" ");
+    for (const std::string_view piece : text) line += printable(piece);
+    return line += '\n';
+}
+
+std::string errorLineOf(const std::exception_ptr& failure) {
+    constexpr const char* kNoMemory = "there is not enough memory for this";
+    try {
+        std::rethrow_exception(failure);
+    } catch (const std::bad_alloc&) {
+        return errorLine(409, {kNoMemory});
+    } catch (const std::length_error&) {
+        return errorLine(409, {kNoMemory});
+    } catch (const std::exception& error) {
+        return errorLine(409, {error.what()});
+    }
+}
+
+std::string unknownThing(std::string_view kind, std::string_view id,
+                         const std::vector<std::string>& known, std::string_view where) {
+    constexpr std::size_t kFew = 12, kMany = 256;
+    std::string out = "no ";
+    out.append(kind).append(" ").append(excerpt(id)).append(where);
+    if (known.empty()) return out.append(": there is none");
+    // Among thousands of names one is always near, and it would take long to find.
+    if (known.size() <= kMany) {
+        if (const std::string hint = didYouMean(id, known); !hint.empty()) return out.append(hint);
+    }
+    if (known.size() > kFew) return out.append("; LIST of the role WORLD names all");
+    return out.append("; there is ").append(joined(known, ", "));
+}
+
+std::string measured(double value) { return formatFixed(value, 3); }
+
+std::string headingText(Angle heading) {
+    std::string text = measured(heading.degrees());
+    if (text == "-180.000") text.erase(0, 1);
+    return text;
+}
+
+namespace {
+
+std::string_view reasonOf(Outcome outcome) {
+    switch (outcome) {
+        case Outcome::Done:
+            return "done";
+        case Outcome::Stall:
+            return "stall";
+        case Outcome::Unreached:
+            return "unreached";
+        case Outcome::Replaced:
+            return "replaced";
+        case Outcome::Stopped:
+            return "stopped";
+    }
+    return "";
+}
+
+}  // namespace
+
+/// What can be asked for. A verb may have several rows with different roles.
+struct Session::Request {
+    std::string_view verb;
+    std::string_view arguments;  // for people
+    std::optional<Role> role;    // at which it is possible; nothing: at any
+    std::size_t least, most;     // number of arguments
+    void (Session::*answer)(Words words);
+    bool needs_token = false;  // where the run has one
+};
+
+std::span<const Session::Request> Session::requests() {
+    using C = Session;
+    // Commands are checked by parseCommand.
+    constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+    static constexpr auto kRequests = std::to_array<Request>({
+        {"TOKEN", "x", std::nullopt, 1, 1, &C::token},
+        {"ROBOT", "id", Role::None, 1, 1, &C::takeRobot},
+        {"PERSON", "id", Role::None, 1, 1, &C::takePerson},
+        {"LASER", "id", Role::None, 1, 1, &C::takeLaser},
+        {"SENSOR", "id", Role::None, 1, 1, &C::takeSensor},
+        {"WORLD", "", Role::None, 0, 0, &C::takeWorld},
+        {"FORWARD", "m", Role::Robot, 0, kAny, &C::command},
+        {"BACKWARD", "m", Role::Robot, 0, kAny, &C::command},
+        {"LEFT", "deg", Role::Robot, 0, kAny, &C::command},
+        {"RIGHT", "deg", Role::Robot, 0, kAny, &C::command},
+        {"SPEED", "m/s", Role::Robot, 0, kAny, &C::command},
+        {"ROTSPEED", "deg/s", Role::Robot, 0, kAny, &C::command},
+        {"SIDESPEED", "m/s", Role::Robot, 0, kAny, &C::command},
+        {"PATH", "x,y;... [speed=v] [pause=s] [loop=yes]", Role::Robot, 0, kAny, &C::command},
+        {"STOP", "", Role::Robot, 0, kAny, &C::command},
+        {"STATUS", "", Role::Robot, 0, 0, &C::status},
+        {"ODOMETRY", "", Role::Robot, 0, 0, &C::odometry},
+        {"SCAN", "id", Role::Robot, 1, 1, &C::scanOfRobot},
+        {"SONAR", "", Role::Robot, 0, 0, &C::sonar},
+        {"BUMPER", "", Role::Robot, 0, 0, &C::bumper},
+        {"FORWARD", "m", Role::Person, 0, kAny, &C::command},
+        {"BACKWARD", "m", Role::Person, 0, kAny, &C::command},
+        {"LEFT", "deg", Role::Person, 0, kAny, &C::command},
+        {"RIGHT", "deg", Role::Person, 0, kAny, &C::command},
+        {"SPEED", "m/s", Role::Person, 0, kAny, &C::command},
+        {"ROTSPEED", "deg/s", Role::Person, 0, kAny, &C::command},
+        {"SIDESPEED", "m/s", Role::Person, 0, kAny, &C::command},
+        {"PATH", "x,y;... [speed=v] [pause=s] [loop=yes]", Role::Person, 0, kAny, &C::command},
+        {"STOP", "", Role::Person, 0, kAny, &C::command},
+        {"STATUS", "", Role::Person, 0, 0, &C::status},
+        {"SCAN", "", Role::Laser, 0, 0, &C::scan},
+        {"STREAM", "[every=k]", Role::Laser, 0, 1, &C::stream},
+        {"STOP", "", Role::Laser, 0, 0, &C::stopStream},
+        {"BINARY", "on|off", Role::Laser, 1, 1, &C::binary},
+        {"SCAN", "", Role::Sensor, 0, 0, &C::scan},
+        {"STREAM", "[every=k]", Role::Sensor, 0, 1, &C::stream},
+        {"STOP", "", Role::Sensor, 0, 0, &C::stopStream},
+        {"BINARY", "on|off", Role::Sensor, 1, 1, &C::binary},
+        {"FORMAT", "name", Role::Sensor, 1, 1, &C::format},
+        {"LIST", "", Role::World, 0, 0, &C::list},
+        {"TIME", "", Role::World, 0, 0, &C::time},
+        {"POSES", "", Role::World, 0, 0, &C::poses},
+        {"PAUSE", "", Role::World, 0, 0, &C::pause},
+        {"RESUME", "", Role::World, 0, 0, &C::resume},
+        {"STEP", "[n]", Role::World, 0, 1, &C::step},
+        {"SEEK", "t", Role::World, 1, 1, &C::seek},
+        {"RESET", "", Role::World, 0, 0, &C::change, true},
+        {"SET", "id.key=value", Role::World, 1, kAny, &C::change, true},
+        {"ADD", "record", Role::World, 1, kAny, &C::change, true},
+        {"DELETE", "id...", Role::World, 1, kAny, &C::change, true},
+        {"LOAD", "env [layout]", Role::World, 1, 2, &C::change, true},
+        {"EVENTS", "[kinds|off]", Role::World, 0, kAny, &C::events},
+        {"MARK", "text", Role::World, 1, kAny, &C::mark},
+        {"SHUTDOWN", "", Role::World, 0, 0, &C::shutdown, true},
+        {"HELP", "", std::nullopt, 0, 0, &C::help},
+        {"QUIT", "", std::nullopt, 0, 0, &C::quit},
+    });
+    return kRequests;
+}
+
+Session::Session(ServerState& state)
+    : state_(&state),
+      changes_(state.simulation().world().changes()),
+      pauses_(state.limits().pauses),
+      spare_pauses_(state.limits().spare_pauses, std::chrono::steady_clock::now()) {}
+
+Session::~Session() { leave(); }
+
+std::string Session::greeting() { return "ISPACE 1\n"; }
+
+void Session::request(std::string_view line) {
+    std::vector<std::string_view> words;
+    for (const Piece& piece : wordsOf(line)) words.push_back(piece.text);
+    if (words.empty()) return;
+    sync();
+    tellEvents();  // what happened before the request is told before its answer
+    const bool first = std::exchange(first_, false);
+    // A web page can make a browser send requests to ports of its machine: lines of them might pass
+    // for those of a client.
+    if (role_ == Role::None && words.back().starts_with("HTTP/")) {
+        closing_ = true;
+        return error(400, {"this is no web server, see ispace-protocol(7)"});
+    }
+    const auto all = requests();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Request& request) {
+        return request.verb == words.front() && request.role.value_or(role_) == role_;
+    });
+    if (found == all.end()) return refuse(words.front(), first);
+    if (!mayUse(*found)) return;
+    const std::size_t arguments = words.size() - 1;
+    if (arguments < found->least)
+        return error(400,
+                     {found->verb, " wants an argument: ", found->verb, " ", found->arguments});
+    if (arguments > found->most)
+        return error(400, {"unexpected ", excerpt(words[found->most + 1]), " behind ", found->verb,
+                           found->most == 0 ? "" : " ", found->most == 0 ? "" : found->arguments});
+    const std::size_t before = out_.size();
+    try {
+        (this->*found->answer)(words);
+    } catch (const std::bad_alloc&) {
+        out_.resize(before);
+        out_ += errorLineOf(std::current_exception());
+    }
+    tellEnds();
+}
+
+void Session::tooLong(std::size_t limit) {
+    error(413, {"a request has at most ", std::to_string(limit), " bytes before its end of line"});
+    leave();
+    closing_ = true;
+}
+
+void Session::stepped(bool has_room) {
+    sync();
+    receiveAsked();
+    tellEnds();
+    if (has_room) tellEvents();
+    if (every_ > 0) streamSensor();
+    if (seek_ && seek_->is_over) answerSeek();
+    if (steps_) {
+        state_->steps().settle();
+        if (steps_->over) answerStep();
+    }
+}
+
+void Session::proceed() {
+    stepped();
+    goOn();
+}
+
+/// Keeps a request that cannot be answered now.
+void Session::hold(Words words, Condition until) {
+    held_ = textOf(words);
+    may_go_on_ = until;
+}
+
+void Session::goOn() {
+    if (held_.empty() || !(this->*may_go_on_)()) return;
+    may_go_on_ = nullptr;
+    request(std::exchange(held_, {}));
+}
+
+void Session::silent() {
+    sync();
+    if (!drives()) return;
+    world().command(subject_, {Verb::Stop, 0});
+    tellEnds();
+}
+
+void Session::finish() {
+    sync();
+    if (!running_.empty()) world().command(subject_, {Verb::Stop, 0});
+    if (role_ == Role::World && (wanted_ || seek_ || !held_.empty())) {
+        wanted_.reset();
+        seek_.reset();
+        held_.clear();
+        may_go_on_ = nullptr;
+        error(405, {"the run has ended"});
+    }
+    // At last there is time to wait: for the frame before a request, and that which it asks for.
+    while (wanted_ || coming_) {
+        if (!state_->await()) {
+            if (wanted_ || !held_.empty()) error(405, {"the run has ended"});
+            coming_.reset();
+            wanted_.reset();
+            held_.clear();
+            break;
+        }
+        proceed();
+    }
+    stepped();
+}
+
+std::string_view Session::verbOf(Role role) {
+    switch (role) {
+        case Role::None:
+            break;
+        case Role::Robot:
+            return "ROBOT";
+        case Role::Person:
+            return "PERSON";
+        case Role::Laser:
+            return "LASER";
+        case Role::Sensor:
+            return "SENSOR";
+        case Role::World:
+            return "WORLD";
+    }
+    return "";
+}
+
+std::string Session::roleText() const {
+    if (role_ == Role::None) return "no role";
+    std::string text = "the role ";
+    text.append(verbOf(role_));
+    return role_ == Role::World ? text : text.append(" ").append(id_);
+}
+
+void Session::error(int code, std::initializer_list<std::string_view> text) {
+    out_ += errorLine(code, text);
+}
+
+/// Why a verb is no request, or none now.
+void Session::refuse(std::string_view verb, bool first) {
+    std::vector<std::string> verbs;
+    verbs.reserve(requests().size());
+    std::string roles;
+    for (const Request& request : requests()) {
+        verbs.emplace_back(request.verb);
+        if (request.verb != verb) continue;
+        if (!roles.empty()) roles += " or ";
+        if (request.role) roles += verbOf(*request.role);
+    }
+    if (std::find(verbs.begin(), verbs.end(), verb) == verbs.end()) {
+        const std::string hint = didYouMean(upperCase(verb), verbs);
+        closing_ = first;
+        return error(400, {"unknown request ", excerpt(verb), hint, hint.empty() ? ";" : "",
+                           " HELP lists what there is",
+                           first ? "; a first line that is no request ends the connection" : ""});
+    }
+    if (role_ == Role::None)
+        return error(405, {"take a role first: ROBOT id, PERSON id, LASER id, SENSOR id or WORLD"});
+    if (roles.empty())
+        return error(405, {"this connection has ", roleText(), ": open another one for ", verb});
+    error(405, {verb, " is for the role ", roles, ", this connection has ", roleText(),
+                ": open another one"});
+}
+
+/// Answers, if it is not so.
+bool Session::mayUse(const Request& request) {
+    const ServerLimits& limits = state_->limits();
+    const bool needs = request.needs_token || (limits.token_first && request.role);
+    if (needs && !limits.token.empty() && !has_token_) {
+        error(401, {request.verb, " needs the token of this run: TOKEN x comes before it"});
+        return false;
+    }
+    if (is_gone_ && request.role) {
+        error(404, {id_, " is no more: open another connection"});
+        return false;
+    }
+    return true;
+}
+
+/// After changes of the world: what the client has may have another index, or be gone.
+void Session::sync() {
+    state_->sync();
+    if (changes_ == world().changes()) return;
+    changes_ = world().changes();
+    const auto found = [this]() -> std::optional<std::size_t> {
+        if (role_ == Role::Laser || role_ == Role::Sensor) {
+            const auto sensor = world().sensorNamed(id_);
+            return sensor && world().sensors()[*sensor].keyword() == keyword_ ? sensor
+                                                                              : std::nullopt;
+        }
+        return state_->holds(id_, hold_) ? world().moverNamed(id_) : std::nullopt;
+    };
+    if (role_ == Role::None || role_ == Role::World) return;
+    if (const auto index = found()) {
+        subject_ = *index;
+        is_gone_ = false;
+    } else if (!is_gone_) {
+        lose();
+    }
+}
+
+/// The world has lost what the client has.
+void Session::lose() {
+    const std::string time = formatMilliseconds(world().time());
+    for (const int id : running_) {
+        out_.append("FAIL id=").append(std::to_string(id));
+        out_.append(" reason=deleted t=").append(time).append("\n");
+    }
+    out_.append("EVENT gone t=").append(time).append(" id=").append(id_).append("\n");
+    is_gone_ = true;
+    running_.clear();
+    every_ = 0;
+    scan_.reset();
+    coming_.reset();
+}
+
+/// Gives up what the client holds.
+void Session::leave() {
+    if (drives()) state_->release(id_, hold_);
+    state_->steps().drop(std::exchange(steps_, nullptr));
+    state_->simulation().events().unwant(std::exchange(events_, {}));
+    seek_.reset();
+    held_.clear();
+    may_go_on_ = nullptr;
+    role_ = Role::None;
+    running_.clear();
+    every_ = 0;
+    scan_.reset();
+    wanted_.reset();
+    coming_.reset();
+}
+
+void Session::tellEnds() {
+    if (running_.empty()) return;
+    for (const CommandEnd& end : world().ends()) {
+        if (end.robot != subject_ || std::erase(running_, end.id) == 0) continue;
+        const bool done = end.outcome == Outcome::Done;
+        out_.append(done ? "DONE id=" : "FAIL id=").append(std::to_string(end.id));
+        if (!done) out_.append(" reason=").append(reasonOf(end.outcome));
+        out_.append(" t=").append(formatMilliseconds(end.time)).append("\n");
+    }
+}
+
+void Session::answerStep() {
+    out_.append("OK STEP n=").append(std::to_string(steps_->count - steps_->left));
+    out_.append(" t=").append(formatMilliseconds(world().time())).append("\n");
+    steps_.reset();
+}
+
+void Session::answerSeek() {
+    const std::string failure = std::exchange(seek_, nullptr)->failure;
+    if (!failure.empty()) return error(409, {failure});
+    out_.append("OK SEEK t=").append(formatMilliseconds(world().time())).append("\n");
+}
+
+void Session::help(Words /*words*/) {
+    std::string_view separator = " ";
+    out_ += "OK HELP";
+    for (const Request& request : requests()) {
+        if (request.role.value_or(role_) != role_) continue;
+        if (request.answer == &Session::shutdown && !state_->limits().shutdown) continue;
+        if (request.answer == &Session::change && !state_->mayChange()) continue;
+        if (request.answer == &Session::seek && !state_->simulation().maySeek()) continue;
+        if (request.answer == &Session::token && state_->limits().token.empty()) continue;
+        out_.append(separator).append(request.verb);
+        if (!request.arguments.empty()) out_.append(" ").append(request.arguments);
+        separator = " | ";
+    }
+    out_ += '\n';
+}
+
+void Session::quit(Words /*words*/) {
+    out_ += "OK QUIT\n";
+    leave();
+    closing_ = true;
+}
+
+}  // namespace ispace

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The token, changes of the world, and what happens in it.
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "base/message.h"
+#include "base/number.h"
+#include "server/network.h"
+#include "server/session.h"
+#include "server/session_requests.h"
+
+namespace ispace {
+
+namespace {
+
+/// Bytes of what an event quotes: it goes to all clients who listen.
+constexpr std::size_t kMaxText = 256;
+
+}  // namespace
+
+void Session::token(Words words) {
+    const std::string& wanted = state_->limits().token;
+    const auto now = std::chrono::steady_clock::now();
+    if (wanted.empty() || has_token_) {
+        out_ += "OK TOKEN\n";
+        return;
+    }
+    TokenBucket& wrong = state_->wrongTokens();
+    if (!wrong.has(now)) return error(429, {"too many wrong tokens: try again in a second"});
+    if (isSameSecret(words[1], wanted)) {
+        has_token_ = true;
+        out_ += "OK TOKEN\n";
+        return;
+    }
+    wrong.take();
+    constexpr int kMostWrong = 3;
+    closing_ = ++wrong_tokens_ == kMostWrong;
+    error(401, {"this is not the token of this run"});
+}
+
+/// At once, or when others' changes leave time for it.
+void Session::change(Words words) {
+    if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
+    if (!mayChange()) return hold(words, &Session::mayChange);
+    wanted_ = changeWorld(*state_, std::string(textOf(words)));
+    receiveAsked();
+}
+
+bool Session::mayChange() const { return state_->mayChangeNow(std::chrono::steady_clock::now()); }
+
+void Session::events(Words words) {
+    EventKinds kinds;
+    std::vector<std::string> known = {"off"};
+    for (const EventKind kind : allEventKinds()) known.emplace_back(nameOf(kind));
+    const bool off = words.size() == 2 && words[1] == "off";
+    for (const std::string_view word : words.subspan(1)) {
+        for (std::string_view rest = word; !off && !rest.empty();) {
+            const std::string_view name = rest.substr(0, rest.find(','));
+            rest.remove_prefix(std::min(rest.size(), name.size() + 1));
+            const auto kind = eventKindNamed(name);
+            if (!kind) {
+                const std::string hint = didYouMean(name, known);
+                return error(400, {"no kind of event is called ", excerpt(name),
+                                   hint.empty() ? "; there is " : hint,
+                                   hint.empty() ? joined(known, ", ") : ""});
+            }
+            kinds.insert(*kind);
+        }
+    }
+    if (words.size() == 1) kinds = allEventKinds();
+    tellEvents();
+    EventLog& log = state_->simulation().events();
+    log.want(kinds);
+    log.unwant(std::exchange(events_, kinds));
+    next_event_ = log.next();
+    out_ += "OK EVENTS kinds=";
+    std::string_view separator;
+    for (const EventKind kind : events_) {
+        out_.append(separator).append(nameOf(kind));
+        separator = ",";
+    }
+    out_ += events_.empty() ? "off\n" : "\n";
+}
+
+void Session::mark(Words words) {
+    std::string text(textOf(words.subspan(1)));
+    std::replace(text.begin(), text.end(), '\t', ' ');
+    if (text.size() > kMaxText)
+        return error(416, {"a mark has at most ", std::to_string(kMaxText), " bytes"});
+    if (printable(text) != text)
+        return error(400, {"a mark is text in UTF-8 without control characters"});
+    state_->simulation().events().add(EventKind::Mark, text);
+    out_.append("OK MARK t=").append(formatMilliseconds(world().time())).append("\n");
+    tellEvents();
+}
+
+namespace {
+
+void appendEvent(std::string& out, const Event& event) {
+    const auto add = [&out](std::string_view key, std::string_view value) {
+        out.append(" ").append(key).append("=").append(value);
+    };
+    out.append("EVENT ").append(nameOf(event.kind));
+    add("t", formatMilliseconds(event.time));
+    if (!event.id.empty()) add("id", event.id);
+    switch (event.kind) {
+        case EventKind::Collision:
+            add("into", event.other);
+            add("x", measured(event.place->x));
+            add("y", measured(event.place->y));
+            break;
+        case EventKind::Enter:
+        case EventKind::Leave:
+            add("zone", event.other);
+            break;
+        case EventKind::Mat:
+            add("who", event.other);
+            add("on", std::to_string(event.value));
+            break;
+        case EventKind::Gate:
+            add("who", event.other);
+            add("way", event.value == 1 ? "in" : "out");
+            break;
+        case EventKind::Seen:
+            add("by", std::to_string(event.value));
+            break;
+        case EventKind::Mark:
+            add("text", event.text);
+            break;
+        case EventKind::Change:
+            add("what", printable(std::string_view(event.text).substr(0, kMaxText)));
+            break;
+        case EventKind::Stall:
+        case EventKind::Lost:
+            break;
+    }
+    out += '\n';
+}
+
+}  // namespace
+
+/// Events since the last ones, as far as there is room for them; the rest comes later.
+void Session::tellEvents() {
+    constexpr std::size_t kRoom = std::size_t{1} << 16;
+    if (events_.empty()) return;
+    const EventLog& log = state_->simulation().events();
+    if (next_event_ < log.first()) {
+        out_.append("EVENT missed t=").append(formatMilliseconds(world().time()));
+        out_.append(" n=").append(std::to_string(log.first() - next_event_)).append("\n");
+        next_event_ = log.first();
+    }
+    const std::size_t begin = out_.size();
+    for (; next_event_ < log.next() && out_.size() < begin + kRoom; ++next_event_)
+        if (const Event& event = log.at(next_event_); events_.contains(event.kind))
+            appendEvent(out_, event);
+}
+
+}  // namespace ispace

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/server: requests that change the world.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "server/server_state.h"
+
+namespace ispace {
+
+/// Carries out a request ADD, SET, DELETE, LOAD or RESET. \returns the answer, as soon as the world
+/// has changed. \pre state.mayChange(), state.mayChangeNow()
+std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line);
+
+}  // namespace ispace

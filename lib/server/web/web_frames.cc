@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/web/web_frames.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "base/json_writer.h"
+#include "base/number.h"
+#include "drawing/color.h"
+#include "drawing/plan/plan.h"
+#include "drawing/plan/plan_json.h"
+#include "sim/mover.h"
+#include "sim/sim_time.h"
+
+namespace ispace {
+
+namespace {
+
+double rounded(double value) { return std::round(value * 1000) / 1000; }
+
+void addPose(JsonWriter& json, const Pose3& pose) {
+    json.key("pose").beginArray();
+    json.value(rounded(pose.position.x)).value(rounded(pose.position.y));
+    json.value(rounded(pose.heading.degrees())).endArray();
+}
+
+/// In the order of World::movers().
+void addMovers(JsonWriter& json, const Scene& scene) {
+    json.key("movers").beginArray();
+    for (const Mover& mover : moversOf(scene)) {
+        const RobotModel& model = mover.model;
+        json.beginObject().key("id").value(mover.id);
+        json.key("kind").value(mover.is_person ? "person" : "robot");
+        json.key("model").value(model.model).key("radius").value(model.radius);
+        json.key("length").value(model.length).key("width").value(model.width);
+        json.key("center").value(model.center).key("height").value(model.height);
+        json.key("side").value(model.max_sidespeed).endObject();
+    }
+    json.endArray();
+}
+
+/// Also mats, gates and tags, in the order of the scene.
+void addSensors(JsonWriter& json, const Scene& scene) {
+    json.key("sensors").beginArray();
+    for (const Placed& placed : scene.placed) {
+        const Record& record = scene.records[placed.record];
+        const std::string& keyword = record.keyword();
+        if (keyword == "human" || keyword == "robot") continue;
+        json.beginObject().key("id").value(scene.ids[placed.record]).key("kind").value(keyword);
+        if (placed.mount) json.key("on").value(placed.mount->robot);
+        if (sensorKind(keyword) != nullptr)
+            if (const auto& person = scene.sensors[placed.index].person)
+                json.key("on").value(scene.robots.size() + *person);
+        addPose(json, placed.mount ? placed.mount->robot_from_sensor : placed.pose);
+        if (keyword == "mat") {
+            json.key("size").value(std::vector<double>(record.tuple("size")));
+        } else if (keyword == "gate") {
+            json.key("size").value(std::vector<double>{0, record.number("width")});
+        } else if (keyword != "tag" && headingOf(placed.pose)) {
+            const BearingSpan span = bearingsOf(scene, placed);
+            json.key("view").beginArray();
+            json.value(rounded(span.from.degrees())).value(rounded(span.to.degrees()));
+            json.value(rounded(span.range)).endArray();
+        }
+        json.endObject();
+    }
+    json.endArray();
+}
+
+void addColors(JsonWriter& json) {
+    using namespace palette;
+    json.key("colors").beginObject();
+    for (const auto& [name, color] : {std::pair{"ink", kInk},
+                                      {"faint", kFaintInk},
+                                      {"grid", kGrid},
+                                      {"robot", kRobot},
+                                      {"person", kPerson},
+                                      {"sensor", kSensor},
+                                      {"mat", kMat}})
+        json.key(name).value(cssColor(color));
+    json.key("series").beginArray();
+    for (std::size_t i = 0; i < kSeriesColors; ++i) json.value(cssColor(seriesColor(i)));
+    json.endArray().endObject();
+}
+
+}  // namespace
+
+std::string webScene(const Scene& scene, std::int64_t version, const std::string& title) {
+    JsonWriter json;
+    json.beginObject().key("schema").value("ispace-web-scene/1").key("scene").value(version);
+    json.key("title").value(title).key("plan");
+    writePlan(json, scene);
+    addMovers(json, scene);
+    addSensors(json, scene);
+    addColors(json);
+    json.endObject();
+    return json.take();
+}
+
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr auto kLeastInterval = std::chrono::milliseconds(33);
+/// While no step is taken, requests may still change what there is to see.
+constexpr auto kIdleInterval = std::chrono::milliseconds(100);
+/// Frames take at most such a share of the time.
+constexpr int kShare = 20;
+/// Numbers of readings in one frame; the reading that exceeds them is still in it.
+constexpr std::size_t kMaxNumbers = 60'000;
+
+void append(std::string& out, std::int64_t number) {
+    std::array<char, 24> digits;
+    char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+    out.append(digits.data(), end);
+}
+
+/// Thousandths, of degrees hundredths.
+std::int64_t fixed(double value) { return std::llround(value * 1000); }
+std::int64_t fixed(Angle angle) { return std::llround(angle.degrees() * 100); }
+
+void append(std::string& out, std::initializer_list<std::int64_t> numbers) {
+    char separator = '[';
+    for (const std::int64_t number : numbers) {
+        out += std::exchange(separator, ',');
+        append(out, number);
+    }
+    out += ']';
+}
+
+void appendText(std::string& out, std::string_view text) { out += JsonWriter().value(text).text(); }
+
+void appendScan(std::string& out, const Laser& laser, const SensorReading& reading) {
+    const Pose3& pose = reading.pose;
+    out += ",\"pose\":";
+    append(out, {fixed(pose.position.x), fixed(pose.position.y), fixed(pose.heading),
+                 fixed(pose.tilt), fixed(pose.roll)});
+    out.append(",\"first\":").append(formatDouble(laser.first.degrees()));
+    out.append(",\"step\":").append(formatDouble(laser.step.degrees()));
+    out.append(",\"max\":").append(formatDouble(laser.max_range)).append(",\"r\":[");
+    bool comma = false;
+    for (const float range : reading.scan().ranges) {
+        if (std::exchange(comma, true)) out += ',';
+        append(out, std::isinf(range) ? -1 : std::llround(static_cast<double>(range) * 1000));
+    }
+    out += ']';
+}
+
+/// What the page shows of a reading; its size in numbers, 0 for what it shows nothing of.
+std::size_t appendReading(std::string& out, const RunSensor& sensor, const SensorReading& reading) {
+    const auto* const laser = sensor.model<Laser>();
+    const auto* const mat = std::get_if<MatState>(&reading.value);
+    const auto* const gate = std::get_if<GateState>(&reading.value);
+    if (laser == nullptr && mat == nullptr && gate == nullptr) return 0;
+    out += out.ends_with('[') ? "{\"id\":" : ",{\"id\":";
+    appendText(out, sensor.id);
+    if (laser != nullptr) {
+        appendScan(out, *laser, reading);
+    } else if (mat != nullptr) {
+        out += ",\"on\":";
+        append(out, static_cast<std::int64_t>(mat->on.size()));
+    } else {
+        out += ",\"in\":";
+        append(out, gate->in);
+        out += ",\"out\":";
+        append(out, gate->out);
+    }
+    out += '}';
+    return laser == nullptr ? 1 : reading.scan().ranges.size();
+}
+
+}  // namespace
+
+void WebFrames::look(WallTime now) {
+    if (now < next_look_) return;
+    const auto start = steady_clock::now();
+    const World& world = simulation_->world();
+    const bool stepped = world.steps() != steps_ || world.changes() != version_;
+    std::string state = stateText();
+    if (stepped || state != state_) {
+        steps_ = world.steps();
+        if (std::exchange(version_, world.changes()) != world.changes())
+            sent_.assign(world.sensors().size(), -1);
+        state_ = std::move(state);
+        ++number_;
+        changes_.reset();
+        whole_.reset();
+    }
+    next_look_ = now + std::max<std::chrono::nanoseconds>(stepped ? kLeastInterval : kIdleInterval,
+                                                          kShare * (steady_clock::now() - start));
+}
+
+WebFrames::Text WebFrames::frame(std::int64_t known) {
+    // Both at once: what is new is told once.
+    const bool has_last = known == number_ - 1 && known > 0;
+    Text& text = has_last ? changes_ : whole_;
+    if (!text) {
+        const auto start = steady_clock::now();
+        text = std::make_shared<const std::string>(withReadings(!has_last));
+        next_look_ += kShare * (steady_clock::now() - start);
+    }
+    return text;
+}
+
+WebFrames::Text WebFrames::scene() {
+    if (std::exchange(scene_version_, sceneVersion()) != sceneVersion() || !scene_)
+        scene_ = std::make_shared<const std::string>(
+            webScene(simulation_->world().scene(), scene_version_, title_));
+    return scene_;
+}
+
+std::string WebFrames::stateText() const {
+    const World& world = simulation_->world();
+    const Clock& clock = simulation_->clock();
+    std::string out = ",\"scene\":";
+    append(out, world.changes());
+    out.append(",\"t\":").append(formatMilliseconds(world.time())).append(",\"steps\":");
+    append(out, world.steps());
+    out.append(",\"clock\":\"");
+    out.append(clock.kind == Clock::Kind::Real   ? "real"
+               : clock.kind == Clock::Kind::Fast ? "fast"
+                                                 : "step");
+    out.append("\",\"rate\":").append(formatDouble(clock.rate));
+    out.append(",\"paused\":").append(simulation_->paused() ? "true" : "false");
+    out.append(",\"replay\":").append(simulation_->isReplay() ? "true" : "false");
+    out.append(",\"over\":").append(simulation_->isHeld() ? "true" : "false");
+    out.append(",\"movers\":[");
+    for (std::size_t i = 0; i < world.movers().size(); ++i) {
+        const RobotStatus status = world.status(i);
+        if (i > 0) out += ',';
+        append(out, {fixed(status.pose.position.x), fixed(status.pose.position.y),
+                     fixed(status.pose.heading), fixed(status.speed), fixed(status.rotspeed),
+                     status.stall ? 1 : 0, fixed(status.phase)});
+    }
+    return out += ']';
+}
+
+bool WebFrames::isNew(std::size_t sensor) const {
+    return sent_[sensor] != simulation_->world().reading(sensor).seq;
+}
+
+std::string WebFrames::withReadings(bool all) {
+    const World& world = simulation_->world();
+    std::string out = "{\"schema\":\"ispace-web-frame/1\",\"frame\":";
+    append(out, number_);
+    out.append(state_).append(",\"all\":").append(all ? "true" : "false").append(",\"readings\":[");
+    std::size_t numbers = 0;
+    // The scene may have changed since: the next frame is about that.
+    const std::size_t count = version_ == world.changes() ? sent_.size() : 0, first = turn_;
+    for (std::size_t i = 0; i < count && numbers < kMaxNumbers; ++i) {
+        const std::size_t sensor = (first + i) % count;
+        if (!all && !isNew(sensor)) continue;
+        const SensorReading& reading = world.reading(sensor);
+        numbers += appendReading(out, world.sensors()[sensor], reading);
+        if (all) continue;
+        sent_[sensor] = reading.seq;
+        turn_ = (sensor + 1) % count;
+    }
+    return out += "]}";
+}
+
+}  // namespace ispace

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/web_server.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "server/network.h"
+
+namespace ispace {
+
+namespace {
+
+using boost::asio::ip::tcp;
+using std::chrono::steady_clock;
+
+/// A browser uses some six for files and one for each robot it drives.
+constexpr std::size_t kMaxConnections = 64;
+
+}  // namespace
+
+WebServer::WebServer(boost::asio::io_context& io, ServerState& state, const Endpoint& endpoint,
+                     std::string title)
+    : frames_(state.simulation(), std::move(title)),
+      acceptor_(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }),
+      origin_(acceptor_.host(), acceptor_.port()),
+      share_{&state, &frames_, &origin_},
+      alarm_(io) {}
+
+/// If all places are taken, the oldest connection goes that has not become a WebSocket, or the
+/// WebSocket that has been idle longest.
+void WebServer::welcome(tcp::socket socket) {
+    sweep();
+    if (connections_.size() >= kMaxConnections) {
+        auto leaves = std::find_if(connections_.cbegin(), connections_.cend(),
+                                   [](const auto& connection) { return !connection->isSocket(); });
+        if (leaves == connections_.cend())
+            leaves = longestIdle(connections_,
+                                 steady_clock::now() - share_.state->limits().roleless_grace);
+        if (leaves == connections_.cend()) return;
+        (*leaves)->close();
+        sweep();
+    }
+    connections_.push_back(serveBrowser(std::move(socket), share_));
+}
+
+void WebServer::stepped() {
+    for (const auto& connection : connections_) connection->stepped();
+}
+
+void WebServer::serve() {
+    const auto now = steady_clock::now();
+    bool wanted = false;
+    for (const auto& connection : connections_) {
+        if (connection->waiting()) connection->proceed();
+        connection->checkPatience(now);
+        // One that waits for a frame of a world that stands has asked for something.
+        const auto idle = connection->idleSince();
+        if (idle && *idle <= now - share_.state->limits().roleless && !connection->wantsFrame())
+            connection->dismiss();
+        wanted = wanted || connection->wantsFrame();
+    }
+    sweep();
+    if (!wanted) return;
+    frames_.look(now);
+    for (const auto& connection : connections_) connection->offerFrame();
+    if (alarm_time_ == frames_.nextLook()) return;
+    // Wakes the loop, which then comes here.
+    alarm_time_ = frames_.nextLook();
+    alarm_.expires_at(alarm_time_);
+    alarm_.async_wait([](boost::system::error_code) {});
+}
+
+bool WebServer::waitsToChange() const {
+    return std::any_of(connections_.begin(), connections_.end(),
+                       [](const auto& connection) { return connection->waitsToChange(); });
+}
+
+void WebServer::sweep() {
+    std::erase_if(connections_, [](const auto& connection) { return connection->closed(); });
+}
+
+bool WebServer::busy() {
+    sweep();
+    return !connections_.empty();
+}
+
+void WebServer::end() {
+    acceptor_.close();
+    alarm_.cancel();
+    frames_.look(std::max(steady_clock::now(), frames_.nextLook()));
+    for (const auto& connection : connections_) connection->end();
+    sweep();
+}
+
+void WebServer::closeAll() {
+    for (const auto& connection : connections_) connection->close();
+    sweep();
+}
+
+}  // namespace ispace

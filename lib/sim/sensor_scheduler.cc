@@ -1,0 +1,439 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Depth frames and pictures, which are taken when they are asked for.
+#include "sim/sensor_scheduler.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+#include "scene/sensor/sensor.h"
+#include "sense/selection.h"
+#include "sim/world_state.h"
+
+namespace ispace {
+
+namespace {
+
+/// Sensors that are read together: enough for other threads to gain by it, few enough for those who
+/// wait meanwhile.
+constexpr std::size_t kBlock = 64, kBlockBeams = 100'000;
+
+/// A pose on a carrier, in the carrier's frame.
+Pose3 localPose(const Pose2& carrier, const Pose3& pose) {
+    const Vec2 way = pose.position.onFloor() - carrier.position;
+    const Vec2 along = unitVector(carrier.heading);
+    return {{dot(way, along), cross(along, way), pose.position.z},
+            pose.heading - carrier.heading,
+            pose.tilt,
+            pose.roll};
+}
+
+/// As `scan` takes them with the same seed.
+std::optional<std::uint64_t> noiseSeedOf(const SensorReader::Options& options) {
+    return options.noise ? std::optional(options.seed) : std::nullopt;
+}
+
+}  // namespace
+
+int SensorReader::frameOf(std::int64_t number) {
+    constexpr std::int64_t kLast = std::numeric_limits<int>::max();
+    return static_cast<int>(std::min(number, kLast));
+}
+
+SensorReader::SensorReader(Setting& setting, const Options& options)
+    : scene_(setting.scene.get()),
+      options_{.noise_seed = noiseSeedOf(options)},
+      sound_{.noise_seed = noiseSeedOf(options)},
+      step_(options.step),
+      floor_(*scene_),
+      worlds_(&setting.worlds),
+      photographer_(setting.photographer.get()) {
+    addSensors();
+    const std::size_t count = sensors_.size();
+    due_.resize(count);
+    readings_.resize(count);
+    durations_.resize(count);
+    casters_.resize(count);
+    parts_.resize(count);
+    latest_.reserve(count);
+    LocalBeams beams;
+    for (std::size_t i = 0; i < count; ++i) {
+        periods_.emplace_back(sensors_[i].rate());
+        is_heavy_.push_back(sensors_[i].isHeavy() ? 1 : 0);
+        const Sensor* const sensor = sensors_[i].sensor();
+        if (sensor == nullptr) {
+            readings_[i].pose = sensors_[i].floorPose();
+            continue;
+        }
+        readings_[i].pose = sensor->pose;
+        if (sensor->is<Ranger>()) readings_[i].value = DepthFrame();
+        if (sensor->is<Camera>()) readings_[i].value = Photo();
+        const auto* laser = sensors_[i].model<Laser>();
+        if (laser == nullptr) continue;
+        durations_[i] = durationOf(*laser, step_);
+        // What memory does not suffice for is refused before a step needs it.
+        std::get<Scan>(readings_[i].value).ranges.reserve(static_cast<std::size_t>(laser->beams));
+        casters_[i].emplace(*worlds_, bodies_, *sensor, sensor->mount.has_value(), options_,
+                            beams.of(*laser));
+    }
+    if (count > 0) trail_ = Trail(*std::max_element(durations_.begin(), durations_.end()));
+    spin_heights_ = spinHeights();
+    for (const Placed& placed : scene_->placed)
+        if (scene_->records[placed.record].keyword() == "human")
+            people_starts_.push_back(
+                {placed.pose.position.onFloor(), wrapped(placed.pose.heading)});
+}
+
+void SensorReader::addSensors() {
+    for (const Sensor& sensor : scene_->sensors) {
+        if (!kindOf(sensor.model).is_read) continue;
+        sensors_.push_back({sensor.id, sensor});
+        if (sensor.is<Receiver>()) receivers_.push_back(sensor);
+        if (sensor.is<Tag>()) tags_.push_back(sensor);
+    }
+    for (std::size_t i = 0; i < floor_.mats().size(); ++i)
+        sensors_.push_back({floor_.matIds()[i], floor_.mats()[i]});
+    for (std::size_t i = 0; i < floor_.gates().size(); ++i)
+        sensors_.push_back({floor_.gateIds()[i], floor_.gates()[i]});
+}
+
+void SensorReader::follow(const SensorReader& before,
+                          const std::unordered_set<std::string_view>& stayers,
+                          const Movers& movers) {
+    followTrail(before, stayers, movers);
+    std::unordered_map<std::string_view, std::size_t> old;
+    for (std::size_t i = 0; i < before.sensors_.size(); ++i) old.emplace(before.sensors_[i].id, i);
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+        const auto found = old.find(sensors_[i].id);
+        if (found == old.end()) continue;
+        if (!stayers.contains(found->first)) continue;
+        const Sensor* const sensor = sensors_[i].sensor();
+        const Sensor* const was = before.sensors_[found->second].sensor();
+        if (sensor != nullptr && was != nullptr && !sensor->mount && !sensor->person &&
+            sensor->pose != was->pose)
+            continue;
+        readings_[i] = before.readings_[found->second];
+        due_[i] = before.due_[found->second];
+        // Of every step, where the reading is of a period.
+        if (std::holds_alternative<Gate>(sensors_[i].what))
+            floor_.goOn(gateOf(i), before.floor_.gate(before.gateOf(found->second)));
+    }
+}
+
+void SensorReader::jumped() {
+    moved();
+    floor_.forgetPlaces();
+}
+
+void SensorReader::begin(SimTime time, const Movers& movers) {
+    finish();
+    floor_.follow(movers);
+    if (trail_.isKept()) trail_.add(time, movers, std::exchange(trail_moved_, false));
+    latest_.clear();
+    for (std::size_t i = 0; i < due_.size(); ++i) {
+        if (due_[i] <= time && is_heavy_[i] == 0) latest_.push_back(i);
+    }
+    if (latest_.empty()) return;
+    update(latest_, time, movers);
+    unread_ = latest_;
+    unread_time_ = time;
+    next_block_ = 0;
+    makeBlocks();
+    unread_blocks_ = block_ends_.size();
+    is_read_.assign(unread_blocks_, 0);
+}
+
+/// Divides what is to be read into blocks.
+void SensorReader::makeBlocks() {
+    block_ends_.clear();
+    std::size_t count = 0, beams = 0;
+    for (std::size_t k = 0; k < unread_.size(); ++k) {
+        const auto* const laser = sensors_[unread_[k]].model<Laser>();
+        ++count;
+        beams += laser == nullptr ? 0 : static_cast<std::size_t>(laser->beams);
+        if (count < kBlock && beams < kBlockBeams && k + 1 < unread_.size()) continue;
+        block_ends_.push_back(k + 1);
+        count = beams = 0;
+    }
+}
+
+std::size_t SensorReader::blockOf(std::size_t unread) const {
+    const auto end = std::upper_bound(block_ends_.begin(), block_ends_.end(), unread);
+    return static_cast<std::size_t>(end - block_ends_.begin());
+}
+
+void SensorReader::readBlock(std::size_t block) {
+    if (std::exchange(is_read_[block], 1) != 0) return;
+    --unread_blocks_;
+    tbb::parallel_for(block == 0 ? 0 : block_ends_[block - 1], block_ends_[block],
+                      [&](std::size_t k) { measure(unread_[k], unread_time_); });
+}
+
+/// With those of its block, which other threads then read.
+void SensorReader::complete(std::size_t sensor) {
+    const auto found = std::lower_bound(unread_.begin(), unread_.end(), sensor);
+    if (found != unread_.end() && *found == sensor)
+        readBlock(blockOf(static_cast<std::size_t>(found - unread_.begin())));
+}
+
+bool SensorReader::readSome(std::chrono::steady_clock::time_point until) {
+    while (unread_blocks_ > 0) {
+        readBlock(next_block_++);
+        if (std::chrono::steady_clock::now() >= until) break;
+    }
+    return unread_blocks_ == 0;
+}
+
+void SensorReader::finish() {
+    if (std::exchange(unread_blocks_, 0) == 0) return;
+    tbb::parallel_for(std::size_t{0}, unread_.size(), [&](std::size_t k) {
+        if (is_read_[blockOf(k)] == 0) measure(unread_[k], unread_time_);
+    });
+}
+
+/// Where it sits on its carrier, in the carrier's frame.
+Pose3 SensorReader::mountOf(const Sensor& sensor) const {
+    if (sensor.mount) return sensor.mount->robot_from_sensor;
+    return localPose(people_starts_[sensor.person.value()], sensor.pose);
+}
+
+Pose3 SensorReader::poseOn(const Sensor& sensor, const Pose2& carrier) const {
+    if (sensor.person && carrier == people_starts_[*sensor.person]) return sensor.pose;
+    return mountedPose(carrier, mountOf(sensor));
+}
+
+Pose3 SensorReader::poseOf(const Sensor& sensor, const Movers& movers) const {
+    if (sensor.mount) return poseOn(sensor, movers.robots[sensor.mount->robot].pose);
+    return sensor.person ? poseOn(sensor, movers.people[*sensor.person].pose) : sensor.pose;
+}
+
+/// All that does not depend on rays: times, poses, bodies.
+void SensorReader::update(std::span<const std::size_t> due, SimTime time, const Movers& movers) {
+    bool hears = false;
+    for (const std::size_t i : due) {
+        SensorReading& reading = readings_[i];
+        reading.time = beginOf(i, time);
+        reading.seq = periods_[i].newest(reading.time);
+        const SimTime next = periods_[i].begin(reading.seq + 1);
+        due_[i] = std::min(next, SimTime::max() - durations_[i]) + durations_[i];
+        const Sensor* const sensor = sensors_[i].sensor();
+        if (sensor == nullptr) continue;
+        const auto* laser = std::get_if<Laser>(&sensor->model);
+        const bool sweeps = laser != nullptr && laser->sweep != SweepAxis::None;
+        if (sensor->mount || sensor->person || sweeps)
+            reading.pose = durations_[i] > SimTime(0)
+                               ? poseOf(*sensor, Trail::Walk(trail_, reading.time), 0)
+                               : poseOf(*sensor, movers);
+        if (laser != nullptr) {
+            if (sweeps)
+                reading.pose = sweptPose(*laser, reading.pose,
+                                         static_cast<double>(reading.seq % laser->scans()));
+        } else {
+            hears = true;
+        }
+    }
+    updateBodies(movers);
+    makeTrailBodies(due);
+    if (!hears) return;
+    worlds_->prepareMesh(Surfaces::Solid);
+    std::size_t receiver = 0, tag = 0;
+    for (const RunSensor& sensor : sensors_) {
+        if (sensor.model<Receiver>() != nullptr)
+            receivers_[receiver++].pose = poseOf(*sensor.sensor(), movers);
+        if (sensor.model<Tag>() != nullptr) tags_[tag++].pose = poseOf(*sensor.sensor(), movers);
+    }
+}
+
+void SensorReader::updateBodies(const Movers& movers) {
+    if (!std::exchange(moved_, false)) return;
+    setBodies(Places(movers), {}, bodies_);
+    kept_bodies_.reset();
+}
+
+void SensorReader::setBodies(const Places& places, std::span<const double> heights,
+                             MovingBodies& bodies) const {
+    // Kept for its memory.
+    thread_local std::vector<MovingBody> list;
+    list.clear();
+    for (std::size_t i = 0; i < places.robots.size(); ++i) {
+        const MovingBody robot =
+            robotBody(scene_->robots[i].model, places.robots[i], static_cast<std::uint32_t>(i));
+        if (isAtSome(robot, heights)) list.push_back(robot);
+    }
+    for (std::size_t i = 0; i < places.people.size(); ++i)
+        addHumanBodies(scene_->people[i].height, places.people[i],
+                       kFirstPerson + static_cast<std::uint32_t>(i), places.swings[i], heights,
+                       list);
+    bodies.rebuild(list);
+}
+
+void SensorReader::measure(std::size_t sensor, SimTime time) {
+    const RunSensor& placed = sensors_[sensor];
+    if (placed.sensor() != nullptr) {
+        std::visit([&](const auto& model) { measure(model, sensor, time); },
+                   placed.sensor()->model);
+        return;
+    }
+    if (std::holds_alternative<Gate>(placed.what))
+        readings_[sensor].value = floor_.gate(gateOf(sensor));
+    else
+        readings_[sensor].value = floor_.mat(matOf(sensor));
+}
+
+void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime /*time*/) {
+    SensorReading& reading = readings_[sensor];
+    Scan& scan = std::get<Scan>(reading.value);
+    const std::int64_t scans = laser.scans();
+    scan.number = static_cast<int>(reading.seq % scans);
+    scan.frame = frameOf(reading.seq / scans);
+    scan.pose = reading.pose;
+    scan.time = seconds(reading.time);
+    if (durations_[sensor] == SimTime(0)) return casters_[sensor]->cast(scan);
+    sweep(laser, sensor);
+}
+
+void SensorReader::measure(const Tag& /*tag*/, std::size_t sensor, SimTime time) {
+    SensorReading& reading = readings_[sensor];
+    Sensor tag = *sensors_[sensor].sensor();
+    tag.pose = reading.pose;
+    reading.value = castBurst(worlds_->mesh(Surfaces::Solid), bodies_, tag, receivers_,
+                              frameOf(reading.seq), seconds(time), sound_);
+}
+
+void SensorReader::measure(const Receiver& /*receiver*/, std::size_t sensor, SimTime time) {
+    SensorReading& reading = readings_[sensor];
+    Sensor receiver = *sensors_[sensor].sensor();
+    receiver.pose = reading.pose;
+    Hearings hearings;
+    for (const Sensor& tag : tags_) {
+        const Burst burst =
+            castBurst(worlds_->mesh(Surfaces::Solid), bodies_, tag, std::span(&receiver, 1),
+                      frameOf(reading.seq), seconds(time), sound_);
+        hearings.tags.push_back(
+            {tag.id, burst.heard.empty() ? std::nullopt : std::optional(burst.heard.front().time)});
+    }
+    reading.value = std::move(hearings);
+}
+
+Scan SensorReader::look(const Sensor& laser, const Movers& movers) {
+    Scan scan;
+    scan.pose = poseOf(laser, movers);
+    worlds_->prepare(scan.pose);
+    updateBodies(movers);
+    LaserCaster(*worlds_, bodies_, laser, true, ReadingOptions()).cast(scan);
+    return scan;
+}
+
+const MovingBodies& SensorReader::bodies(const Movers& movers) {
+    updateBodies(movers);
+    return bodies_;
+}
+
+const RayWorld& SensorReader::mesh(Surfaces surfaces) {
+    worlds_->prepareMesh(surfaces);
+    return worlds_->mesh(surfaces);
+}
+
+/// Where all is that pictures show.
+struct SensorReader::Stage {
+    std::vector<Pose3> poses;  // of Scene::placed
+    std::vector<Angle> swings;
+};
+
+std::shared_ptr<const SensorReader::Stage> SensorReader::stage(const Movers& movers) {
+    if (!std::exchange(pictures_moved_, false)) return stage_;
+    std::vector<Pose3> poses;
+    poses.reserve(scene_->placed.size());
+    std::size_t person = 0;
+    for (const Placed& placed : scene_->placed) {
+        const std::string& keyword = scene_->records[placed.record].keyword();
+        Pose3 pose = placed.pose;
+        if (sensorKind(keyword) != nullptr) {
+            pose = poseOf(scene_->sensors[placed.index], movers);
+        } else if (keyword == "robot" || keyword == "human") {
+            const Motion& motion =
+                keyword == "robot" ? movers.robots[placed.index] : movers.people[person++];
+            pose.position.x = motion.pose.position.x;
+            pose.position.y = motion.pose.position.y;
+            pose.heading = motion.pose.heading;
+        }
+        poses.push_back(pose);
+    }
+    stage_ = std::make_shared<const Stage>(
+        Stage{std::move(poses), {movers.swings.begin(), movers.swings.end()}});
+    return stage_;
+}
+
+SensorReading SensorReader::begun(std::size_t sensor, SimTime time, const Movers& movers) const {
+    SensorReading reading;
+    reading.time = time;
+    reading.seq = periods_[sensor].newest(time);
+    reading.pose = poseOf(*sensors_[sensor].sensor(), movers);
+    return reading;
+}
+
+/// Several threads may ask for pictures; they are taken one after another.
+void SensorReader::photograph(const Sensor& camera, const std::shared_ptr<const Stage>& stage,
+                              SensorReading& reading) {
+    const std::lock_guard lock(photographing_);
+    if (photographed_ != stage) photographer_->moveTo(stage->poses, stage->swings);
+    photographed_ = stage;
+    Photo photo = photographer_->take(camera, reading.pose, frameOf(reading.seq));
+    photo.time = seconds(reading.time);
+    reading.value = std::move(photo);
+}
+
+void SensorReader::senseDepth(const Sensor& ranger, const MovingBodies& bodies,
+                              SensorReading& reading) const {
+    DepthFrame frame =
+        castDepth(worlds_->mesh(), bodies, ranger, reading.pose, frameOf(reading.seq), options_);
+    frame.time = seconds(reading.time);
+    reading.value = std::move(frame);
+}
+
+void SensorReader::take(std::size_t sensor, SimTime time, const Movers& movers) {
+    if (isTaken(sensor, time)) return;
+    const Sensor& taken = *sensors_[sensor].sensor();
+    SensorReading reading = begun(sensor, time, movers);
+    if (taken.is<Camera>()) {
+        photograph(taken, stage(movers), reading);
+    } else {
+        worlds_->prepareMesh();
+        updateBodies(movers);
+        senseDepth(taken, bodies_, reading);
+    }
+    put(sensor, std::move(reading));
+    // Read in this step like the others.
+    latest_.insert(std::upper_bound(latest_.begin(), latest_.end(), sensor), sensor);
+}
+
+std::function<SensorReading()> SensorReader::takeLater(std::size_t sensor, SimTime time,
+                                                       const Movers& movers) {
+    const Sensor& taken = *sensors_[sensor].sensor();
+    const SensorReading begun = this->begun(sensor, time, movers);
+    if (taken.is<Camera>())
+        return [this, &taken, begun, stage = stage(movers)] {
+            SensorReading reading = begun;
+            photograph(taken, stage, reading);
+            return reading;
+        };
+    worlds_->prepareMesh();
+    updateBodies(movers);
+    if (!kept_bodies_) kept_bodies_ = std::make_shared<const MovingBodies>(bodies_);
+    return [this, &taken, begun, bodies = kept_bodies_] {
+        SensorReading reading = begun;
+        senseDepth(taken, *bodies, reading);
+        return reading;
+    };
+}
+
+void SensorReader::put(std::size_t sensor, SensorReading reading) {
+    due_[sensor] = periods_[sensor].begin(reading.seq + 1);
+    readings_[sensor] = std::move(reading);
+}
+
+}  // namespace ispace

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/sim.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <unordered_set>
+#include <vector>
+
+#include "scene/scene.h"
+#include "sense/photo.h"
+#include "sense/scan.h"
+#include "sim/motion.h"
+#include "sim/mover.h"
+#include "sim/sensor_reading.h"
+#include "trace/moving_bodies.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+struct Setting;
+
+/// Reads the sensors of a world when they are due: in the first step at or after the beginning of
+/// a period, all at the moment of that step. The beams of a laser that spins follow one another
+/// from that moment on: each is of its own time, and the scan is read with the last one. Its first
+/// scan is of one moment.
+class SensorReader {
+  public:
+    struct Options {
+        std::uint64_t seed = 0;  ///< of noise, and of the light of pictures
+        bool noise = false;
+        SimTime step = SimTime(1);  ///< of the world
+    };
+    /// The setting must outlive it, and be that of no other.
+    SensorReader(Setting& setting, const Options& options);
+
+    /// After each step: follows those who move, and reads what is due, in parallel. Heavy
+    /// sensors are left out.
+    void read(SimTime time, const Movers& movers) {
+        begin(time, movers);
+        finish();
+    }
+    /// The same, but what is due is read later: by readSome(), or each when reading() is asked for.
+    /// It is as it would be now, whatever movers do until then.
+    void begin(SimTime time, const Movers& movers);
+    /// Reads until all is read, or about until then. \returns true if all is read
+    bool readSome(std::chrono::steady_clock::time_point until);
+    void finish();
+    /// After a step that nobody looks at: what is due is read after a later one.
+    void pass(const Movers& movers) {
+        finish();
+        latest_.clear();
+        floor_.follow(movers);
+        trail_.clear();
+    }
+    /// Before the first reading in another scene: those that stay as they are keep their last
+    /// reading, and gates their counts; scans that have begun go on. \param movers of this scene
+    /// \pre all of `before` is read
+    void follow(const SensorReader& before, const std::unordered_set<std::string_view>& stayers,
+                const Movers& movers);
+    /// Says that robots or people have moved.
+    void moved() { moved_ = trail_moved_ = pictures_moved_ = true; }
+    /// They were put elsewhere, so nobody passed a gate on the way.
+    void jumped();
+
+    /// Sensors in the order of the scene, as they start; then mats, then gates.
+    [[nodiscard]] const std::vector<RunSensor>& sensors() const { return sensors_; }
+    [[nodiscard]] const SensorReading& reading(std::size_t sensor) {
+        if (unread_blocks_ > 0) complete(sensor);
+        return readings_[sensor];
+    }
+    /// Those read last, ascending.
+    [[nodiscard]] std::span<const std::size_t> latest() const { return latest_; }
+    /// The newest period; readings of heavy sensors may be of earlier ones.
+    [[nodiscard]] std::int64_t period(std::size_t sensor, SimTime time) const {
+        return is_heavy_[sensor] == 0 ? readings_[sensor].seq : periods_[sensor].newest(time);
+    }
+    /// True unless it is heavy and was not read in its newest period.
+    [[nodiscard]] bool isTaken(std::size_t sensor, SimTime time) const {
+        return due_[sensor] > time || is_heavy_[sensor] == 0;
+    }
+    /// Reads a heavy sensor now if it is not taken.
+    void take(std::size_t sensor, SimTime time, const Movers& movers);
+    /// The same in two parts: see World::takeLater.
+    std::function<SensorReading()> takeLater(std::size_t sensor, SimTime time,
+                                             const Movers& movers);
+    void put(std::size_t sensor, SensorReading reading);
+
+    [[nodiscard]] const FloorSensors& floor() const { return floor_; }
+    /// The bodies of robots and people where they are.
+    const MovingBodies& bodies(const Movers& movers);
+    /// What a laser on a robot would measure now, see World::look.
+    Scan look(const Sensor& laser, const Movers& movers);
+    /// What surrounds them, as light or sound meets it.
+    const RayWorld& mesh(Surfaces surfaces);
+
+  private:
+    void addSensors();
+    // Gates come last, mats before them.
+    [[nodiscard]] std::size_t gateOf(std::size_t sensor) const {
+        return sensor + floor_.gates().size() - sensors_.size();
+    }
+    [[nodiscard]] std::size_t matOf(std::size_t sensor) const {
+        return gateOf(sensor) + floor_.mats().size();
+    }
+    void makeBlocks();
+    [[nodiscard]] std::size_t blockOf(std::size_t unread) const;
+    void complete(std::size_t sensor);
+    void readBlock(std::size_t block);
+    void update(std::span<const std::size_t> due, SimTime time, const Movers& movers);
+    void updateBodies(const Movers& movers);
+    struct Stage;
+    std::shared_ptr<const Stage> stage(const Movers& movers);
+    [[nodiscard]] SensorReading begun(std::size_t sensor, SimTime time, const Movers& movers) const;
+    void photograph(const Sensor& camera, const std::shared_ptr<const Stage>& stage,
+                    SensorReading& reading);
+    void senseDepth(const Sensor& ranger, const MovingBodies& bodies, SensorReading& reading) const;
+    static int frameOf(std::int64_t number);
+    [[nodiscard]] std::vector<double> spinHeights() const;
+    void makeTrailBodies(std::span<const std::size_t> due);
+    /// \param heights those of all level rays that will meet them; empty: rays go everywhere
+    void setBodies(const Places& places, std::span<const double> heights,
+                   MovingBodies& bodies) const;
+    void followTrail(const SensorReader& before,
+                     const std::unordered_set<std::string_view>& stayers, const Movers& movers);
+    static SimTime durationOf(const Laser& laser, SimTime step);
+    [[nodiscard]] SimTime beginOf(std::size_t sensor, SimTime time) const;
+    [[nodiscard]] Pose3 poseOf(const Sensor& sensor, const Movers& movers) const;
+    [[nodiscard]] Pose3 poseOf(const Sensor& sensor, const Trail::Walk& walk, double later) const;
+    [[nodiscard]] Pose3 poseOn(const Sensor& sensor, const Pose2& carrier) const;
+    [[nodiscard]] Pose3 mountOf(const Sensor& sensor) const;
+    static const Pose2& carrierIn(const Places& places, const Sensor& sensor);
+    class BeamOrder;
+    void sweep(const Laser& laser, std::size_t sensor);
+    template <typename Visit>
+    void forEachLeg(const BeamOrder& order, std::size_t sensor, Visit visit);
+    void sweepInSpace(const Laser& laser, std::size_t sensor);
+    bool sweepLevel(const Laser& laser, std::size_t sensor, BeamFrames& frames);
+    void measure(std::size_t sensor, SimTime time);
+    void measure(const Laser& laser, std::size_t sensor, SimTime time);
+    // These are taken.
+    void measure(const Ranger& /*ranger*/, std::size_t /*sensor*/, SimTime /*time*/) {}
+    void measure(const Camera& /*camera*/, std::size_t /*sensor*/, SimTime /*time*/) {}
+    void measure(const Tag& tag, std::size_t sensor, SimTime time);
+    void measure(const Receiver& receiver, std::size_t sensor, SimTime time);
+
+    const Scene* scene_;
+    ReadingOptions options_;
+    UltrasoundOptions sound_;
+    SimTime step_;
+    FloorSensors floor_;
+    std::vector<RunSensor> sensors_;  // as they start
+    Worlds* worlds_;
+    std::vector<Periods> periods_;
+    std::vector<SimTime> due_;
+    std::vector<SimTime> durations_;  // of scans, in whole steps
+    std::vector<char> is_heavy_;
+    std::vector<SensorReading> readings_;
+    std::vector<std::optional<LaserCaster>> casters_;  // of lasers
+    std::vector<std::size_t> latest_;
+    // What is due and still to be read, ascending, at the time of the step; in blocks, of which
+    // some are read already.
+    std::vector<std::size_t> unread_;
+    std::vector<std::size_t> block_ends_;
+    std::vector<char> is_read_;  // of blocks
+    std::size_t unread_blocks_ = 0, next_block_ = 0;
+    SimTime unread_time_{};
+    // Those that hear, and those that are heard, where they are; made when one of them is read.
+    std::vector<Sensor> receivers_, tags_;
+    std::vector<Pose2> people_starts_;
+    Photographer* photographer_;                       // if there are cameras
+    std::mutex photographing_;                         // of it
+    std::shared_ptr<const Stage> photographed_;        // as it was moved last
+    std::shared_ptr<const Stage> stage_;               // as all are, if it was asked for
+    std::shared_ptr<const MovingBodies> kept_bodies_;  // those of now, likewise
+    bool moved_ = true;                                // since the bodies were made
+    bool pictures_moved_ = true;                       // since those of pictures were
+    bool trail_moved_ = true;                          // since the trail's last moment
+    MovingBodies bodies_;
+    Trail trail_;                                 // for scans that take a while
+    std::vector<double> spin_heights_;            // of their rays, if all are level; else empty
+    std::vector<std::vector<BeamsAmong>> parts_;  // of each laser's last scan; kept for the memory
+};
+
+}  // namespace ispace

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to MovingBodies: where single rays, scans and pictures meet bodies.
+// Private to MovingBodies: where level scans meet bodies.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "trace/moving_bodies.h"
+
+namespace ispace {
+
+/// The stretch of a ray within a closed set, in multiples of its direction, with |slopes| of the
+/// surfaces at its ends: their normals times the direction.
+struct Stretch {
+    double from = -std::numeric_limits<double>::infinity();
+    double to = std::numeric_limits<double>::infinity();
+    double slope_from = 0, slope_to = 0;
+
+    void cut(double near, double far, double slope_near, double slope_far) {
+        if (near > from) {
+            from = near;
+            slope_from = slope_near;
+        }
+        if (far < to) {
+            to = far;
+            slope_to = slope_far;
+        }
+    }
+    void clear() {
+        from = std::numeric_limits<double>::infinity();
+        to = -from;
+    }
+    /// A ray parallel to two planes lies between them, or it does not.
+    void cutSlab(double origin, double direction, double low, double high) {
+        if (direction != 0) {
+            const double a = (low - origin) / direction, b = (high - origin) / direction;
+            cut(std::min(a, b), std::max(a, b), std::fabs(direction), std::fabs(direction));
+        } else if (origin < low || origin > high) {
+            clear();
+        }
+    }
+    /// Of a cylinder whose level cuts move along x by `lean` per metre: the ray as seen from them.
+    void cutDisc(Vec2 origin, Vec2 direction, double radius, double lean) {
+        const double a = dot(direction, direction), b = dot(origin, direction);
+        const double side = cross(origin, direction);
+        const double root = a * radius * radius - side * side;
+        if (a == 0 ? dot(origin, origin) > radius * radius : root < 0) {
+            clear();
+        } else if (a != 0) {
+            const double half = std::sqrt(root), near = (-b - half) / a, far = (-b + half) / a;
+            const double level = half / radius;
+            if (lean == 0) return cut(near, far, level, level);
+            // The normal of a slanted side is not level.
+            const auto slope = [&](double multiple) {
+                const double rise = lean * (origin.x + multiple * direction.x) / radius;
+                return level / std::sqrt(1 + rise * rise);
+            };
+            cut(near, far, slope(near), slope(far));
+        }
+    }
+    void cutBall(Vec3 origin, Vec3 direction, double radius) {
+        const double a = dot(direction, direction), b = dot(origin, direction);
+        const Vec3 side = cross(origin, direction);
+        const double root = a * radius * radius - dot(side, side);
+        if (root < 0) return clear();
+        const double half = std::sqrt(root);
+        cut((-b - half) / a, (-b + half) / a, half / radius, half / radius);
+    }
+};
+
+/// Where a ray meets a surface.
+struct BodyMeeting {
+    double multiple = std::numeric_limits<double>::infinity();  ///< of the ray's direction
+    double slope = 0;  ///< |normal times direction|: the cosine, if that is a unit vector
+};
+
+/// A body as seen from one place; what its rays share is computed once.
+class BodyFrom {
+  public:
+    BodyFrom(const MovingBody& body, CosSin axes, Point3 origin)
+        : body_(body), axes_(axes), height_(origin.z) {
+        offset_ = turned(origin.onFloor() - body.pose.position);
+        offset_.x -= body.lean * (height_ - body.middle());
+    }
+
+    [[nodiscard]] Stretch within(Vec3 direction) const {
+        const Vec2 flat = turned({direction.x, direction.y});
+        Stretch stretch;
+        if (body_.is_ball) {
+            stretch.cutBall({offset_.x, offset_.y, height_ - body_.middle()},
+                            {flat.x, flat.y, direction.z}, body_.radius);
+            return stretch;
+        }
+        stretch.cutSlab(height_, direction.z, body_.bottom, body_.top);
+        if (body_.radius > 0) {
+            stretch.cutDisc(offset_, {flat.x - body_.lean * direction.z, flat.y}, body_.radius,
+                            body_.lean);
+        } else {
+            stretch.cutSlab(offset_.x, flat.x, -body_.half_length, body_.half_length);
+            stretch.cutSlab(offset_.y, flat.y, -body_.half_width, body_.half_width);
+        }
+        return stretch;
+    }
+    /// The first place on its surface, at no less than `least`: from inside where the ray leaves.
+    [[nodiscard]] BodyMeeting meet(Vec3 direction, double least = 0) const {
+        const Stretch stretch = within(direction);
+        if (stretch.from > stretch.to || stretch.to < least) return {};
+        if (stretch.from >= least) return {stretch.from, stretch.slope_from};
+        return {stretch.to, stretch.slope_to};
+    }
+
+    [[nodiscard]] const MovingBody& body() const { return body_; }
+    [[nodiscard]] CosSin axes() const { return axes_; }
+    /// Where the rays leave, in its frame, from the middle of the level cut there.
+    [[nodiscard]] Vec2 offset() const { return offset_; }
+
+  private:
+    /// From the world into the body's frame.
+    [[nodiscard]] Vec2 turned(Vec2 v) const {
+        return {axes_.cos * v.x + axes_.sin * v.y, axes_.cos * v.y - axes_.sin * v.x};
+    }
+
+    const MovingBody& body_;
+    CosSin axes_;
+    Vec2 offset_;  // of the rays' origin, in the body's frame
+    double height_;
+};
+
+/// Ranges that bodies shorten, and their cosines.
+class ShortenedRanges {
+  public:
+    ShortenedRanges(double most, std::span<float> ranges, std::span<float> cosines)
+        : far_(static_cast<float>(most)), ranges_(ranges), cosines_(cosines) {}
+
+    [[nodiscard]] float operator[](std::size_t i) const { return ranges_[i]; }
+    /// `size`: the direction's length.
+    void shorten(std::size_t i, const BodyMeeting& met, double size) {
+        // As float32: what begins exactly at the limit is met.
+        const auto range = static_cast<float>(met.multiple);
+        if (!(range <= far_ && range < ranges_[i])) return;
+        ranges_[i] = range;
+        if (!cosines_.empty()) cosines_[i] = std::min(1.0F, static_cast<float>(met.slope / size));
+    }
+
+  private:
+    float far_;
+    std::span<float> ranges_, cosines_;
+};
+
+/// Neighbouring rays of a scan whose ranges bodies shorten. They leave from one origin, or from one
+/// each.
+class BodyScan {
+  public:
+    static constexpr std::size_t kBlock = 32;  ///< rays whose box is searched for bodies
+
+    /// Rays `begin` to before `end`. \pre origins.size() is 1 or directions.size(); begin < end
+    BodyScan(std::span<const Point3> origins, const Directions& directions, std::size_t begin,
+             std::size_t end, double max_range, const ShortenedRanges& ranges);
+
+    /// Bodies outside this part of the floor are not met.
+    [[nodiscard]] const Box2& box() const { return box_; }
+    void meet(const MovingBody& body, const BodyExtent& extent);
+
+  private:
+    [[nodiscard]] Point3 origin(std::size_t k) const { return origins_[is_one_ ? 0 : k]; }
+
+    std::span<const Point3> origins_;
+    bool is_one_;
+    const Directions& directions_;
+    std::size_t begin_, end_;
+    ShortenedRanges ranges_;
+    Box2 box_;
+    // A cone on the floor about all rays, of less than half a turn if it has sides: unit vectors.
+    Vec2 right_, left_;
+    Point2 middle_;                  // of the origins
+    double spread_ = 0, reach_ = 0;  // radius about it that holds them, and how far rays go
+    double low_, high_;              // heights of the rays
+};
+
+/// The pixels [left, right) x [top, bottom) of a picture.
+struct PixelBox {
+    int left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// A picture whose ranges bodies shorten.
+class BodyPicture {
+  public:
+    BodyPicture(Point3 origin, const RayGrid& grid, double most, const ShortenedRanges& ranges);
+
+    /// Bodies outside this part of the floor are not met.
+    [[nodiscard]] Box2 box() const;
+    void meet(const MovingBody& body, const BodyExtent& extent);
+
+    /// Pixels whose rays may meet the body: all if it holds the origin.
+    [[nodiscard]] PixelBox pixelsOf(const MovingBody& body, const BodyExtent& extent) const;
+
+  private:
+    /// A place as the picture has it: multiples of right, down and corner that lead to it.
+    [[nodiscard]] Vec3 projected(Vec3 way) const {
+        return {dot(to_right_, way), dot(to_down_, way), dot(to_corner_, way)};
+    }
+
+    Point3 origin_;
+    const RayGrid& grid_;
+    double far_;  // metres
+    ShortenedRanges ranges_;
+    bool is_plane_ = false;  // else its rays lie in a plane through the origin
+    Vec3 to_right_, to_down_, to_corner_;
+};
+
+/// A level scan of equal steps whose ranges bodies shorten. Bodies are collected in growing
+/// squares about it and met from the nearest on. Bodies whose beams all end nearer, at walls or
+/// other bodies, are passed over: in rooms and crowds nearly all.
+class BodyArc {
+  public:
+    /// \pre directions.arc, with a step above 0
+    BodyArc(Point3 origin, const Directions& directions, double max_range,
+            std::span<const MovingBody> bodies, std::span<const BodyExtent> extents,
+            const ShortenedRanges& ranges);
+
+    /// Meets all bodies but those of `own`, cells near to the scan before those that are farther
+    /// away.
+    void meetFrom(const FloorGrid& grid, std::uint32_t own);
+
+  private:
+    static constexpr std::size_t kBlock = 8, kMost = 256;
+
+    /// A body, how near it is at least, and the beams that may point at it: those from first to
+    /// last, and from other_first to other_last if the scan's ends are near to each other.
+    struct Waiting {
+        double nearest;
+        std::uint32_t body;
+        std::int32_t first, last, other_first, other_last;
+    };
+    /// The part of the floor where bodies still matter.
+    [[nodiscard]] Box2 view() const;
+    /// Collects those of these bodies that may shorten a beam.
+    void look(std::span<const std::uint32_t> bodies, std::uint32_t own);
+    void meetCollected();
+    [[nodiscard]] bool isSeen(const Waiting& waiting) const;
+    [[nodiscard]] bool isSeen(std::int32_t first, std::int32_t last, double nearest) const;
+    void meetBeams(const BodyFrom& body, std::int32_t first, std::int32_t last, double nearest);
+    void findFarthest(std::size_t block);
+
+    Point3 origin_;
+    const Directions& directions_;
+    std::span<const MovingBody> bodies_;
+    std::span<const BodyExtent> extents_;
+    double far_;
+    float most_;  // that and a little more
+    ShortenedRanges ranges_;
+    CosSin middle_;                 // of the arc
+    double rate_ = 0;               // beams a radian
+    double count_ = 0;              // of beams
+    std::vector<float>& farthest_;  // the greatest range of each block of beams
+    std::array<Waiting, kMost> waiting_;
+    std::size_t size_ = 0;
+};
+
+}  // namespace ispace

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "trace/embree_query.h"
+#include "trace/render/lights.h"
+#include "trace/render/render_scene.h"
+
+namespace ispace {
+
+/// Sixteen places on surfaces, relative to the middle of the plan, and the light that falls there.
+struct alignas(64) LitPlaces {
+    using Lanes = std::array<float, kLanes>;
+
+    std::array<bool, kLanes> is_wanted{};
+    Lanes x{}, y{}, z{};                       ///< a hair above the surface
+    Lanes normal_x{}, normal_y{}, normal_z{};  ///< unit, towards the viewer
+    /// What a white surface there shines with, by lamps or the sun, and by all else.
+    std::array<Rgb, kLanes> direct{}, bounced{};
+
+    void set(std::size_t lane, Point3 place, Vec3 normal, double lift);
+};
+
+/// Uniform numbers that one sample of light at one place takes.
+constexpr std::size_t kLightDraws = 5;
+
+/// Gathers light; one for each thread.
+class LightTracer {
+  public:
+    /// \param light not Auto
+    LightTracer(const RenderScene::Data& scene, Illumination light, int samples);
+
+    [[nodiscard]] int samples() const { return samples_; }
+    /// Fills in the light. Lanes stand for the pixels of a tile of 4 x 4, whose samples are points
+    /// of one net: the mean over any such square has little noise.
+    /// `draws` has kLightDraws numbers for each sample of each lane.
+    void gather(LitPlaces& places, std::span<const float> draws);
+
+  private:
+    struct Choice;
+    void towardsLamps(const LitPlaces& places, std::span<const float> draws, int sample);
+    void towardsSun(const LitPlaces& places, std::span<const float> draws, int sample);
+    void addDirect(LitPlaces& places);
+    void addBounced(LitPlaces& places, std::span<const float> draws, int sample);
+    [[nodiscard]] Rgb bounced(std::size_t lane) const;
+    void aimShadow(std::size_t lane, const LitPlaces& places, float x, float y, float z, float far);
+
+    const RenderScene::Data& scene_;
+    Illumination light_;
+    int samples_;
+    alignas(64) RTCRay16 shadows_{};
+    alignas(64) RTCRayHit16 hits_{};
+    alignas(64) std::array<int, kLanes> valid_{};
+    std::array<Rgb, kLanes> strength_{};  ///< of the light at the end of each shadow ray
+};
+
+}  // namespace ispace

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "env/environment.h"
+#include "geom/point.h"
+#include "trace/render/render.h"
+
+namespace ispace {
+
+/// Square panels that shine downwards, evenly spread over each part of the indoor region.
+class Lamps {
+  public:
+    struct Lamp {
+        float x = 0, y = 0;  ///< of its middle, relative to the middle of the plan
+        float strength = 0;  ///< what a white surface one metre below it shines with
+    };
+    /// Half the side of a panel, metres.
+    static constexpr float kHalf = 0.35F;
+
+    Lamps() = default;
+    Lamps(const Environment& environment, Vec3 shift);
+
+    [[nodiscard]] std::span<const Lamp> all() const { return lamps_; }
+    [[nodiscard]] float height() const { return height_; }
+    /// Those that matter at a place, as indices; and how far one does: light fades out there.
+    [[nodiscard]] std::span<const std::uint32_t> near(float x, float y) const;
+    [[nodiscard]] float reach() const { return reach_; }
+    /// True for places on a panel, seen from below.
+    [[nodiscard]] bool shinesAt(float x, float y) const;
+
+  private:
+    [[nodiscard]] std::size_t cellOf(float x, float y) const;
+    void index();
+
+    std::vector<Lamp> lamps_;
+    float height_ = 0, reach_ = 0;
+    // Cells of a grid over the plan, each with the lamps that reach it.
+    float left_ = 0, bottom_ = 0, cell_ = 1;
+    std::size_t columns_ = 1, rows_ = 1;
+    std::vector<std::uint32_t> first_ = {0, 0}, near_;
+};
+
+/// Sun and sky as a clear afternoon has them.
+struct Sky {
+    static constexpr float kSunHeight = 0.72F;  ///< sine of its elevation
+    /// Unit vector to the sun.
+    static Vec3 sun();
+    /// What a white surface that faces it shines with, of the sun alone.
+    static constexpr Rgb kSunlight{0.95F, 0.90F, 0.80F};
+    /// Tangent of half the angle under which the sun is seen: more than it is, for softer shadows.
+    static constexpr float kSunRadius = 0.025F;
+    /// Radiance of a direction as light.
+    static Rgb light(float up);
+    /// The same as one sees it; below the horizon, the haze over the ground.
+    static Rgb seen(float up);
+};
+
+/// What lies about a building.
+constexpr Rgb kGround{0.30F, 0.31F, 0.27F};
+
+/// A place on a surface and the direction it faces, in float32.
+struct FacingPlace {
+    std::array<float, 3> place{}, normal{};
+
+    FacingPlace(Point3 at, Vec3 facing)
+        : place{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
+          normal{static_cast<float>(facing.x), static_cast<float>(facing.y),
+                 static_cast<float>(facing.z)} {}
+};
+
+/// The light on what the pixels' centres show, plane by plane. Pixels may be set by any threads.
+class LightField {
+  public:
+    LightField() = default;
+    LightField(int columns, int rows);
+
+    /// \param depth not below 0
+    void setPlace(std::size_t pixel, const FacingPlace& surface, float depth);
+    void setLight(std::size_t pixel, const Rgb& direct, const Rgb& bounced);
+
+    /// Once all pixels are set. Shadows of lamps are smoothed within a tile, what surfaces throw
+    /// back over several; never across edges.
+    void smooth();
+
+    /// True if the surface that the pixel shows goes on at another place: that then has the same
+    /// light.
+    [[nodiscard]] bool reaches(std::size_t pixel, const FacingPlace& to) const {
+        if (depth_[pixel] < 0) return false;
+        float cosine = 0, height = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            cosine += normal_[k][pixel] * to.normal[k];
+            height += normal_[k][pixel] * (to.place[k] - place_[k][pixel]);
+        }
+        return cosine > kSameFacing && std::fabs(height) < heightOfOne(depth_[pixel]);
+    }
+    /// The least cosine between normals of one surface, and how far off its plane it goes on.
+    static constexpr float kSameFacing = 0.9F;
+    static constexpr float heightOfOne(float depth) { return 0.003F + 0.002F * depth; }
+    /// \pre smooth() was called
+    [[nodiscard]] Rgb light(std::size_t pixel) const {
+        return {light_[0][pixel] + light_[3][pixel], light_[1][pixel] + light_[4][pixel],
+                light_[2][pixel] + light_[5][pixel]};
+    }
+
+  private:
+    using Plane = std::vector<float>;
+    /// Direct light of three colours, then what surfaces throw back.
+    using LightPlanes = std::array<Plane, 6>;
+
+    template <std::size_t kFirst>
+    void smoothRow(const LightPlanes& from, LightPlanes& to, int row, int step) const;
+
+    int columns_ = 0, rows_ = 0;
+    std::array<Plane, 3> place_, normal_;
+    Plane depth_;  ///< below 0: there is nothing
+    LightPlanes light_;
+};
+
+}  // namespace ispace

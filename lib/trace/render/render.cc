@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trace/render/render.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "base/random.h"
+#include "trace/render/light_tracer.h"
+#include "trace/render/lights.h"
+#include "trace/render/shading.h"
+
+namespace ispace {
+
+namespace {
+
+/// All that the threads of one picture share.
+struct Job {
+    const RenderScene::Data& scene;
+    const Viewpoint& viewpoint;
+    const RenderOptions& options;
+    Illumination light;
+    std::optional<EvenSightLines> even;
+    std::vector<bool> hidden;
+    Shading shading;
+    Rendering& out;
+    std::vector<PixelPoint> samples;  ///< of each pixel, about its centre
+    LightField field;
+
+    Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptions& wanted,
+        Rendering& picture);
+    [[nodiscard]] std::size_t pixel(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(out.columns) +
+               static_cast<std::size_t>(column);
+    }
+    /// Samples of light that each pixel gathers.
+    [[nodiscard]] int lightSamples() const { return std::max(1, options.samples / 4); }
+};
+
+Illumination chosen(Illumination wanted, const StillSurfaces& still) {
+    if (wanted != Illumination::Auto) return wanted;
+    return still.has_ceiling ? Illumination::Lamps : Illumination::Sky;
+}
+
+Job::Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptions& wanted,
+         Rendering& picture)
+    : scene(data),
+      viewpoint(from),
+      options(wanted),
+      light(chosen(wanted.light, *data.still)),
+      even(from.evenSightLines()),
+      shading(data, light, wanted),
+      out(picture),
+      samples(placesInPixel(wanted.samples)) {
+    for (const std::size_t record : options.hidden) {
+        hidden.resize(std::max(hidden.size(), record + 2));
+        hidden[record + 1] = true;
+    }
+    out.columns = viewpoint.columns();
+    out.rows = viewpoint.rows();
+    const std::size_t pixels =
+        static_cast<std::size_t>(out.columns) * static_cast<std::size_t>(out.rows);
+    if (options.colors) {
+        out.radiance.resize(pixels);
+        field = LightField(out.columns, out.rows);
+    }
+    if (options.labels) out.labels.resize(pixels);
+    if (options.depths) out.depths.resize(pixels);
+}
+
+/// Works on one tile after another; one for each thread.
+class TileWorker {
+  public:
+    explicit TileWorker(Job& job)
+        : job_(job),
+          tracer_(job.scene, job.hidden, job.options.min_depth),
+          clear_(job.scene, job.options.min_depth),
+          lights_(job.scene, job.light, job.lightSamples()) {}
+
+    /// Finds what the centres of the tile's pixels show.
+    void measure(int column, int row) {
+        aim(column, row, {});
+        tracer_.trace(tile_);
+        writeMeasures(column, row);
+    }
+
+    /// The same, and the light there.
+    void gatherLight(int column, int row) {
+        aim(column, row, {});
+        tracer_.trace(tile_);
+        writeMeasures(column, row);
+        places_.is_wanted.fill(false);
+        forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
+            if (!job_.shading.meetsSurface(tile_, lane)) return;
+            const SurfacePoint point = job_.shading.surface(tile_, lane);
+            places_.set(lane, point.place, point.normal, point.lift);
+            const double depth = length(point.place - tile_.origin(lane));
+            job_.field.setPlace(pixel, {point.place, point.normal}, static_cast<float>(depth));
+        });
+        drawNumbers(column, row);
+        lights_.gather(places_, draws_);
+        forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
+            job_.field.setLight(pixel, places_.direct[lane], places_.bounced[lane]);
+        });
+    }
+
+    /// The samples of the tile's pixels.
+    void color(int column, int row) {
+        const float share = 1 / static_cast<float>(job_.samples.size());
+        for (const PixelPoint at : job_.samples) {
+            aim(column, row, at);
+            tracer_.trace(tile_);
+            const auto* layers = clear_.isIdle() ? nullptr : &clear_.trace(tile_);
+            forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
+                Rgb light{1, 1, 1};
+                Rgb color = colorOf(lane, pixel, at, light);
+                if (layers != nullptr) veil((*layers)[lane], light, color);
+                for (std::size_t k = 0; k < 3; ++k) job_.out.radiance[pixel][k] += share * color[k];
+            });
+        }
+    }
+
+  private:
+    void aim(int column, int row, PixelPoint at) {
+        const int last_column = job_.out.columns - 1, last_row = job_.out.rows - 1;
+        const Vec3 shift = job_.scene.still->shift;
+        if (job_.even) return tile_.set(*job_.even, {column + at.column, row + at.row}, shift);
+        for (int i = 0; i < kTile * kTile; ++i) {
+            const auto lane = static_cast<std::size_t>(i);
+            const PixelPoint place{1.0 * std::min(column + i % kTile, last_column),
+                                   1.0 * std::min(row + i / kTile, last_row)};
+            const auto line = sightLineNear(place, at);
+            tile_.is_black[lane] = !line;
+            tile_.set(lane, line.value_or(SightLine{{}, {1, 0, 0}}), shift);
+        }
+    }
+
+    /// The line of sight a part of a pixel beside a pixel's centre, taken as even between the
+    /// centres about it where all have one: those are known.
+    [[nodiscard]] std::optional<SightLine> sightLineNear(PixelPoint place, PixelPoint at) const {
+        const Viewpoint& from = job_.viewpoint;
+        const bool is_inner = place.column > 0 && place.column + 1 < job_.out.columns &&
+                              place.row > 0 && place.row + 1 < job_.out.rows;
+        if (at.column == 0 && at.row == 0) return from.sightLine(place);
+        const auto middle = from.sightLine(place);
+        const auto aside =
+            is_inner ? from.sightLine({place.column + (at.column < 0 ? -1 : 1), place.row})
+                     : std::nullopt;
+        const auto below = is_inner
+                               ? from.sightLine({place.column, place.row + (at.row < 0 ? -1 : 1)})
+                               : std::nullopt;
+        if (!middle || !aside || !below)
+            return from.sightLine({place.column + at.column, place.row + at.row});
+        const double u = std::fabs(at.column), v = std::fabs(at.row);
+        const auto between = [u, v](double a, double b, double c) {
+            return a + u * (b - a) + v * (c - a);
+        };
+        const auto& [o, d] = *middle;
+        return SightLine{{between(o.x, aside->origin.x, below->origin.x),
+                          between(o.y, aside->origin.y, below->origin.y),
+                          between(o.z, aside->origin.z, below->origin.z)},
+                         {between(d.x, aside->direction.x, below->direction.x),
+                          between(d.y, aside->direction.y, below->direction.y),
+                          between(d.z, aside->direction.z, below->direction.z)}};
+    }
+
+    template <typename Visit>
+    void forEachPixel(int column, int row, Visit visit) const {
+        for (int i = 0; i < kTile * kTile; ++i) {
+            const int x = column + i % kTile, y = row + i / kTile;
+            if (x < job_.out.columns && y < job_.out.rows)
+                visit(static_cast<std::size_t>(i), job_.pixel(x, y));
+        }
+    }
+
+    void writeMeasures(int column, int row) {
+        const bool has_labels = !job_.out.labels.empty(), has_depths = !job_.out.depths.empty();
+        if (has_labels) findLabels();
+        const int wide = std::min(kTile, job_.out.columns - column);
+        const int high = std::min(kTile, job_.out.rows - row);
+        for (int k = 0; k < high; ++k) {
+            const std::size_t pixel = job_.pixel(column, row + k);
+            const auto first = static_cast<std::size_t>(k) * kTile;
+            if (has_depths) copyRow(&tile_.multiples[first], wide, &job_.out.depths[pixel]);
+            if (has_labels) copyRow(&labels_[first], wide, &job_.out.labels[pixel]);
+        }
+    }
+
+    /// Whole rows of a tile are of a size that the compiler knows.
+    template <typename T>
+    static void copyRow(const T* from, int count, T* to) {
+        if (count == kTile)
+            std::copy_n(from, kTile, to);
+        else
+            std::copy_n(from, count, to);
+    }
+
+    /// Of all lanes. Most tiles show one triangle, whose label is then read once.
+    void findLabels() {
+        const bool is_one = tile_.is_one_triangle && !has_coverings_;
+        const std::uint16_t label = is_one ? labelAt(0) : std::uint16_t{0};
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            labels_[lane] = !tile_.meets(lane) ? std::uint16_t{0} : is_one ? label : labelAt(lane);
+    }
+
+    [[nodiscard]] std::uint16_t labelAt(std::size_t lane) const {
+        const SurfaceKind kind = tile_.kind[lane];
+        const SurfaceSet& set = kind == SurfaceKind::Solid ? solid_ : job_.scene.set(kind);
+        const std::uint16_t label = set.labels()[tile_.triangle[lane]];
+        if (label != 0 || !has_coverings_) return label;
+        const Finish& finish = set.finish(tile_.triangle[lane]);
+        return static_cast<std::uint16_t>(
+            std::min(job_.scene.finishAt(finish, tile_.place(lane)).label, 65535U));
+    }
+
+    /// By the pixel alone, whatever the threads.
+    void drawNumbers(int column, int row) {
+        const std::size_t each = kLightDraws * static_cast<std::size_t>(lights_.samples());
+        draws_.resize(each * kLanes);
+        for (int k = 0; k < kTile; ++k) {
+            const RandomKey key{.seed = job_.options.seed,
+                                .purpose = Purpose::Light,
+                                .sensor = 0,
+                                .frame = static_cast<std::uint64_t>(row + k)};
+            const auto first = static_cast<std::uint32_t>(each * static_cast<std::size_t>(column));
+            const std::size_t begin = each * static_cast<std::size_t>(k) * kTile;
+            draw(key, first,
+                 {.normal = {},
+                  .other = {},
+                  .uniform = std::span(draws_).subspan(begin, each * std::size_t{kTile})});
+        }
+    }
+
+    Rgb colorOf(std::size_t lane, std::size_t pixel, PixelPoint at, Rgb& light) {
+        if (!job_.shading.meetsSurface(tile_, lane)) return job_.shading.background(tile_, lane);
+        const SurfacePoint point = job_.shading.surface(tile_, lane);
+        light = lightAt(point, pixel, at);
+        return job_.shading.lit(point, light);
+    }
+
+    /// The light on a surface: that of the pixel or of one beside it, if it shows the same.
+    Rgb lightAt(const SurfacePoint& point, std::size_t pixel, PixelPoint at) {
+        const FacingPlace surface(point.place, point.normal);
+        if (job_.field.reaches(pixel, surface)) return job_.field.light(pixel);
+        const auto columns = static_cast<std::size_t>(job_.out.columns);
+        const std::size_t column = pixel % columns, row = pixel / columns;
+        const int x = at.column < 0 ? -1 : 1, y = at.row < 0 ? -1 : 1;
+        const int order[8][2] = {{x, 0},  {0, y},  {x, y},  {-x, 0},
+                                 {0, -y}, {x, -y}, {-x, y}, {-x, -y}};
+        for (const auto& [dx, dy] : order) {
+            const int i = static_cast<int>(column) + dx, j = static_cast<int>(row) + dy;
+            if (i < 0 || j < 0 || i >= job_.out.columns || j >= job_.out.rows) continue;
+            const std::size_t beside = job_.pixel(i, j);
+            if (job_.field.reaches(beside, surface)) return job_.field.light(beside);
+        }
+        return lightAlone(point, column, row);
+    }
+
+    /// The light on what no centre of a pixel shows: sixteen samples of their own.
+    Rgb lightAlone(const SurfacePoint& point, std::size_t column, std::size_t row) {
+        const int x = static_cast<int>(column) / kTile * kTile,
+                  y = static_cast<int>(row) / kTile * kTile;
+        if (x != drawn_column_ || y != drawn_row_) drawNumbers(x, y);
+        drawn_column_ = x;
+        drawn_row_ = y;
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            places_.set(lane, point.place, point.normal, point.lift);
+        lights_.gather(places_, draws_);
+        Rgb mean{};
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            for (std::size_t k = 0; k < 3; ++k)
+                mean[k] += (places_.direct[lane][k] + places_.bounced[lane][k]) / kLanes;
+        return mean;
+    }
+
+    static void veil(const std::vector<ClearLayer>& layers, const Rgb& light, Rgb& color) {
+        for (std::size_t i = layers.size(); i-- > 0;)
+            for (std::size_t k = 0; k < 3; ++k)
+                color[k] = color[k] * layers[i].passes[k] +
+                           layers[i].light[k] * (layers[i].is_lit ? light[k] : 1);
+    }
+
+    Job& job_;
+    SightTracer tracer_;
+    ClearTracer clear_;
+    LightTracer lights_;
+    SightTile tile_;
+    LitPlaces places_;
+    std::vector<float> draws_;
+    std::array<std::uint16_t, kLanes> labels_{};
+    int drawn_column_ = -1, drawn_row_ = -1;
+    const SurfaceSet& solid_ = *job_.scene.still->solid;
+    bool has_coverings_ = !job_.scene.still->coverings.empty();
+};
+
+/// Calls work(worker, column, row) for each tile.
+template <typename Work>
+void forEachTile(Job& job, Work work) {
+    const int tile_rows = (job.out.rows + kTile - 1) / kTile;
+    tbb::parallel_for(tbb::blocked_range<int>(0, tile_rows, 2),
+                      [&](const tbb::blocked_range<int>& rows) {
+                          TileWorker worker(job);
+                          for (int row = rows.begin(); row != rows.end(); ++row)
+                              for (int column = 0; column < job.out.columns; column += kTile)
+                                  work(worker, column, row * kTile);
+                      });
+}
+
+}  // namespace
+
+Rendering render(const RenderScene& scene, const Viewpoint& viewpoint,
+                 const RenderOptions& options) {
+    assert(options.samples > 0);
+    Rendering out;
+    Job job(scene.data(), viewpoint, options, out);
+    if (!options.colors) {
+        forEachTile(job,
+                    [](TileWorker& worker, int column, int row) { worker.measure(column, row); });
+        return out;
+    }
+    forEachTile(job,
+                [](TileWorker& worker, int column, int row) { worker.gatherLight(column, row); });
+    job.field.smooth();
+    forEachTile(job, [](TileWorker& worker, int column, int row) { worker.color(column, row); });
+    return out;
+}
+
+namespace {
+
+/// Rows of a picture.
+class Band final : public Viewpoint {
+  public:
+    Band(const Viewpoint& whole, int first, int rows)
+        : Viewpoint(whole.columns(), rows), whole_(whole), first_(first) {}
+    [[nodiscard]] std::optional<SightLine> sightLine(PixelPoint place) const override {
+        return whole_.sightLine({place.column, place.row + first_});
+    }
+    [[nodiscard]] std::optional<EvenSightLines> evenSightLines() const override {
+        auto lines = whole_.evenSightLines();
+        if (!lines) return std::nullopt;
+        const SightLine corner = lines->at({0, 1.0 * first_});
+        lines->origin = corner.origin;
+        lines->direction = corner.direction;
+        return lines;
+    }
+
+  private:
+    const Viewpoint& whole_;
+    int first_;
+};
+
+/// Appends rows [first, end) of a band.
+template <typename Value>
+void append(std::vector<Value>& whole, const std::vector<Value>& band, int columns, int first,
+            int end) {
+    if (band.empty()) return;
+    const auto at = [&](int row) {
+        return band.begin() + static_cast<std::ptrdiff_t>(row) * columns;
+    };
+    whole.insert(whole.end(), at(first), at(end));
+}
+
+}  // namespace
+
+Rendering renderInBands(const RenderScene& scene, const Viewpoint& viewpoint,
+                        const RenderOptions& options, int most_pixels) {
+    // A multiple of any tile's side.
+    constexpr int kOverlap = 16;
+    const int rows = std::max(kOverlap, most_pixels / viewpoint.columns() / kOverlap * kOverlap);
+    if (rows >= viewpoint.rows()) return render(scene, viewpoint, options);
+    Rendering out;
+    out.columns = viewpoint.columns();
+    out.rows = viewpoint.rows();
+    for (int row = 0; row < out.rows; row += rows) {
+        const int first = std::max(row - kOverlap, 0);
+        const int last = std::min(row + rows + kOverlap, out.rows);
+        const int end = std::min(row + rows, out.rows);
+        const Rendering band = render(scene, Band(viewpoint, first, last - first), options);
+        append(out.radiance, band.radiance, out.columns, row - first, end - first);
+        append(out.labels, band.labels, out.columns, row - first, end - first);
+        append(out.depths, band.depths, out.columns, row - first, end - first);
+    }
+    return out;
+}
+
+namespace {
+
+/// sRGB of a value from 0 to 1.
+std::uint8_t srgb(float linear) {
+    const float x = std::clamp(linear, 0.0F, 1.0F);
+    const float y = x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1 / 2.4F) - 0.055F;
+    return static_cast<std::uint8_t>(std::lround(255 * y));
+}
+
+}  // namespace
+
+std::array<std::uint8_t, 3> toSrgb8(const Rgb& color) {
+    return {srgb(color[0]), srgb(color[1]), srgb(color[2])};
+}
+
+std::vector<std::uint8_t> toSrgb8(const Rendering& picture, double exposure) {
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(3 * picture.radiance.size());
+    // Straight up to the knee, then towards white.
+    const auto roll = [](float x) {
+        constexpr float kKnee = 0.8F;
+        return x <= kKnee ? x : 1 - (1 - kKnee) * std::exp(-(x - kKnee) / (1 - kKnee));
+    };
+    for (const Rgb& color : picture.radiance)
+        for (const float value : color)
+            bytes.push_back(srgb(roll(static_cast<float>(exposure) * value)));
+    return bytes;
+}
+
+}  // namespace ispace

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "env/mesh.h"
+#include "geom/pose.h"
+#include "scene/scene.h"
+#include "trace/embree_bodies.h"
+#include "trace/render/lights.h"
+#include "trace/render/render.h"
+#include "trace/render/texture.h"
+#include "trace/triangle_set.h"
+
+namespace ispace {
+
+/// What a triangle belongs to, and how it looks.
+struct Finish {
+    static constexpr std::uint32_t kNoFace = ~0U;
+
+    std::uint32_t label = 0;       ///< index of its record, plus 1
+    std::uint32_t paint = 0;       ///< of RenderScene::Data
+    std::uint32_t face = kNoFace;  ///< the textured one it is a part of
+};
+
+/// Triangles with their finish, in coordinates relative to the middle of the plan.
+struct FinishedSoup {
+    TriangleSoup triangles;
+    std::vector<Finish> finishes;
+
+    void add(const Mesh& mesh, Finish finish, Vec3 shift);
+};
+
+/// Bodies of people, one finish each, in the same coordinates. Labels are the bodies' owners.
+struct FinishedBodies {
+    std::vector<TracedBody> bodies;
+    std::vector<Finish> finishes;
+};
+
+/// Triangles, or bodies, ready to be traced. Hits of it have this geometry id. Bodies are traced by
+/// a BodyQuery.
+class SurfaceSet {
+  public:
+    /// \throws std::runtime_error if Embree fails, std::bad_alloc if it has no memory
+    SurfaceSet(RTCDeviceTy* device, const FinishedSoup& soup, unsigned geometry);
+    SurfaceSet(RTCDeviceTy* device, FinishedBodies bodies, unsigned geometry);
+
+    [[nodiscard]] bool empty() const { return finishes_.empty(); }
+    [[nodiscard]] const TriangleSet& triangles() const { return triangles_; }
+    [[nodiscard]] const TracedBody& body(std::size_t index) const { return bodies_[index]; }
+    /// Of a triangle, or of a body.
+    [[nodiscard]] const Finish& finish(std::size_t index) const { return finishes_[index]; }
+    /// Labels of the triangles or bodies as pictures hold them: 65535 stands for all from there on.
+    /// Kept apart, since pictures of labels read nothing else of a finish.
+    [[nodiscard]] std::span<const std::uint16_t> labels() const { return labels_; }
+    [[nodiscard]] RTCSceneTy* scene() const { return scene_.get(); }
+
+  private:
+    void addLabels();
+
+    TriangleSet triangles_;
+    std::vector<TracedBody> bodies_;
+    std::vector<Finish> finishes_;  // of the set's triangles, or of its bodies
+    std::vector<std::uint16_t> labels_;
+    EmbreeSceneHandle scene_;
+};
+
+/// How surfaces of one material, or of one record, look.
+struct Paint {
+    Rgb color{};
+    float opacity = 1;
+    bool is_lit = true, is_ceiling = false, is_floor = false;
+};
+
+/// A covering of the floor, in one colour or in squares. It has no height of its own, so that it
+/// does not lift what is measured.
+struct Covering {
+    std::uint32_t label = 0;
+    Point2 corner;       ///< relative to the middle of the plan
+    Vec2 along, across;  ///< whole extents, at right angles
+    std::size_t columns = 1;
+    std::vector<std::uint32_t> paints;  ///< of the squares, row by row
+    std::uint32_t face = Finish::kNoFace;
+
+    /// The paint at a place; nothing beside it.
+    [[nodiscard]] std::optional<std::uint32_t> paintAt(Point2 place) const;
+};
+
+/// What does not move, and the shapes of what does.
+struct StillSurfaces {
+    /// In the frame of Scene::placed, by its index.
+    struct Figure {
+        std::vector<Mesh> body;
+        std::optional<Mesh> view;
+        Finish finish;
+        std::optional<std::uint32_t> paint;  ///< of the body, if it is not that of its materials
+        std::optional<double> person_height = {};  ///< of a person, who is humanParts()
+    };
+
+    EmbreeDevice device;
+    Vec3 shift;                       ///< takes places of the world to those of the surfaces
+    std::vector<Paint> paints;        ///< those of Material first, in its order
+    std::vector<Covering> coverings;  ///< later ones lie on earlier ones
+    std::vector<Texture> textures;
+    std::vector<TexturedFace> faces;  ///< relative to the middle of the plan
+    std::optional<SurfaceSet> solid;  ///< what stops light
+    std::optional<SurfaceSet> glass;  ///< clear one, which light passes
+    std::optional<SurfaceSet> paint;  ///< see PaintedMesh
+    Lamps lamps;
+    std::vector<Figure> figures;
+    double extent = 1;  ///< of the plan, metres
+    bool has_ceiling = false;
+    std::size_t packet_width = 4;  ///< rays that the processor traces together
+};
+
+/// Geometry ids of hits.
+enum class SurfaceKind : unsigned { Solid, Body, Person, Glass, Paint, View };
+
+struct RenderScene::Data {
+    std::shared_ptr<const StillSurfaces> still;
+    SurfaceSet bodies, people, views;
+
+    Data(std::shared_ptr<const StillSurfaces> surfaces, std::span<const Pose3> poses,
+         std::span<const Angle> swings = {});
+    /// The finish of a triangle at a place: coverings lie on the floor.
+    [[nodiscard]] Finish finishAt(const Finish& finish, Point3 place) const;
+    [[nodiscard]] const SurfaceSet& set(SurfaceKind kind) const {
+        switch (kind) {
+            case SurfaceKind::Solid:
+                return *still->solid;
+            case SurfaceKind::Body:
+                return bodies;
+            case SurfaceKind::Person:
+                return people;
+            case SurfaceKind::Glass:
+                return *still->glass;
+            case SurfaceKind::Paint:
+                return *still->paint;
+            case SurfaceKind::View:
+                break;
+        }
+        return views;
+    }
+};
+
+}  // namespace ispace

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scenes from text, for the tests of this folder.
+#pragma once
+
+#include <string>
+
+#include "coverage/coverage.h"
+#include "record/text.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace {
+
+/// The scene of record lines, without magic line; only bare lasers.
+inline Scene sceneOf(const std::string& lines) {
+    return makeScene(readRecordText("#env 1\n" + lines, "test.env", sceneSchemas()), nullptr, {});
+}
+
+inline Coverage coverageOf(const Scene& scene, int columns = 100, int rows = 100) {
+    Worlds worlds(scene.environment);
+    return measureCoverage(scene, worlds, {.cells = CellCount{columns, rows}});
+}
+
+}  // namespace ispace

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For tests of this folder and of those above it: records and devices of sensors from text.
+#pragma once
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "record/text.h"
+#include "scene/sensor/sensor.h"
+#include "support/test_paths.h"
+
+namespace ispace::testing {
+
+inline Record sensorRecord(const std::string& line) {
+    static const Schemas schemas(sensorSchemas());
+    return readRecord(line, "line", schemas);
+}
+
+/// Robots are not this folder's subject; their lines are left empty.
+inline std::string withoutRobots(const std::string& text) {
+    std::istringstream lines(text);
+    std::string kept;
+    for (std::string line; std::getline(lines, line);)
+        kept += line.starts_with("robot ") ? "\n" : line + '\n';
+    return kept;
+}
+
+/// The sensor among the devices that come with the project that `model` of the record names, or
+/// null. \pre it is one
+inline const Record* deviceFor(const Record& record) {
+    static const Schemas schemas(sensorDeviceSchemas());
+    static const std::vector<Record> devices = [] {
+        std::vector<Record> all;
+        for (const auto& file : std::filesystem::directory_iterator(sourcePath("share/devices"))) {
+            const std::string text = withoutRobots(readAll(file.path().string()));
+            Document document = readRecordText(text, file.path().string(), schemas);
+            for (Record& device : document.records) all.push_back(std::move(device));
+        }
+        return all;
+    }();
+    if (!record.has("model")) return nullptr;
+    for (const Record& device : devices)
+        if (device.text("model") == record.text("model")) return &device;
+    throw UsageError("no device " + record.text("model"));
+}
+
+/// What `work` throws as FormatError, a finding a line; "" if it does not.
+template <typename Work>
+std::string findings(Work work) {
+    try {
+        static_cast<void>(work());
+    } catch (const FormatError& error) {
+        std::string out;
+        for (const Diagnostic& diagnostic : error.diagnostics()) out += diagnostic.text() + '\n';
+        return out;
+    }
+    return "";
+}
+
+}  // namespace ispace::testing

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "arrange/arrange_run.h"
+#include "base/part_file.h"
+
+namespace ispace {
+
+/// The command line that made the parts, as the one of a merge: with the outputs and the talk of
+/// `merge` in place of its own. \throws FormatError
+std::unique_ptr<ArrangeCommand> commandOf(const JobResults& parts, const ArrangeToolOptions& merge);
+
+/// Where the steps of the search are stored: the parts of a merge, or the results of a shard or of
+/// a run with --resume; null for others, and with `is_done` for a part that is there already.
+/// \param parts those of a merge, or null
+/// \throws UsageError for a shard whose input is a stream; as JobResults
+std::unique_ptr<JobResults> resultsOf(const ArrangeCommand& command, const ArrangeWork& work,
+                                      std::unique_ptr<JobResults> parts, bool& is_done);
+
+/// Writes the part of a shard.
+void writePart(const ArrangeCommand& command, JobResults& results);
+
+}  // namespace ispace

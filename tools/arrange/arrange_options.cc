@@ -1,0 +1,452 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// --shard, --merge, --resume and what goes with them.
+#include "arrange/arrange_options.h"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "arrange/search/search_share.h"
+#include "base/error.h"
+#include "base/number.h"
+#include "cli/common_options.h"
+#include "cli/outputs.h"
+#include "record/schema.h"
+#include "report/curve_chart.h"
+
+namespace ispace {
+
+namespace {
+
+/// As many as a room may ask for, and no slip of a digit.
+constexpr int kMaxHeadings = 3600;
+
+/// Numbers of a unit, parted by commas.
+Tuple numbers(const std::string& text, Unit unit, std::size_t least, std::size_t most, double lower,
+              double upper) {
+    const KeySpec key{.name = "",  // the option is named anyway
+                      .type = KeyType::Tuple,
+                      .unit = unit,
+                      .help = "",
+                      .min_count = least,
+                      .max_count = most,
+                      .lower = lower,
+                      .upper = upper};
+    return std::get<Tuple>(parseValue(key, text));
+}
+
+CandidateDensity readDensity(const std::string& text, double lowest, double highest) {
+    const std::string wanted =
+        '`' + text + "` is not GRID,WALL,HEADINGS: two steps in metres and a whole number";
+    const auto last = text.rfind(',');
+    if (std::count(text.begin(), text.end(), ',') != 2) throw UsageError(wanted);
+    const auto headings = parseInteger(text.substr(last + 1));
+    if (!headings || *headings < 1 || *headings > kMaxHeadings) throw UsageError(wanted);
+    const Tuple steps = numbers(text.substr(0, last), Unit::Length, 2, 2, lowest, highest);
+    return {steps[0], steps[1], static_cast<int>(*headings)};
+}
+
+double readNumber(const std::string& text, double lowest, double highest, const char* what) {
+    const auto number = parseDouble(text);
+    if (!number || !(*number >= lowest && *number <= highest))
+        throw UsageError('`' + text + "` is not " + what);
+    return *number;
+}
+
+double readShare(const std::string& text) {
+    const auto share = parseShare(text);
+    if (!share) throw UsageError('`' + text + "` is not a share like 95% or 0.95");
+    return *share;
+}
+
+Angle readResolution(const std::string& text) {
+    constexpr double kFinest = 0.01, kCoarsest = 90;
+    if (text == "sensor") return Angle();
+    return Angle::degrees(readNumber(
+        text, kFinest, kCoarsest,
+        "an angle from 0.01 to 90 degrees, nor `sensor` (cells are --grid P,Q or --cell M)"));
+}
+
+/// A bare 1 is all to who thinks in fractions and a hundredth to who thinks in per cent.
+double readGap(const std::string& text) {
+    const double gap = readShare(text);
+    if (gap == 1 && !text.ends_with('%'))
+        throw UsageError('`' + text + "` could be 1% or all of it: write 1% or 0.01");
+    return gap;
+}
+
+template <typename Value, std::size_t kCount>
+std::vector<std::string> wordsOf(const Value (&values)[kCount]) {
+    std::vector<std::string> words;
+    words.reserve(kCount);
+    for (const Value value : values) words.emplace_back(nameOf(value));
+    return words;
+}
+
+[[noreturn]] void refuseWithEffort(const std::string& option) {
+    throw UsageError("--effort chooses places and headings itself: leave out " + option);
+}
+
+/// \pre it is the word of one of them
+template <typename Value, std::size_t kCount>
+Value valueOf(const std::string& word, const Value (&values)[kCount]) {
+    return *std::find_if(std::begin(values), std::end(values),
+                         [&word](Value value) { return nameOf(value) == word; });
+}
+
+}  // namespace
+
+std::pair<std::string, double> splitWeight(const std::string& text) {
+    const auto equals = text.rfind('=');
+    const auto weight =
+        equals == std::string::npos ? std::nullopt : parseDouble(text.substr(equals + 1));
+    if (!weight || equals == 0 || !(*weight >= 0 && *weight <= 1e6))
+        throw UsageError("--weight: `" + text + "` is not ZONE=W with a number from 0 on");
+    return {text.substr(0, equals), *weight};
+}
+
+ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
+    : ToolCommand("arrange", "[ENV] [LAYOUT]",
+                  "Compute poses for sensors in a room: those of LAYOUT without one, and those of "
+                  "--sensor. Writes a layout (.3dm) and reports an upper bound on coverage.") {
+    line_.operands(options_.operands, 2);
+    line_.texts("--sensor", "MODEL[,KEY=VALUE...][:COUNT]", options_.sensors,
+                "add COUNT sensors of a device or a bare kind (laser, ranger, camera, ultrasound), "
+                "e.g. urg-04lx:3 or laser,range=4,fov=180:3",
+                Enters::History);
+    line_.texts("--fixed", "ID", options_.fixed,
+                "keep the poses of these sensors of LAYOUT only (globs allowed) and compute new "
+                "ones for the others; by default all sensors with a pose keep it",
+                Enters::History);
+    addPlaceOptions();
+    addMountOptions();
+    addGoalOptions();
+    addSearchOptions();
+    addFileOptions();
+    addShareOptions();
+    addSceneRules(line_, options_.rules);
+    addCommonOptions(line_, options_.common, "write the layout there (default: stdout)");
+    line_.parse(argc, argv);
+    settle();
+}
+
+void ArrangeCommand::addPlaceOptions() {
+    ArrangeOptions& how = options_.how;
+    line_.choice("--effort", words_.effort, {"low", "medium", "high"},
+                 "the thesis' time levels: random sites; a grid with 8 headings; one with 16",
+                 Enters::History);
+    std::vector<std::string> names;
+    std::string help = "strategy that proposes sites: ";
+    for (const StrategyRow& row : strategies()) {
+        help.append(names.empty() ? "" : ", ").append(row.name).append(" (").append(row.help) +=
+            ')';
+        names.emplace_back(row.name);
+    }
+    line_.choice("--strategy", words_.strategy, names, help, Enters::History);
+    std::set<std::string_view> added;
+    for (const StrategyRow& row : strategies())
+        for (const StrategyOption& option : row.options)
+            if (added.insert(option.name).second) addStrategyOption(row, option);
+    line_.count("--deg", "N", how.headings, 1, kMaxHeadings,
+                "headings per site, 360/N degrees apart from 0, or from the inner normal of a wall "
+                "(default: 8 for grid and random, the normal for wall, else as in --candidates)",
+                Enters::History);
+}
+
+void ArrangeCommand::addStrategyOption(const StrategyRow& row, const StrategyOption& option) {
+    const std::string help = "of " + std::string(row.name) + ": " + option.help;
+    const auto add = [&](auto field) {
+        auto& value = options_.how.*field;
+        using Value = std::remove_reference_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, CandidateDensity>)
+            line_.parsed(
+                option.name, "GRID,WALL,HEADINGS",
+                [&value, &option](const std::string& text) {
+                    value = readDensity(text, option.lowest, option.highest);
+                },
+                help, Enters::History);
+        else if constexpr (std::is_same_v<Value, std::vector<Site>>)
+            line_.file(option.name, "FILE", options_.places_file, help, Enters::BaseName);
+        else if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, std::optional<int>>)
+            line_.count(option.name, "N", value, static_cast<int>(option.lowest),
+                        static_cast<int>(option.highest), help, Enters::History);
+        else
+            line_.meters(option.name, value, option.lowest, option.highest, help, Enters::History);
+    };
+    std::visit(add, option.field);
+}
+
+void ArrangeCommand::addMountOptions() {
+    MountRules& mount = options_.how.mount;
+    line_.choice(
+        "--mount", words_.mount, wordsOf(kMounts),
+        "support of the sensors: floor (default; cameras: ceiling), wall (only sites along walls), "
+        "frame (bars of infra), ceiling; on the last two rangers and ultrasound look down",
+        Enters::History);
+    line_.parsed(
+        "--z", "H[,H...]",
+        [&mount](const std::string& text) {
+            mount.heights = numbers(text, Unit::Length, 1, 100, 0, 1000);
+        },
+        "heights to choose from (default 0.15, or that of the mount; of cameras on walls 2.4)",
+        Enters::History);
+    line_.parsed(
+        "--tilt", "DEG[,DEG...]",
+        [&mount](const std::string& text) {
+            mount.tilts.clear();
+            for (const double tilt : numbers(text, Unit::Angle, 1, 100, -90, 90))
+                mount.tilts.push_back(Angle::degrees(tilt));
+        },
+        "tilts to choose from, for sensors without tilt= (default 0; of cameras -30,-15,-45 on "
+        "walls and -90,-60,-30 above)",
+        Enters::History);
+    line_.meters("--clearance", mount.clearance, 0, 1000,
+                 "minimum distance from walls and objects at that height", Enters::History);
+    line_.texts("--keep-out", "ZONE", options_.zones.keep_out, "no sensor stands there",
+                Enters::History);
+    line_.texts("--keep-in", "ZONE", options_.zones.keep_in, "sensors stand only there",
+                Enters::History);
+}
+
+void ArrangeCommand::addGoalOptions() {
+    ArrangeOptions& how = options_.how;
+    line_.texts("--zone", "ZONE", options_.zones.targets,
+                "cover only this part of the floor: the id of a zone, rect:X,Y,X,Y, "
+                "poly:X,Y;X,Y;..., or door:GLOB,M within M of doors",
+                Enters::History);
+    line_.texts("--weight", "ZONE=W", options_.zones.weights,
+                "floor there counts W times (elsewhere once)", Enters::History);
+    constexpr int kMaxTimes = 100;
+    line_.count("--redundancy", "K", how.redundancy, 1, kMaxTimes,
+                "floor counts if K sensors see it", Enters::History);
+    line_.flag("--connected", how.is_connected,
+               "views must form one connected whole by sharing cells", Enters::History);
+    line_.parsed(
+        "--target", "SHARE", [&how](const std::string& text) { how.target = readShare(text); },
+        "find the fewest sensors (or the cheapest, cost=) that cover this share, e.g. 95%; COUNT "
+        "is then a maximum; exit with 3 if it cannot be reached",
+        Enters::History);
+    line_.parsed(
+        "--budget", "COST",
+        [&how](const std::string& text) {
+            how.budget = readNumber(text, 0, 1e9, "a cost from 0 on");
+        },
+        "spend at most this, at cost= per sensor (default 1); COUNT is then a maximum",
+        Enters::History);
+    line_.meters("--plane", how.plane, 0, 1000,
+                 "height of the plane that rangers, cameras and ultrasound cover, 0 is the floor",
+                 Enters::History);
+    addDensityOption(line_, how.pixel_density);
+    addCellOptions(line_, words_.cells, "while searching");
+    line_.parsed(
+        "--reso", "DEG", [&how](const std::string& text) { how.beam_step = readResolution(text); },
+        "while searching, lasers cover the contour of beams this far apart, as in the thesis; "
+        "sensor: their step (default: the whole visible area)",
+        Enters::History);
+    line_.choice(
+        "--judge", words_.judge, {"yes", "no"},
+        "no: without the thesis' Insider Judge sensors may stand outside the room, and all "
+        "of the rectangle about it counts (fig. 4.8; default yes)",
+        Enters::History);
+}
+
+void ArrangeCommand::addSearchOptions() {
+    ArrangeOptions& how = options_.how;
+    line_.choice("--optimize", words_.optimize, wordsOf(kOptimizers),
+                 "one after another (greedy), with moves from many starts (swap), or to the proven "
+                 "best (exact); default swap, greedy with grid, random and wall",
+                 Enters::History);
+    constexpr int kMaxStarts = 100000;
+    line_.count("--starts", "N", how.search.swap.starts, 0, kMaxStarts, "random starts of swap",
+                Enters::History);
+    line_.parsed(
+        "--gap", "SHARE", [&how](const std::string& text) { how.search.gap = readGap(text); },
+        "end once value and bound are this close, e.g. 1%", Enters::History);
+    constexpr double kMaxWait = 1e9;
+    line_.duration("--time-limit", options_.time_limit, 0, kMaxWait,
+                   "end with the best so far after this time (500ms, 2s, 1min), marked complete=no",
+                   Enters::History);
+    line_.flag("--refine", how.refine,
+               "improve the best layout in continuous positions and headings, by exact area",
+               Enters::History);
+    line_.parsed(
+        "--max-memory", "SIZE",
+        [&how](const std::string& text) { how.max_bytes = byteCount(text); },
+        "limit for candidates and the tree of exact, e.g. 2G (default 8G)", Enters::Nothing);
+}
+
+void ArrangeCommand::addFileOptions() {
+    line_.file("--curve", "FILE", options_.curve_file,
+               "also report the coverage of 1, 2, ... sensors, and write it to FILE (.csv, .png, "
+               ".svg or .pdf)",
+               Enters::Nothing);
+    line_.file("--trace", "FILE", options_.trace_file,
+               "write every candidate with its value as JSONL, for coverage --trace",
+               Enters::Nothing);
+    line_.file("--export-mps", "FILE", options_.mps_file,
+               "write the model for solvers of mixed-integer programs (glpsol, cbc)",
+               Enters::Nothing);
+}
+
+void ArrangeCommand::settle() {
+    ArrangeOptions& how = options_.how;
+    checkBatchOptions(line_, options_.batch, options_.common, options_.operands);
+    if (!options_.batch.shard)
+        (void)outputFormat({}, options_.common.output, {"3dm"});  // refuses another suffix
+    if (!words_.mount.empty()) how.mount.on = valueOf(words_.mount, kMounts);
+    settleStrategy();
+    how.cells = words_.cells.choice();
+    if (how.mount.on == MountOn::Frame &&
+        (line_.given("--strategy") || line_.given("--effort") || line_.given("--z")))
+        throw UsageError(
+            "--mount frame: the bars of the frame are the places; leave out "
+            "--strategy, --effort and --z");
+    if (how.refine && how.mount.on == MountOn::Frame)
+        throw UsageError(
+            "--refine moves sensors anywhere, and bars of a frame are few: leave out "
+            "one of --refine and --mount frame");
+    if (how.search.optimizer == Optimizer::Greedy)
+        for (const char* option : {"--starts", "--gap"})
+            if (line_.given(option))
+                throw UsageError(std::string(option) +
+                                 " is about --optimize swap or exact: give one of them, too");
+    if (how.target && how.budget)
+        throw UsageError("--target asks for the least cost: leave out --budget");
+    for (const std::string& weight : options_.zones.weights) (void)splitWeight(weight);
+    how.judges_inside = words_.judge != "no";
+    if (how.refine && (how.beam_step || !how.judges_inside))
+        throw UsageError(
+            "--refine measures what is in view of the indoor floor: leave out --reso and "
+            "--judge no");
+    how.wants_curve = !options_.curve_file.empty();
+    how.wants_trace = !options_.trace_file.empty();
+    how.seed = options_.common.seed;
+    how.search.swap.seed = options_.common.seed;
+    settleFiles();
+    settleBatch();
+}
+
+void ArrangeCommand::checkStrategyOption(const StrategyRow& row,
+                                         const StrategyOption& option) const {
+    const ArrangeOptions& how = options_.how;
+    const std::string name(row.name);
+    if (!line_.given(option.name)) {
+        if (option.is_needed && how.strategy == row.strategy)
+            throw UsageError("--strategy " + name + ": give the " + name + " with " + option.name +
+                             " FILE");
+        return;
+    }
+    if (takes(how.strategy, how.mount.on, option)) return;
+    if (!words_.effort.empty()) refuseWithEffort(option.name);
+    throw UsageError(std::string(option.name) + " is about --strategy " + name + ": " +
+                     option.refusal);
+}
+
+void ArrangeCommand::settleStrategy() {
+    ArrangeOptions& how = options_.how;
+    if (!words_.effort.empty()) {
+        how.strategy = words_.effort == "low" ? Strategy::Random : Strategy::Grid;
+        how.headings = words_.effort == "high" ? 16 : 8;
+        for (const char* option : {"--strategy", "--deg"})
+            if (line_.given(option)) refuseWithEffort(option);
+    } else if (!words_.strategy.empty()) {
+        how.strategy = strategyNamed(words_.strategy)->strategy;
+    } else {
+        for (const StrategyRow& row : strategies())
+            for (const StrategyOption& option : row.options)
+                if (option.is_needed && line_.given(option.name)) how.strategy = row.strategy;
+    }
+    for (const StrategyRow& row : strategies())
+        for (const StrategyOption& option : row.options) checkStrategyOption(row, option);
+    const bool is_thesis = isOfThesis(how.strategy);
+    how.search.optimizer = is_thesis ? Optimizer::Greedy : Optimizer::Swap;
+    if (!words_.optimize.empty()) how.search.optimizer = valueOf(words_.optimize, kOptimizers);
+}
+
+void ArrangeCommand::settleFiles() const {
+    for (const auto& [name, file] : {std::pair("--curve", &options_.curve_file),
+                                     {"--trace", &options_.trace_file},
+                                     {"--export-mps", &options_.mps_file}})
+        if (isStdout(*file))
+            throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
+    if (!options_.curve_file.empty()) (void)outputFormat({}, options_.curve_file, curveFormats());
+}
+
+void ArrangeCommand::addShareOptions() {
+    addBatchOptions(line_, options_.batch, "the slowest part of its optimizer");
+    std::vector<std::string> words;
+    for (const Shared what : kShared) words.emplace_back(nameOf(what));
+    line_.choice("--share", words_.share, words,
+                 "work that shards divide: views of the candidates (default of greedy and with "
+                 "--target), random starts (of swap), or subtrees of the proof (of exact)",
+                 Enters::Nothing);
+    constexpr double kLongest = 86400;
+    line_.duration("--checkpoint-interval", options_.checkpoint_interval, 0, kLongest,
+                   "with --resume: time between two states of a proof that are kept",
+                   Enters::Nothing);
+}
+
+void ArrangeCommand::settleBatch() {
+    const ArrangeOptions& how = options_.how;
+    SearchShare& share = options_.how.search.share;
+    share.own = options_.batch.shard;
+    const Optimizer optimizer = how.search.optimizer;
+    share.what = how.target || optimizer == Optimizer::Greedy ? Shared::Candidates
+                 : optimizer == Optimizer::Swap               ? Shared::Starts
+                                                              : Shared::Tree;
+    if (!words_.share.empty())
+        share.what = *std::find_if(std::begin(kShared), std::end(kShared),
+                                   [&](Shared what) { return nameOf(what) == words_.share; });
+    if (line_.given("--checkpoint-interval") && !options_.batch.resume)
+        throw UsageError("--checkpoint-interval is about --resume: give both");
+    if (!options_.batch.shard) {
+        if (line_.given("--share")) throw UsageError("--share is about --shard: give both");
+        return;
+    }
+    const std::string what(nameOf(share.what));
+    if (how.target && share.what != Shared::Candidates)
+        throw UsageError("--share " + what +
+                         ": with --target there are many searches; shards can share candidates");
+    if (share.what == Shared::Starts && optimizer == Optimizer::Greedy)
+        throw UsageError("--share starts: --optimize greedy has none");
+    if (share.what == Shared::Tree && optimizer != Optimizer::Exact)
+        throw UsageError("--share tree: only --optimize exact has one");
+    if (share.what == Shared::Candidates && how.strategy == Strategy::Random &&
+        how.mount.on != MountOn::Frame)
+        throw UsageError(
+            "--shard: --strategy random draws places about the best of those before, so its "
+            "candidates cannot be shared; share the starts of --optimize swap, or run it with "
+            "several --seed and keep the best");
+    if (share.what != Shared::Tree && options_.time_limit)
+        throw UsageError(
+            "--time-limit would leave gaps in what shards share; only parts of a "
+            "proof (--optimize exact) are of use when cut short");
+    for (const auto& [name, file] : {std::pair("--curve", &options_.curve_file),
+                                     {"--trace", &options_.trace_file},
+                                     {"--export-mps", &options_.mps_file}})
+        if (!file->empty())
+            throw UsageError(std::string(name) + " needs all of the search: give it to --merge");
+}
+
+void ArrangeCommand::becomeMerge(const ArrangeToolOptions& merge, Shared what, int shards) {
+    const std::uint64_t seed = options_.common.seed;
+    options_.common = merge.common;
+    options_.common.seed = seed;
+    options_.rules.includes = merge.rules.includes;
+    options_.rules.max_work = merge.rules.max_work;
+    options_.trace_file = merge.trace_file;
+    options_.curve_file = merge.curve_file;
+    options_.mps_file = merge.mps_file;
+    options_.batch = BatchOptions();
+    options_.time_limit.reset();
+    options_.how.wants_curve = merge.how.wants_curve;
+    options_.how.wants_trace = merge.how.wants_trace;
+    options_.how.max_bytes = merge.how.max_bytes;
+    options_.how.search.share.what = what;
+    options_.how.search.share.joined = shards;
+}
+
+}  // namespace ispace

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/arrange_run.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "arrange/search/problem.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "cli/outputs.h"
+#include "env/zone.h"
+#include "report/coverage_report.h"
+#include "report/curve_chart.h"
+#include "scene/findings/findings.h"
+#include "scene/placement_schemas.h"
+#include "scene/scene.h"
+#include "sense/ultrasound.h"
+
+namespace ispace {
+
+namespace {
+
+std::vector<NamedZone> zonesOf(const ArrangeToolOptions& options, const std::string& text,
+                               const Environment& environment) {
+    std::vector<NamedZone> zones = readZones(text, environment);
+    for (const NamedZone& zone : zones)
+        if (zone.is_center_outside)
+            warn(options.common, "arrange",
+                 "the centre of gravity of " + zone.name +
+                     " lies outside of it; a point inside is (" + formatFixed(zone.inside.x, 2) +
+                     ", " + formatFixed(zone.inside.y, 2) + "): is it the zone that is meant?");
+    return zones;
+}
+
+void takeZones(const ArrangeToolOptions& options, const Environment& environment,
+               ArrangeOptions& how) {
+    const ZoneWords& words = options.zones;
+    const auto add = [&](const std::vector<std::string>& texts, std::vector<NamedZone>& zones) {
+        for (const std::string& text : texts)
+            for (NamedZone& zone : zonesOf(options, text, environment))
+                zones.push_back(std::move(zone));
+    };
+    add(words.targets, how.weights.targets);
+    add(words.keep_out, how.mount.keep_out);
+    add(words.keep_in, how.mount.keep_in);
+    for (const std::string& text : words.weights) {
+        const auto [name, weight] = splitWeight(text);
+        for (NamedZone& zone : zonesOf(options, name, environment))
+            how.weights.weights.emplace_back(std::move(zone), weight);
+    }
+}
+
+}  // namespace
+
+ArrangeWork readWork(const ArrangeToolOptions& options) {
+    std::vector<std::string> streams = options.operands;
+    streams.push_back(options.places_file);
+    mustReadStdinOnce(streams);
+    const DeviceCatalogue& devices = devicesForSensors(options.sensors);
+    const std::vector<std::string_view> kinds = keywordsOf(&SensorKind::is_arranged);
+    std::vector<SensorSpec> added;
+    added.reserve(options.sensors.size());
+    for (const std::string& spec : options.sensors)
+        added.push_back(ofOption(
+            "--sensor", [&] { return readSensorSpec(spec, kinds, sceneSchemas(), devices); }));
+    ArrangeWork work{readScene({options.operands, options.rules, false}), {}, options.how, {}, {}};
+    SceneInput& input = work.input;
+    warnOfImport(options.common, "arrange", input);
+    if (!options.fixed.empty()) {
+        if (!input.layout) throw UsageError("--fixed is about the sensors of a LAYOUT: give one");
+        input.layout = withoutPlaces(*input.layout, options.fixed);
+        input.scene = makeScene(input.environment, &*input.layout,
+                                devicesFor({&input.environment, &*input.layout}), &input.scene);
+    }
+    warn(options.common, "arrange", sceneWarnings(input.scene, {.checks = {"outside", "buried"}}));
+    const bool open = options.how.target || options.how.budget;
+    work.groups = groupsToPlace(input.scene, added, devices, open);
+    if (work.groups.empty())
+        throw UsageError("nothing to place: give --sensor, or a LAYOUT with a sensor without `at`");
+    takeZones(options, input.scene.environment, work.how);
+    work.files = filesOf(input);
+    if (!options.places_file.empty()) {
+        work.places = options.places_file == "-" ? readStdin() : readAll(options.places_file);
+        work.how.list =
+            readSites(work.places, options.places_file,
+                      headingsAround(work.how.headings.value_or(work.how.density.headings)));
+        work.files.push_back(options.places_file);
+    }
+    return work;
+}
+
+namespace {
+
+/// Sensors that stand and those that may be placed.
+struct Numbers {
+    std::size_t receivers = 0, others = 0;
+};
+
+Numbers numbersOf(const ArrangeWork& work) {
+    const Scene& scene = work.input.scene;
+    Numbers numbers;
+    for (const Sensor& sensor : scene.sensors)
+        if (kindOf(sensor.model).perceives)
+            ++(isPartial(sensor.model) ? numbers.receivers : numbers.others);
+    for (const SensorGroup& group : work.groups) {
+        auto most = static_cast<std::size_t>(group.most);
+        if (work.how.budget)
+            most = affordableCount(*work.how.budget, 0, group.record.number("cost"), most);
+        (isPartial(group.model) ? numbers.receivers : numbers.others) += most;
+    }
+    return numbers;
+}
+
+/// Where the pixels of a camera are too few; "" without one, or if any number will do.
+std::string reasonOfDensity(const ArrangeWork& work) {
+    const double density = work.how.pixel_density;
+    if (!(density > 0)) return "";
+    for (const SensorGroup& group : work.groups)
+        if (const auto* camera = std::get_if<Camera>(&group.model))
+            return "nowhere on the " + std::string(work.how.plane > 0 ? "plane" : "floor") +
+                   " are there " + formatDouble(density) + " pixels a metre (--density): " +
+                   (camera->model.empty() ? "a camera" : camera->model) + " has so many up to " +
+                   formatFixed(rangeOf(*camera, density), 2) + " m away";
+    return "";
+}
+
+/// Why nothing is covered; "" where something is.
+std::string reasonForNothing(const ArrangeWork& work, const Arrangement& arrangement) {
+    const auto [receivers, others] = numbersOf(work);
+    const std::size_t together = others + receivers / kMinReceivers;
+    const auto times = static_cast<std::size_t>(work.how.redundancy);
+    if (receivers > 0 && receivers < kMinReceivers)
+        return "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
+               " receivers have to hear a tag, here are " + std::to_string(receivers);
+    if (times > 1 && together < times)
+        return "nothing counts: floor has to be seen by " + std::to_string(times) +
+               " sensors, and there are " + std::to_string(together);
+    if (arrangement.coverage > 0 || arrangement.sensors.empty()) return "";
+    if (!work.how.judges_inside && arrangement.candidate_value > 0) return "";
+    if (std::string text = reasonOfDensity(work); !text.empty()) return text;
+    return "the sensors cover nothing: look at their heights, tilts and ranges, and at what "
+           "`coverage` draws (-o map.png)";
+}
+
+/// Section 4.4.5 of the thesis; "" where it does not apply.
+std::string hintAlongWalls(const ArrangeWork& work) {
+    constexpr double kSlack = 1e-9;  // degrees
+    const bool has_headings = work.how.headings.has_value();
+    if (work.how.strategy != Strategy::Wall || has_headings || work.how.mount.on == MountOn::Frame)
+        return "";
+    for (const SensorGroup& group : work.groups) {
+        const auto* laser = std::get_if<Laser>(&group.model);
+        const double span = laser == nullptr ? 0 : laser->sweptSpan().degrees();
+        if (span > 180 + kSlack)
+            return "along walls " + formatDouble(roundSignificant(span - 180, 4)) + " of the " +
+                   formatDouble(roundSignificant(span, 4)) +
+                   " degrees of a laser's field of view face the wall: --strategy grid or random "
+                   "may cover more";
+    }
+    return "";
+}
+
+/// Nothing hangs above the room.
+void warnOfHeights(const ArrangeToolOptions& options, const ArrangeWork& work) {
+    const double top = work.input.scene.environment.height();
+    for (const double height : work.how.mount.heights)
+        if (height > top)
+            warn(options.common, "arrange",
+                 "--z " + formatDouble(height) + ": the room is " + formatDouble(top) +
+                     " m high, and nothing is there to mount a sensor on");
+}
+
+/// Where nothing is covered there is a reason, which is worth a word; and so are sensors too many.
+void warnOfNothing(const ArrangeToolOptions& options, const ArrangeWork& work,
+                   const Arrangement& arrangement) {
+    std::string text = reasonForNothing(work, arrangement);
+    if (text.empty()) text = idleText(arrangement);
+    if (!text.empty()) warn(options.common, "arrange", text);
+}
+
+}  // namespace
+
+void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work) {
+    if (const std::string hint = hintAlongWalls(work); !hint.empty())
+        warn(options.common, "arrange", hint);
+    warnOfHeights(options, work);
+}
+
+void checkGoals(const ArrangeToolOptions& options, const ArrangeWork& work,
+                const Arrangement& arrangement) {
+    warnOfNothing(options, work, arrangement);
+    if (const std::string text = doubledText(arrangement); !text.empty())
+        warn(options.common, "arrange", text);
+    if (!arrangement.is_reached) {
+        std::string text = shortfallText(work.how, arrangement);
+        if (arrangement.candidate_bound <= 0)
+            if (const std::string reason = reasonOfDensity(work); !reason.empty())
+                text += "; " + reason;
+        throw UnmetError(text);
+    }
+    if (arrangement.unplaced > 0)
+        throw UnmetError(std::to_string(arrangement.unplaced) +
+                         " of the sensors are not placed: there are " +
+                         (work.how.is_connected
+                              ? "no candidates left from which views hang together (--connected)"
+                              : "fewer candidates than sensors"));
+}
+
+namespace {
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+    return std::to_string(count) + ' ' + (count == 1 ? one : many);
+}
+
+/// Share of the bound that is open; 0 for a layout that is proven best.
+double gapOf(const Arrangement& arrangement) {
+    const double bound = arrangement.candidate_bound;
+    return bound > 0 ? std::max(0.0, (bound - arrangement.candidate_value) / bound) : 0;
+}
+
+/// The step that a signal or the time limit ended after the candidates were chosen.
+std::string unfinishedText(const ArrangeOptions& how) {
+    return how.target ? "the search for fewer sensors" : how.refine ? "refining" : "the curve";
+}
+
+std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    return "over " + counted(arrangement.candidates, "candidate", "candidates") + " (" +
+           std::string(nameOf(how.strategy)) + ", " + formatBytes(arrangement.bytes) + ") on " +
+           cellsText(arrangement.grid);
+}
+
+}  // namespace
+
+std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    std::string text = "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") +
+                       ", coverage " + percentText(arrangement.coverage);
+    // The bound is about what was maximised, before it was refined.
+    if (arrangement.value)
+        text += "; value " + percentText(arrangement.candidate_value);
+    else if (how.refine)
+        text += "; before it was refined " + percentText(arrangement.candidate_value);
+    const double gap = gapOf(arrangement);
+    text += ", bound " + percentText(arrangement.candidate_bound) + " (" +
+            (gap > 0 ? "gap " + percentText(gap) : "proven best") + ") " +
+            overText(how, arrangement);
+    if (!arrangement.is_complete && gap > 0) text += ", cut short";
+    text += '\n';
+    if (!arrangement.is_complete && gap <= 0)
+        text += "arrange: " + unfinishedText(how) + " was cut short\n";
+    if (how.refine && arrangement.refined_after > arrangement.refined_before) {
+        text += "arrange: refined from " + formatFixed(arrangement.refined_before, 3) + " to " +
+                formatFixed(arrangement.refined_after, 3) +
+                " m2 by exact area, off the candidates; " +
+                (arrangement.bound < 1 ? "from any places at all at most " +
+                                             percentText(arrangement.bound) + " can be covered"
+                                       : "for any places at all no bound below 100% is known") +
+                '\n';
+    } else if (how.refine) {
+        text += "arrange: refining found nothing better than " +
+                formatFixed(arrangement.refined_before, 3) + " m2 by exact area\n";
+    }
+    if (arrangement.least) {
+        text += "arrange: target " + percentText(*how.target) + " reached " +
+                (arrangement.has_costs
+                     ? "at a cost of " + formatDouble(arrangement.cost) +
+                           "; nothing cheaper than " + formatDouble(*arrangement.least)
+                     : "by " + counted(arrangement.sensors.size(), "sensor", "sensors") +
+                           "; none fewer than " + formatDouble(*arrangement.least)) +
+                " of these candidates can\n";
+    }
+    if (how.budget)
+        text += "arrange: cost " + formatDouble(arrangement.cost) + " of a budget of " +
+                formatDouble(*how.budget) + '\n';
+    if (!arrangement.curve.empty()) text += curveText(arrangement.curve);
+    return text;
+}
+
+std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    std::string text = "the target of " + formatPercent(how.target.value_or(1)) +
+                       " is not reached: " +
+                       counted(arrangement.sensors.size(), "sensor covers ", "sensors cover ") +
+                       percentText(arrangement.candidate_value);
+    if (arrangement.candidate_bound < how.target.value_or(1))
+        text += ", and no layout of these candidates covers more than " +
+                percentText(arrangement.candidate_bound);
+    if (!arrangement.is_complete) return text + "; the search was cut short";
+    if (arrangement.is_exhausted)
+        return text +
+               "; all candidates together see no more: try denser ones (--candidates), other "
+               "places (--mount, --z) or sensors";
+    return text + "; allow more sensors (:COUNT), or denser candidates";
+}
+
+std::string idleText(const Arrangement& arrangement) {
+    constexpr std::size_t kMaxNamed = 10;
+    const std::vector<std::string>& idle = arrangement.idle;
+    if (idle.empty()) return "";
+    std::string text;
+    for (std::size_t i = 0; i < std::min(idle.size(), kMaxNamed); ++i)
+        text.append(i == 0 ? "" : ", ").append(printable(idle[i]));
+    if (idle.size() > kMaxNamed)
+        text += " and " + std::to_string(idle.size() - kMaxNamed) + " more";
+    return text + (idle.size() == 1 ? " adds" : " add") + " nothing to what the others cover";
+}
+
+std::string doubledText(const Arrangement& arrangement) {
+    const std::vector<Placement>& sensors = arrangement.sensors;
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+        for (std::size_t k = i + 1; k < sensors.size(); ++k) {
+            const Point3 p = sensors[i].pose.position;
+            if (!(p == sensors[k].pose.position)) continue;
+            return printable(sensors[i].sensor) + " and " + printable(sensors[k].sensor) +
+                   " are at one place (" + formatDouble(p.x) + ", " + formatDouble(p.y) + ", " +
+                   formatDouble(p.z) + "): mount them side by side";
+        }
+    return "";
+}
+
+}  // namespace ispace

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coverage/coverage_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "cli/common_options.h"
+#include "cli/outputs.h"
+
+namespace ispace {
+
+namespace {
+
+std::vector<std::string> formatNames() {
+    std::vector<std::string> names;
+    for (const CoverageFormat& format : coverageFormats()) names.emplace_back(format.name);
+    return names;
+}
+
+/// What is about the map alone.
+constexpr const char* kMapOptions[] = {"--to",   "--width", "--color",
+                                       "--fans", "--trace", "--speeds"};
+
+/// Words of options that become something else once they are read.
+struct Words {
+    std::string to, cells_by, color, fans;
+    CellWords cells;
+    std::vector<std::string> requirements;
+};
+
+/// `30` or `30,3`.
+ParallaxChoice parseParallax(const std::string& text) {
+    const auto comma = text.find(',');
+    const auto degrees = parseDouble(text.substr(0, comma));
+    const auto cameras =
+        comma == std::string::npos ? std::optional(2.0) : parseDouble(text.substr(comma + 1));
+    constexpr double kMaxCameras = 100;
+    if (!degrees || *degrees < 0 || *degrees > 180 || !cameras || *cameras < 2 ||
+        *cameras > kMaxCameras || *cameras != std::floor(*cameras))
+        throw UsageError("`" + text +
+                         "` is not DEG or DEG,K with degrees from 0 to 180 and 2 to 100 cameras");
+    return {Angle::degrees(*degrees), static_cast<int>(*cameras)};
+}
+
+/// `30%,60%,100%`. Nav2 takes a limit of nothing for none, and masks know whole per cents.
+std::vector<double> parseSpeeds(const std::string& text) {
+    constexpr double kHundred = 100;
+    std::vector<double> speeds;
+    std::istringstream list(text);
+    for (std::string word; std::getline(list, word, ',');) {
+        const auto share = parseShare(word);
+        if (!share || std::lround(kHundred * *share) < 1)
+            throw UsageError("`" + word +
+                             "` is no share of full speed from 1% to 100%, as in 30%,60%,100%; to "
+                             "keep robots out take --to nav2-keepout");
+        speeds.push_back(*share);
+    }
+    if (speeds.empty()) throw UsageError("no speeds, wanted such as 30%,60%,100%");
+    return speeds;
+}
+
+void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words) {
+    addCellOptions(line, words.cells, "that metrics count");
+    line.choice("--grid-of", words.cells_by, {"region", "beams"},
+                "a laser sees the cells in its visible area, or in the polygon of its beam ends "
+                "(default region)",
+                Enters::History);
+    line.meters("--height", measure.height, 0, 1000, "height of the free floor", Enters::History);
+    line.meters("--plane", measure.plane, 0, 1000,
+                "height of the plane that rangers, cameras and ultrasound cover, 0 is the floor",
+                Enters::History);
+    addDensityOption(line, measure.density);
+    const auto parallax = [&measure](const std::string& text) {
+        measure.parallax = parseParallax(text);
+    };
+    line.parsed("--parallax", "DEG[,K]", parallax,
+                "report the floor that K cameras see (default 2) with axes pairwise at least this "
+                "many degrees apart",
+                Enters::History);
+}
+
+void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
+    if (!line.given("--output")) {
+        for (const char* option : kMapOptions)
+            if (line.given(option))
+                throw UsageError(std::string(option) + " is about the map: give -o FILE");
+        return;
+    }
+    if (isStdout(o.common.output))
+        throw UsageError("the report goes to stdout: give the map a file (-o map.png)");
+    std::vector<SuffixOf> suffixes;
+    for (const CoverageFormat& format : coverageFormats()) {
+        const auto is_taken = [&format](const SuffixOf& of) { return of.suffix == format.suffix; };
+        const bool is_first = std::none_of(suffixes.begin(), suffixes.end(), is_taken);
+        suffixes.push_back({is_first ? std::string(format.suffix) : "", std::string(format.name)});
+    }
+    const std::string name = outputFormat(to, o.common.output, formatNames(), suffixes);
+    const CoverageFormat& format = coverageFormat(name);
+    o.format = &format;
+    if (format.beside_suffix != nullptr && suffixOf(o.common.output) != format.suffix)
+        throw UsageError(
+            "a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml");
+    if (format.square_cell > 0 && line.given("--grid"))
+        throw UsageError("a ROS map has square cells: give --cell instead of --grid");
+    if (format.square_cell > 0 && !line.given("--cell"))
+        o.measure.cells = CellSize{format.square_cell};
+    for (const char* option : {"--width", "--color", "--fans", "--trace"})
+        if (line.given(option) && !format.picture)
+            throw UsageError(std::string(option) + " is about pictures, not about " + name);
+    if (line.given("--speeds") && !format.takes_speeds)
+        throw UsageError("--speeds is for --to nav2-speed, not for " + name);
+}
+
+/// Of many scenes there are only reports.
+void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
+    if (!o.operands.empty())
+        throw UsageError("--batch takes scenes from LIST: put " + o.operands.front() +
+                         " on a line of it");
+    for (const char* option : {"--report", "--compare", "--run", "--MD", "--MF"})
+        if (line.given(option))
+            throw UsageError(std::string(option[2] == 'M' ? option + 1 : option) +
+                             " is about one scene, and --batch about many");
+    for (const char* option : kMapOptions)
+        if (line.given(option))
+            throw UsageError(std::string(option) +
+                             " is about the map, and --batch draws none: it writes reports");
+    static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
+    if (o.resume && isStream(o.common.output))
+        throw UsageError("--resume keeps what is done beside a file: give -o FILE.jsonl");
+}
+
+void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
+    for (const char* option : {"--shard", "--resume"})
+        if (line.given(option))
+            throw UsageError(std::string(option) + " is about many scenes: give --batch LIST");
+    checkProduct(line, o, to);
+}
+
+void checkReport(const CoverageToolOptions& o) {
+    if (isStdout(o.report))
+        throw UsageError("the report goes to stdout anyway: give --report a file, or --json alone");
+    static_cast<void>(outputFormat({}, o.report, {"json"}));  // refuses another suffix
+}
+
+}  // namespace
+
+CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
+    CoverageToolOptions o;
+    Words words;
+    CommandLine line("coverage", "[ENV] [LAYOUT]",
+                     "Measure and draw the floor that sensors cover. Without LAYOUT read it from "
+                     "stdin unless ENV holds sensors with a pose. The report goes to stdout.");
+    line.operands(o.operands, 2);
+    line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
+    line.file("--report", "FILE", o.report, "also write the report there, as JSON (.json)",
+              Enters::Nothing);
+    line.file("--batch", "LIST", o.batch,
+              "measure many scenes in one process: LIST (- is stdin) has a line `ENV [LAYOUT]` for "
+              "each; a report a line, as JSON, in its order",
+              Enters::Nothing);
+    line.parsed(
+        "--shard", "I/N", [&o](const std::string& text) { o.shard = parseShard(text); },
+        "with --batch: measure the I-th of N shares of LIST; their outputs joined by cat are that "
+        "of "
+        "the whole",
+        Enters::Nothing);
+    line.flag(
+        "--resume", o.resume,
+        "with --batch: store completed reports beside FILE, and continue a killed run from there",
+        Enters::Nothing);
+    addMeasureOptions(line, o.measure, words);
+    line.texts("--zone", "ZONE", o.zones,
+               "report this part of the floor, too, as a zone: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
+               "door:GLOB,M within M of doors, named DOOR-zone",
+               Enters::History);
+    line.texts("--require", "SHARE", words.requirements,
+               "exit with 3 if less is covered, by exact metrics where they are known: 95% of the "
+               "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class identify:95%, "
+               "identify:NAME=95%",
+               Enters::History);
+    line.file("--junit", "FILE", o.junit,
+              "write the results of the requirements there, as XML that CI servers read",
+              Enters::Nothing);
+    line.file("--compare", "LAYOUT", o.other,
+              "report gains and losses against this layout, in numbers and on the map",
+              Enters::BaseName);
+    line.file("--run", "DIR", o.run,
+              "report by how many sensors robots and people were seen in the run that simrun "
+              "--record wrote there, and where sight was lost, in numbers and on the map",
+              Enters::BaseName);
+    line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
+                Enters::History);
+    constexpr int kNarrowest = 200, kWidest = 10000;
+    line.count("--width", "PIXELS", o.map.width, kNarrowest, kWidest, "width of a PNG or SVG",
+               Enters::History);
+    line.choice("--color", words.color, {"redundancy", "sensor", "density"},
+                "colour the floor by how many sensors see it, by which, or by the pixels a metre "
+                "that cameras have there (default redundancy)",
+                Enters::History);
+    line.choice("--fans", words.fans, {"contours", "beams"},
+                "how views are drawn (default contours)", Enters::History);
+    line.parsed(
+        "--speeds", "P0,P1,...", [&o](const std::string& text) { o.speeds = parseSpeeds(text); },
+        "nav2-speed: shares of full speed on floor that 0, 1, ... sensors see, the last one for "
+        "more (default 30%,60%,100%)",
+        Enters::History);
+    line.file("--trace", "FILE", o.trace,
+              "draw the sites that arrange --trace wrote to this file on the map, coloured by "
+              "their best value",
+              Enters::Nothing);
+    addSceneRules(line, o.rules);
+    addCommonOptions(line, o.common, "draw the map there (default: no map)");
+    line.parse(argc, argv);
+
+    o.history_line = line.historyLine(o.operands);
+    if (const auto cells = words.cells.choice()) o.measure.cells = *cells;
+    if (words.cells_by == "beams") o.measure.cells_by = CellRule::Beams;
+    if (words.color == "sensor") o.map.color = MapColor::Sensor;
+    if (words.color == "density") o.map.color = MapColor::Density;
+    if (words.fans == "beams") o.map.fans = FanStyle::Beams;
+    o.requirements.reserve(words.requirements.size());
+    for (const std::string& text : words.requirements)
+        o.requirements.push_back(parseRequirement(text));
+    if (line.given("--junit") && o.requirements.empty())
+        throw UsageError("--junit writes what became of requirements: give --require");
+    // Of many scenes the reports may go to a file.
+    if (isStdout(o.junit) && (o.batch.empty() || isStdout(o.common.output)))
+        throw UsageError("the report goes to stdout: give --junit a file");
+    if (o.batch.empty())
+        checkOne(line, o, words.to);
+    else
+        checkBatch(line, o);
+    o.command = line.historyLine({});
+    if (line.given("--report")) checkReport(o);
+    o.measure.keep_depths = o.format != nullptr;  // to be drawn
+    return o;
+}
+
+}  // namespace ispace

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/shard.h"
+#include "cli/common_options.h"
+#include "coverage/requirement.h"
+#include "report/coverage_formats.h"
+#include "report/map/map.h"
+
+namespace ispace {
+
+struct CoverageToolOptions {
+    CommonOptions common;
+    std::vector<std::string> operands;
+    CoverageOptions measure;
+    std::vector<Requirement> requirements;
+    std::vector<std::string> zones;  ///< to report besides those of the room
+    std::string junit;               ///< file for what became of the requirements; "" for none
+    std::string command;             ///< its history line, without operands
+    std::string batch;  ///< list of many scenes, whose reports are the product; "" for one scene
+    Shard shard;        ///< of the list
+    bool resume = false;
+    std::string other;  ///< LAYOUT to compare with; "" for none
+    bool json = false;
+    std::string report;  ///< file for the report as JSON besides stdout; "" for none
+    const CoverageFormat* format = nullptr;  ///< of the product; null without one
+    std::string trace;  ///< file of what a search tried, for the map; "" for none
+    std::string run;    ///< folder of a record, whose robots and people are looked at; "" for none
+    MapOptions map;
+    std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor that 0, 1, ... sensors see
+    SceneRules rules;
+    std::string history_line;
+};
+
+/// Opens no file. \throws UsageError, TextRequested
+CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv);
+
+}  // namespace ispace

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/common_options.h"
+#include "io/exporters.h"
+#include "io/importers.h"
+#include "record/edit.h"
+#include "record/record.h"
+#include "scene/scene.h"
+
+namespace ispace {
+
+struct EnvcOptions {
+    CommonOptions common;
+    std::vector<std::string> inputs;       ///< "-" if none is given
+    const ExportFormat* format = nullptr;  ///< of the product; null with info, check or list
+    bool info = false, json = false, check = false;
+    bool list_rooms = false;         ///< instead of writing the room; format is null then, too
+    std::optional<double> slice;     ///< height of the obstacle map, which is the product then
+    int width = 1200;                ///< pixels of a PNG
+    std::vector<std::string> zones;  ///< to keep out of, or to add
+    SceneRules rules;
+    ImportOptions import;
+    std::string rooms;        ///< "" or a word of --rooms
+    std::vector<Edit> edits;  ///< in their order
+    std::string history_line;
+};
+
+/// Opens no file. \throws UsageError, TextRequested
+EnvcOptions parseEnvcOptions(int argc, const char* const* argv);
+
+/// The file that stands beside the product; "" for none.
+std::string besideOf(const EnvcOptions& options);
+
+/// Writes the product and what stands beside it. \throws as OutputFile and the format's writer
+void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document,
+                  const FoundRooms* found);
+
+/// For large inputs: what is let go of on the way is used again, and not given back to the system,
+/// which would have to clear it anew. Large rooms come and go through a few hundred megabytes.
+void keepMemory(const std::vector<std::string>& inputs);
+
+}  // namespace ispace

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scan/scan_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "cli/common_options.h"
+#include "cli/outputs.h"
+#include "sense/formats/reading_format.h"
+
+namespace ispace {
+
+namespace {
+
+double numberWithin(const std::string& text, double lowest, double highest) {
+    const std::optional<double> number = parseDouble(text);
+    if (!number || !(*number >= lowest && *number <= highest))
+        throw UsageError("`" + text + "` is no number from " + formatDouble(lowest) + " to " +
+                         formatDouble(highest));
+    return *number;
+}
+
+DepthSpectrum depthSpectrum(const std::string& text) {
+    constexpr double kMost = 1e6, kLeastSpan = 0.001;
+    const std::size_t comma = std::min(text.find(','), text.size());
+    if (comma == text.size())
+        throw UsageError("`" + text + "` is no pair WARM,COLD, such as 0.5,3");
+    const DepthSpectrum spectrum{numberWithin(text.substr(0, comma), 0, kMost),
+                                 numberWithin(text.substr(comma + 1), 0, kMost)};
+    if (std::fabs(spectrum.warm - spectrum.cold) < kLeastSpan)
+        throw UsageError("the two ends must be a millimetre apart at least");
+    return spectrum;
+}
+
+}  // namespace
+
+ScanCommand::ScanCommand(int argc, const char* const* argv)
+    : ToolCommand(
+          "scan", "[ENV] [LAYOUT]",
+          "Simulate the readings of sensors: lasers, 3-D rangers, cameras, ultrasonic receivers. "
+          "Without LAYOUT read it from stdin unless ENV holds sensors with a pose.") {
+    declare();
+    line_.parse(argc, argv);
+    ScanToolOptions& o = options_;
+    checkBatchOptions(line_, o.batch, o.common, o.operands);
+    checkViewOptions(line_, o.view);
+    // The suffix of a part says nothing about what is in it.
+    const bool is_part = o.batch.shard && suffixOf(o.common.output) == "part";
+    const std::string output = is_part ? "-" : o.common.output;
+    o.format = o.view.views.empty()
+                   ? outputFormat(to_, output, readingFormats(),
+                                  {{"log", "carmen"}, {"jpg", "jpeg"}, {"rgb", "rgb24"}})
+                   : outputFormat(to_, o.common.output, {"png", "jpeg"}, {{"jpg", "jpeg"}});
+    if (!o.view.views.empty() && !line_.given("--samples")) o.photo.samples = ViewOptions().samples;
+    o.noise = noise_.value_or(false);
+    o.color = color_.value_or(true);
+    o.encoding = encoding_ == "ascii" ? Encoding::Ascii : Encoding::Binary;
+    if (compression_ == "zstd") o.compression = McapCompression::Zstd;
+    o.coordinates = coordinates_ == "sensor" ? Coordinates::Sensor : Coordinates::World;
+    o.photo.light = light_ == "lamps" ? Illumination::Lamps
+                    : light_ == "sky" ? Illumination::Sky
+                                      : Illumination::Auto;
+    o.photo.sensor_bodies = sensor_bodies_.value_or(false);
+    o.photo.seed = o.common.seed;
+    o.photo.with_noise = o.noise;
+    check();
+}
+
+void ScanCommand::declare() {
+    ScanToolOptions& o = options_;
+    line_.operands(o.operands, 2);
+    line_.choice("--to", to_, readingFormats(),
+                 "format of the readings (default: by the suffix of -o, else jsonl)",
+                 Enters::History);
+    line_.texts("--select", "GLOB", o.select, "read only sensors whose ids match (* ? [a-z])",
+                Enters::History);
+    constexpr int kMaxFrames = 1'000'000'000;
+    line_.count(
+        "--frames", "N", o.frames, 1, kMaxFrames,
+        "readings of each sensor, at its rate (default 1); with --motion, at most this many",
+        Enters::History);
+    line_.switchFlag("--noise", "--no-noise", noise_, "add the devices' noise, from --seed",
+                     "read without noise (default)", Enters::History);
+    line_.file("--poses", "FILE", o.poses,
+               "one reading at each pose of a TUM trajectory, - for stdin: `t x y z qx qy qz qw`",
+               Enters::BaseName);
+    line_.text("--model", "MODEL[,KEY=VALUE...]", o.model,
+               "sensor that takes the poses: a device or a bare kind, e.g. urg-04lx or "
+               "laser,range=8,fov=270 (default: the one sensor there is)",
+               Enters::History);
+    line_.flag("--motion", o.motion,
+               "drive along the poses at the sensor's rate, each beam from the pose at its time",
+               Enters::History);
+    line_.choice("--coordinates", coordinates_, {"world", "sensor"},
+                 "frame of the points in csv, pcd and ply (default world)", Enters::History);
+    line_.choice("--encoding", encoding_, {"binary", "ascii"},
+                 "encoding of pcd and ply (default binary)", Enters::History);
+    line_.choice("--compression", compression_, {"none", "zstd"},
+                 "mcap: compression of its chunks (default none)", Enters::History);
+    constexpr double kMaxScale = 1e6;
+    line_.parsed(
+        "--depth-scale", "N",
+        [&o](const std::string& text) { o.depth_per_metre = numberWithin(text, 1, kMaxScale); },
+        "depth png: units per metre (default 1000: millimetres)", Enters::History);
+    line_.switchFlag("--color", "--no-color", color_,
+                     "depth png: also NAME-color.png for people (default)",
+                     "depth png: no such picture", Enters::History);
+    line_.parsed(
+        "--spectrum", "WARM,COLD",
+        [&o](const std::string& text) { o.spectrum = depthSpectrum(text); },
+        "NAME-color.png: depths in metres at the red and the blue end of the colours; 3,0.5 turns "
+        "them round (default: the limits of the sensor, near is red)",
+        Enters::History);
+    line_.parsed(
+        "--size", "W[,H]", [&o](const std::string& text) { o.picture_size = pictureSize(text); },
+        "pixels of a view (default 1280,960; H follows from W), or of each side of an obstacle map "
+        "(default 800)",
+        Enters::History);
+    constexpr double kColdest = -100, kHottest = 100;
+    line_.parsed(
+        "--temperature", "C",
+        [&o](const std::string& text) { o.celsius = numberWithin(text, kColdest, kHottest); },
+        "air temperature for ultrasound, Celsius (default 20)", Enters::History);
+    declarePictures();
+    addViewOptions(line_, o.view);
+    addBatchOptions(line_, o.batch, "of its readings");
+    line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",
+               Enters::Nothing);
+    addSceneRules(line_, o.rules);
+    addCommonOptions(line_, o.common,
+                     "write the readings there: a file, a folder, or a pattern with %d (frame) and "
+                     "%s (sensor) (default: stdout)");
+}
+
+void ScanCommand::declarePictures() {
+    PhotoOptions& photo = options_.photo;
+    constexpr int kMaxSamples = 4096;
+    line_.count("--samples", "N", photo.samples, 1, kMaxSamples,
+                "pictures: lines of sight for each pixel; more are smoother; views have 16 "
+                "by default",
+                Enters::History);
+    line_.choice("--light", light_, {"auto", "lamps", "sky"},
+                 "pictures and views: lamps under the ceiling, or sun and sky (default auto: "
+                 "lamps where there is a ceiling, and for views from outside)",
+                 Enters::History);
+    constexpr double kMaxStops = 20;
+    line_.parsed(
+        "--exposure", "EV",
+        [&photo](const std::string& text) {
+            photo.exposure = std::exp2(numberWithin(text, -kMaxStops, kMaxStops));
+        },
+        "pictures and views: stops brighter, negative darker (default 0: a white wall in full "
+        "light is white)",
+        Enters::History);
+    line_.switchFlag("--sensor-bodies", "--no-sensor-bodies", sensor_bodies_,
+                     "pictures of cameras: the bodies of other sensors are seen",
+                     "pictures of cameras: sensors are not seen (default)", Enters::History);
+    line_.parsed(
+        "--layers", "labels,depth",
+        [&photo](const std::string& text) {
+            std::istringstream list(text);
+            for (std::string layer; std::getline(list, layer, ',');) {
+                if (layer != "labels" && layer != "depth")
+                    throw UsageError("`" + layer + "` is none of labels|depth");
+                (layer == "labels" ? photo.labels : photo.depths) = true;
+            }
+        },
+        "png and jpeg of cameras: also NAME-labels.png with NAME-labels.csv, NAME-depth.png",
+        Enters::History);
+}
+
+void ScanCommand::check() {
+    ScanToolOptions& o = options_;
+    checkBatch();
+    if (!o.view.views.empty()) return checkViews();
+    if (!o.view.run.empty())
+        for (const char* name : {"--frames", "--poses", "--model", "--motion", "--noise"})
+            if (line_.given(name))
+                throw UsageError(std::string(name) +
+                                 " does not go with --run, whose readings are taken already");
+    if (o.picture_size) {
+        constexpr int kLeast = 200, kMost = 8000;
+        o.map_pixels = o.picture_size->columns;
+        if (o.picture_size->rows != 0 || o.map_pixels < kLeast || o.map_pixels > kMost)
+            throw UsageError("--size: an obstacle map is a square of " + std::to_string(kLeast) +
+                             " to " + std::to_string(kMost) + " pixels a side");
+    }
+    if (line_.given("--compression") && o.format != "mcap")
+        throw UsageError("--compression is about mcap, and --to says " + o.format);
+    if (line_.given("--layers") && o.format != "png" && o.format != "jpeg")
+        throw UsageError("--layers are files beside pictures in png or jpeg, and --to says " +
+                         o.format);
+    if (o.list_models && !o.operands.empty())
+        throw UsageError("--list-models reads no operands, and there is " + o.operands.front());
+    if (o.poses.empty()) {
+        if (!o.model.empty()) throw UsageError("--model is the sensor of --poses: give both");
+        if (o.motion) throw UsageError("--motion goes along --poses: give both");
+    } else {
+        if (o.frames && !o.motion)
+            throw UsageError(
+                "--frames counts readings of placed sensors and of --motion; --poses has its own");
+        if (!o.model.empty() && !o.select.empty())
+            throw UsageError("--select and --model both say which sensor takes the poses");
+    }
+}
+
+void ScanCommand::checkBatch() const {
+    const ScanToolOptions& o = options_;
+    const std::string option = o.batch.shard ? "--shard" : o.batch.resume ? "--resume" : "--merge";
+    if (!o.batch.shard && !o.batch.resume && !o.batch.merge) return;
+    if (!o.view.views.empty() || !o.view.run.empty() || o.list_models)
+        throw UsageError(option + " is for readings that are taken: leave out " +
+                         (!o.view.views.empty() ? "--view"
+                          : !o.view.run.empty() ? "--run"
+                                                : "--list-models"));
+    if (o.batch.merge && OutputSet::of(o.common.output))
+        throw UsageError(
+            "--merge: files of one reading each need no merging, their shards write "
+            "them");
+}
+
+void ScanCommand::checkSensors(const std::vector<Sensor>& read) const {
+    const auto reads = [&read](auto is_one) {
+        return std::any_of(read.begin(), read.end(), is_one);
+    };
+    if (!reads([](const Sensor& sensor) { return sensor.is<Camera>(); }))
+        for (const char* name :
+             {"--samples", "--light", "--exposure", "--sensor-bodies", "--layers"})
+            if (line_.given(name))
+                throw UsageError(std::string(name) +
+                                 " is for pictures of cameras, and no camera is read");
+    const bool has_depths =
+        options_.format == "png" && reads([](const Sensor& sensor) { return sensor.is<Ranger>(); });
+    if (line_.given("--color") && !has_depths)
+        throw UsageError("--color is for depth pictures of rangers, and none is written");
+    if (options_.spectrum && !(has_depths && options_.color))
+        throw UsageError("--spectrum is for depth pictures in colours, and none is written");
+}
+
+void ScanCommand::checkViews() const {
+    const ScanToolOptions& o = options_;
+    for (const char* name :
+         {"--select", "--poses", "--model", "--motion", "--noise", "--sensor-bodies", "--layers"})
+        if (line_.given(name))
+            throw UsageError(std::string(name) + " is about readings, and --view takes none");
+    if (o.format != "png" && o.format != "jpeg")
+        throw UsageError("--view draws png or jpeg, and --to says " + o.format);
+    if (o.frames && o.view.run.empty())
+        throw UsageError("--frames with --view are those of a run: give --run DIR");
+}
+
+}  // namespace ispace

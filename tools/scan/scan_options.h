@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/batch.h"
+#include "cli/command_line.h"
+#include "cli/common_options.h"
+#include "scan/scan_views.h"
+#include "sense/formats/mcap_writer.h"
+#include "sense/formats/point_cloud.h"
+#include "sense/formats/reading_picture.h"
+#include "sense/photo.h"
+
+namespace ispace {
+
+struct ScanToolOptions {
+    CommonOptions common;
+    std::vector<std::string> operands;
+    std::string format = "jsonl";
+    std::vector<std::string> select;  ///< globs of ids; empty: all
+    std::optional<int> frames;        ///< of each placed sensor (1 without), or of --motion at most
+    bool noise = false;
+    std::string poses;  ///< "": placed sensors; "-": stdin
+    std::string model;  ///< of --poses
+    bool motion = false;
+    Coordinates coordinates = Coordinates::World;
+    Encoding encoding = Encoding::Binary;
+    double depth_per_metre = 1000;
+    bool color = true;
+    std::optional<DepthSpectrum> spectrum;
+    int map_pixels = 800;
+    McapCompression compression = McapCompression::None;
+    std::optional<PictureSize> picture_size;
+    ViewToolOptions view;
+    double celsius = 20;
+    PhotoOptions photo;
+    BatchOptions batch;
+    bool list_models = false;
+    SceneRules rules;
+};
+
+class ScanCommand : public ToolCommand<ScanToolOptions> {
+  public:
+    /// Opens no file. \throws UsageError, TextRequested
+    ScanCommand(int argc, const char* const* argv);
+
+    /// Options that say nothing about any of the sensors read are mistakes. \throws UsageError
+    void checkSensors(const std::vector<Sensor>& read) const;
+
+  private:
+    void declare();
+    void declarePictures();
+    void check();
+    void checkViews() const;
+    void checkBatch() const;
+
+    std::optional<bool> noise_, color_, sensor_bodies_;
+    std::string to_, encoding_, coordinates_, light_, compression_;
+};
+
+}  // namespace ispace

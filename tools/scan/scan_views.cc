@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scan/scan_views.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "cli/command_line.h"
+#include "cli/operands.h"
+#include "cli/outputs.h"
+#include "cli/progress_bar.h"
+#include "raster/codec.h"
+#include "report/view/film.h"
+#include "report/view/run_picture.h"
+#include "scan/scan_options.h"
+#include "trace/render/render.h"
+
+namespace ispace {
+
+namespace {
+
+/// Views that are the same kind get numbers, so that each has a name for its file.
+void nameApart(std::vector<ViewSpec>& views) {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const auto same = [&](const ViewSpec& view) { return view.name == views[i].name; };
+        const auto before =
+            std::count_if(views.begin(), views.begin() + static_cast<long>(i), same);
+        if (before > 0) views[i].name += "-" + std::to_string(before + 1);
+    }
+}
+
+/// The red points of a plan.
+std::vector<Point3> viewersOf(const std::vector<ViewSpec>& views, const Scene& scene) {
+    std::vector<Point3> viewers;
+    for (const ViewSpec& view : views) {
+        const bool is_within = view.mode == ViewMode::FirstPerson || view.mode == ViewMode::Omni ||
+                               view.mode == ViewMode::Robot;
+        if (!is_within) continue;
+        if (const auto place = standpointOf(view, scene, {}).place) viewers.push_back(*place);
+    }
+    return viewers;
+}
+
+/// Draws views of a scene.
+struct DrawView {
+    const ScanToolOptions& options;
+    const Scene& scene;
+    const ViewOptions& drawing;
+    Progress& progress;
+
+    [[nodiscard]] PictureSize sizeOf(const ViewSpec& view) const {
+        const PictureSize size = ispace::sizeOf(view, scene, options.picture_size);
+        constexpr double kMostPixels = 64e6;
+        if (1.0 * size.columns * size.rows > kMostPixels)
+            throw UsageError("--size: " + std::to_string(size.columns) + " x " +
+                             std::to_string(size.rows) + " pixels, wanted at most 64 million");
+        return size;
+    }
+    [[nodiscard]] Image draw(const ViewSpec& view, PictureSize size) const {
+        Image image = viewPicture(scene, view, size, drawing);
+        progress.advance(1);
+        return image;
+    }
+};
+
+/// Where pictures go: a set of files, or one file, which is a sheet if there are several.
+class PictureFiles {
+  public:
+    PictureFiles(const ScanToolOptions& options, int frames)
+        : output_(options.common.output),
+          set_(OutputSet::of(output_)),
+          is_jpeg_(options.format == "jpeg"),
+          files_([this](const Image& image) { return encoded(image); }, writeFile) {
+        std::vector<std::string> names;
+        for (const ViewSpec& view : options.view.views) names.push_back(view.name);
+        if (set_) {
+            if (options.common.dependencies.wanted)
+                throw UsageError("-MD writes a rule for one product, and a set is many files");
+            set_->prepare(names, frames > 1, {ending()});
+        } else if (frames > 1) {
+            throw UsageError(std::to_string(frames) +
+                             " frames make as many pictures: name a folder (-o DIR/) or a pattern "
+                             "(-o '%s-%04d.png'), where %s is the view's name");
+        } else {
+            refuseTerminal(output_, options.format);
+        }
+    }
+
+    void write(const std::vector<ViewSpec>& views, int frame, const DrawView& draw) {
+        std::vector<PictureSize> sizes;
+        sizes.reserve(views.size());
+        for (const ViewSpec& view : views) sizes.push_back(draw.sizeOf(view));
+        const ContactSheet sheet(sizes);
+        std::vector<Image> images;
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            Image image = draw.draw(views[i], set_ ? sizes[i] : sheet.sizeOf(i));
+            if (set_)
+                files_.add(set_->fileOf(views[i].name, frame, ending()), std::move(image));
+            else
+                images.push_back(std::move(image));
+            // A camera's picture is the camera's (thesis, fig. 3.15).
+            names.push_back(views[i].mode == ViewMode::Camera ? views[i].id : views[i].name);
+        }
+        if (!set_) writeFile(output_, encoded(sheet.draw(images, names)));
+    }
+    /// After the last one.
+    void finish() { files_.finish(); }
+
+  private:
+    [[nodiscard]] std::string ending() const { return is_jpeg_ ? ".jpg" : ".png"; }
+
+    [[nodiscard]] std::string encoded(const Image& image) const {
+        return is_jpeg_ ? jpegOf(image) : pngOfShades(image.width, image.height, image.pixels);
+    }
+    static void writeFile(const std::string& name, const std::string& bytes) {
+        OutputFile file(name);
+        file.write(bytes);
+        file.commit();
+    }
+
+    static std::string jpegOf(const Image& image) {
+        std::vector<std::uint8_t> samples;
+        samples.reserve(3 * image.pixels.size());
+        for (const std::uint32_t pixel : image.pixels)
+            for (const unsigned shift : {16U, 8U, 0U})
+                samples.push_back(static_cast<std::uint8_t>(pixel >> shift));
+        return jpegOfRgb(image.width, image.height, samples);
+    }
+
+    std::string output_;
+    std::optional<OutputSet> set_;
+    bool is_jpeg_;
+    EncodeAhead files_;
+};
+
+/// What clients did to the world of a run before a time.
+void makeChanges(RunChanges& changes, Scene& scene, double time) {
+    const auto unknown = [](const std::string&) { return std::optional<Pose2>(); };
+    while (auto step = changes.next(time, scene, unknown)) scene = std::move(step->scene);
+}
+
+}  // namespace
+
+void addViewOptions(CommandLine& line, ViewToolOptions& options) {
+    std::string forms;
+    for (const std::string& form : viewForms()) forms += (forms.empty() ? "" : ", ") + form;
+    line.ordered(
+        "--view", "SPEC",
+        [&options](const std::string& text) { options.views.push_back(parseView(text)); },
+        "draw a picture of the room instead of readings: " + forms);
+    line.parsed(
+        "--show", "beams|area|none",
+        [&options](const std::string& text) { options.drawing.show = shownSight(text); },
+        "views: beams of lasers and view cubes of cameras, or the floor that each sensor covers "
+        "(default none)",
+        Enters::History);
+    line.texts("--highlight", "ID", options.drawing.highlight,
+               "views: make the record with this id stand out", Enters::History);
+    line.switchFlag("--labels", "--no-labels", options.labels,
+                    "views: ids of sensors and robots, red dots for cameras (default)",
+                    "views: no ids and dots", Enters::History);
+    line.file(
+        "--run", "DIR", options.run,
+        "a record of `simrun --record`: its scans, in the format of --to; or views with robots as "
+        "they were, in --frames pictures from beginning to end (default 1, the end)",
+        Enters::BaseName);
+}
+
+ShownSight shownSight(const std::string& text) {
+    if (text == "beams") return ShownSight::Beams;
+    if (text == "area") return ShownSight::Area;
+    if (text == "none") return ShownSight::None;
+    throw UsageError("`" + text + "` is none of beams|area|none");
+}
+
+void checkViewOptions(const CommandLine& line, ViewToolOptions& options) {
+    options.drawing.labels = options.labels.value_or(true);
+    nameApart(options.views);
+    if (!options.views.empty()) return;
+    for (const char* name : {"--show", "--highlight", "--labels", "--no-labels"})
+        if (line.given(name)) throw UsageError(std::string(name) + " is for pictures: give --view");
+}
+
+PictureSize pictureSize(const std::string& text) {
+    constexpr std::int64_t kLeast = 16, kMost = 16384;
+    const auto side = [&](const std::string& word) {
+        const std::optional<std::int64_t> pixels = parseInteger(word);
+        if (!pixels || *pixels < kLeast || *pixels > kMost)
+            throw UsageError("`" + text + "`: wanted W or W,H, each from " +
+                             std::to_string(kLeast) + " to " + std::to_string(kMost) + " pixels");
+        return static_cast<int>(*pixels);
+    };
+    const std::size_t comma = text.find(',');
+    if (comma == std::string::npos) return {side(text), 0};
+    return {side(text.substr(0, comma)), side(text.substr(comma + 1))};
+}
+
+void takeViews(const ScanCommand& command) {
+    const ScanToolOptions& options = command.options();
+    const SceneInput input = readScene({options.operands, options.rules, false, {}});
+    warnOfImport(options.common, "scan", input);
+    Scene scene = input.scene;
+    std::vector<std::string> files = filesOf(input);
+    std::optional<RunRecord> run;
+    std::optional<RunChanges> changes;
+    if (!options.view.run.empty()) {
+        run.emplace(RunReader(options.view.run));
+        run->checkStart(scene);
+        changes.emplace(changesOfRun(options.view.run, scene));
+        files.push_back(RecordedFiles(options.view.run).robots);
+    }
+    const int frames = options.frames.value_or(1);
+    const std::vector<ViewSpec>& views = options.view.views;
+    for (const ViewSpec& view : views)
+        if (const std::string phrase = standpointWarning(view, scene); !phrase.empty())
+            warn(options.common, "scan", phrase);
+    PictureFiles pictures(options, frames);
+    const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
+    const std::int64_t count = frames * static_cast<std::int64_t>(views.size());
+    progress->begin("pictures", count);
+    for (int frame = 0; frame < frames; ++frame) {
+        ViewOptions drawing = options.view.drawing;
+        if (run) {
+            // One picture is of the end.
+            const double share = frames > 1 ? 1.0 * frame / (frames - 1) : 1;
+            const double time = run->begin() + share * (run->end() - run->begin());
+            makeChanges(*changes, scene, time);
+            run->apply(scene, time);
+            drawing.swings = run->swingsAt(scene, time);
+            drawing.ways = run->waysUntil(time);
+        }
+        drawing.samples = options.photo.samples;
+        drawing.light = options.photo.light;
+        drawing.exposure = options.photo.exposure;
+        drawing.viewers = viewersOf(views, scene);
+        pictures.write(views, frame, {options, scene, drawing, *progress});
+    }
+    pictures.finish();
+    progress->end();
+    if (run && !changes->failure().empty()) warn(options.common, "scan", changes->failure());
+    const std::vector<std::string> textures = textureFiles(scene);
+    files.insert(files.end(), textures.begin(), textures.end());
+    writeDependencies(options.common, files);
+    talk(options.common, "scan",
+         std::to_string(count) + (count == 1 ? " picture" : " pictures") + " written");
+}
+
+}  // namespace ispace

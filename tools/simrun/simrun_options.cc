@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options about records: served once more, or drawn.
+// Options about who is served, and what they may do.
+#include "simrun/simrun_options.h"
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "cli/common_options.h"
+#include "cli/outputs.h"
+#include "report/view/film.h"
+
+namespace ispace {
+
+namespace {
+
+std::string optionOf(const WireProtocol& protocol) { return "--" + std::string(protocol.name); }
+
+/// Reads "l1=10940" or "l1=127.0.0.2:10940".
+DevicePortOption parsePort(const WireProtocol& protocol, const std::string& text) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+        throw UsageError(excerpt(text) + ": wanted " + std::string(protocol.device) +
+                         "=[ADDR:]PORT with its id, like " +
+                         static_cast<char>(std::tolower(protocol.device.front())) +
+                         "1=" + std::to_string(protocol.port));
+    const std::string where = text.substr(equals + 1);
+    const bool is_port = where.find(':') == std::string::npos;
+    return {&protocol, text.substr(0, equals),
+            parseEndpoint(is_port ? "127.0.0.1:" + where : where)};
+}
+
+}  // namespace
+
+void DevicePortOptions::declare(CommandLine& line) {
+    for (const WireProtocol* const protocol : wireProtocols())
+        line.texts(optionOf(*protocol), std::string(protocol->device) + "=[ADDR:]PORT",
+                   texts_[protocol], std::string(protocol->help), Enters::Nothing);
+    if (texts_.empty()) return;
+    line.texts("--allow", "CIDR", allowed_,
+               "machines that may use such ports besides this one, e.g. 192.168.1.0/24",
+               Enters::Nothing);
+    line.choice("--device-clock", clock_, {"simulated", "wall"},
+                "what time stamps of such ports count (default simulated)", Enters::Nothing);
+}
+
+void DevicePortOptions::take(const CommandLine& line, ServerLimits& limits) {
+    for (const WireProtocol* const protocol : wireProtocols()) {
+        for (const std::string& text : texts_[protocol]) {
+            DevicePortOption port =
+                ofOption(optionOf(*protocol), [&] { return parsePort(*protocol, text); });
+            const bool known = std::any_of(ports_.begin(), ports_.end(), [&](const auto& other) {
+                return other.protocol == protocol && other.id == port.id;
+            });
+            if (known)
+                throw UsageError(optionOf(*protocol) + ": " + excerpt(port.id) + " is given twice");
+            if (!port.endpoint.is_loopback && allowed_.empty())
+                throw UsageError(optionOf(*protocol) + ": `" + port.endpoint.address +
+                                 "`: programs for real devices know no token, so say with --allow "
+                                 "which machines may connect, like --allow 192.168.1.0/24; or use "
+                                 "127.0.0.1");
+            ports_.push_back(std::move(port));
+        }
+    }
+    for (const char* option : {"--allow", "--device-clock"})
+        if (ports_.empty() && !texts_.empty() && line.given(option))
+            throw UsageError(std::string(option) +
+                             " is about ports of devices, and none is asked for");
+    for (const std::string& text : allowed_)
+        limits.allowed.push_back(ofOption("--allow", [&text] { return parseNetwork(text); }));
+    limits.wall_clock = clock_ == "wall";
+}
+
+std::size_t DevicePortOptions::connections() const {
+    std::size_t count = 0;
+    for (const DevicePortOption& port : ports_) count += port.protocol->clients + 1;
+    return count;
+}
+
+DeviceAddresses serveDevices(Server& server, const DevicePortOptions& options) {
+    DeviceAddresses out;
+    for (const auto& [protocol, id, endpoint] : options.ports())
+        out[protocol][id] =
+            ofOption(optionOf(*protocol), [&, where = &endpoint, which = protocol, whose = &id] {
+                return server.serveDevice(*which, *whose, *where);
+            });
+    return out;
+}
+
+SimTime timeOption(const std::string& text, SimTime least, SimTime most) {
+    const auto time = parseSimTime(text);
+    if (!time || *time < least || *time > most)
+        throw UsageError(excerpt(text) + " is no time from " + formatSimTime(least) + " to " +
+                         formatSimTime(most) + " s (`0.005`, `5ms`)");
+    return *time;
+}
+
+namespace {
+
+double recordedRate(const std::string& text, const std::string& what) {
+    constexpr double kMost = 1e5;
+    const auto rate = parseDouble(text);
+    if (!rate || *rate < 0 || *rate > kMost)
+        throw UsageError(excerpt(text) + " is no number of " + what + " a second from 0 to 100000");
+    return *rate;
+}
+
+}  // namespace
+
+SimrunCommand::SimrunCommand(int argc, const char* const* argv)
+    : ToolCommand(
+          "simrun", "[ENV] [LAYOUT]",
+          "Simulate the robots and sensors of a room and serve them over TCP. The first line of "
+          "output holds the address; TERM, INT and the request SHUTDOWN end the run.") {
+    line_.operands(options_.operands, 2);
+    declareRun();
+    declareReplay();
+    declareDrawing();
+    declareJudgement();
+    declareServer();
+    addSceneRules(line_, options_.rules);
+    addCommonOptions(
+        line_, options_.common,
+        "draw the record of --replay there instead of serving it: the ways (.png, .svg, "
+        ".pdf) or a film (.y4m, .gif; a folder or a pattern with %d for pictures)");
+    line_.parse(argc, argv);
+    takeExpectations();
+    checkReplay();
+    takeDrawing();
+    takeServer();
+}
+
+void SimrunCommand::declareRun() {
+    SimrunOptions& o = options_;
+    line_.texts("--zone", "ZONE", o.zones,
+                "add a zone for events and --expect: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
+                "door:GLOB,M within M of doors, named DOOR-zone",
+                Enters::History);
+    line_.parsed(
+        "--clock", "CLOCK", [&o](const std::string& text) { o.clock = parseClock(text); },
+        "real[:RATE], fast, or step: simulated time follows wall time (RATE times as fast), runs "
+        "as fast as it can, or waits for STEP requests (default real)",
+        Enters::Nothing);
+    line_.parsed(
+        "--dt", "TIME",
+        [&o](const std::string& text) {
+            o.step = timeOption(text, World::kShortestStep, World::kLongestStep);
+        },
+        "length of a step (default 5ms)", Enters::History);
+    line_.parsed(
+        "--until", "TIME",
+        [&o](const std::string& text) { o.until = timeOption(text, SimTime(0), kLongestTime); },
+        "end the run at this simulated time (90, 90s, 1.5min)", Enters::History);
+    line_.flag("--noise", o.noise,
+               "sensors have the noise of their records; robots, their odometry and their starts "
+               "that of motion_noise, odometry_noise and start_noise",
+               Enters::History);
+    line_.file("--script", "FILE", o.script,
+               "commands for the robots, lines `TIME ROBOT COMMAND` (- is stdin)",
+               Enters::BaseName);
+    line_.file("--record", "DIR", o.record,
+               "write the run there: tables of robots, people and events, readings, pictures",
+               Enters::Nothing);
+    line_.parsed(
+        "--record-frames", "RATE",
+        [&o](const std::string& text) { o.recorded_frames = recordedRate(text, "frames"); },
+        "maximum of recorded pictures and depth frames of each sensor in a simulated second "
+        "(default 1; 0: off)",
+        Enters::Nothing);
+    line_.parsed(
+        "--record-sonars", "RATE",
+        [&o](const std::string& text) { o.recorded_sonars = recordedRate(text, "readings"); },
+        "maximum of recorded readings of each robot's sonars in a simulated second (default 10; 0: "
+        "off)",
+        Enters::Nothing);
+    line_.parsed(
+        "--record-limit", "SIZE",
+        [&o](const std::string& text) { o.max_recorded = byteCount(text); },
+        "end the run once its record is larger, e.g. 500M (default 16G)", Enters::Nothing);
+}
+
+void SimrunCommand::declareJudgement() {
+    SimrunOptions& o = options_;
+    line_.texts("--expect", "SENTENCE", expected_,
+                "exit with 3 unless the run does this, e.g. 'r1 within 0.4 of 2,1 before 60', "
+                "'no collision', 'h1 unseen at most 5' (see the manual)",
+                Enters::Nothing);
+    line_.file("--junit", "FILE", o.junit,
+               "write the verdicts on the expectations there, as XML that CI servers read",
+               Enters::Nothing);
+}
+
+void SimrunCommand::takeExpectations() {
+    for (const std::string& text : expected_)
+        options_.expected.push_back(
+            ofOption("--expect", [&text] { return parseExpectation(text); }));
+    if (line_.given("--junit") && expected_.empty())
+        throw UsageError("--junit writes what became of expectations: give --expect");
+}
+
+namespace {
+
+/// Of pictures, then of films.
+std::vector<std::string> formats() { return {"png", "svg", "pdf", "y4m", "gif"}; }
+
+}  // namespace
+
+void SimrunCommand::declareReplay() {
+    SimrunOptions& o = options_;
+    line_.file(
+        "--replay", "DIR", o.replay,
+        "serve the run that --record wrote there once more: all go as recorded, sensors read; "
+        "ENV and LAYOUT are those of the record unless given",
+        Enters::BaseName);
+    line_.parsed(
+        "--from", "TIME",
+        [&o](const std::string& text) { o.from = timeOption(text, SimTime(0), kLongestTime); },
+        "begin the replay at this time of the record", Enters::History);
+    line_.flag("--hold", o.holds,
+               "serve the last moment of the record on and on, instead of ending with it",
+               Enters::Nothing);
+}
+
+void SimrunCommand::checkReplay() const {
+    const SimrunOptions& o = options_;
+    if (o.replay.empty()) {
+        for (const char* option : {"--from", "--hold"})
+            if (line_.given(option))
+                throw UsageError(std::string(option) + " is about a record: give --replay DIR");
+        return;
+    }
+    for (const char* option : {"--script", "--dt"})
+        if (line_.given(option))
+            throw UsageError(std::string(option) +
+                             " does not go with --replay: steps and motions are the record's");
+    if (o.until && *o.until <= o.from) throw UsageError("--from is not before --until");
+    if (!o.record.empty() && o.record == o.replay)
+        throw UsageError("--record would replace what --replay reads: give another folder");
+}
+
+void SimrunCommand::declareDrawing() {
+    DrawingOptions& o = options_.drawing;
+    line_.choice("--to", to_, formats(), "format of FILE (default: its suffix, else png)",
+                 Enters::Nothing);
+    constexpr int kNarrowest = 200, kWidest = 10000;
+    line_.count("--width", "PIXELS", o.width, kNarrowest, kWidest,
+                "width of the picture or the film", Enters::Nothing);
+    const auto positive = [this](const std::string& name, double& variable, double most,
+                                 const std::string& help) {
+        line_.parsed(
+            name, "N",
+            [&variable, most](const std::string& text) {
+                const auto value = parseDouble(text);
+                constexpr double kLeast = 0.001;
+                if (!value || *value < kLeast || *value > most)
+                    throw UsageError(excerpt(text) + " is no number from 0.001 to " +
+                                     formatDouble(most));
+                variable = *value;
+            },
+            help, Enters::Nothing);
+    };
+    positive("--fps", o.fps, 1000, "pictures a second of the film (default 25)");
+    positive("--speed", o.speed, 1e6, "simulated seconds in a second of the film (default 1)");
+}
+
+void SimrunCommand::takeDrawing() {
+    SimrunOptions& o = options_;
+    if (!line_.given("--output")) {
+        for (const char* option : {"--to", "--width", "--fps", "--speed"})
+            if (line_.given(option))
+                throw UsageError(std::string(option) +
+                                 " is about a picture of a record: give -o FILE");
+        return;
+    }
+    if (o.replay.empty())
+        throw UsageError(
+            "-o is a picture or a film of a record: give --replay DIR (a run writes to --record "
+            "DIR)");
+    std::vector<std::string> of_runs{"--record", "--expect", "--clock",    "--hold",
+                                     "--listen", "--web",    "--port-file"};
+    for (const WireProtocol* const protocol : wireProtocols())
+        of_runs.push_back("--" + std::string(protocol->name));
+    for (const std::string& option : of_runs)
+        if (line_.given(option))
+            throw UsageError(option + " does not go with -o, which serves nobody");
+    const bool is_set = OutputSet::of(o.common.output).has_value();
+    o.drawing.format =
+        is_set && to_.empty() ? "png" : outputFormat(to_, o.common.output, formats());
+    if (is_set && o.drawing.format != "png")
+        throw UsageError("the pictures of a film are PNG; a film in one file is .y4m or .gif");
+    const bool is_gif = o.drawing.format == "gif";
+    const bool is_file = is_gif || o.drawing.format == "y4m";
+    const bool is_film = is_set || is_file;
+    for (const char* option : {"--fps", "--speed", "--from"})
+        if (!is_film && line_.given(option))
+            throw UsageError(std::string(option) +
+                             " is about films: give -o FILE.y4m, FILE.gif or a folder");
+    if (!is_set && o.drawing.format != "svg")
+        refuseTerminal(o.common.output, is_file ? "a film" : "a picture");
+    if (is_gif && (o.drawing.fps < GifFilm::kSlowest || o.drawing.fps > GifFilm::kFastest))
+        throw UsageError("--fps of a GIF is from " + formatDouble(GifFilm::kSlowest) + " to " +
+                         formatDouble(GifFilm::kFastest) + ": give another one, or -o FILE.y4m");
+}
+
+void SimrunCommand::declareServer() {
+    SimrunOptions& o = options_;
+    constexpr int kMaxClients = 100'000;
+    line_.parsed(
+        "--listen", "ADDR:PORT", [&o](const std::string& text) { o.listen = parseEndpoint(text); },
+        "where clients connect; port 0 takes any free one (default 127.0.0.1:0)", Enters::Nothing);
+    line_.parsed(
+        "--web", "ADDR:PORT",
+        [&o](const std::string& text) {
+            o.web = parseEndpoint(text);
+            if (!o.web->is_loopback)
+                throw UsageError(excerpt(text) +
+                                 ": the page is for browsers of this machine; use 127.0.0.1");
+        },
+        "show the running world to browsers there; port 0 takes any free one", Enters::Nothing);
+    o.devices.declare(line_);
+    line_.file("--port-file", "FILE", o.port_file,
+               "write the port number there when clients can connect", Enters::Nothing);
+    line_.parsed(
+        "--max-clients", "N",
+        [&o](const std::string& text) {
+            const auto count = parseInteger(text);
+            if (!count || *count < 1 || *count > kMaxClients)
+                throw UsageError(excerpt(text) + " is not a whole number from 1 to " +
+                                 std::to_string(kMaxClients));
+            o.limits.clients = static_cast<std::size_t>(*count);
+        },
+        "clients served at once; rejects more (default 256)", Enters::Nothing);
+    line_.file("--token-file", "FILE", o.token_file,
+               "its first line is the token that clients need to change the world or end the run, "
+               "and for any role if they may connect from other machines",
+               Enters::Nothing);
+    line_.parsed(
+        "--watchdog", "TIME",
+        [&o](const std::string& text) {
+            o.limits.watchdog =
+                timeOption(text, std::chrono::milliseconds(1), std::chrono::hours(24));
+        },
+        "stop the robot or person of a client that is silent for this long (wall time)",
+        Enters::Nothing);
+    line_.file("--load", "DIR", o.load_folder,
+               "folder from which the request LOAD reads (default that of ENV)", Enters::Nothing);
+    line_.switchFlag("--changes", "--no-changes", o.changes,
+                     "let clients change the world (default)", "reject it", Enters::Nothing);
+    line_.switchFlag("--shutdown", "--no-shutdown", o.shutdown,
+                     "let the request SHUTDOWN end the run (default)", "reject it",
+                     Enters::Nothing);
+}
+
+void SimrunCommand::takeServer() {
+    SimrunOptions& o = options_;
+    o.limits.shutdown = o.shutdown.value_or(true);
+    o.limits.changes = o.changes.value_or(true);
+    o.limits.token_first = !o.listen.is_loopback;
+    o.devices.take(line_, o.limits);
+    if (!o.listen.is_loopback && o.token_file.empty())
+        throw UsageError("--listen: `" + o.listen.address +
+                         "`: other machines are served only with --token-file; or listen on "
+                         "127.0.0.1");
+}
+
+}  // namespace ispace

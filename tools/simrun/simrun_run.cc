@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simrun/simrun_run.h"
+
+#include <sys/resource.h>
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/json_writer.h"
+#include "base/number.h"
+#include "base/run_files.h"
+#include "cli/operands.h"
+#include "cli/outputs.h"
+#include "cli/scene_folder.h"
+#include "record/text.h"
+#include "report/view/film.h"
+#include "report/view/run_picture.h"
+#include "scene/run/run_reader.h"
+#include "scene/scene.h"
+#include "server/network.h"
+
+namespace ispace {
+
+SceneInput readInput(const SimrunOptions& options) {
+    std::vector<std::string> operands = options.operands;
+    if (!options.replay.empty() && operands.empty()) {
+        const std::string scene = sceneOfRecord(options.replay);
+        if (scene.empty())
+            throw UsageError(options.replay +
+                             " holds no scene.env: give ENV and LAYOUT of the run");
+        operands.push_back(scene);
+    }
+    SceneInput input = readScene({operands, options.rules, false});
+    addZones(options.zones, input);
+    return input;
+}
+
+std::string titleOf(const SimrunOptions& options, const SceneInput& input) {
+    const std::string& shown = options.replay.empty() ? input.environment_operand : options.replay;
+    return shown == "-" ? "" : baseName(shown);
+}
+
+std::optional<Replay> openReplay(const SimrunOptions& options, Scene& scene) {
+    if (options.replay.empty()) return std::nullopt;
+    Replay replay(options.replay);
+    if (replay.changedAt()) replay.makeChanges(changesOfRun(options.replay, scene));
+    replay.placeAtStart(scene);
+    return replay;
+}
+
+void forward(Replay& replay, World& world, SimTime from) {
+    while (world.time() < from)
+        if (!replay.step(world))
+            throw UsageError("--from: the record ends at t=" + formatSimTime(world.time()));
+}
+
+History historyOf(const SimrunCommand& command, const SceneInput& input) {
+    History history = input.layout ? input.layout->history : History();
+    history.push_back(command.historyLine(input.named));
+    return history;
+}
+
+std::vector<TimedCommand> scriptOf(const SimrunOptions& options, const SceneInput& input,
+                                   const World& world) {
+    if (options.script.empty()) return {};
+    if (options.script == "-") {
+        if (input.environment_operand == "-" || input.layout_operand == "-")
+            throw UsageError("stdin cannot be read twice: give the script or the scene as a file");
+        return readScript(readStdin(), displayName("-"), world);
+    }
+    return readScript(readAll(options.script), options.script, world);
+}
+
+RunOptions runOptionsOf(const SimrunOptions& options, const std::optional<Replay>& replay) {
+    if (replay && !options.noise)
+        return {.seed = replay->info().seed, .sensor_noise = replay->info().noise};
+    if (replay) return {.seed = options.common.seed, .sensor_noise = true};
+    return {.seed = options.common.seed, .noise = options.noise, .sensor_noise = options.noise};
+}
+
+std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions& options) {
+    if (!options.until) return std::make_unique<SilentProgress>();
+    auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
+    progress->begin("steps", (*options.until + options.step - SimTime(1)) / options.step);
+    simulation.onStep([bar = progress.get()] { bar->advance(1); });
+    return progress;
+}
+
+void report(const Simulation& simulation, const SimrunOptions& options) {
+    const World& world = simulation.world();
+    talk(options.common, "simrun",
+         std::to_string(world.steps()) + " steps, t=" + formatSimTime(world.time()));
+    if (const auto& [steps, late, most, own] = simulation.lateness(); steps > 0)
+        talk(options.common, "simrun",
+             std::to_string(late) + " of " + std::to_string(steps) +
+                 " steps began more than a step late, the latest by " + formatMilliseconds(most) +
+                 " s, the program itself at work for " + formatMilliseconds(own) + " s of that");
+    if (const SimTime lost = simulation.lost(); lost > SimTime(0))
+        talk(options.common, "simrun",
+             "the world could not keep up: the clock gave up " + formatMilliseconds(lost) + " s");
+}
+
+void conclude(const ExpectationJudge& judge, const SimrunOptions& options, const SceneInput& input,
+              JunitFile& junit) {
+    const std::vector<RunVerdict> verdicts = judge.verdicts();
+    std::vector<JunitCase> cases;
+    cases.reserve(verdicts.size());
+    for (const RunVerdict& verdict : verdicts)
+        cases.push_back(
+            {.name = verdict.expectation,
+             .outcome = verdict.is_met ? JunitCase::Outcome::Met : JunitCase::Outcome::Unmet,
+             .message = verdict.reason,
+             .time = verdict.time});
+    junit.write(baseName(input.environment_operand), cases);
+    if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
+    if (!verdicts.empty())
+        talk(options.common, "simrun", "all " + std::to_string(verdicts.size()) + " met");
+}
+
+namespace {
+
+/// The scene as one file that stands by itself in the folder of the record.
+std::string sceneText(const Scene& scene, const History& history, const std::string& folder) {
+    Document document;
+    document.history = history;
+    document.records = scene.records;
+    rebaseFiles(document.records, "", folder);
+    return writeRecordText(document);
+}
+
+}  // namespace
+
+RunningRecord::RunningRecord(const SimrunOptions& options, Simulation& simulation,
+                             const RecordOptions& record)
+    : recorder(options.record, simulation.world(), record, &simulation.events()),
+      guard(Recorder::growingFilesIn(options.record), recorder.lock()) {}
+
+/// What the record of a run until a given time holds at least is known before it begins.
+void checkRecord(const SimrunOptions& options, const World& world) {
+    if (options.record.empty() || !options.until) return;
+    constexpr double kShortestLine = 20;  // bytes, of robots.csv
+    const double steps =
+        static_cast<double>(options.until->count()) / static_cast<double>(options.step.count());
+    const double lines = std::ceil(steps) * static_cast<double>(world.movers().size());
+    if (lines * kShortestLine <= static_cast<double>(options.max_recorded)) return;
+    throw UsageError("--record: " + formatDouble(lines) + " lines of robots and people until t=" +
+                     formatSimTime(*options.until) + " are more than --record-limit, which is " +
+                     byteCountText(options.max_recorded) + "; is --until in seconds?");
+}
+
+std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOptions& options,
+                                        const Scene& scene, const History& history, bool odometry,
+                                        FrameTaker frame_taker) {
+    if (options.record.empty()) return nullptr;
+    RecordOptions record;
+    record.history = history;
+    record.seed = simulation.world().options().seed;
+    record.noise = simulation.world().options().sensor_noise;
+    record.odometry = odometry;
+    record.scene = sceneText(scene, history, options.record);
+    record.scene_text = [history, folder = options.record + "/scenes"](const Scene& loaded) {
+        return sceneText(loaded, history, folder);
+    };
+    record.frame_rate = options.recorded_frames;
+    record.sonar_rate = options.recorded_sonars;
+    record.max_bytes = options.max_recorded;
+    record.frame_taker = std::move(frame_taker);
+    auto running = std::make_unique<RunningRecord>(options, simulation, record);
+    simulation.recordWith(running->recorder);
+    return running;
+}
+
+namespace {
+
+/// A client takes a file descriptor: as many as this process may have, less what it needs itself.
+ServerLimits withinFileLimit(ServerLimits limits, std::size_t of_devices) {
+    const rlim_t own = 32 + of_devices;
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return limits;
+    files.rlim_cur = files.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &files);
+    const rlim_t most = files.rlim_cur > own ? files.rlim_cur - own : 1;
+    limits.clients = static_cast<std::size_t>(std::min<rlim_t>(limits.clients, most));
+    return limits;
+}
+
+}  // namespace
+
+ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input) {
+    ServerLimits limits = withinFileLimit(options.limits, options.devices.connections());
+    if (!options.token_file.empty()) {
+        limits.token = readToken(options.token_file);
+        if (isOpenToOthers(options.token_file))
+            warn(options.common, "simrun",
+                 options.token_file + " can be read by other users: chmod 600 makes it yours");
+    }
+    const std::string& folder = options.load_folder;
+    limits.source = std::make_shared<SceneFolder>(folder.empty() ? SceneFolder::of(input) : folder,
+                                                  options.rules);
+    return limits;
+}
+
+void announce(const Server& server, const std::string& web, const DeviceAddresses& devices) {
+    JsonWriter json;
+    json.beginObject().key("schema").value("ispace-simrun/1");
+    json.key("listen").value(server.address());
+    for (const WireProtocol* const protocol : wireProtocols()) {
+        const auto found = devices.find(protocol);
+        const bool is_used = found != devices.end();
+        // The first two are there in any case; those that came later would surprise old readers.
+        if (!is_used && protocol->name != "p2os" && protocol->name != "scip") continue;
+        json.key(std::string(protocol->name)).beginObject();
+        if (is_used)
+            for (const auto& [id, address] : found->second) json.key(id).value(address);
+        json.endObject();
+    }
+    if (!web.empty()) json.key("web").value(web);
+    json.endObject();
+    writeAll("-", json.take() + '\n');
+    // Clients are not cut off because nobody reads the warnings any more.
+    std::signal(SIGPIPE, SIG_IGN);
+}
+
+namespace {
+
+constexpr double kRounding = 1e-9;  // s
+
+double endOf(const SimrunOptions& options) {
+    return seconds(options.until.value_or(kLongestTime)) + kRounding;
+}
+
+/// Reads the record up to --until; `before` hears of each moment that is still to be added.
+void readRecord(const SimrunOptions& options, RunPicture& picture,
+                const std::function<void(double)>& before) {
+    RunReader reader(options.replay);
+    while (reader.next() && reader.time() <= endOf(options)) {
+        before(reader.time());
+        picture.add(reader);
+    }
+    if (reader.isCut())
+        warn(options.common, "simrun", "the record ends in the midst of a step, which is left out");
+}
+
+/// Takes the pictures of a film: one each 1/fps s of it, and one of the end.
+std::int64_t takeFilm(const SimrunOptions& options, RunPicture& picture,
+                      const std::function<void(const Image&, int)>& write) {
+    const DrawingOptions& film = options.drawing;
+    int count = 0;
+    bool has_moment = false;
+    const auto time_of = [&](int frame) {
+        return seconds(options.from) + frame * film.speed / film.fps;
+    };
+    readRecord(options, picture, [&](double time) {
+        for (; has_moment && time_of(count) < time - kRounding; ++count)
+            write(picture.frame(), count);
+        has_moment = true;
+    });
+    write(picture.frame(), count);
+    return count + 1;
+}
+
+std::int64_t writeY4m(const SimrunOptions& options, RunPicture& picture) {
+    FileStream file(options.common.output);
+    const std::int64_t count = takeFilm(options, picture, [&](const Image& image, int frame) {
+        if (frame == 0) file.stream() << y4mHeader(image.width, image.height, options.drawing.fps);
+        file.stream() << y4mFrame(image);
+    });
+    file.commit();
+    return count;
+}
+
+std::int64_t writeGif(const SimrunOptions& options, RunPicture& picture) {
+    FileStream file(options.common.output);
+    GifFilm film(options.drawing.fps);
+    const std::int64_t count = takeFilm(options, picture, [&](const Image& image, int /*frame*/) {
+        file.stream() << film.add(image);
+    });
+    file.stream() << film.end();
+    file.commit();
+    return count;
+}
+
+std::int64_t writePictures(const SimrunOptions& options, const OutputSet& files,
+                           RunPicture& picture) {
+    const std::string name = "run";
+    files.prepare({name}, true, {".png"});
+    EncodeAhead pictures(encodePng, writeAll);
+    const std::int64_t count = takeFilm(options, picture, [&](const Image& image, int frame) {
+        pictures.add(files.fileOf(name, frame, ".png"), image);
+    });
+    pictures.finish();
+    return count;
+}
+
+}  // namespace
+
+void drawRecord(const SimrunOptions& options, const Scene& scene, const std::string& title) {
+    RunPicture picture(scene, {.width = options.drawing.width, .title = title});
+    std::int64_t count = 1;
+    if (const auto files = OutputSet::of(options.common.output)) {
+        count = writePictures(options, *files, picture);
+    } else if (options.drawing.format == "y4m") {
+        count = writeY4m(options, picture);
+    } else if (options.drawing.format == "gif") {
+        count = writeGif(options, picture);
+    } else {
+        readRecord(options, picture, [](double) {});
+        const PictureFormat format = options.drawing.format == "svg"   ? PictureFormat::Svg
+                                     : options.drawing.format == "pdf" ? PictureFormat::Pdf
+                                                                       : PictureFormat::Png;
+        writeAll(options.common.output, picture.write(format));
+    }
+    writeDependencies(options.common,
+                      std::vector<std::string>{RecordedFiles(options.replay).robots});
+    talk(options.common, "simrun",
+         std::to_string(count) + (count == 1 ? " picture" : " pictures") + " drawn");
+}
+
+namespace {
+
+constexpr int kMaxCollisions = 100;
+constexpr const char* kTool = "simrun";
+
+std::string textOf(const World& world, const Collision& collision) {
+    const Point2 place = world.status(collision.robot).pose.position;
+    return "t=" + formatMilliseconds(collision.time) + ' ' + world.movers()[collision.robot].id +
+           " at " + formatFixed(place.x, 3) + ',' + formatFixed(place.y, 3) + " ran into " +
+           std::string(collision.into);
+}
+
+}  // namespace
+
+void CollisionLog::tell() {
+    for (const Collision& collision : world_->collisions()) {
+        if (count_ == kMaxCollisions) return;
+        warn(*options_, kTool, textOf(*world_, collision));
+        if (++count_ == kMaxCollisions) warn(*options_, kTool, "no more of these are told");
+    }
+}
+
+namespace {
+
+/// What is measured of a camera's light always spreads.
+bool isNoisy(const Sensor& sensor) {
+    const auto noise_of = [&sensor]() -> const RangeNoise* {
+        if (const auto* laser = std::get_if<Laser>(&sensor.model)) return &laser->noise;
+        if (const auto* ranger = std::get_if<Ranger>(&sensor.model)) return &ranger->noise;
+        if (const auto* receiver = std::get_if<Receiver>(&sensor.model)) return &receiver->noise;
+        return nullptr;
+    };
+    if (const auto* tag = std::get_if<Tag>(&sensor.model)) return tag->is_simple;
+    return sensor.is<Camera>() || (noise_of() != nullptr && !noise_of()->isNone());
+}
+
+}  // namespace
+
+void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options) {
+    const bool strays = moves && std::any_of(scene.robots.begin(), scene.robots.end(),
+                                             [](const PlacedRobot& robot) {
+                                                 return robot.model.noise != MotionNoise();
+                                             });
+    if (strays || std::any_of(scene.sensors.begin(), scene.sensors.end(), isNoisy)) return;
+    warn(options, kTool,
+         "--noise changes nothing: no sensor has noise, and no robot has motion_noise, "
+         "odometry_noise or start_noise");
+}
+
+void LagLog::tell() {
+    using std::chrono::steady_clock;
+    constexpr std::chrono::seconds kCalm(1);  // without a loss, before the run is said to keep up
+    constexpr int kMost = 10;
+    const auto due = simulation_->due();
+    if (!due) return;
+    const auto now = steady_clock::now();
+    const auto say = [&](const std::string& text) {
+        if (count_ <= kMost)
+            warn(*options_, kTool, "t=" + formatSimTime(simulation_->world().time()) + text);
+    };
+    if (simulation_->lost() > lost_) {
+        lost_ = simulation_->lost();
+        last_ = now;
+        if (std::exchange(is_behind_, true)) return;
+        ++count_;
+        say(" the run falls behind real time, by " + formatMilliseconds(lost_) +
+            " s so far: steps take longer than the clock gives them" +
+            (count_ == kMost ? "; further ones are not reported" : ""));
+    } else if (is_behind_ && now <= *due && now - last_ >= kCalm) {
+        is_behind_ = false;
+        say(" the run keeps up with real time again, " + formatMilliseconds(lost_) +
+            " s behind in all");
+    }
+}
+
+void FailureLog::tell() {
+    if (is_told_ || replay_ == nullptr) return;
+    const std::string failure = replay_->failure();
+    is_told_ = !failure.empty();
+    if (is_told_) warn(*options_, kTool, failure);
+}
+
+void warnOfChanges(const Replay& replay, const CommonOptions& options) {
+    if (const auto& time = replay.changedAt())
+        warn(options, kTool,
+             "the world of the run was changed at t=" + formatMilliseconds(*time) +
+                 ": the room is drawn as it was at the start");
+}
+
+}  // namespace ispace
