@@ -87,18 +87,18 @@ class PoseSource {
 
 /// Cells of the hall that a device sees from random poses, over or in the plane: never more than
 /// most. Returns the largest share of that.
-template <typename Placed, typename Model>
+template <typename PlacedRecord, typename Model>
 double fullestView(const Model& model, double max_height, unsigned seed) {
     static const Scene kHall = hall();
     static Worlds worlds(kHall.environment);
-    static const Sight sight(kHall.environment, kPlane, &worlds);
+    static const VisibleArea sight(kHall.environment, kPlane, &worlds);
     const Grid grid{kHall.environment.limits(), 80, 90};
     const auto most = static_cast<double>(maxCellsInView(model, grid));
     PoseSource poses(seed);
     double fullest = 0;
     for (int i = 0; i < 300; ++i) {
         const double above = i % 6 == 0 ? 0 : poses.between(0, max_height);
-        const Placed placed{"s", model, poses.pose(kPlane + above)};
+        const PlacedRecord placed{"s", model, poses.pose(kPlane + above)};
         sight.prepare(placed);
         const auto seen = static_cast<double>(sight.cellsOf(grid, placed).count());
         EXPECT_LE(seen, most) << seed << ": " << i;

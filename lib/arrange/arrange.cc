@@ -35,7 +35,7 @@ void mustFitInModel(const Problem& problem) {
                          ": use fewer candidates (--candidates) or larger cells (--cell)");
 }
 
-void writeModel(const SceneProblem& model, std::ostream& mps) {
+void writeModel(const MeasuredScene& model, std::ostream& mps) {
     mustFitInModel(model.problem());
     std::vector<std::string> names;
     names.reserve(model.kinds().size());
@@ -51,7 +51,7 @@ void writeModel(const SceneProblem& model, std::ostream& mps) {
     writeMps(model.problem(), names, "x y z (m) heading tilt (degrees)", pose_text, mps);
 }
 
-SearchResult find(const SceneProblem& model, Arrangement& result, Progress& progress) {
+SearchResult find(const MeasuredScene& model, Arrangement& result, Progress& progress) {
     const ArrangeOptions& options = model.options();
     if (!options.target) return search(model.problem(), model.searchOptions(), progress);
     MinimumCostCover cover = minimumCostCover(model.problem(), model.valueFor(*options.target),
@@ -70,7 +70,7 @@ void takeEachOnce(std::vector<Choice>& chosen) {
 }
 
 /// Bound over all places: for any sensors a budget buys, else for the number of each kind found.
-double boundOfAnyPlace(const SceneProblem& model, const std::vector<Placement>& placements) {
+double boundOfAnyPlace(const MeasuredScene& model, const std::vector<Placement>& placements) {
     const bool buys = model.options().budget.has_value();
     std::vector<int> most(model.kinds().size());
     for (std::size_t k = 0; k < most.size(); ++k)
@@ -81,11 +81,11 @@ double boundOfAnyPlace(const SceneProblem& model, const std::vector<Placement>& 
 }
 
 /// If some candidates were not made, nothing bounds the value.
-double boundOf(const SearchResult& result, const SceneProblem& model) {
+double boundOf(const SearchResult& result, const MeasuredScene& model) {
     return model.isComplete() ? model.share(result.bound) : 1;
 }
 
-void refineIn(Arrangement& result, SceneProblem& model, std::uint64_t before, Progress& progress) {
+void refineIn(Arrangement& result, MeasuredScene& model, std::uint64_t before, Progress& progress) {
     const Refined refined = refine(model, result.sensors, before, progress);
     result.is_refined = true;
     result.refined_before = refined.before;
@@ -97,7 +97,7 @@ void refineIn(Arrangement& result, SceneProblem& model, std::uint64_t before, Pr
     result.bound = boundOfAnyPlace(model, result.sensors);
 }
 
-void measure(Arrangement& result, SceneProblem& model) {
+void measure(Arrangement& result, MeasuredScene& model) {
     const ArrangeOptions& options = model.options();
     const CoverageOptions usual{.plane = options.plane, .exact = false};
     const Scene whole = withPlaced(model.scene(), model.groups(), result.sensors);
@@ -144,14 +144,14 @@ std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Cho
 
 /// Points of a curve up to this number of sensors are searched even if no time is left: greedy
 /// search and a quick bound take time in proportion to the candidates' size.
-std::size_t quickPoints(const SceneProblem& model) {
+std::size_t quickPoints(const MeasuredScene& model) {
     constexpr std::size_t kMaxBytes = std::size_t{64} << 20U;
     constexpr std::size_t kBytesPerCell = 8;
     return kMaxBytes / (model.bytes() + kBytesPerCell * model.problem().cells() + 1);
 }
 
 /// True if the search had only the number of sensors as its limit.
-bool isByNumber(const SceneProblem& model) {
+bool isByNumber(const MeasuredScene& model) {
     if (!model.options().budget && !model.options().target) return true;
     const std::vector<Kind>& kinds = model.problem().kinds;
     return std::all_of(kinds.begin(), kinds.end(),
@@ -160,7 +160,7 @@ bool isByNumber(const SceneProblem& model) {
 
 /// Value of 1, 2, ... sensors of these kinds, whatever they cost, with bounds. Where no time is
 /// left to search: the value of that many of the sensors found, without a bound.
-std::vector<SearchResult> searchByNumber(const SearchResult& found, const SceneProblem& model,
+std::vector<SearchResult> searchByNumber(const SearchResult& found, const MeasuredScene& model,
                                          Progress& progress) {
     const std::vector<std::uint64_t> part = valuesOfFirst(model.problem(), found.best.chosen);
     const std::size_t last = part.size() - 1, quick = quickPoints(model);
@@ -183,7 +183,7 @@ std::vector<SearchResult> searchByNumber(const SearchResult& found, const SceneP
     return results;
 }
 
-std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& model,
+std::vector<CurvePoint> curveTo(const SearchResult& found, const MeasuredScene& model,
                                 Progress& progress) {
     std::vector<SearchResult> results = searchByNumber(found, model, progress);
     // One more sensor never covers less; what more sensors cannot cover, fewer cannot.
@@ -201,7 +201,7 @@ std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& m
 
 Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& groups,
                            const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
-    SceneProblem model(scene, groups, options, progress);
+    MeasuredScene model(scene, groups, options, progress);
     const Problem& problem = model.problem();
     if (mps != nullptr) writeModel(model, *mps);
 
@@ -216,7 +216,7 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     std::vector<Choice>& chosen = found.best.chosen;
     takeEachOnce(chosen);
     if (found.best.value > 0) {
-        model.spreadIdle(chosen);
+        model.spreadRedundant(chosen);
         found.best.value = ispace::valueOf(problem, chosen);
     }
     result.is_complete = model.isComplete() && found.is_complete;

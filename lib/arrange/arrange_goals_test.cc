@@ -315,26 +315,26 @@ TEST(ArrangeGoals, WhatIsNotMovedKeepsItsBound) {
     EXPECT_EQ(all.bound, all.candidate_bound);
 }
 
-TEST(SceneProblem, TheTreeGetsTheMemoryThatCandidatesLeave) {
+TEST(MeasuredScene, TheTreeGetsTheMemoryThatCandidatesLeave) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=3:2"});
     ArrangeOptions options = coarse(Optimizer::Exact);
     SilentProgress silent;
-    const SceneProblem usual(scene, groups, options, silent);
+    const MeasuredScene usual(scene, groups, options, silent);
     EXPECT_EQ(usual.searchOptions().max_bytes, kMaxTreeBytes);
     options.max_bytes = usual.bytes() + 1000;
-    const SceneProblem narrow(scene, groups, options, silent);
+    const MeasuredScene narrow(scene, groups, options, silent);
     EXPECT_EQ(narrow.searchOptions().max_bytes, 1000U);
     EXPECT_EQ(arranged(scene, groups, options).candidate_value,
               arranged(scene, groups, coarse(Optimizer::Exact)).candidate_value);
 }
 
-TEST(SceneProblem, SharesAndValuesLeadBackAndForth) {
+TEST(MeasuredScene, SharesAndValuesLeadBackAndForth) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=3"});
     const ArrangeOptions options = coarse();
     SilentProgress silent;
-    const SceneProblem model(scene, groups, options, silent);
+    const MeasuredScene model(scene, groups, options, silent);
     for (const std::uint64_t value :
          {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{977}, model.problem().totalWeight()}) {
         EXPECT_EQ(model.valueFor(model.share(value)), value);
@@ -342,12 +342,12 @@ TEST(SceneProblem, SharesAndValuesLeadBackAndForth) {
     }
 }
 
-TEST(SceneProblem, ChosenCandidatesBecomeSensorsOfTheSameValue) {
+TEST(MeasuredScene, ChosenCandidatesBecomeSensorsOfTheSameValue) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=3:2", "laser,range=2,fov=90"});
     const ArrangeOptions options = coarse();
     SilentProgress silent;
-    SceneProblem model(scene, groups, options, silent);
+    MeasuredScene model(scene, groups, options, silent);
     ASSERT_EQ(model.kinds().size(), 2U);
     const std::vector<Choice> chosen = {{1, 7}, {0, 30}, {0, 5}};
     const std::vector<Placement> sensors = model.placementsOf(chosen);

@@ -20,14 +20,14 @@ Laser laserOfSpec(const char* spec) {
 }
 
 TEST(BeamCells, ResolutionLaysBeamsOverTheSameView) {
-    const Laser half = atResolution(laserOfSpec("laser,fov=180"), Angle::degrees(50));
+    const Laser half = withBeamStep(laserOfSpec("laser,fov=180"), Angle::degrees(50));
     EXPECT_EQ(half.beams, 4);
     EXPECT_EQ(half.first, Angle::degrees(-90));
     EXPECT_EQ(half.last(), Angle::degrees(60));
-    const Laser round = atResolution(laserOfSpec("laser,fov=360"), Angle::degrees(7));
+    const Laser round = withBeamStep(laserOfSpec("laser,fov=360"), Angle::degrees(7));
     EXPECT_EQ(round.beams, 51);
     EXPECT_EQ(round.span(), Angle::degrees(360)) << "they close the circle";
-    const Laser own = atResolution(laserOfSpec("laser,fov=180,step=10"), Angle());
+    const Laser own = withBeamStep(laserOfSpec("laser,fov=180,step=10"), Angle());
     EXPECT_EQ(own.beams, 19);
 }
 
@@ -38,7 +38,7 @@ TEST(BeamCells, AreThoseWithinTheContour) {
     worlds.prepare(pose);
     const Target target = makeTarget(scene.environment, CellSize{0.01}, kScanHeight);
     const auto area = [&](const char* spec, double degrees) {
-        const Laser laser = atResolution(laserOfSpec(spec), Angle::degrees(degrees));
+        const Laser laser = withBeamStep(laserOfSpec(spec), Angle::degrees(degrees));
         const Sensor sensor{"", laser, pose};
         return 1e-4 *
                static_cast<double>(cellsByBeams(target.grid, worlds.at(pose), sensor).count());

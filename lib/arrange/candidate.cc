@@ -91,7 +91,7 @@ class Counted {
 
 struct CandidateViews::Data {
     const Grid& grid;
-    const Sight& sight;
+    const VisibleArea& sight;
     std::shared_ptr<const Level> level;
     SensorModel device;
     Pose3 mount;
@@ -113,7 +113,7 @@ struct CandidateViews::Data {
         const std::size_t headings = headingsOf(site);
         parts.runs.clear();
         parts.first.assign(headings + 2, 0);
-        if (level->isBuried(site.place)) return;
+        if (level->isInsideSolid(site.place)) return;
         std::vector<FieldOfView> fields;
         for (std::size_t k = 0; k < headings; ++k)
             if (const auto field = fieldOfView(at(site, k))) fields.push_back(*field);
@@ -134,18 +134,18 @@ struct CandidateViews::Data {
     }
 };
 
-CandidateViews::CandidateViews(const Sight& sight, const Grid& grid, const SensorModel& device,
-                               const Pose3& mount, const CellSet* counted,
-                               const std::optional<ByBeams>& by_beams)
+CandidateViews::CandidateViews(const VisibleArea& sight, const Grid& grid,
+                               const SensorModel& device, const Pose3& mount,
+                               const CellSet* counted, const std::optional<ByBeams>& by_beams)
     : data_(new Data{grid, sight, sight.levelAt(mount.position.z), device, mount,
-                     looksAround(device, mount), scansSlice(Sensor{"", device, mount}),
+                     isOmnidirectional(device, mount), scansSlice(Sensor{"", device, mount}),
                      counted != nullptr && counted->count() < counted->size()
                          ? std::optional<Counted>(*counted)
                          : std::nullopt}) {
     sight.prepare({"", device, mount});
     if (!by_beams || !data_->looks_in_slice) return;
     data_->looks_in_slice = false;
-    data_->device = atResolution(std::get<Laser>(device), by_beams->step);
+    data_->device = withBeamStep(std::get<Laser>(device), by_beams->step);
     data_->beam_world = &by_beams->worlds.at(mount);
 }
 
@@ -374,7 +374,7 @@ bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<
     return is_complete;
 }
 
-Laser atResolution(Laser laser, Angle step) {
+Laser withBeamStep(Laser laser, Angle step) {
     const double turn = 360, own = laser.step.degrees();
     const double wanted = step > Angle() ? step.degrees() : own;
     const bool is_round = laser.seesAround();

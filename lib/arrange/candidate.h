@@ -54,7 +54,7 @@ class PosedCandidates : public CandidateSet {
 /// Thread-safe.
 class CandidateViews {
   public:
-    /// What lasers that scan a slice see by beams, see atResolution() and cellsByBeams().
+    /// What lasers that scan a slice see by beams, see withBeamStep() and cellsByBeams().
     struct ByBeams {
         const Worlds& worlds;  ///< that of the mount is prepared
         Angle step;            ///< 0: their own
@@ -64,7 +64,7 @@ class CandidateViews {
     /// \param counted the cells with weight; null: all. What candidates see of other cells is then
     ///        arbitrary, which saves memory
     /// \param by_beams none: lasers in a slice see all that is in their view
-    CandidateViews(const Sight& sight, const Grid& grid, const SensorModel& device,
+    CandidateViews(const VisibleArea& sight, const Grid& grid, const SensorModel& device,
                    const Pose3& mount, const CellSet* counted = nullptr,
                    const std::optional<ByBeams>& by_beams = {});
     ~CandidateViews();
@@ -103,7 +103,7 @@ bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<
 /// The laser as a search scans with it at the thesis' "reso" (section 4.2): one scan of all it
 /// sweeps, with beams `step` apart from its first one on; 0: its own step. Where it sees all around
 /// the nearest step that divides a turn. \pre 0 <= step <= 90 degrees
-Laser atResolution(Laser laser, Angle step);
+Laser withBeamStep(Laser laser, Angle step);
 
 /// The cells within the contour of a scan: centres strictly inside the polygon of the place and the
 /// ends of all beams, at the first surface or else at max_range (section 4.5.2). If the beams close

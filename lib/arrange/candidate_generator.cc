@@ -45,7 +45,7 @@ std::vector<Angle> usualTilts(const SensorModel& model, MountOn mount) {
     const bool hangs = mount == MountOn::Frame || mount == MountOn::Ceiling;
     if (!hangs || !fieldOfView(Sensor{{}, model, {}})) return {Angle()};
     const Pose3 down{{}, {}, Angle::degrees(-90), {}};
-    return is_aimed && !looksAround(model, down) ? degrees({-90, -60, -30}) : degrees({-90});
+    return is_aimed && !isOmnidirectional(model, down) ? degrees({-90, -60, -30}) : degrees({-90});
 }
 
 /// Sites at one height.
@@ -63,7 +63,7 @@ struct CandidatePool::Data {
     CandidateWeights weights;
     const ArrangeOptions& options;
     Progress& progress;
-    Sight sight;
+    VisibleArea sight;
     std::map<double, std::unique_ptr<SiteValidity>> validities = {};
     std::size_t bytes = 0;  // of the sets made so far
 

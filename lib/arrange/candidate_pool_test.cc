@@ -247,7 +247,7 @@ TEST(CandidatePool, StoppedAtOnceTheyAreAllOverAnyLattice) {
     Worlds worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     for (const double tilt : {0, -30}) {  // in a slice, through the mesh
-        const Sight sight(scene.environment, 0, &worlds);
+        const VisibleArea sight(scene.environment, 0, &worlds);
         const CandidateViews views(sight, grid, Laser(), {{0, 0, 1}, {}, Angle::degrees(tilt), {}});
         for (const int columns : {8, 16, 20, 32, 64, 89, 100, 160, 233})
             for (const int rows : {8, 30, 34, 64, 144}) {
@@ -271,7 +271,7 @@ TEST(CandidatePool, MeshesAreLeftInBetween) {
     const Scene scene = roomScene();
     Worlds worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
-    const Sight sight(scene.environment, 0, &worlds);
+    const VisibleArea sight(scene.environment, 0, &worlds);
     const CandidateViews views(sight, grid, Laser(), {{0, 0, 1}, {}, Angle::degrees(-30), {}});
     const std::vector<Site> sites = latticeOf(60, 40);
     SilentProgress silent;
@@ -304,7 +304,7 @@ TEST(CandidatePool, IndoorTestKeepsTheSensorInTheRoom) {
     const Target target = makeTarget(room, CellCount{100, 100}, kScanHeight);
     Laser laser;
     laser.max_range = 4;
-    const Sight sight(room, 0, &worlds);
+    const VisibleArea sight(room, 0, &worlds);
     const CandidateViews views(sight, target.grid, laser, {{0, 0, kScanHeight}, {}, {}, {}});
     // The thesis counts what lies within the limits, indoor or not.
     const WeightSums ones(std::vector<std::uint32_t>(target.grid.size(), 1));

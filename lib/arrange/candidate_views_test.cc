@@ -104,7 +104,7 @@ void expectSame(const Scene& scene, const Mounted& mounted, const std::vector<Si
     Worlds worlds(scene.environment);
     const Target target = makeTarget(scene.environment, CellCount{40, 30}, kScanHeight);
     constexpr double kPlane = 0.1;
-    const Sight sight(scene.environment, kPlane, &worlds);
+    const VisibleArea sight(scene.environment, kPlane, &worlds);
     const CandidateViews views(sight, target.grid, mounted.model, mounted.mount,
                                only_free ? &target.free : nullptr);
     ASSERT_EQ(views.isRound(), mounted.is_round);
@@ -258,7 +258,7 @@ TEST(CandidateViews, SeeNothingFromWithinSolids) {
     SilentProgress quiet;
     for (const Mounted& mounted : devices()) {
         if (mounted.mount.position.z > 1.9) continue;
-        const Sight sight(scene.environment, 0, &worlds);
+        const VisibleArea sight(scene.environment, 0, &worlds);
         const CandidateViews views(sight, grid, mounted.model, mounted.mount);
         PosedCandidates set(grid.size());
         const std::vector<Site> sites = {{{0.1, 0.2}, {Angle(), Angle::degrees(-90)}}};
@@ -283,7 +283,7 @@ TEST(CandidateViews, TheSameForAnyNumberOfThreads) {
     Worlds worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     const std::vector<Site> sites = manySites(1200);
-    const Sight sight(scene.environment, 0, &worlds);
+    const VisibleArea sight(scene.environment, 0, &worlds);
     const CandidateViews views(sight, grid, laserWith(3, -90, 180),
                                poseAt({0, 0, kScanHeight}, 0, 0));
     std::vector<std::vector<CellRun>> runs;
@@ -323,7 +323,7 @@ TEST(CandidateViews, StopEarlyAndWithinMemory) {
     Worlds worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     const std::vector<Site> sites = manySites(2000);
-    const Sight sight(scene.environment, 0, &worlds);
+    const VisibleArea sight(scene.environment, 0, &worlds);
     const CandidateViews views(sight, grid, laserWith(3, -90, 180),
                                poseAt({0, 0, kScanHeight}, 0, 0));
     PosedCandidates set(grid.size());
@@ -373,7 +373,7 @@ TEST(CandidateViews, TheOrderInWhichSitesAreLookedAtDoesNotShow) {
     SilentProgress quiet;
     const std::vector<Mounted> all = devices();
     for (const std::size_t device : {0U, 3U, 9U}) {
-        const Sight sight(scene.environment, 0.1, &worlds);
+        const VisibleArea sight(scene.environment, 0.1, &worlds);
         const CandidateViews views(sight, grid, all[device].model, all[device].mount);
         for (const int count : {0, 1, 63, 64, 65, 700, 20000}) {
             if ((device == 9 && count > 70) || (device == 0 && count > 700)) continue;

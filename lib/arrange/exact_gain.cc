@@ -107,7 +107,7 @@ struct View {
 struct ExactGain::Data {
     std::span<const Sensor> sensors;  // that move
     int multiplicity;
-    const Sight& sight;
+    const VisibleArea& sight;
     std::vector<Floor> floors = {};
     Box2 floor_box = {};
     std::vector<View> standing = {}, moving = {};
@@ -214,7 +214,7 @@ struct ExactGain::Data {
     }
 };
 
-ExactGain::ExactGain(const Scene& scene, const Sight& sight, std::span<const Sensor> sensors,
+ExactGain::ExactGain(const Scene& scene, const VisibleArea& sight, std::span<const Sensor> sensors,
                      const FloorWeights& weights, int multiplicity)
     : data_(new Data{sensors, multiplicity, sight}) {
     if (weights.weights.size() > kMaxZones)
@@ -292,7 +292,7 @@ void ExactGain::put(const Pose3& pose) {
 
 bool ExactGain::turns(std::size_t sensor) const {
     const Sensor& own = data_->sensors[sensor];
-    return !looksAround(own.model, own.pose);
+    return !isOmnidirectional(own.model, own.pose);
 }
 
 }  // namespace ispace

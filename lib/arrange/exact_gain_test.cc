@@ -45,7 +45,7 @@ CoverageReport reportOf(Scene scene, const std::vector<Sensor>& sensors) {
 
 /// An ExactGain with its room.
 struct Gain {
-    Sight sight;
+    VisibleArea sight;
     ExactGain gain;
 
     Gain(const Scene& scene, const std::vector<Sensor>& sensors, const FloorWeights& weights = {},

@@ -168,7 +168,7 @@ std::vector<std::size_t> idleChoices(const Problem& problem, std::span<const Cho
     });
 }
 
-std::vector<std::size_t> idleViews(const SceneProblem& model, std::span<const CountedView> views) {
+std::vector<std::size_t> idleViews(const MeasuredScene& model, std::span<const CountedView> views) {
     return idleAmong(model.problem(), views, [&](const std::vector<bool>& left) {
         std::vector<CountedView> rest;
         for (std::size_t i = 0; i < views.size(); ++i)
@@ -177,9 +177,9 @@ std::vector<std::size_t> idleViews(const SceneProblem& model, std::span<const Co
     });
 }
 
-void spreadIdle(const Problem& problem, std::span<const Point3> standing,
-                const std::function<Point3(const Choice&)>& position_of,
-                std::vector<Choice>& chosen) {
+void spreadRedundant(const Problem& problem, std::span<const Point3> standing,
+                     const std::function<Point3(const Choice&)>& position_of,
+                     std::vector<Choice>& chosen) {
     const std::vector<std::size_t> idle = idleChoices(problem, chosen);
     if (idle.empty()) return;
     std::vector<Choice> busy;

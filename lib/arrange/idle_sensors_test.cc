@@ -74,7 +74,7 @@ TEST(IdleSensors, TheRestHasTheSameValue) {
         const auto position_of = [](const Choice& choice) {
             return Point3{static_cast<double>(choice.candidate), 0, 0};
         };
-        spreadIdle(problem, {}, position_of, moved);
+        spreadRedundant(problem, {}, position_of, moved);
         EXPECT_GE(valueOf(problem, moved), valueOf(problem, chosen)) << seed;
         ASSERT_EQ(moved.size(), chosen.size());
         for (std::size_t i = 0; i < chosen.size(); ++i) EXPECT_EQ(moved[i].kind, chosen[i].kind);

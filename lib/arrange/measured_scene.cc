@@ -58,8 +58,8 @@ std::string nothingText(const Target& target, FloorWeights weights) {
 
 }  // namespace
 
-SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& groups,
-                           const ArrangeOptions& options, Progress& progress)
+MeasuredScene::MeasuredScene(const Scene& scene, const std::vector<SensorGroup>& groups,
+                             const ArrangeOptions& options, Progress& progress)
     : scene_(scene),
       groups_(groups),
       options_(options),
@@ -82,7 +82,7 @@ SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& g
     addKinds();
 }
 
-void SceneProblem::mustBeAffordable() const {
+void MeasuredScene::mustBeAffordable() const {
     if (!options_.budget) return;
     double least = kinds_.front().cost;
     for (const SensorClass& kind : kinds_) least = std::min(least, kind.cost);
@@ -92,7 +92,7 @@ void SceneProblem::mustBeAffordable() const {
 }
 
 /// Four receivers count as one sensor; where there are receivers, others have multiplicity 4.
-void SceneProblem::setMultiplicities(const Coverage& standing) {
+void MeasuredScene::setMultiplicities(const Coverage& standing) {
     const auto is_partial = [](const auto& sensor) { return isPartial(sensor.model); };
     const bool listens = std::any_of(scene_.sensors.begin(), scene_.sensors.end(), is_partial) ||
                          std::any_of(kinds_.begin(), kinds_.end(), is_partial);
@@ -112,7 +112,7 @@ void SceneProblem::setMultiplicities(const Coverage& standing) {
     problem_.budget = options_.budget;
 }
 
-void SceneProblem::addKinds() {
+void MeasuredScene::addKinds() {
     for (const SensorClass& kind : kinds_) {
         CandidatePool::Made made = pool_->make(kind);
         is_complete_ = is_complete_ && made.is_complete;
@@ -127,47 +127,47 @@ void SceneProblem::addKinds() {
         problem_.order.push_back(sensor.kind);
 }
 
-std::size_t SceneProblem::candidates() const {
+std::size_t MeasuredScene::candidates() const {
     std::size_t count = 0;
     for (const auto& set : sets_) count += set->size();
     return count;
 }
 
-std::size_t SceneProblem::bytes() const {
+std::size_t MeasuredScene::bytes() const {
     std::size_t bytes = 0;
     for (const auto& set : sets_) bytes += set->bytes();
     return bytes;
 }
 
-SearchOptions SceneProblem::searchOptions() const {
+SearchOptions MeasuredScene::searchOptions() const {
     SearchOptions searching = options_.search;
     const std::size_t taken = std::min(bytes(), options_.max_bytes);
     searching.max_bytes = std::min(searching.max_bytes, options_.max_bytes - taken);
     return searching;
 }
 
-double SceneProblem::share(std::uint64_t value) const {
+double MeasuredScene::share(std::uint64_t value) const {
     return static_cast<double>(value) / static_cast<double>(total_);
 }
 
-std::uint64_t SceneProblem::valueFor(double share) const {
+std::uint64_t MeasuredScene::valueFor(double share) const {
     return static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_) - 1e-6));
 }
 
-std::vector<std::uint32_t> SceneProblem::weightsLeft() const {
+std::vector<std::uint32_t> MeasuredScene::weightsLeft() const {
     std::vector<std::uint32_t> left = problem_.weights;
     for (std::size_t i = 0; i < left.size(); ++i)
         if (problem_.achieved[i] >= problem_.required) left[i] = 0;
     return left;
 }
 
-std::vector<Placement> SceneProblem::placementsOf(const std::vector<Choice>& chosen) const {
+std::vector<Placement> MeasuredScene::placementsOf(const std::vector<Choice>& chosen) const {
     std::vector<std::vector<Pose3>> poses(kinds_.size());
     for (const Choice& choice : chosen) poses[choice.kind].push_back(poseOf(choice));
     return ispace::placementsOf(scene_, groups_, kinds_, poses);
 }
 
-std::vector<CountedView> SceneProblem::viewsOf(std::span<const Sensor> sensors) const {
+std::vector<CountedView> MeasuredScene::viewsOf(std::span<const Sensor> sensors) const {
     std::vector<CountedView> views(sensors.size());
     for (const Sensor& sensor : sensors) sight_.prepare(sensor);
     tbb::parallel_for(std::size_t{0}, sensors.size(), [&](std::size_t i) {
@@ -180,7 +180,7 @@ std::vector<CountedView> SceneProblem::viewsOf(std::span<const Sensor> sensors) 
     return views;
 }
 
-std::uint64_t SceneProblem::valueOf(std::span<const CountedView> views) const {
+std::uint64_t MeasuredScene::valueOf(std::span<const CountedView> views) const {
     std::vector<int> met(problem_.achieved.begin(), problem_.achieved.end());
     for (const CountedView& view : views)
         view.cells.forEach([&](std::size_t cell) { met[cell] += view.multiplicity; });
@@ -190,7 +190,7 @@ std::uint64_t SceneProblem::valueOf(std::span<const CountedView> views) const {
     return value;
 }
 
-bool SceneProblem::isConnected(std::span<const CountedView> views) const {
+bool MeasuredScene::isConnected(std::span<const CountedView> views) const {
     const CellSet counted = countedCells(problem_);
     std::vector<CellSet> waiting;
     CellSet reached = problem_.standing;
@@ -216,15 +216,15 @@ bool SceneProblem::isConnected(std::span<const CountedView> views) const {
     return waiting.empty();
 }
 
-void SceneProblem::spreadIdle(std::vector<Choice>& chosen) const {
+void MeasuredScene::spreadRedundant(std::vector<Choice>& chosen) const {
     std::vector<Point3> standing;
     for (const Sensor& sensor : scene_.sensors)
         if (kindOf(sensor.model).perceives) standing.push_back(sensor.pose.position);
     const auto position_of = [this](const Choice& choice) { return poseOf(choice).position; };
-    ispace::spreadIdle(problem_, standing, position_of, chosen);
+    ispace::spreadRedundant(problem_, standing, position_of, chosen);
 }
 
-std::uint64_t SceneProblem::maxFromAnyPlace(const std::vector<int>& most) const {
+std::uint64_t MeasuredScene::maxFromAnyPlace(const std::vector<int>& most) const {
     return ispace::maxFromAnyPlace(problem_, target_.grid, devicesOf(kinds_), most);
 }
 
@@ -240,7 +240,7 @@ void addSliceAreas(Worlds& worlds, const Laser& laser, std::span<TriedPose> pose
 
 }  // namespace
 
-std::vector<TriedPose> SceneProblem::triedPoses(const std::vector<Choice>& chosen) {
+std::vector<TriedPose> MeasuredScene::triedPoses(const std::vector<Choice>& chosen) {
     const WeightSums weights(weightsLeft());
     std::vector<TriedPose> all;
     all.reserve(candidates());
@@ -257,7 +257,7 @@ std::vector<TriedPose> SceneProblem::triedPoses(const std::vector<Choice>& chose
             if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
         if (const auto* laser = std::get_if<Laser>(&kind.model))
             addSliceAreas(worlds_,
-                          options_.beam_step ? atResolution(*laser, *options_.beam_step) : *laser,
+                          options_.beam_step ? withBeamStep(*laser, *options_.beam_step) : *laser,
                           std::span(all).subspan(first));
     }
     return all;

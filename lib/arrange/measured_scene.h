@@ -38,13 +38,13 @@ struct CountedView {
 /// Sensors that are alike are one kind of the problem, with candidates by the options' strategy.
 /// The target's cells have the weights of options.weights; sensors that stand already add to the
 /// multiplicity.
-class SceneProblem {
+class MeasuredScene {
   public:
     /// Makes all candidates. Keeps references.
     /// \throws UnmetError if a kind has no valid place, nothing may be bought or nothing counts,
     ///         UsageError if the candidates do not fit in memory or cannot be refined as asked
-    SceneProblem(const Scene& scene, const std::vector<SensorGroup>& groups,
-                 const ArrangeOptions& options, Progress& progress);
+    MeasuredScene(const Scene& scene, const std::vector<SensorGroup>& groups,
+                  const ArrangeOptions& options, Progress& progress);
 
     [[nodiscard]] const Scene& scene() const { return scene_; }
     [[nodiscard]] const std::vector<SensorGroup>& groups() const { return groups_; }
@@ -54,7 +54,7 @@ class SceneProblem {
     [[nodiscard]] const Target& target() const { return target_; }
     Worlds& worlds() { return worlds_; }
     /// What sensors see of the room.
-    [[nodiscard]] const Sight& sight() const { return sight_; }
+    [[nodiscard]] const VisibleArea& sight() const { return sight_; }
     /// False if progress said to stop before all candidates were made.
     [[nodiscard]] bool isComplete() const { return is_complete_; }
     /// Of all kinds.
@@ -86,7 +86,7 @@ class SceneProblem {
     [[nodiscard]] bool isConnected(std::span<const CountedView> views) const;
     /// Spreads choices that add nothing. \pre the choices have a value: else they may be some of
     /// the many that the required multiplicity takes
-    void spreadIdle(std::vector<Choice>& chosen) const;
+    void spreadRedundant(std::vector<Choice>& chosen) const;
     /// Every candidate with the share of the total weight that it would add to what stands and, for
     /// a laser, its slice area (eq. 4.4) by the thesis' scan of the pose.
     [[nodiscard]] std::vector<TriedPose> triedPoses(const std::vector<Choice>& chosen);
@@ -102,7 +102,7 @@ class SceneProblem {
     const std::vector<SensorGroup>& groups_;
     const ArrangeOptions& options_;
     Worlds worlds_;
-    Sight sight_;
+    VisibleArea sight_;
     std::vector<SensorClass> kinds_;
     int unit_ = 1;  ///< multiplicity of sensors other than receivers
     Target target_;
@@ -136,7 +136,7 @@ std::uint64_t maxCellsInView(const SensorModel& device, const Grid& grid);
 std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
                               std::span<const SensorModel> devices, std::span<const int> most);
 
-class SceneProblem;
+class MeasuredScene;
 struct CountedView;
 
 /// Choices that can all be left out without loss of value or of connection, ascending; later ones
@@ -144,13 +144,13 @@ struct CountedView;
 std::vector<std::size_t> idleChoices(const Problem& problem, std::span<const Choice> chosen);
 
 /// The same for the views of placed sensors, by their indices.
-std::vector<std::size_t> idleViews(const SceneProblem& model, std::span<const CountedView> views);
+std::vector<std::size_t> idleViews(const MeasuredScene& model, std::span<const CountedView> views);
 
 /// Spreads idle choices: moves each in turn to the site farthest from all other sensors, among
 /// those that see anything of weight, with the heading that sees most of what few others see.
 /// Connected coverage stays connected. `standing`: positions of sensors that stand already.
-void spreadIdle(const Problem& problem, std::span<const Point3> standing,
-                const std::function<Point3(const Choice&)>& position_of,
-                std::vector<Choice>& chosen);
+void spreadRedundant(const Problem& problem, std::span<const Point3> standing,
+                     const std::function<Point3(const Choice&)>& position_of,
+                     std::vector<Choice>& chosen);
 
 }  // namespace ispace

@@ -28,12 +28,12 @@ void limitCamera(SensorModel& model, const ArrangeOptions& options) {
 }
 
 /// The share of the total weight that is covered as often as it has to be.
-void reportShare(const SceneProblem& model, std::span<const CountedView> views,
+void reportShare(const MeasuredScene& model, std::span<const CountedView> views,
                  Arrangement& result) {
     result.value = model.share(model.valueOf(views));
 }
 
-void reportCost(const SceneProblem& model, std::span<const CountedView> /*views*/,
+void reportCost(const MeasuredScene& model, std::span<const CountedView> /*views*/,
                 Arrangement& result) {
     // Kind by kind there are few sums to round.
     std::vector<int> counts(model.kinds().size());

@@ -14,7 +14,7 @@ namespace ispace {
 
 struct Arrangement;
 struct CountedView;
-class SceneProblem;
+class MeasuredScene;
 
 /// One thing that arrange optimises. To add one, write its functions and a row.
 struct Objective {
@@ -26,7 +26,8 @@ struct Objective {
     void (*limit)(SensorModel&, const ArrangeOptions&) = nullptr;
     /// Sets what the result says of it. \param views of the placed sensors on the search's grid;
     /// null: the coverage of the result says it
-    void (*report)(const SceneProblem&, std::span<const CountedView> views, Arrangement&) = nullptr;
+    void (*report)(const MeasuredScene&, std::span<const CountedView> views,
+                   Arrangement&) = nullptr;
 };
 
 /// Coverage, weights, density, redundancy, cost.

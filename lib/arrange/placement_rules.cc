@@ -90,7 +90,7 @@ bool SiteValidity::isValid(Point2 place) const {
     const Data& data = *data_;
     const SiteRules& rules = data.rules;
     const bool is_free = rules.judges_inside ? data.level->isFree(place)
-                                             : !data.level->isBuried(place) &&
+                                             : !data.level->isInsideSolid(place) &&
                                                    !data.obstacles.anyWithin(place, kWeldDistance);
     if (!is_free || data.keep_out.holder(place)) return false;
     if (!data.keep_in.empty() && !data.keep_in.holder(place)) return false;
@@ -153,7 +153,7 @@ namespace {
 constexpr std::string_view kBlanks = " \t\r";
 constexpr std::array kNames = {"x", "y", "heading"};
 /// Plans lie within this of the origin, in metres; headings are no larger, in degrees.
-constexpr double kFarthest = 1e6;
+constexpr double kMaxDistance = 1e6;
 
 std::string_view trimmed(std::string_view text) {
     const std::size_t begin = text.find_first_not_of(kBlanks);
@@ -210,7 +210,7 @@ class SiteReader {
                               std::string(kNames[i]) +
                                   (fields[i].empty() ? " is missing"
                                                      : ' ' + excerpt(fields[i]) + " is no number"));
-            if (std::fabs(*value) > kFarthest)
+            if (std::fabs(*value) > kMaxDistance)
                 return refuse(fields[i].data() - begin, std::string(kNames[i]) + ' ' +
                                                             excerpt(fields[i]) +
                                                             " is too large: a million at most");

@@ -74,7 +74,7 @@ Pose3 stepped(const Pose3& pose, const Way& way, const Stride& stride) {
 
 class Search {
   public:
-    Search(const Scene& scene, const Sight& sight, std::span<const Sensor> sensors,
+    Search(const Scene& scene, const VisibleArea& sight, std::span<const Sensor> sensors,
            const FloorWeights& weights, const RefineOptions& options, Progress& progress)
         : options_(options),
           progress_(progress),
@@ -214,7 +214,7 @@ void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
                 refuse(laser->model.empty() ? "a laser" : laser->model);
 }
 
-Refined refine(const Scene& scene, const Sight& sight, std::span<const Sensor> sensors,
+Refined refine(const Scene& scene, const VisibleArea& sight, std::span<const Sensor> sensors,
                const FloorWeights& weights, const RefineOptions& options, Progress& progress) {
     return Search(scene, sight, sensors, weights, options, progress).run();
 }
@@ -235,7 +235,7 @@ bool areApart(const std::vector<Sensor>& before, const std::vector<Pose3>& poses
 
 }  // namespace
 
-Refined refine(SceneProblem& model, const std::vector<Placement>& placements, std::uint64_t least,
+Refined refine(MeasuredScene& model, const std::vector<Placement>& placements, std::uint64_t least,
                Progress& progress) {
     std::vector<Sensor> sensors;
     std::vector<const SiteValidity*> validities;

@@ -17,7 +17,7 @@
 
 namespace ispace {
 
-class SceneProblem;
+class MeasuredScene;
 
 struct RefineOptions {
     int multiplicity = 1;                ///< floor is covered if this many see it
@@ -54,13 +54,13 @@ void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
 /// \param sight of the scene's environment
 /// \throws UsageError for sensors, also standing ones, whose exact region is not known (lasers that
 ///         nod or roll), and for more than 60 weighted zones
-Refined refine(const Scene& scene, const Sight& sight, std::span<const Sensor> sensors,
+Refined refine(const Scene& scene, const VisibleArea& sight, std::span<const Sensor> sensors,
                const FloorWeights& weights, const RefineOptions& options, Progress& progress);
 
 /// refine() for sensors that a search arranged, by the rules of the search: places stay valid, the
 /// value on its grid ends no lower than `least`, and connected coverage stays connected. Sensors
 /// that were apart stay 5 cm apart: no two are built in one place.
-Refined refine(SceneProblem& model, const std::vector<Placement>& placements, std::uint64_t least,
+Refined refine(MeasuredScene& model, const std::vector<Placement>& placements, std::uint64_t least,
                Progress& progress);
 
 /// The exact gain of what at least `multiplicity` sensors see: its area in closed form (Overlay)
@@ -73,7 +73,7 @@ class ExactGain {
   public:
     /// All sensors stand at their poses. Keeps the references.
     /// \throws UsageError for sensors without an exact region and for more than kMaxZones weights
-    ExactGain(const Scene& scene, const Sight& sight, std::span<const Sensor> sensors,
+    ExactGain(const Scene& scene, const VisibleArea& sight, std::span<const Sensor> sensors,
               const FloorWeights& weights, int multiplicity);
     ~ExactGain();
     ExactGain(const ExactGain&) = delete;

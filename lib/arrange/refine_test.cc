@@ -32,7 +32,7 @@ Pose3 poseAt(double x, double y, double heading = 0) {
 Refined refined(const Scene& scene, const std::vector<Sensor>& sensors,
                 const FloorWeights& floor = {}, const RefineOptions& options = {}) {
     SilentProgress progress;
-    return refine(scene, Sight(scene.environment, 0), sensors, floor, options, progress);
+    return refine(scene, VisibleArea(scene.environment, 0), sensors, floor, options, progress);
 }
 
 /// Places that these rules allow.
@@ -41,7 +41,7 @@ RefineOptions within(const SiteValidity& validity) {
 }
 
 double valueOf(const Scene& scene, const std::vector<Sensor>& sensors) {
-    return ExactGain(scene, Sight(scene.environment, 0), sensors, {}, 1).value();
+    return ExactGain(scene, VisibleArea(scene.environment, 0), sensors, {}, 1).value();
 }
 
 NamedZone box(double x, double y, double to_x, double to_y) {
@@ -205,7 +205,7 @@ TEST(Refine, EndsWhenItIsToldTo) {
     const Scene scene = sceneOf("ispace size=8,6\n");
     const std::vector<Sensor> one = {{"a", laserOfRange(1.5, 360), poseAt(-3.9, -2.9)}};
     StopWhen progress(always);
-    const Refined result = refine(scene, Sight(scene.environment, 0), one, {}, {}, progress);
+    const Refined result = refine(scene, VisibleArea(scene.environment, 0), one, {}, {}, progress);
     EXPECT_EQ(result.poses[0], one[0].pose);
     EXPECT_EQ(progress.begun, 1);
     EXPECT_EQ(progress.ended, 1);

@@ -16,7 +16,7 @@ TEST(AtOnce, BlocksAreTakenInOrderBeforeTheirMemoryIsUsedAgain) {
     constexpr std::size_t kBlocks = 1000;
     std::array<std::size_t, kBlocksAtOnce> slots{};
     std::vector<std::size_t> taken;
-    makeInOrder(
+    orderedPipeline(
         kBlocks, [&](std::size_t block) { slots[block % kBlocksAtOnce] = block; },
         [&](std::size_t block) {
             EXPECT_EQ(slots[block % kBlocksAtOnce], block);
@@ -29,14 +29,14 @@ TEST(AtOnce, BlocksAreTakenInOrderBeforeTheirMemoryIsUsedAgain) {
 
 TEST(AtOnce, WithoutBlocksNothingIsMade) {
     const auto fail = [](std::size_t) { FAIL(); };
-    makeInOrder(0, fail, fail);
+    orderedPipeline(0, fail, fail);
 }
 
 TEST(AtOnce, WhatABlockThrowsArrives) {
     const auto make = [](std::size_t block) {
         if (block == 20) throw std::runtime_error("20");
     };
-    EXPECT_THROW(makeInOrder(100, make, [](std::size_t block) { EXPECT_LT(block, 20U); }),
+    EXPECT_THROW(orderedPipeline(100, make, [](std::size_t block) { EXPECT_LT(block, 20U); }),
                  std::runtime_error);
 }
 
@@ -44,7 +44,7 @@ TEST(AtOnce, PartsCoverEverythingOnce) {
     for (const bool at_once : {false, true}) {
         for (const std::size_t count : {0U, 1U, 5000U}) {
             std::vector<std::atomic<int>> visits(count);
-            doInParts(at_once, count, [&](std::size_t first, std::size_t last) {
+            parallelChunks(at_once, count, [&](std::size_t first, std::size_t last) {
                 for (std::size_t i = first; i < last; ++i) ++visits[i];
             });
             for (const auto& visit : visits) EXPECT_EQ(visit, 1);

@@ -17,9 +17,9 @@ namespace ispace {
 /// up to 64 bytes of text that is copied or read once more.
 class Budget {
   public:
-    static constexpr std::uint64_t kLeast = 1'000'000;  ///< for any input
-    static constexpr std::uint64_t kPerByte = 4;        ///< more for each byte of it
-    static constexpr std::uint64_t kMost = 20'000'000;  ///< for any input, without --max-work
+    static constexpr std::uint64_t kMinValue = 1'000'000;  ///< for any input
+    static constexpr std::uint64_t kPerByte = 4;           ///< more for each byte of it
+    static constexpr std::uint64_t kMost = 20'000'000;     ///< for any input, without --max-work
 
     /// \param bytes of the input \param max_work of --max-work, in place of the bound by size
     explicit Budget(std::size_t bytes, std::optional<std::uint64_t> max_work = {})
@@ -30,7 +30,8 @@ class Budget {
     /// Raises the bound for a file of so many bytes that the input names.
     void grant(std::size_t bytes) {
         bytes_ += std::min<std::uint64_t>(bytes, kMost);  // no overflow
-        limit_ = max_work_.value_or(std::min(kMost, kLeast + kPerByte * std::min(bytes_, kMost)));
+        limit_ =
+            max_work_.value_or(std::min(kMost, kMinValue + kPerByte * std::min(bytes_, kMost)));
     }
 
     [[nodiscard]] std::uint64_t limit() const { return limit_; }

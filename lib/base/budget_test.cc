@@ -9,8 +9,8 @@ namespace ispace {
 namespace {
 
 TEST(Budget, FollowsTheSizeBetweenItsBounds) {
-    EXPECT_EQ(Budget(0).limit(), Budget::kLeast);
-    EXPECT_EQ(Budget(1000).limit(), Budget::kLeast + 1000 * Budget::kPerByte);
+    EXPECT_EQ(Budget(0).limit(), Budget::kMinValue);
+    EXPECT_EQ(Budget(1000).limit(), Budget::kMinValue + 1000 * Budget::kPerByte);
     EXPECT_EQ(Budget(1'000'000'000).limit(), Budget::kMost);
     EXPECT_EQ(Budget(SIZE_MAX).limit(), Budget::kMost);
     EXPECT_EQ(Budget(SIZE_MAX, 7).limit(), 7U);
@@ -19,7 +19,7 @@ TEST(Budget, FollowsTheSizeBetweenItsBounds) {
 TEST(Budget, GrowsWithSideFiles) {
     Budget budget(1000);
     budget.grant(500);
-    EXPECT_EQ(budget.limit(), Budget::kLeast + 1500 * Budget::kPerByte);
+    EXPECT_EQ(budget.limit(), Budget::kMinValue + 1500 * Budget::kPerByte);
     for (int i = 0; i < 3; ++i) budget.grant(SIZE_MAX);
     EXPECT_EQ(budget.limit(), Budget::kMost);
 }

@@ -314,7 +314,7 @@ void OutputFile::commit() {
 
 void OutputFile::commitTogether(std::span<OutputFile* const> files) {
     // From the first name to the last rename; no signal ends the process between them.
-    const HeldSignals held;
+    const DeferredSignals held;
     try {
         for (const OutputFile* file : files) file->state_->link();
         // Only with others there is something to go wrong after the rename.

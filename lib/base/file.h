@@ -74,7 +74,7 @@ class InputFile {
 /// so a reader never sees half of it. Without commit() (an error, a signal) the old file stays and
 /// nothing is left behind. "-" is standard output; devices, pipes and anything else that is not a
 /// regular file are written directly. A symbolic link stays and its target is replaced; an existing
-/// file keeps its permissions. While RunFiles lives, no input is replaced.
+/// file keeps its permissions. While FileGuard lives, no input is replaced.
 ///
 /// TERM, INT and HUP leave nothing behind either. KILL may, during commit(), and so may any signal
 /// on a file system without O_TMPFILE. There is no fsync: the rename survives the end of the

@@ -13,11 +13,11 @@ namespace {
 
 std::atomic<int> taken;
 
-TEST(HeldSignals, HandlersGetTheirsAfterwards) {
+TEST(DeferredSignals, HandlersGetTheirsAfterwards) {
     taken = 0;
     const auto before = std::signal(SIGTERM, [](int) { ++taken; });
     {
-        const HeldSignals held;
+        const DeferredSignals held;
         std::raise(SIGTERM);
         // A signal goes to any thread that takes it.
         std::thread([] { std::raise(SIGTERM); }).join();
@@ -29,22 +29,22 @@ TEST(HeldSignals, HandlersGetTheirsAfterwards) {
     std::signal(SIGTERM, before);
 }
 
-TEST(HeldSignals, WhatIsIgnoredStaysIgnored) {
+TEST(DeferredSignals, WhatIsIgnoredStaysIgnored) {
     const auto before = std::signal(SIGHUP, SIG_IGN);
     {
-        const HeldSignals held;
+        const DeferredSignals held;
         std::raise(SIGHUP);
     }
     EXPECT_EQ(std::signal(SIGHUP, before), SIG_IGN);
 }
 
-TEST(HeldSignals, EndAProcessAfterwards) {
+TEST(DeferredSignals, EndAProcessAfterwards) {
     int pipe[2];
     ASSERT_EQ(::pipe(pipe), 0);
     const pid_t child = ::fork();
     if (child == 0) {
         {
-            const HeldSignals held;
+            const DeferredSignals held;
             std::raise(SIGINT);
             static_cast<void>(!::write(pipe[1], "x", 1));
         }

@@ -10,9 +10,9 @@
 namespace ispace {
 namespace {
 
-TEST(InOrder, CallsWaitForThoseBeforeThem) {
+TEST(OrderedCalls, CallsWaitForThoseBeforeThem) {
     std::vector<int> called;
-    InOrder order(3);
+    OrderedCalls order(3);
     const auto note = [&called](int i) { return [&called, i] { called.push_back(i); }; };
     order.add(2, note(2));
     order.add(1, note(1));
@@ -21,10 +21,10 @@ TEST(InOrder, CallsWaitForThoseBeforeThem) {
     EXPECT_EQ(called, (std::vector<int>{0, 1, 2}));
 }
 
-TEST(InOrder, SameOrderFromSeveralThreads) {
+TEST(OrderedCalls, SameOrderFromSeveralThreads) {
     constexpr std::size_t kCount = 3000, kThreads = 3;
     std::vector<std::size_t> called;
-    InOrder order(kCount);
+    OrderedCalls order(kCount);
     std::vector<std::thread> threads;
     for (std::size_t t = 0; t < kThreads; ++t)
         threads.emplace_back([&, t] {
@@ -37,9 +37,9 @@ TEST(InOrder, SameOrderFromSeveralThreads) {
     EXPECT_EQ(called, all);
 }
 
-TEST(InOrder, WhatThrowsIsTheLast) {
+TEST(OrderedCalls, WhatThrowsIsTheLast) {
     int called = 0;
-    InOrder order(2);
+    OrderedCalls order(2);
     EXPECT_THROW(order.add(0, [] { throw std::runtime_error("full"); }), std::runtime_error);
     order.add(1, [&called] { ++called; });
     EXPECT_EQ(called, 0);

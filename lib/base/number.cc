@@ -32,9 +32,9 @@ std::string_view shortest(Float value, std::array<char, kBuffer>& buffer) {
 /// Up to three decimals, as most lengths have, without a search for the shortest digits: no other
 /// decimal of up to 15 digits reads as the same double. Appends nothing to other numbers.
 bool appendThousandths(std::string& out, double value) {
-    constexpr double kMostThousandths = 1e12, kThousand = 1000;
+    constexpr double kMaxThousandths = 1e12, kThousand = 1000;
     const double scaled = std::fabs(value) * kThousand;
-    if (!(scaled < kMostThousandths)) return false;
+    if (!(scaled < kMaxThousandths)) return false;
     const auto thousandths = static_cast<std::int64_t>(scaled);
     if (static_cast<double>(thousandths) / kThousand != std::fabs(value)) return false;
     std::array<char, kBuffer> buffer;
@@ -159,9 +159,9 @@ std::string formatPercent(double fraction) {
     std::erase_if(digits, [](char c) { return c == '-' || c == '.'; });
     const auto exponent = parseInteger(text.substr(mark + 1)).value_or(0) + 2;
     std::string out = negative ? "-" : "";
-    constexpr std::int64_t kSmallest = -5, kLargest = 15;
+    constexpr std::int64_t kMinSize = -5, kMaxSize = 15;
     const auto count = static_cast<std::int64_t>(digits.size());
-    if (exponent < kSmallest || exponent >= kLargest) {
+    if (exponent < kMinSize || exponent >= kMaxSize) {
         if (count > 1) digits.insert(1, 1, '.');
         return out + digits + 'e' + (exponent < 0 ? "-" : "+") +
                std::to_string(exponent < 0 ? -exponent : exponent) + '%';

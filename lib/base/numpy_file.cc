@@ -42,11 +42,11 @@ constexpr std::uint32_t kLocalHead = 0x04034b50, kCentralHead = 0x02014b50, kEnd
                         kEnd64 = 0x06064b50, kEnd64Locator = 0x07064b50;
 constexpr std::uint16_t kVersion = 20, kVersion64 = 45, kUtf8Names = 1U << 11U;
 constexpr std::uint16_t kFirstDay = 1U << 5U | 1U;  // the first of January 1980, as ZIP counts
-constexpr std::uint64_t kMost32 = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint64_t kMost16 = std::numeric_limits<std::uint16_t>::max();
+constexpr std::uint64_t kMax32 = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t kMax16 = std::numeric_limits<std::uint16_t>::max();
 
 std::uint32_t atMost32(std::uint64_t value) {
-    return static_cast<std::uint32_t>(std::min(value, kMost32));
+    return static_cast<std::uint32_t>(std::min(value, kMax32));
 }
 
 /// What local and central heads have in common, from the version needed to the length of the name.
@@ -83,7 +83,7 @@ void ZipWriter::put(std::string_view bytes) {
 void ZipWriter::begin(const std::string& name, std::uint64_t size, std::uint32_t crc) {
     entries_.push_back({name, size, at_, crc});
     std::vector<std::uint64_t> large;
-    if (size >= kMost32) large = {size, size};
+    if (size >= kMax32) large = {size, size};
     const std::string extra = extra64(large);
     std::string head;
     appendLittle(head, kLocalHead);
@@ -101,8 +101,8 @@ void ZipWriter::finish() {
     const std::uint64_t begin = at_;
     for (const Entry& entry : entries_) {
         std::vector<std::uint64_t> large;
-        if (entry.size >= kMost32) large = {entry.size, entry.size};
-        if (entry.offset >= kMost32) large.push_back(entry.offset);
+        if (entry.size >= kMax32) large = {entry.size, entry.size};
+        if (entry.offset >= kMax32) large.push_back(entry.offset);
         const std::string extra = extra64(large);
         const std::uint16_t version = large.empty() ? kVersion : kVersion64;
         std::string head;
@@ -119,7 +119,7 @@ void ZipWriter::finish() {
     }
     const std::uint64_t size = at_ - begin, count = entries_.size();
     std::string end;
-    if (begin >= kMost32 || size >= kMost32 || count >= kMost16) {
+    if (begin >= kMax32 || size >= kMax32 || count >= kMax16) {
         constexpr std::uint64_t kRest = 44;
         const std::uint64_t at = at_;
         appendLittle(end, kEnd64);
@@ -133,7 +133,7 @@ void ZipWriter::finish() {
         appendLittle(end, at);
         appendLittle(end, std::uint32_t{1});
     }
-    const auto files = static_cast<std::uint16_t>(std::min(count, kMost16));
+    const auto files = static_cast<std::uint16_t>(std::min(count, kMax16));
     appendLittle(end, kEnd);
     appendLittle(end, std::uint32_t{0});  // both disks
     appendLittle(end, files);

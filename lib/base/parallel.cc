@@ -120,7 +120,8 @@ void isolated(Work work) {
 
 }  // namespace
 
-void doBoth(bool at_once, const std::function<void()>& first, const std::function<void()>& second) {
+void parallelInvoke(bool at_once, const std::function<void()>& first,
+                    const std::function<void()>& second) {
     if (!at_once) {
         first();
         second();
@@ -135,8 +136,8 @@ void doBoth(bool at_once, const std::function<void()>& first, const std::functio
     isolated([&] { tbb::parallel_invoke(part(first), part(second)); });
 }
 
-void makeInOrder(std::size_t blocks, const std::function<void(std::size_t)>& make,
-                 const std::function<void(std::size_t)>& take) {
+void orderedPipeline(std::size_t blocks, const std::function<void(std::size_t)>& make,
+                     const std::function<void(std::size_t)>& take) {
     using tbb::filter_mode;
     std::size_t next = 0;
     const auto begin = [&](tbb::flow_control& control) {
@@ -161,8 +162,8 @@ void makeInOrder(std::size_t blocks, const std::function<void(std::size_t)>& mak
     });
 }
 
-void doInParts(bool at_once, std::size_t count,
-               const std::function<void(std::size_t, std::size_t)>& work) {
+void parallelChunks(bool at_once, std::size_t count,
+                    const std::function<void(std::size_t, std::size_t)>& work) {
     if (!at_once) return work(0, count);
     constexpr std::size_t kPart = 1024;
     isolated([&] {

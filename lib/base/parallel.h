@@ -63,9 +63,9 @@ const T& leftToExit(T value) {
 /// Calls functions that come from several threads in the order of their numbers, each as soon as
 /// all before it are there, one at a time. Whoever adds the one that the others wait for calls
 /// them. After one has thrown none is called any more.
-class InOrder {
+class OrderedCalls {
   public:
-    explicit InOrder(std::size_t count) : waiting_(count) {}
+    explicit OrderedCalls(std::size_t count) : waiting_(count) {}
 
     void add(std::size_t number, std::function<void()> call) {
         std::unique_lock lock(mutex_);
@@ -93,20 +93,21 @@ constexpr std::size_t kManyRecords = 2000;
 
 /// Does both: in two threads, if there are so many, or one after the other. Whoever waits takes up
 /// nothing else meanwhile. \throws what one of them throws
-void doBoth(bool at_once, const std::function<void()>& first, const std::function<void()>& second);
+void parallelInvoke(bool at_once, const std::function<void()>& first,
+                    const std::function<void()>& second);
 
-/// Blocks that may be in the making at a time, see makeInOrder().
+/// Blocks that may be in the making at a time, see orderedPipeline().
 constexpr std::size_t kBlocksAtOnce = 8;
 
 /// Calls make(block) for each of these blocks, several in different threads, and take(block) for
 /// one after another, in order. A block is taken before the one kBlocksAtOnce behind it is begun,
 /// so that the two can use the same memory. \throws what one of them throws
-void makeInOrder(std::size_t blocks, const std::function<void(std::size_t)>& make,
-                 const std::function<void(std::size_t)>& take);
+void orderedPipeline(std::size_t blocks, const std::function<void(std::size_t)>& make,
+                     const std::function<void(std::size_t)>& take);
 
 /// Calls work(first, last) for consecutive parts of 0 to count - 1, in several threads if there are
 /// so many. \throws what one of them throws
-void doInParts(bool at_once, std::size_t count,
-               const std::function<void(std::size_t, std::size_t)>& work);
+void parallelChunks(bool at_once, std::size_t count,
+                    const std::function<void(std::size_t, std::size_t)>& work);
 
 }  // namespace ispace

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(ReadFence, KeepsReadersInItsFolders) {
+TEST(InputSandbox, KeepsReadersInItsFolders) {
     const fs::path root = fs::canonical(::testing::TempDir()) / "read_fence_test";
     fs::remove_all(root);
     fs::create_directories(root / "in/.hidden");
@@ -23,7 +23,7 @@ TEST(ReadFence, KeepsReadersInItsFolders) {
     const auto name = [&](const char* file) { return (root / file).string(); };
     EXPECT_TRUE(mayBeRead(name("out")));
     {
-        const ReadFence fence({name("in")});
+        const InputSandbox fence({name("in")});
         EXPECT_EQ(readAll(name("in/a")), "x");
         EXPECT_EQ(readAll(name("in/.hidden/../a")), "x");
         for (const char* file : {"out", "in/../out", "in/link", "in/.a", "in/.hidden/a"}) {
@@ -35,7 +35,7 @@ TEST(ReadFence, KeepsReadersInItsFolders) {
         EXPECT_FALSE(mayBeRead("-"));
     }
     EXPECT_EQ(readAll(name("out")), "x");
-    EXPECT_THROW(ReadFence({name("none")}), std::system_error);
+    EXPECT_THROW(InputSandbox({name("none")}), std::system_error);
     EXPECT_TRUE(mayBeRead(name("out")));
     fs::remove_all(root);
 }

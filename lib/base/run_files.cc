@@ -103,12 +103,12 @@ void note(const struct stat& info) {
 
 }  // namespace
 
-RunFiles::RunFiles() {
+FileGuard::FileGuard() {
     const std::lock_guard lock(guard);
     known.emplace();
 }
 
-RunFiles::~RunFiles() {
+FileGuard::~FileGuard() {
     const std::lock_guard lock(guard);
     known.reset();
 }
@@ -210,7 +210,7 @@ std::optional<std::vector<std::string>> fenced;  // guarded
 
 }  // namespace
 
-ReadFence::ReadFence(const std::vector<std::string>& folders) {
+InputSandbox::InputSandbox(const std::vector<std::string>& folders) {
     std::vector<std::string> places;
     for (const std::string& folder : folders) {
         std::error_code error;
@@ -221,7 +221,7 @@ ReadFence::ReadFence(const std::vector<std::string>& folders) {
     fenced = std::move(places);
 }
 
-ReadFence::~ReadFence() {
+InputSandbox::~InputSandbox() {
     const std::lock_guard lock(fence_guard);
     fenced.reset();
 }
@@ -271,7 +271,7 @@ bool isIgnored(const struct sigaction& action) {
 
 }  // namespace
 
-HeldSignals::HeldSignals() : one_at_a_time_(signals_guard) {
+DeferredSignals::DeferredSignals() : one_at_a_time_(signals_guard) {
     // To block them would hold them up in one thread only; the others would take them.
     struct sigaction noting = {};
     noting.sa_handler = note;
@@ -282,7 +282,7 @@ HeldSignals::HeldSignals() : one_at_a_time_(signals_guard) {
     }
 }
 
-HeldSignals::~HeldSignals() {
+DeferredSignals::~DeferredSignals() {
     for (std::size_t i = 0; i < std::size(kSignals); ++i)
         if (!isIgnored(before_[i])) ::sigaction(kSignals[i], &before_[i], nullptr);
     for (const int signal : kSignals)

@@ -16,12 +16,12 @@ namespace ispace {
 ///
 /// One at a time per process; runTool holds it. It is global on purpose, so that no reader can
 /// forget it. Without one nothing is recorded and nothing refused.
-class RunFiles {
+class FileGuard {
   public:
-    RunFiles();
-    ~RunFiles();
-    RunFiles(const RunFiles&) = delete;
-    RunFiles& operator=(const RunFiles&) = delete;
+    FileGuard();
+    ~FileGuard();
+    FileGuard(const FileGuard&) = delete;
+    FileGuard& operator=(const FileGuard&) = delete;
 };
 
 /// Records a file that is read by other means than readAll and InputFile; call it before opening
@@ -55,7 +55,7 @@ class OpenOutput {
 
   private:
     std::string target_, name_;
-    bool is_kept_ = false;  // by RunFiles
+    bool is_kept_ = false;  // by FileGuard
     bool is_done_ = false;
 };
 
@@ -67,15 +67,15 @@ std::string followLinks(const std::string& target);
 /// regular files in these folders and below, links followed, and none that is hidden (`.name`) or
 /// below a hidden folder there; others seem not to exist.
 ///
-/// One at a time per process. It is global on purpose, as RunFiles is, so that no reader can forget
-/// it.
-class ReadFence {
+/// One at a time per process. It is global on purpose, as FileGuard is, so that no reader can
+/// forget it.
+class InputSandbox {
   public:
     /// \throws std::system_error if one of the folders is not there
-    explicit ReadFence(const std::vector<std::string>& folders);
-    ~ReadFence();
-    ReadFence(const ReadFence&) = delete;
-    ReadFence& operator=(const ReadFence&) = delete;
+    explicit InputSandbox(const std::vector<std::string>& folders);
+    ~InputSandbox();
+    InputSandbox(const InputSandbox&) = delete;
+    InputSandbox& operator=(const InputSandbox&) = delete;
 };
 
 /// True if no fence keeps this file from being read; call it before opening the file.
@@ -93,12 +93,12 @@ bool liesOpenlyIn(const std::string& folder, const std::string& name);
 /// Delays TERM, INT and HUP, whichever thread they reach, until its end: for the few system calls
 /// between which a process must not end. Handlers then get their signals; ignored signals stay
 /// ignored. One lives at a time; others wait.
-class HeldSignals {
+class DeferredSignals {
   public:
-    HeldSignals();
-    ~HeldSignals();
-    HeldSignals(const HeldSignals&) = delete;
-    HeldSignals& operator=(const HeldSignals&) = delete;
+    DeferredSignals();
+    ~DeferredSignals();
+    DeferredSignals(const DeferredSignals&) = delete;
+    DeferredSignals& operator=(const DeferredSignals&) = delete;
 
   private:
     static constexpr int kSignals[] = {SIGTERM, SIGINT, SIGHUP};

@@ -42,7 +42,7 @@ std::string refusal(Action action) {
 }
 
 TEST_F(RunFilesTest, NoOutputReplacesAnInputByAnyName) {
-    const RunFiles files;
+    const FileGuard files;
     (void)readAll(path("link"));
     for (const char* name : {"room", "twin", "link", "./room"}) {
         EXPECT_EQ(refusal([&] { writeAll(path(name), "new"); }),
@@ -55,7 +55,7 @@ TEST_F(RunFilesTest, NoOutputReplacesAnInputByAnyName) {
 }
 
 TEST_F(RunFilesTest, NoClaimedOutputIsReadLater) {
-    const RunFiles files;
+    const FileGuard files;
     claimOutput(path("link"), "--output");
     const std::string expected = path("link") + " is read by this command: write to another file";
     EXPECT_EQ(refusal([&] { (void)readAll(path("room")); }), expected);
@@ -64,20 +64,20 @@ TEST_F(RunFilesTest, NoClaimedOutputIsReadLater) {
 }
 
 TEST_F(RunFilesTest, WhatAnOutputHasReplacedMayBeRead) {
-    const RunFiles files;
+    const FileGuard files;
     claimOutput(path("room"), "--output");
     writeAll(path("room"), "new");
     EXPECT_EQ(refusal([&] { EXPECT_EQ(readAll(path("twin")), "old"); }), "");
 }
 
 TEST_F(RunFilesTest, AnInputReadWhileTheOutputIsWritten) {
-    const RunFiles files;
+    const FileGuard files;
     OutputFile file(path("room"));
     EXPECT_NE(refusal([&] { (void)readAll(path("twin")); }), "");
 }
 
 TEST_F(RunFilesTest, LooksAgainBeforeTheRename) {
-    const RunFiles files;
+    const FileGuard files;
     noteInput(path("room"));
     OutputFile file(path("new"));
     fs::create_hard_link(path("room"), path("new"));
@@ -86,7 +86,7 @@ TEST_F(RunFilesTest, LooksAgainBeforeTheRename) {
 }
 
 TEST_F(RunFilesTest, TwoOutputsAreTwoFiles) {
-    const RunFiles files;
+    const FileGuard files;
     fs::create_symlink("later", path("dangling"));
     claimOutput(path("later"), "--output");
     EXPECT_EQ(refusal([&] { claimOutput(path("dangling"), "-MF"); }),
@@ -111,7 +111,7 @@ TEST_F(RunFilesTest, ACircleOfLinksIsNoFile) {
 }
 
 TEST_F(RunFilesTest, TwoOpenOutputsAreTwoFiles) {
-    const RunFiles files;
+    const FileGuard files;
     std::optional<OutputFile> file(std::in_place, path("out"));
     EXPECT_NE(refusal([&] { const OutputFile second(path("out")); }), "");
     file.reset();
@@ -119,7 +119,7 @@ TEST_F(RunFilesTest, TwoOpenOutputsAreTwoFiles) {
 }
 
 TEST_F(RunFilesTest, StreamsAndDevicesDoNotCount) {
-    const RunFiles files;
+    const FileGuard files;
     const auto read = [&] {
         noteInput("-");
         noteInput("");
@@ -140,13 +140,13 @@ TEST_F(RunFilesTest, StreamsAndDevicesDoNotCount) {
 }
 
 TEST_F(RunFilesTest, WithoutARunNothingIsKept) {
-    { const RunFiles files; }
+    { const FileGuard files; }
     (void)readAll(path("room"));
     claimOutput(path("room"), "--output");
     writeAll(path("room"), "new");
     EXPECT_EQ(readAll(path("room")), "new");
     EXPECT_EQ(readAll(path("twin")), "old");
-    const RunFiles files;
+    const FileGuard files;
     EXPECT_EQ(refusal([&] { writeAll(path("room"), "newer"); }), "") << "of another run";
 }
 

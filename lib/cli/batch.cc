@@ -92,7 +92,7 @@ std::string BatchJob::text() const {
 std::vector<BatchJob> readBatchList(std::string_view bytes, const std::string& name) {
     checkTextBytes(bytes, name);
     std::vector<BatchJob> jobs;
-    LineReader lines(withoutMark(bytes));
+    LineReader lines(withoutBom(bytes));
     while (const auto line = lines.next()) {
         try {
             std::vector<std::string> operands = operandsOn(*line);

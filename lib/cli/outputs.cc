@@ -151,7 +151,7 @@ constexpr std::size_t kMaxName = 255;  // bytes
 }
 
 std::vector<Piece> patternParts(const std::string& pattern) {
-    constexpr std::size_t kWidest = 9;
+    constexpr std::size_t kMaxWidth = 9;
     std::vector<Piece> pieces(1);
     for (std::size_t i = 0; i < pattern.size(); ++i) {
         if (pattern[i] != '%') {
@@ -161,7 +161,7 @@ std::vector<Piece> patternParts(const std::string& pattern) {
         const std::size_t begin = i++;
         std::size_t width = 0;
         const bool zero = i < pattern.size() && pattern[i] == '0';
-        for (; i < pattern.size() && pattern[i] >= '0' && pattern[i] <= '9' && width <= kWidest;
+        for (; i < pattern.size() && pattern[i] >= '0' && pattern[i] <= '9' && width <= kMaxWidth;
              ++i)
             width = 10 * width + static_cast<std::size_t>(pattern[i] - '0');
         const char sign = i < pattern.size() ? pattern[i] : '\0';
@@ -170,7 +170,7 @@ std::vector<Piece> patternParts(const std::string& pattern) {
             pieces.back().text += '%';
             continue;
         }
-        const bool frame = sign == 'd' && width <= kWidest && (plain || (zero && width > 0));
+        const bool frame = sign == 'd' && width <= kMaxWidth && (plain || (zero && width > 0));
         if (!frame && !(sign == 's' && plain))
             refuse(pattern, pattern.substr(begin, i - begin + 1));
         pieces.push_back({frame ? Piece::Kind::Frame : Piece::Kind::Id, "", width});

@@ -85,7 +85,7 @@ TEST(CheckDependencies, WantsAProductWithAName) {
 
 TEST(ClaimOutputs, RefusesARuleInThePlaceOfTheProduct) {
     const auto claim = [](const DependencyOptions& dependencies, const std::string& output) {
-        const RunFiles files;
+        const FileGuard files;
         CommonOptions options;
         options.output = output;
         options.dependencies = dependencies;

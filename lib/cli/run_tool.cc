@@ -32,7 +32,7 @@ namespace {
 enum Status { kDone = 0, kFailed = 1, kUsage = 2, kUnmet = 3 };
 
 void say(const std::string& tool, const std::string& line) {
-    sayLine({tool, ": ", printable(line)});
+    writeErrorLine({tool, ": ", printable(line)});
 }
 
 /// "house.glb: error: No such file or directory" from what() = "house.glb: No such file …".
@@ -125,7 +125,7 @@ int runTool(const std::string& tool, const std::function<void()>& body) {
     letNumbersThrow();
     try {
         try {
-            const RunFiles files;
+            const FileGuard files;
             body();
         } catch (const TextRequested& request) {
             writeAll("-", request.text);
@@ -164,7 +164,7 @@ void sayWhy(std::string_view tool) {
         } catch (const std::length_error&) {
             return sayMemoryIsOut(tool);
         } catch (const std::exception& error) {
-            return sayLine({tool, ": error: ", firstLine(error.what())});
+            return writeErrorLine({tool, ": error: ", firstLine(error.what())});
         } catch (...) {
             std::abort();
         }
@@ -190,7 +190,7 @@ using AtStart = void (*)(int, char**, char**);
 
 }  // namespace
 
-void sayLine(std::initializer_list<std::string_view> pieces) noexcept {
+void writeErrorLine(std::initializer_list<std::string_view> pieces) noexcept {
     std::array<char, 4096> line;
     std::size_t size = 0;
     for (const std::string_view piece : pieces)
@@ -213,7 +213,7 @@ void sayLine(std::initializer_list<std::string_view> pieces) noexcept {
 
 void sayMemoryIsOut(std::string_view tool) noexcept {
     static std::atomic_flag is_told = ATOMIC_FLAG_INIT;
-    if (!is_told.test_and_set()) sayLine({tool, ": ", kNoMemory});
+    if (!is_told.test_and_set()) writeErrorLine({tool, ": ", kNoMemory});
 }
 
 namespace {

@@ -36,7 +36,7 @@ ToolFailure currentFailure();
 
 /// Writes the pieces and a newline to stderr. Needs no memory, and waits where stderr is
 /// non-blocking. May be called at any time, also before main().
-void sayLine(std::initializer_list<std::string_view> pieces) noexcept;
+void writeErrorLine(std::initializer_list<std::string_view> pieces) noexcept;
 
 /// Reports, once, that memory ran out; allocates nothing.
 void sayMemoryIsOut(std::string_view tool) noexcept;

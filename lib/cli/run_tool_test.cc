@@ -25,8 +25,8 @@ void throwInThread(const Error& error) {
 
 TEST(LastWords, SayALineOfAnyLength) {
     testing::internal::CaptureStderr();
-    sayLine({"tool", ": ", "error"});
-    sayLine({"tool: ", std::string(100000, 'x')});
+    writeErrorLine({"tool", ": ", "error"});
+    writeErrorLine({"tool: ", std::string(100000, 'x')});
     const std::string said = testing::internal::GetCapturedStderr();
     EXPECT_TRUE(said.starts_with("tool: error\ntool: xxx"));
     EXPECT_TRUE(said.ends_with("x\n"));

@@ -84,7 +84,7 @@ class ClientNames {
     /// Calls read() with the fence around the folder. \throws FormatError, UsageError
     template <typename Read>
     auto guarded(Read read) const {  // NOLINT(modernize-use-nodiscard): it may give nothing
-        const ReadFence fence({folder_, shareFolder() + "/devices"});
+        const InputSandbox fence({folder_, shareFolder() + "/devices"});
         try {
             return read();
         } catch (const FormatError& error) {

@@ -244,7 +244,7 @@ TEST(CameraRegion, DistortionThatIsNoneChangesNothing) {
 TEST(CameraRegion, CellsAreThoseInTheRegion) {
     const Scene scene = sceneOf(kFurnished);
     Worlds worlds(scene.environment);
-    const Sight sight(scene.environment, 0, &worlds);
+    const VisibleArea sight(scene.environment, 0, &worlds);
     const Grid grid{scene.environment.limits(), 120, 80};
     for (const char* const lens :
          {"fov=90 coefficients=-0.3,0.05 range=8", "projection=fisheye fov=170 range=7",
@@ -264,7 +264,7 @@ TEST(CameraRegion, CellsAreThoseInTheRegion) {
 TEST(CameraRegion, OddPlaces) {
     const Scene scene = sceneOf(std::string(kFurnished) +
                                 "wall from=-2,-4 to=-2,-2.5 thickness=0.3\nfence path=3,2;5,2\n");
-    const Sight sight(scene.environment, 0);
+    const VisibleArea sight(scene.environment, 0);
     const auto area = [&](const Pose3& pose, const std::string& keys = "fov=80 range=9") {
         return signedArea(sight.regionOf(at(cameraFrom(keys), pose)).value());
     };

@@ -25,7 +25,8 @@
 
 namespace ispace {
 
-std::uint32_t mostSeen(const Coverage& coverage, const std::vector<std::uint32_t>& cell_times) {
+std::uint32_t maxMultiplicity(const Coverage& coverage,
+                              const std::vector<std::uint32_t>& cell_times) {
     if (!coverage.overlay) return *std::max_element(cell_times.begin(), cell_times.end());
     std::int32_t most = 0;
     for (const Overlay::Edge& edge : coverage.overlay->edges())
@@ -173,9 +174,9 @@ class Viewer {
         return scene_.sensors[view.index];
     }
 
-    [[nodiscard]] bool isBuried(const Sensor& sensor) const {
+    [[nodiscard]] bool isInsideSolid(const Sensor& sensor) const {
         const Point3 place = sensor.pose.position;
-        return sight_.levelAt(place.z)->isBuried(place.onFloor());
+        return sight_.levelAt(place.z)->isInsideSolid(place.onFloor());
     }
 
     void look(SensorView& view) const {
@@ -189,7 +190,7 @@ class Viewer {
         // Beams are those of one scan: of a sweep they outline nothing.
         const bool by_beams = laser != nullptr && options_.cells_by == CellRule::Beams &&
                               laser->sweep == SweepAxis::None;
-        view.cells = by_beams && (scansSlice(sensor) || !isBuried(sensor))
+        view.cells = by_beams && (scansSlice(sensor) || !isInsideSolid(sensor))
                          ? cellsAmongBeams(grid_, sensor, view.beams)
                          : sight_.cellsOf(grid_, sensor);
         if (options_.exact) view.region = regionOf(sensor);
@@ -206,7 +207,7 @@ class Viewer {
 
     void addClasses(SensorView& view, const Sensor& sensor) const {
         const Sensor& whole = sensorOf(view);
-        SeenSet seen{view.cells, view.region};
+        CoveredSet seen{view.cells, view.region};
         if (options_.density > 0) {
             seen.cells = sight_.cellsOf(grid_, whole);
             if (options_.exact) seen.region = regionOf(whole);
@@ -224,13 +225,13 @@ class Viewer {
     Worlds& worlds_;
     const Grid& grid_;
     const CoverageOptions& options_;
-    Sight sight_{scene_.environment, options_.plane, &worlds_};
+    VisibleArea sight_{scene_.environment, options_.plane, &worlds_};
     std::vector<SensorView> views_;
 };
 
 /// Where at least kMinReceivers hear.
-SeenSet heardByEnough(const std::vector<const SensorView*>& receivers, const Grid& grid) {
-    SeenSet set;
+CoveredSet heardByEnough(const std::vector<const SensorView*>& receivers, const Grid& grid) {
+    CoveredSet set;
     set.cells = CellSet(grid.size());
     std::vector<std::uint16_t> heard(grid.size());
     for (const SensorView* view : receivers)
@@ -242,8 +243,8 @@ SeenSet heardByEnough(const std::vector<const SensorView*>& receivers, const Gri
 }
 
 /// The sets that count, of these views: each laser and ranger, then all receivers together.
-std::vector<SeenSet> setsOf(const std::vector<SensorView>& views, const Grid& grid) {
-    std::vector<SeenSet> sets;
+std::vector<CoveredSet> setsOf(const std::vector<SensorView>& views, const Grid& grid) {
+    std::vector<CoveredSet> sets;
     std::vector<const SensorView*> receivers;
     for (const SensorView& view : views) {
         if (view.isPartial())
@@ -288,7 +289,7 @@ void tryExactMetrics(Coverage& coverage, const Environment& environment, FloorCu
             missing = "what " + view.id + " sees is known by cells only";
             return;
         }
-    for (const SeenSet& set : coverage.sets)
+    for (const CoveredSet& set : coverage.sets)
         if (!set.region) {
             missing = "what enough receivers hear is known by cells only";
             return;
@@ -304,7 +305,7 @@ void tryExactMetrics(Coverage& coverage, const Environment& environment, FloorCu
 constexpr std::int64_t kThisNumber = 1, kOtherNumber = std::int64_t{1} << 32;
 
 void addLayers(const Coverage& coverage, std::int64_t number, std::vector<Layer>& layers) {
-    for (const SeenSet& set : coverage.sets)
+    for (const CoveredSet& set : coverage.sets)
         layers.push_back({.curves = *set.region, .number = number});
 }
 
@@ -387,14 +388,14 @@ void compare(Coverage& coverage, const Coverage& other, const Regions& indoor,
 
 std::vector<std::uint32_t> timesSeen(const Coverage& coverage) {
     std::vector<std::uint32_t> times(coverage.target.grid.size());
-    for (const SeenSet& set : coverage.sets)
+    for (const CoveredSet& set : coverage.sets)
         set.cells.forEach([&times](std::size_t cell) { ++times[cell]; });
     return times;
 }
 
 CellSet coveredCells(const Coverage& coverage) {
     CellSet covered(coverage.target.grid.size());
-    for (const SeenSet& set : coverage.sets) covered |= set.cells;
+    for (const CoveredSet& set : coverage.sets) covered |= set.cells;
     return covered;
 }
 

@@ -86,7 +86,7 @@ struct DensityMetrics {
 };
 
 /// A connected piece of floor that no sensor sees.
-struct UnseenSpot {
+struct UncoveredSpot {
     Point2 place;  ///< inside, well away from the rim where it can be
     double area = 0;
 };
@@ -126,7 +126,7 @@ struct CoverageReport {
     std::size_t pieces = 0;
     double largest_piece = 0;
     /// Pieces of the free floor that no sensor sees, the largest first. Likewise.
-    std::vector<UnseenSpot> unseen;
+    std::vector<UncoveredSpot> unseen;
     std::optional<Comparison> comparison;
     DensityMetrics densities;
     std::optional<ParallaxChoice> parallax;
@@ -137,7 +137,7 @@ struct CoverageReport {
 
 /// Floor that counts as seen by one: what a laser or a ranger sees, or where at least four
 /// ultrasonic receivers hear.
-struct SeenSet {
+struct CoveredSet {
     CellSet cells = CellSet();
     std::optional<std::vector<Curve>> region = {};
 };
@@ -154,7 +154,7 @@ struct SensorView {
     std::optional<std::vector<Curve>> region = {};
     std::vector<float> beams = {};  ///< of a laser, as of castBeams
     /// Of a camera: what has the pixels of each of pixelDensities().
-    std::vector<SeenSet> classes = {};
+    std::vector<CoveredSet> classes = {};
 
     /// It covers floor only together with others.
     [[nodiscard]] bool isPartial() const { return kind->together > 1; }
@@ -169,7 +169,7 @@ struct Coverage {
     Target target;
     std::vector<SensorView> sensors;  ///< as report.sensors
     /// One for each laser and ranger, in order, then one for all receivers if there are any.
-    std::vector<SeenSet> sets;
+    std::vector<CoveredSet> sets;
     /// The regions of all sets (count, number i + 1 of set i; see CoverageOptions::keep_depths)
     /// over indoor region and free floor (marks). Nothing where a region is not known or nobody
     /// asked.
@@ -211,7 +211,8 @@ CellSet cellsOfClass(const Coverage& coverage, std::size_t index);
 std::optional<double> coveredShare(const CellSet& covered, const CellSet& target);
 
 /// The most sensors that see one place. \param cell_times timesSeen()
-std::uint32_t mostSeen(const Coverage& coverage, const std::vector<std::uint32_t>& cell_times);
+std::uint32_t maxMultiplicity(const Coverage& coverage,
+                              const std::vector<std::uint32_t>& cell_times);
 
 /// What one sensor sees.
 std::vector<Region> viewRegions(const SensorView& view, const Grid& grid);

@@ -128,14 +128,14 @@ TEST(ExactCoverage, MetricsFitTogether) {
         EXPECT_LE(*report.total_effective_area.exact, seen + 1e-6);
         EXPECT_NEAR(*report.total_effective_area.exact, alone + *report.overlap.exact, 1e-6);
         double unseen = 0;
-        for (const UnseenSpot& spot : report.unseen) {
+        for (const UncoveredSpot& spot : report.unseen) {
             unseen += spot.area;
             EXPECT_EQ(scene.environment.indoor().locate(spot.place), Side::Inside);
         }
         EXPECT_NEAR(unseen, (1 - *report.free_coverage.exact) * report.free_area, kMinPiece * 20);
         EXPECT_TRUE(std::is_sorted(
             report.unseen.begin(), report.unseen.end(),
-            [](const UnseenSpot& a, const UnseenSpot& b) { return a.area > b.area; }));
+            [](const UncoveredSpot& a, const UncoveredSpot& b) { return a.area > b.area; }));
     }
 }
 

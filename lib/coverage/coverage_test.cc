@@ -69,7 +69,7 @@ TEST(Coverage, MetricsFitTogether) {
     EXPECT_GT(*report.free_coverage.grid, *report.coverage.grid);  // no laser sees into solids
 
     CellSet all(coverage.target.grid.size());
-    for (const SeenSet& set : coverage.sets) all |= set.cells;
+    for (const CoveredSet& set : coverage.sets) all |= set.cells;
     const double cell_area = coverage.target.grid.cellArea();
     EXPECT_DOUBLE_EQ(*report.total_effective_area.grid,
                      static_cast<double>(all.count()) * cell_area);

@@ -76,7 +76,7 @@ void addUnseen(Coverage& coverage, const CellSet& covered) {
     cells -= covered;
     const MapCells unseen(cells, grid.columns, grid.rows);
     const CellPieces pieces(unseen, CellPieces::Joined::BySides);
-    const std::vector<CellPlace> places = deepestPlaces(unseen, pieces);
+    const std::vector<CellIndex> places = deepestPlaces(unseen, pieces);
     auto& list = coverage.report.unseen;
     for (std::size_t i = 0; i < pieces.size(); ++i)
         list.push_back({grid.center(grid.cell(places[i].x, places[i].y)),
@@ -251,8 +251,9 @@ void addPieces(CoverageReport& report, const Overlay& overlay) {
     for (std::size_t i = 0; i < unseen->regions.size(); ++i)
         if (unseen->areas[i] >= kMinPiece)
             report.unseen.push_back({interiorPoint(unseen->regions[i]), unseen->areas[i]});
-    std::stable_sort(report.unseen.begin(), report.unseen.end(),
-                     [](const UnseenSpot& a, const UnseenSpot& b) { return a.area > b.area; });
+    std::stable_sort(
+        report.unseen.begin(), report.unseen.end(),
+        [](const UncoveredSpot& a, const UncoveredSpot& b) { return a.area > b.area; });
 }
 
 /// Of the sensors whose views are sets of their own: not of receivers.

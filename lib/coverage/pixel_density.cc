@@ -85,8 +85,8 @@ double FloorDensity::around(Point2 a, Point2 b) const {
                                                 0.652145154862546143, 0.347854845137453857};
     const Vec2 from = a - foot_, way = b - a;
     const double high = std::fabs(drop_), scale = high + distance(foot_, Segment2{a, b});
-    constexpr double kMostPieces = 4096;
-    const double pieces = std::clamp(std::ceil(2 * length(way) / scale), 1.0, kMostPieces);
+    constexpr double kMaxPieces = 4096;
+    const double pieces = std::clamp(std::ceil(2 * length(way) / scale), 1.0, kMaxPieces);
     double sum = 0;
     for (double i = 0; i < pieces; ++i)
         for (std::size_t k = 0; k < kPlaces.size(); ++k) {
@@ -108,17 +108,18 @@ double FloorDensity::integral(std::span<const Curve> curves) const {
     return sum;
 }
 
-std::vector<SeenSet> classesOf(const FloorDensity& density, const Grid& grid, const SeenSet& view) {
+std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
+                                  const CoveredSet& view) {
     const auto classes = pixelDensities();
-    std::vector<SeenSet> sets(classes.size());
-    for (SeenSet& set : sets) set.cells = CellSet(grid.size());
+    std::vector<CoveredSet> sets(classes.size());
+    for (CoveredSet& set : sets) set.cells = CellSet(grid.size());
     view.cells.forEach([&](std::size_t cell) {
         const double pixels = density.at(grid.center(cell));
         for (std::size_t i = 0; i < classes.size() && pixels >= classes[i].pixels_per_metre; ++i)
             sets[i].cells.set(cell);
     });
     if (!view.region) return sets;
-    for (SeenSet& set : sets) set.region.emplace();
+    for (CoveredSet& set : sets) set.region.emplace();
     Box2 box = boundsOfAll(*view.region);
     if (box.empty()) return sets;
     constexpr double kAround = 1;
@@ -160,7 +161,7 @@ void addDistances(const std::vector<Curve>& curves, Point2 foot, PictureMetrics&
 PictureMetrics pictureMetricsOf(const FloorDensity& density, const Grid& grid, Point2 foot,
                                 const SensorView& view) {
     PictureMetrics metrics;
-    for (const SeenSet& set : view.classes) {
+    for (const CoveredSet& set : view.classes) {
         Metric area{static_cast<double>(set.cells.count()) * grid.cellArea(), {}};
         if (set.region) area.exact = std::max(0.0, signedArea(*set.region));
         metrics.areas.push_back(area);

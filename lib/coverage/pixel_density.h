@@ -38,7 +38,8 @@ class FloorDensity {
 
 /// What of its view has the pixels of each of pixelDensities(). \param view all that it sees, so
 /// that `region` and `cells` have no less than they have at any density
-std::vector<SeenSet> classesOf(const FloorDensity& density, const Grid& grid, const SeenSet& view);
+std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
+                                  const CoveredSet& view);
 
 /// \pre view.classes are there
 PictureMetrics pictureMetricsOf(const FloorDensity& density, const Grid& grid, Point2 foot,

@@ -22,7 +22,7 @@ struct Room {
 
     [[nodiscard]] CellSet seen(const Sensor& sensor, double plane) const {
         Worlds worlds(scene.environment);
-        const Sight sight(scene.environment, plane, &worlds);
+        const VisibleArea sight(scene.environment, plane, &worlds);
         sight.prepare(sensor);
         return sight.cellsOf(grid, sensor);
     }
@@ -102,7 +102,7 @@ TEST(PlaneCells, HeadSeesBearingsAndElevations) {
 TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
     const Room room("ispace size=12,9,3", 150, 110);
     Worlds worlds(room.scene.environment);
-    const Sight sight(room.scene.environment, 0, &worlds);
+    const VisibleArea sight(room.scene.environment, 0, &worlds);
     for (const char* const lens :
          {"fov=75", "fov=110,62 range=3.1", "fx=400 cx=610 cy=50 range=6",
           "fov=90 coefficients=-0.3,0.05 range=8",

@@ -61,7 +61,8 @@ Subject densitySubject(const Requirement& requirement, const CoverageReport& rep
 }
 
 /// The largest piece of what is asked for that no camera sees so well; nothing if it is not known.
-std::optional<UnseenSpot> largestWithout(const Requirement& requirement, const Coverage& coverage) {
+std::optional<UncoveredSpot> largestWithout(const Requirement& requirement,
+                                            const Coverage& coverage) {
     if (coverage.density_overlays.empty()) return std::nullopt;
     std::uint64_t wanted = requirement.of == Requirement::Of::Free ? kFreeMark : kIndoorMark;
     std::size_t pass = 0;
@@ -79,7 +80,7 @@ std::optional<UnseenSpot> largestWithout(const Requirement& requirement, const C
     const std::vector<double> areas = overlay.areasOf(pieces);
     const auto largest =
         static_cast<std::size_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
-    return UnseenSpot{interiorPoint(pieces[largest]), areas[largest]};
+    return UncoveredSpot{interiorPoint(pieces[largest]), areas[largest]};
 }
 
 Subject subjectOf(const Requirement& requirement, const CoverageReport& report) {
@@ -170,13 +171,13 @@ Verdict checkRequirement(const Requirement& requirement, const Coverage& coverag
     text += ", below the required " + required;
     if (area <= 0) return {false, text + ": it has no floor in the room"};
     text += ": " + squareMetres((requirement.share - share) * area) + " are missing";
-    std::optional<UnseenSpot> largest;
+    std::optional<UncoveredSpot> largest;
     if (requirement.density)
         largest = largestWithout(requirement, coverage);
     else if (requirement.of != Requirement::Of::Zone && !report.unseen.empty())
         largest = report.unseen.front();
     if (!largest) return {false, text};
-    const UnseenSpot& spot = *largest;
+    const UncoveredSpot& spot = *largest;
     return {false, text + "; the largest " + (requirement.density ? "such" : "unseen") +
                        " spot has " + squareMetres(spot.area) + " around (" +
                        formatFixed(spot.place.x, 2) + ", " + formatFixed(spot.place.y, 2) + ")"};

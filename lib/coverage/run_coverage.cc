@@ -40,14 +40,14 @@ class Members {
     /// \throws FormatError for who is there and not in the scene
     void check() {
         for (const RunState& state : reader_->states())
-            if (ownerOf(state.who) == MovingBodies::kNobody)
+            if (ownerOf(state.who) == MovingBodies::kNoOwner)
                 throw FormatError({reader_->name(), 0, 0,
                                    "the scene has no robot or person " +
                                        excerpt(reader_->who()[state.who].id) +
                                        ": it is not that of the record"});
     }
 
-    /// As carrierOf(); kNobody of who was added while the run went on.
+    /// As carrierOf(); kNoOwner of who was added while the run went on.
     std::uint32_t ownerOf(std::size_t who) {
         for (std::size_t i = owners_.size(); i < reader_->who().size(); ++i)
             owners_.push_back(find(reader_->who()[i]));
@@ -57,7 +57,7 @@ class Members {
     double fastest(const RunState& state) {
         const std::uint32_t owner = ownerOf(state.who);
         constexpr double kUnknown = std::numeric_limits<double>::infinity(), kMargin = 2;
-        if (owner == MovingBodies::kNobody) return kUnknown;
+        if (owner == MovingBodies::kNoOwner) return kUnknown;
         const double going = std::hypot(state.speed, state.sidespeed);
         if (owner >= kFirstPerson)
             return kMargin * std::max(scene_->people[owner - kFirstPerson].speed, going);
@@ -67,7 +67,7 @@ class Members {
     /// Where everybody is now.
     void move(const RunState& state) {
         const std::uint32_t owner = ownerOf(state.who);
-        if (owner == MovingBodies::kNobody) return;
+        if (owner == MovingBodies::kNoOwner) return;
         (owner < kFirstPerson ? robots[owner] : people[owner - kFirstPerson]) = state.pose;
     }
 
@@ -78,7 +78,7 @@ class Members {
         const auto index_in = [&member](const auto& list, std::uint32_t first) {
             for (std::size_t i = 0; i < list.size(); ++i)
                 if (list[i].id == member.id) return first + static_cast<std::uint32_t>(i);
-            return MovingBodies::kNobody;
+            return MovingBodies::kNoOwner;
         };
         return member.is_person ? index_in(scene_->people, kFirstPerson)
                                 : index_in(scene_->robots, 0);
@@ -93,7 +93,7 @@ class Members {
 class SightSum {
   public:
     void add(const Sample& sample);
-    RunSight finish(const RunReader& reader);
+    RunCoverage finish(const RunReader& reader);
 
   private:
     /// Somebody at the last moment.
@@ -102,10 +102,10 @@ class SightSum {
         double time = 0;
         Point2 place;
         std::size_t count = 0;
-        std::optional<SightGap> gap;  // that goes on
-        bool was_seen = false;        // ever
-        bool has_jumped = false;      // since its way was drawn
-        std::size_t way = 0;          // index of its last one
+        std::optional<UnseenInterval> gap;  // that goes on
+        bool was_seen = false;              // ever
+        bool has_jumped = false;            // since its way was drawn
+        std::size_t way = 0;                // index of its last one
     };
 
     void lookAt(std::size_t who, double time, Point2 place, std::size_t count, double fastest);
@@ -113,7 +113,7 @@ class SightSum {
     void closeGap(std::size_t who, double time, Point2 place);
     void draw(std::size_t who, Point2 place, std::size_t count);
 
-    RunSight sight_;
+    RunCoverage sight_;
     std::vector<Last> last_;
     bool is_first_ = true;
 };
@@ -176,7 +176,7 @@ void SightSum::lookAt(std::size_t who, double time, Point2 place, std::size_t co
         closeGap(who, time, place);
         last.was_seen = true;
     } else if (!last.gap) {
-        last.gap = SightGap{time, time, place, place};
+        last.gap = UnseenInterval{time, time, place, place};
     }
     draw(who, place, count);
     last.is_there = true;
@@ -205,7 +205,7 @@ void turnIntoShares(RunSightMetrics& metrics) {
     for (double& share : metrics.way_shares) share /= metrics.length;
 }
 
-RunSight SightSum::finish(const RunReader& reader) {
+RunCoverage SightSum::finish(const RunReader& reader) {
     for (std::size_t who = 0; who < last_.size(); ++who) {
         closeGap(who, last_[who].time, last_[who].place);
         RunSightMetrics& metrics = sight_.members[who];
@@ -217,12 +217,13 @@ RunSight SightSum::finish(const RunReader& reader) {
     turnIntoShares(sight_.all);
     std::stable_sort(
         sight_.losses.begin(), sight_.losses.end(),
-        [](const SightLoss& a, const SightLoss& b) { return a.duration > b.duration; });
+        [](const TrackLoss& a, const TrackLoss& b) { return a.duration > b.duration; });
     return std::move(sight_);
 }
 
 /// Looks at some samples at once, then adds them in order.
-void flush(const Watch& watch, Members& members, std::vector<Sample>& samples, SightSum& sum) {
+void flush(const DetectionMonitor& watch, Members& members, std::vector<Sample>& samples,
+           SightSum& sum) {
     // Known before threads ask.
     for (Sample& sample : samples)
         for (const RunState& state : sample.states)
@@ -240,13 +241,13 @@ void flush(const Watch& watch, Members& members, std::vector<Sample>& samples, S
 
 }  // namespace
 
-RunSight measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
-                    RunChanges* changes) {
+RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
+                       RunChanges* changes) {
     if (!reader.next())
         throw FormatError({reader.name(), 0, 0, "holds no moment of a run: nobody moved in it"});
     // As changes leave it.
     std::optional<Scene> changed;
-    std::optional<Watch> watch(std::in_place, start, options);
+    std::optional<DetectionMonitor> watch(std::in_place, start, options);
     std::optional<Members> members(std::in_place, start, reader);
     if (reader.time() == 0 || changes == nullptr || changes->empty()) members->check();
     SightSum sum;

@@ -16,7 +16,7 @@
 namespace ispace {
 
 /// The longest time that somebody was seen by no sensor.
-struct SightGap {
+struct UnseenInterval {
     double begin = 0, end = 0;  ///< seconds
     Point2 from, to;            ///< where sight was lost, and found again
 };
@@ -30,18 +30,18 @@ struct RunSightMetrics {
     /// of who did not move.
     std::vector<double> time_shares = {}, way_shares = {};
     std::size_t losses = 0;  ///< how often it was seen and then no more
-    std::optional<SightGap> longest_gap = {};
+    std::optional<UnseenInterval> longest_gap = {};
 };
 
 /// A piece of somebody's way on which the same number of sensors saw it.
 struct SeenWay {
-    std::size_t who = 0;  ///< index in RunSight::members
+    std::size_t who = 0;  ///< index in RunCoverage::members
     std::size_t sensors = 0;
     std::vector<Point2> points = {};  ///< one if it stood there
 };
 
 /// Where somebody who was seen was lost.
-struct SightLoss {
+struct TrackLoss {
     std::size_t who = 0;
     double begin = 0, duration = 0;  ///< seconds; to the end of the run if it was not found again
     Point2 place;
@@ -49,13 +49,13 @@ struct SightLoss {
 
 /// What a layout achieved in a run (the second valuation of the thesis, section 3.1): by how many
 /// sensors everybody was seen, and where nobody saw.
-struct RunSight {
+struct RunCoverage {
     std::string name = {};  ///< of the record
     double begin = 0, end = 0;
     std::vector<RunSightMetrics> members;
     RunSightMetrics all;
     std::vector<SeenWay> ways = {};
-    std::vector<SightLoss> losses = {};  ///< the longest first
+    std::vector<TrackLoss> losses = {};  ///< the longest first
 };
 
 /// What is seen is told by Watch. Moments at least 0.02 s apart are looked at; what was seen at one
@@ -64,7 +64,7 @@ struct RunSight {
 /// \throws FormatError as the reader does, for a record without a moment, and for who was there at
 ///         its beginning and is not in the scene
 /// \param changes of the world in the run, which are made again; null: none
-RunSight measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
-                    RunChanges* changes = nullptr);
+RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
+                       RunChanges* changes = nullptr);
 
 }  // namespace ispace

@@ -22,14 +22,14 @@ std::string robotsCsv(double end = 6, double step = 0.01) {
     return text;
 }
 
-RunSight sightOf(const std::string& robots, const std::string& people = "",
-                 const char* scene = kScene) {
+RunCoverage sightOf(const std::string& robots, const std::string& people = "",
+                    const char* scene = kScene) {
     RunReader reader(robots, people);
     return measureRun(sceneOf(scene), reader, {});
 }
 
-TEST(RunSight, SharesTimeAndWay) {
-    const RunSight run = sightOf(robotsCsv());
+TEST(RunCoverage, SharesTimeAndWay) {
+    const RunCoverage run = sightOf(robotsCsv());
     ASSERT_EQ(run.members.size(), 1U);
     const RunSightMetrics& r1 = run.members[0];
     EXPECT_EQ(r1.id, "r1");
@@ -53,10 +53,10 @@ TEST(RunSight, SharesTimeAndWay) {
     EXPECT_EQ(run.ways.size(), 5U) << "none, one, two, one, none";
 }
 
-TEST(RunSight, OfPeopleAndOfAllTogether) {
+TEST(RunCoverage, OfPeopleAndOfAllTogether) {
     std::string people = "t,id,x,y,heading_deg\n";
     for (int i = 0; i <= 600; ++i) people += std::to_string(i * 0.01) + ",h1,3,2.5,0\n";
-    const RunSight run = sightOf(robotsCsv(), people);
+    const RunCoverage run = sightOf(robotsCsv(), people);
     ASSERT_EQ(run.members.size(), 2U);
     const RunSightMetrics& h1 = run.members[1];
     EXPECT_TRUE(h1.is_person);
@@ -71,36 +71,36 @@ TEST(RunSight, OfPeopleAndOfAllTogether) {
     EXPECT_EQ(run.all.losses, 1U);
 }
 
-TEST(RunSight, DoesNotDependOnHowOftenItIsLookedAt) {
-    const RunSight fine = sightOf(robotsCsv(6, 0.005)), coarse = sightOf(robotsCsv(6, 0.02));
+TEST(RunCoverage, DoesNotDependOnHowOftenItIsLookedAt) {
+    const RunCoverage fine = sightOf(robotsCsv(6, 0.005)), coarse = sightOf(robotsCsv(6, 0.02));
     for (std::size_t k = 0; k < 3; ++k)
         EXPECT_NEAR(fine.members[0].time_shares[k], coarse.members[0].time_shares[k], 0.01);
     EXPECT_NEAR(fine.members[0].duration, coarse.members[0].duration, 1e-9);
 }
 
-TEST(RunSight, ARunMayBeAMoment) {
-    const RunSight run = sightOf(robotsCsv(0));
+TEST(RunCoverage, ARunMayBeAMoment) {
+    const RunCoverage run = sightOf(robotsCsv(0));
     EXPECT_EQ(run.members[0].duration, 0);
     EXPECT_FALSE(run.members[0].longest_gap);
     EXPECT_THROW(sightOf("t,id,x,y,heading_deg\n"), FormatError);
     EXPECT_THROW(sightOf("t,id,x,y,heading_deg\n0,r9,0,0,0\n"), FormatError);
 }
 
-TEST(RunSight, JumpsAreNoWay) {
+TEST(RunCoverage, JumpsAreNoWay) {
     // RESET puts r1 back after half a second, from 1 m away.
     std::string text = "t,id,x,y,heading_deg\n";
     for (int i = 0; i <= 100; ++i)
         text += std::to_string(i * 0.01) + ",r1," + std::to_string(-3 + (i % 50) * 0.02 * 0.75) +
                 ",0,0\n";
-    const RunSight run = sightOf(text);
+    const RunCoverage run = sightOf(text);
     EXPECT_NEAR(run.members[0].duration, 1, 1e-9);
     EXPECT_NEAR(run.members[0].length, 1.44, 1e-4) << "without the way back";
     ASSERT_EQ(run.ways.size(), 3U) << "one from each place where it was put";
     EXPECT_EQ(run.ways[1].points.front(), (Point2{-3, 0}));
 }
 
-TEST(RunSight, WhoJoinsLaterIsLookedAt) {
-    const RunSight run = sightOf(
+TEST(RunCoverage, WhoJoinsLaterIsLookedAt) {
+    const RunCoverage run = sightOf(
         "t,id,x,y,heading_deg\n0,r1,-3,0,0\n1,r1,-3,0,0\n1,r2,0,0,0\n2,r1,-3,0,0\n2,r2,0,0,0\n");
     ASSERT_EQ(run.members.size(), 2U);
     EXPECT_EQ(run.members[1].duration, 1);

@@ -21,9 +21,9 @@ constexpr double kBeyondRange = 1 + 1e-6;
 /// be the same.
 template <typename Visit>
 void forEachCorner(const VisibleRegion& region, Visit visit) {
-    for (const SightEdge& edge : region.edges) {
+    for (const VisibilityEdge& edge : region.edges) {
         visit(edge.from);
-        if (edge.line == SightEdge::kArc) {
+        if (edge.line == VisibilityEdge::kArc) {
             const Vec2 a = edge.from - region.viewpoint, b = edge.to - region.viewpoint;
             const double r2 = region.max_range * region.max_range;
             // Where the tangents meet: on a + b, at t with t (a + b) a = r2.

@@ -81,7 +81,7 @@ void expectSound(const CellParts& parts, std::size_t limits, std::size_t cells) 
 
 struct Case {
     const Grid& grid;
-    const Sight& sight;
+    const VisibleArea& sight;
     Point2 place;
     Laser laser;
     std::vector<double> headings;
@@ -156,7 +156,7 @@ TEST(CellsBySector, SectorsAreWhatLasersSee) {
     for (int room = 0; room < 24; ++room) {
         const Scene scene = sceneOf(randomRoom(random));
         const Slice slice = scene.environment.slice(kScanHeight);
-        const Sight sight(scene.environment, 0);
+        const VisibleArea sight(scene.environment, 0);
         const int fine = room % 4 == 3 ? 3 : 1;  // more than a word a row
         const Grid grid{scene.environment.limits(), 48 * fine, room % 3 == 0 ? 31 : 32 * fine};
         for (int trial = 0; trial < 40; ++trial) {
@@ -178,7 +178,7 @@ TEST(CellsBySector, ManyLimitsCloseTogether) {
         return directionOf(to.x - from.x, to.y - from.y).degrees();
     };
     const Scene scene = sceneOf("ispace size=12,8\ncube at=1,1 size=1,2,1\n");
-    const Sight sight(scene.environment, 0);
+    const VisibleArea sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 60, 40};
     CellParts parts;
     for (int trial = 0; trial < 200; ++trial) {
@@ -193,7 +193,7 @@ TEST(CellsBySector, ManyLimitsCloseTogether) {
 
 TEST(CellsBySector, RowsAlmostLevelWithThePlace) {
     const Scene scene = sceneOf("ispace size=12,8\n");
-    const Sight sight(scene.environment, 0);
+    const VisibleArea sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 24, 16};
     CellParts parts;
     for (const double by : {1e-15, 1e-12, 2e-11, 4e-11, 1e-10, 1e-9, 1e-8, 1e-7})
@@ -214,7 +214,7 @@ TEST(CellsBySector, FarFromTheOriginAndInLargeRooms) {
         const std::string up = formatDouble(far + 16), half = formatDouble(far + 8);
         const Scene scene = sceneOf("fence path=" + at + ",0;" + up + ",0;" + up + ",8;" + at +
                                     ",8 closed=yes\ncube at=" + half + ",4 size=1,2,1\n");
-        const Sight sight(scene.environment, 0);
+        const VisibleArea sight(scene.environment, 0);
         const Grid grid{scene.environment.limits(), 160, 80};
         for (int trial = 0; trial < 10; ++trial) {
             Case c{grid, sight, grid.center(random() % grid.size()), laserWith(5, -90, 180), {}};
@@ -226,7 +226,7 @@ TEST(CellsBySector, FarFromTheOriginAndInLargeRooms) {
 
 TEST(CellsBySector, CellsAtTheGreatestRange) {
     const Scene scene = sceneOf("ispace size=12,8\n");
-    const Sight sight(scene.environment, 0);
+    const VisibleArea sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 24, 16};
     CellParts parts;
     // Centres are half a metre apart; 3, 4, 5 and multiples are whole.
@@ -240,7 +240,7 @@ TEST(CellsBySector, CellsAtTheGreatestRange) {
 
 TEST(CellsBySector, OneLimitAndNone) {
     const Scene scene = sceneOf("ispace size=12,8\n");
-    const Sight sight(scene.environment, 0);
+    const VisibleArea sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 12, 8};
     const Point2 place = grid.center(grid.cell(3, 3));
     CellParts parts;
@@ -258,7 +258,7 @@ TEST(CellsBySector, OneLimitAndNone) {
 
 TEST(CellsBySector, LimitsBelongToWhatComesAfterThem) {
     const Scene scene = sceneOf("ispace size=12,8\n");
-    const Sight sight(scene.environment, 0);
+    const VisibleArea sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 12, 8};
     CellParts parts;
     const auto cells_on = [&](double degrees) {
@@ -283,7 +283,7 @@ TEST(CellsBySector, LimitsBelongToWhatComesAfterThem) {
 
 TEST(CellsBySector, NothingFromWithinASolidOrOutOfTheGrid) {
     const Scene scene = sceneOf("ispace size=12,8\ncube at=0,0 size=2,2,1\n");
-    const Sight sight(scene.environment, 0);
+    const VisibleArea sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 12, 8};
     const std::vector<Angle> limits = {Angle::degrees(10), Angle::degrees(100)};
     CellParts parts;

@@ -23,7 +23,7 @@ struct Room {
     Scene scene;
     Grid grid;
     Worlds worlds{scene.environment};
-    Sight sight{scene.environment, 0, &worlds};
+    VisibleArea sight{scene.environment, 0, &worlds};
 };
 
 Laser bareLaser(double range, double fov) {

@@ -38,13 +38,13 @@ struct Edge {
 };
 
 double roomCell(const Box2& limits, int most) {
-    constexpr double kFewest = 10'000, kShortest = 1e-4;
+    constexpr double kMinCount = 10'000, kMinLength = 1e-4;
     Edge edge;
     if (squareCells(limits, edge.metres()) > most) {
         while (squareCells(limits, edge.metres()) > most) edge = edge.longer();
         return edge.metres();
     }
-    while (squareCells(limits, edge.metres()) < kFewest && edge.metres() > kShortest &&
+    while (squareCells(limits, edge.metres()) < kMinCount && edge.metres() > kMinLength &&
            squareCells(limits, edge.shorter().metres()) <= most)
         edge = edge.shorter();
     return edge.metres();

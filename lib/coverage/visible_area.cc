@@ -47,27 +47,27 @@ CellSet cellsOfScan(const Grid& grid, const Level& level, const Sensor& sensor) 
 
 }  // namespace
 
-void Sight::prepare(const Sensor& sensor) const {
+void VisibleArea::prepare(const Sensor& sensor) const {
     if (!scansSlice(sensor)) worlds_->prepareMesh(kindOf(sensor.model).stopped_by);
 }
 
-const RayWorld& Sight::meshFor(const SensorModel& model) const {
+const RayWorld& VisibleArea::meshFor(const SensorModel& model) const {
     return worlds_->mesh(kindOf(model).stopped_by);
 }
 
-std::optional<std::vector<Curve>> Sight::regionOf(const Sensor& sensor) const {
+std::optional<std::vector<Curve>> VisibleArea::regionOf(const Sensor& sensor) const {
     const Point3 place = sensor.pose.position;
     const std::shared_ptr<const Level> level = levelAt(place.z);
     if (scansSlice(sensor)) return regionOfScan(*level, sensor);
-    if (level->isBuried(place.onFloor())) return std::vector<Curve>();
+    if (level->isInsideSolid(place.onFloor())) return std::vector<Curve>();
     return shadows_.get([this] { return ShadowCaster(environment_); }).regionSeen(sensor, plane_);
 }
 
-CellSet Sight::cellsOf(const Grid& grid, const Sensor& sensor) const {
+CellSet VisibleArea::cellsOf(const Grid& grid, const Sensor& sensor) const {
     const Point3 place = sensor.pose.position;
     const std::shared_ptr<const Level> level = levelAt(place.z);
     if (scansSlice(sensor)) return cellsOfScan(grid, *level, sensor);
-    if (level->isBuried(place.onFloor())) return CellSet(grid.size());
+    if (level->isInsideSolid(place.onFloor())) return CellSet(grid.size());
     return cellsOnPlane(grid, meshFor(sensor.model), sensor, plane_);
 }
 

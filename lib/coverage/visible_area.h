@@ -23,11 +23,11 @@ namespace ispace {
 /// The exact region is the truth; cells are those with their centre in it, rasterised
 /// (cellsBySector) for slices and tested one by one (cellsOnPlane) for planes. The edges of a field
 /// of view and the greatest range count as inside, a line that hides what is behind it does not.
-class Sight {
+class VisibleArea {
   public:
     /// Keeps the references. \param plane its height \param worlds for cells on planes; null if
     /// only regions are asked for
-    Sight(const Environment& environment, double plane, Worlds* worlds = nullptr)
+    VisibleArea(const Environment& environment, double plane, Worlds* worlds = nullptr)
         : environment_(environment), plane_(plane), worlds_(worlds) {}
 
     /// To be called for a sensor like it (its model, height, tilt and roll) before its cells are

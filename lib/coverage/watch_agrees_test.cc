@@ -24,7 +24,7 @@ TEST(WatchAgrees, WithTheCellsOfCoverage) {
         "ultrasound at=1,-1,2.4 tilt=-90\nultrasound at=-1,-1,2.4 tilt=-90\n");
     const Coverage coverage = coverageOf(scene, 64, 48);
     const std::vector<std::uint32_t> times = timesSeen(coverage);
-    const Watch watch(scene);
+    const DetectionMonitor watch(scene);
     EXPECT_EQ(watch.sensors(), coverage.sets.size());
     std::size_t compared = 0, different = 0, seen = 0;
     for (std::size_t cell = 0; cell < times.size(); ++cell) {

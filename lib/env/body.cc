@@ -26,37 +26,37 @@ constexpr double kCovering = 0.001;
 constexpr double kSquare = 0.5;
 constexpr int kMaxSquares = 64;
 
-Body upright(Polygon footprint, const Standing& thing, Material material) {
+Body upright(Polygon footprint, const PlacementFrame& thing, Material material) {
     Body body;
     body.prisms.push_back({std::move(footprint), thing.bottom, thing.top, material});
     return body;
 }
 
-Body uprightRound(const Standing& thing, Material material) {
+Body uprightRound(const PlacementFrame& thing, Material material) {
     Body body;
     body.prisms.push_back(roundPrism(thing.ellipse(), thing.bottom, thing.top, material));
     return body;
 }
 
 Body pillarBody(const Record& record) {
-    const Standing pillar = standingOf(record);
+    const PlacementFrame pillar = standingOf(record);
     const bool round = record.text("kind") == "round";
     return round ? uprightRound(pillar, Material::Pillar)
                  : upright(pillar.rectangle(), pillar, Material::Pillar);
 }
 
 Body barrierBody(const Record& record) {
-    const Standing barrier = standingOf(record);
+    const PlacementFrame barrier = standingOf(record);
     return upright(barrier.rectangle(), barrier, Material::Barrier);
 }
 
 Body cubeBody(const Record& record) {
-    const Standing cube = standingOf(record);
+    const PlacementFrame cube = standingOf(record);
     return upright(cube.rectangle(), cube, Material::Box);
 }
 
 Body cylinderBody(const Record& record) {
-    const Standing cylinder = standingOf(record);
+    const PlacementFrame cylinder = standingOf(record);
     return uprightRound(cylinder, Material::Box);
 }
 
@@ -104,7 +104,7 @@ Body wallBody(const Record& record) {
 Body roomBody(const Record& record) {
     Body body = wallBody(record);
     if (!record.flag("ceiling")) return body;
-    const Standing room = standingOf(record);
+    const PlacementFrame room = standingOf(record);
     body.plates.push_back({room.rectangle(), room.top, Material::Ceiling, false});
     return body;
 }
@@ -142,13 +142,13 @@ bool standsByItself(const Record& record) {
 }
 
 double topOf(const Body& body) {
-    constexpr double kLowest = std::numeric_limits<double>::lowest();
-    double top = kLowest;
+    constexpr double kMinHeight = std::numeric_limits<double>::lowest();
+    double top = kMinHeight;
     for (const Prism& prism : body.prisms) top = std::max(top, prism.top);
     for (const Sheet& sheet : body.sheets) top = std::max(top, sheet.top);
     for (const Mesh& mesh : body.meshes)
         for (const Point3& p : mesh.vertices) top = std::max(top, p.z);
-    return top == kLowest ? 0 : top;
+    return top == kMinHeight ? 0 : top;
 }
 
 Polygon zoneOutline(const Record& record) {
@@ -190,20 +190,22 @@ Polygon rectangle(Point2 center, double length, double width, Angle heading) {
     return boxIn({center, heading}, {-x, -y}, {x, y});
 }
 
-Polygon Standing::box(Point2 low, Point2 high) const { return boxIn(world_from_body, low, high); }
+Polygon PlacementFrame::box(Point2 low, Point2 high) const {
+    return boxIn(world_from_body, low, high);
+}
 
-Polygon Standing::rectangle() const {
+Polygon PlacementFrame::rectangle() const {
     return ispace::rectangle(world_from_body.position, length, width, world_from_body.heading);
 }
 
-Ellipse Standing::ellipse(double share) const {
+Ellipse PlacementFrame::ellipse(double share) const {
     return {world_from_body.position, share * length, share * width, world_from_body.heading};
 }
 
-Standing standingOf(const Record& record) {
+PlacementFrame standingOf(const Record& record) {
     const Tuple& at = record.tuple("at");
     const Tuple& size = record.tuple("size");
-    Standing out;
+    PlacementFrame out;
     out.world_from_body = {{at[0], at[1]}, record.angle("heading")};
     out.length = size[0];
     out.width = size.size() > 1 ? size[1] : size[0];
@@ -231,7 +233,7 @@ constexpr double kSeatShare = 0.45 / 0.85;
 /// At most a quarter of the extent.
 double atMostQuarter(double wanted, double extent) { return std::min(wanted, extent / 4); }
 
-void addLegs(Body& body, const Standing& thing, double leg, double top, Material material) {
+void addLegs(Body& body, const PlacementFrame& thing, double leg, double top, Material material) {
     const double x = thing.length / 2, y = thing.width / 2;
     body.prisms.reserve(body.prisms.size() + 4);
     for (const Point2 low :
@@ -243,7 +245,7 @@ void addLegs(Body& body, const Standing& thing, double leg, double top, Material
 }  // namespace
 
 Body tableBody(const Record& record) {
-    const Standing table = standingOf(record);
+    const PlacementFrame table = standingOf(record);
     const double board = atMostQuarter(kBoard, table.height());
     const double foot_top = table.bottom + board, stem_top = table.top - board;
     Body body;
@@ -256,7 +258,7 @@ Body tableBody(const Record& record) {
 }
 
 Body deskBody(const Record& record) {
-    const Standing desk = standingOf(record);
+    const PlacementFrame desk = standingOf(record);
     const double x = desk.length / 2, y = desk.width / 2;
     const double board_bottom = desk.top - atMostQuarter(kBoard, desk.height());
     Body body;
@@ -278,7 +280,7 @@ Body deskBody(const Record& record) {
 }
 
 Body chairBody(const Record& record) {
-    const Standing chair = standingOf(record);
+    const PlacementFrame chair = standingOf(record);
     const double x = chair.length / 2, y = chair.width / 2;
     const double seat_top = chair.bottom + kSeatShare * chair.height();
     const double seat_bottom = seat_top - atMostQuarter(kBoard, chair.height());
@@ -319,7 +321,7 @@ double barPlace(int i, int count, double bar, double extent) {
 }  // namespace
 
 Body infraBody(const Record& record) {
-    Standing frame = standingOf(record);
+    PlacementFrame frame = standingOf(record);
     frame.bottom = record.number("height");
     const double x = frame.length / 2, y = frame.width / 2;
     const int rows = static_cast<int>(record.number("rows"));
@@ -344,7 +346,7 @@ Body infraBody(const Record& record) {
 }
 
 Body boxesBody(const Record& record) {
-    const Standing stack = standingOf(record);
+    const PlacementFrame stack = standingOf(record);
     const auto count = static_cast<std::size_t>(record.number("count"));
     double whole = 0;
     for (std::size_t i = 0; i < count; ++i) whole += kBoxHeight[i % kBoxHeight.size()];
@@ -368,7 +370,7 @@ Body boxesBody(const Record& record) {
 }
 
 Body screenBody(const Record& record) {
-    const Standing screen = standingOf(record);
+    const PlacementFrame screen = standingOf(record);
     const double x = screen.length / 2, y = screen.width / 2;
     const double board = std::min(kScreenBoard, screen.width / 2);
     const double post = std::min({kPost, screen.width / 2, screen.length / 16});

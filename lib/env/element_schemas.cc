@@ -8,7 +8,7 @@ namespace ispace {
 namespace {
 
 /// Plans lie within this of the origin, in metres: doubles still tell micrometres apart there.
-constexpr double kFarthest = 1e6;
+constexpr double kMaxDistance = 1e6;
 
 KeySpec idKey() {
     return {.name = "id",
@@ -23,8 +23,8 @@ KeySpec lengths(std::string name, std::string help, std::size_t min_count, std::
             .help = std::move(help),
             .min_count = min_count,
             .max_count = max_count,
-            .lower = -kFarthest,
-            .upper = kFarthest};
+            .lower = -kMaxDistance,
+            .upper = kMaxDistance};
 }
 
 KeySpec pointKey(std::string name, std::string help) {
@@ -52,8 +52,8 @@ KeySpec headingKey() {
             .unit = Unit::Angle,
             .help = "direction of the length, counter-clockwise from +x",
             .default_value = 0.0,
-            .lower = -kFarthest,
-            .upper = kFarthest,
+            .lower = -kMaxDistance,
+            .upper = kMaxDistance,
             .role = Role::Heading};
 }
 
@@ -77,7 +77,7 @@ KeySpec heightKey(std::string help = "height, unless size holds it") {
             .unit = Unit::Length,
             .help = std::move(help),
             .lower = 0,
-            .upper = kFarthest,
+            .upper = kMaxDistance,
             .lower_open = true};
 }
 
@@ -94,7 +94,7 @@ KeySpec thicknessKey(std::string help) {
             .help = std::move(help),
             .default_value = 0.0,
             .lower = 0,
-            .upper = kFarthest};
+            .upper = kMaxDistance};
 }
 
 KeySpec kindKey(std::string help, std::vector<std::string> choices) {
@@ -213,7 +213,7 @@ std::vector<KeySpec> openingKeys(double standard_width) {
              .unit = Unit::Length,
              .help = "from the beginning of the wall, along it, to the middle of the opening",
              .lower = 0,
-             .upper = kFarthest},
+             .upper = kMaxDistance},
             pointKey("at", "middle of the opening, on its wall or near it"),
             std::move(heading),
             pointKey("from", "one end of the opening"),
@@ -236,7 +236,7 @@ void addOpenings(std::vector<Schema>& out) {
                       .help = "height of its lower edge above the floor",
                       .default_value = 0.9,
                       .lower = 0,
-                      .upper = kFarthest});
+                      .upper = kMaxDistance});
     KeySpec glass{.name = "glass",
                   .type = KeyType::Choice,
                   .help = "clear: light passes; opaque: light stops; none: an open hole",

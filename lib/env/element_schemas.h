@@ -11,7 +11,7 @@
 namespace ispace {
 
 /// Frame and extents of a record that has `at`, `heading`, `size` and perhaps `height`.
-struct Standing {
+struct PlacementFrame {
     Pose2 world_from_body;
     double length = 0, width = 0;
     double bottom = 0, top = 0;
@@ -26,7 +26,7 @@ struct Standing {
 
 /// One number in `size` stands for length and width. The height is the third number of `size`,
 /// else `height`, else the length.
-Standing standingOf(const Record& record);
+PlacementFrame standingOf(const Record& record);
 
 /// True for things whose body depends on `at` and `heading` only in where it is: furniture, pillars
 /// and floors, but no walls, and no meshes, which have their own frame.

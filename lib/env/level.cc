@@ -68,14 +68,14 @@ bool Level::isFree(Point2 p) const {
     return !is_on_sheet;
 }
 
-bool Level::isBuried(Point2 p) const { return solids().containsWithMargin(p, kRayEpsilon); }
+bool Level::isInsideSolid(Point2 p) const { return solids().containsWithMargin(p, kRayEpsilon); }
 
 std::vector<Polygon> Level::solidsTouching(Point2 p) const {
     return solids().touching(p, kRayEpsilon);
 }
 
 void Level::query(Point2 viewpoint, double max_range, VisibleRegion& region) const {
-    if (!isBuried(viewpoint)) {
+    if (!isInsideSolid(viewpoint)) {
         sight().query(viewpoint, max_range, region);
         return;
     }

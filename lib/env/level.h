@@ -29,12 +29,12 @@ class Level {
     /// \pre it is of an environment
     [[nodiscard]] bool isFree(Point2 p) const;
     /// True deeper in a solid than kRayEpsilon: a sensor there sees nothing.
-    [[nodiscard]] bool isBuried(Point2 p) const;
+    [[nodiscard]] bool isInsideSolid(Point2 p) const;
     /// The solids whose surface p touches (within kRayEpsilon): sight passes into them there, but
     /// there is nothing to be seen.
     [[nodiscard]] std::vector<Polygon> solidsTouching(Point2 p) const;
     /// What a level sensor sees up to max_range: as VisibilityMap::query among the lines and round
-    /// bodies of the slice; nothing where isBuried().
+    /// bodies of the slice; nothing where isInsideSolid().
     void query(Point2 viewpoint, double max_range, VisibleRegion& region) const;
 
     /// Makes what query() looks into, which takes longer than many queries.

@@ -82,7 +82,7 @@ TEST(Level, AnswersAsItsSliceDoes) {
                 for (const Segment2& sheet : slice.sheets)
                     is_free = is_free && !intersects(sheet, {p, p});
                 EXPECT_EQ(level->isFree(p), is_free) << x << ' ' << y << " at " << height;
-                if (level->isBuried(p)) {
+                if (level->isInsideSolid(p)) {
                     EXPECT_TRUE(slice.blocked(p));
                 }
             }
@@ -110,7 +110,7 @@ TEST(Level, SeesAsAVisibilityMapAndNothingFromWithinSolids) {
     }
     EXPECT_EQ(level->solidsTouching({2.5, 2}).size(), 1U);
     level->query({2, 2}, 4, region);
-    EXPECT_TRUE(level->isBuried({2, 2}));
+    EXPECT_TRUE(level->isInsideSolid({2, 2}));
     EXPECT_TRUE(region.edges.empty());
     EXPECT_TRUE(region.is_whole);
     EXPECT_EQ(region.max_range, 4);

@@ -156,7 +156,7 @@ using Index = std::uint32_t;
 using Corners = FloatPlace;
 
 /// As far as `at` may be, and as much again.
-constexpr double kFarthest = 2e6;
+constexpr double kMaxDistance = 2e6;
 
 double unitOf(const std::string& unit) {
     if (unit == "cm") return 0.01;
@@ -269,8 +269,8 @@ void checkMesh(const Record& record, const Body& body, Diagnostics& findings) {
         findings.add(record.finding("file", "the mesh file " + file + " has no triangle"));
     } else {
         const auto is_far = [](const Point3& p) {
-            return !(std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest &&
-                     std::abs(p.z) <= kFarthest);
+            return !(std::abs(p.x) <= kMaxDistance && std::abs(p.y) <= kMaxDistance &&
+                     std::abs(p.z) <= kMaxDistance);
         };
         const std::vector<Point3>& vertices = body.meshes.front().vertices;
         if (std::any_of(vertices.begin(), vertices.end(), is_far))
@@ -280,9 +280,9 @@ void checkMesh(const Record& record, const Body& body, Diagnostics& findings) {
     }
 }
 
-const Look& lookOf(Material material) {
+const Appearance& lookOf(Material material) {
     // In the order of the enumerators.
-    static constexpr Look kLooks[] = {
+    static constexpr Appearance kLooks[] = {
         {"floor", {0.62, 0.58, 0.50}, 1, 0, 0.9},
         {"floor-dark", {0.12, 0.12, 0.13}, 1, 0, 0.9},
         {"wall", {0.80, 0.80, 0.76}, 1, 0, 0.9},

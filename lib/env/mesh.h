@@ -39,13 +39,13 @@ enum class Material {
 };
 
 /// How a material looks: colour (linear RGB, opacity), metallic share and roughness.
-struct Look {
+struct Appearance {
     const char* name;
     std::array<double, 3> color;
     double opacity, metallic, roughness;
 };
 
-const Look& lookOf(Material material);
+const Appearance& lookOf(Material material);
 
 /// Name of what sensors look at in models: nothing that stands there, so it is left out where a
 /// model is read as a mesh.

@@ -56,14 +56,14 @@ class CutFinder {
     void find(std::span<const Opening> openings, std::size_t number, std::vector<Cut>& cuts) {
         const Opening& opening = openings[number];
         const auto [a, b] = jambs(opening);
-        const double half = std::min(opening.depth / 2, kFarthestFace);
+        const double half = std::min(opening.depth / 2, kMaxFace);
         near_.clear();
-        tree_.search({a, b}, half + kFarthestFace + kWeldDistance,
+        tree_.search({a, b}, half + kMaxFace + kWeldDistance,
                      [this](std::size_t line) { near_.push_back(line); });
         std::sort(near_.begin(), near_.end());
         const std::size_t first = cuts.size();
         for (const std::size_t line : near_) {
-            addCut(line, number, {a, b}, line == opening.line ? 2 * kFarthestFace : half, cuts);
+            addCut(line, number, {a, b}, line == opening.line ? 2 * kMaxFace : half, cuts);
             if (cuts.size() - first > kMaxWalls) break;
         }
     }
@@ -82,7 +82,7 @@ class CutFinder {
         const Axis axis(plan_.lines[line]);
         const double beside =
             std::max(std::abs(axis.beside(jambs.a)), std::abs(axis.beside(jambs.b)));
-        const double own = std::min(plan_.walls[line].thickness / 2, kFarthestFace);
+        const double own = std::min(plan_.walls[line].thickness / 2, kMaxFace);
         // Walls that only touch do not overlap; a sheet on the face of a wall belongs to it.
         const bool both_thick = half > kThinnest / 2 && own > kThinnest / 2;
         if (beside > kWeldDistance &&

@@ -139,8 +139,7 @@ double OpeningSites::excess(const OpeningSite& site) const {
 
 /// How far off a line its openings may be given.
 double OpeningSites::reach(std::size_t line) const {
-    return std::max(kNearWall,
-                    std::min(plan_.walls[line].thickness / 2, kFarthestFace) + kNearFace);
+    return std::max(kNearWall, std::min(plan_.walls[line].thickness / 2, kMaxFace) + kNearFace);
 }
 
 bool OpeningSites::isParallel(std::size_t line, Vec2 direction, double within) const {
@@ -153,7 +152,7 @@ bool OpeningSites::isParallel(std::size_t line, Vec2 direction, double within) c
 template <typename Allowed, typename Off, typename SiteOn>
 std::optional<OpeningSite> OpeningSites::nearest(Point2 p, Allowed allowed, Off off,
                                                  SiteOn site_on) const {
-    constexpr double kReach = kFarthestFace + kNearFace;
+    constexpr double kReach = kMaxFace + kNearFace;
     std::vector<std::pair<double, std::size_t>> near;
     double least = std::numeric_limits<double>::infinity();
     const auto look = [&](std::span<const std::uint32_t> cell) {

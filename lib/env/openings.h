@@ -14,7 +14,7 @@ namespace ispace {
 constexpr double kFitDistance = 0.001;
 /// Openings and thick walls reach at most this far to each side of their lines; openings given by a
 /// place are looked for no farther from a wall's mid-line.
-constexpr double kFarthestFace = 1;
+constexpr double kMaxFace = 1;
 /// Thickness of a door's leaf; at most the wall's.
 constexpr double kLeafThickness = 0.04;
 

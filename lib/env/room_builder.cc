@@ -118,7 +118,7 @@ class Builder {
     void cutWalls(bool at_once) {
         const auto place = [this] { openings_ = placeOpenings(elements_, plan_, findings_); };
         const auto weld_all = [&] { welded_ = at_once ? weld(plan_.lines) : weldedLines(); };
-        doBoth(at_once, place, weld_all);
+        parallelInvoke(at_once, place, weld_all);
         for (const Segment2& piece : welded_.pieces) {
             limits_.add(piece.a);
             limits_.add(piece.b);
@@ -213,7 +213,7 @@ class Builder {
         const auto take_all = [&](std::size_t block) {
             for (Begun& begun : slots[block % kBlocksAtOnce]) take(std::move(begun), false);
         };
-        makeInOrder((records.size() + kBlock - 1) / kBlock, begin, take_all);
+        orderedPipeline((records.size() + kBlock - 1) / kBlock, begin, take_all);
     }
 
     void giveShape(Element& element, Diagnostics& findings) const {
@@ -289,11 +289,11 @@ void buildAtOnce(std::span<const Record> records, std::span<const std::string> i
     std::vector<Body> walls;
     const auto enclose = [&] { builder.enclose(); };
     const auto give_walls = [&] { walls = builder.takeWallBodies(); };
-    doBoth(
+    parallelInvoke(
         true,
         [&] {
             builder.cutWalls(true);
-            doBoth(true, enclose, give_walls);
+            parallelInvoke(true, enclose, give_walls);
         },
         [&builder] { builder.giveThings(); });
     builder.addWalls(std::move(walls));

@@ -132,7 +132,7 @@ std::vector<WallLine> fenceLines(const Record& record, Diagnostics& findings) {
 }
 
 std::vector<WallLine> roomLines(const Record& record, Diagnostics& findings) {
-    const Standing room = standingOf(record);
+    const PlacementFrame room = standingOf(record);
     std::vector<WallLine> out;
     bool zero = false;
     forEachEdge(room.rectangle(), [&](const Segment2& line) {

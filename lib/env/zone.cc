@@ -27,15 +27,15 @@ constexpr std::string_view kRectangle = "rect:", kPolygon = "poly:";
 
 /// As the coordinates of records: with units, and within 1000 km.
 KeySpec coordinates(std::string_view prefix) {
-    constexpr double kFarthest = 1e6;
+    constexpr double kMaxDistance = 1e6;
     KeySpec key{.name = std::string(prefix),
                 .type = KeyType::Tuple,
                 .unit = Unit::Length,
                 .help = "",
                 .min_count = 4,
                 .max_count = 4,
-                .lower = -kFarthest,
-                .upper = kFarthest};
+                .lower = -kMaxDistance,
+                .upper = kMaxDistance};
     if (prefix == kPolygon) {
         key.type = KeyType::TupleList;
         key.min_count = key.max_count = 2;
@@ -190,13 +190,13 @@ Polygon around(const Doorway& door, double distance_from_it) {
 
 /// \throws UsageError
 std::pair<std::string, double> parsedDoors(std::string_view text) {
-    constexpr double kFarthest = 100;
+    constexpr double kMaxDistance = 100;
     const KeySpec key{.name = "distance",
                       .type = KeyType::Number,
                       .unit = Unit::Length,
                       .help = "",
                       .lower = 0.001,
-                      .upper = kFarthest};
+                      .upper = kMaxDistance};
     const std::string_view words = text.substr(kDoor.size());
     const std::size_t comma = words.rfind(',');
     if (comma == std::string_view::npos || comma == 0)

@@ -73,8 +73,8 @@ inline int roughlyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
     const double all = (std::abs(vw) + std::abs(wv)) * u_lift +
                        (std::abs(wu) + std::abs(uw)) * v_lift +
                        (std::abs(uv) + std::abs(vu)) * w_lift;
-    constexpr double kError = 12 * 0x1p-53, kLeast = 0x1p-600, kMost = 0x1p1000;
-    if (!(all > kLeast && all < kMost)) return 0;
+    constexpr double kError = 12 * 0x1p-53, kMinValue = 0x1p-600, kMost = 0x1p1000;
+    if (!(all > kMinValue && all < kMost)) return 0;
     return det > kError * all ? 1 : det < -kError * all ? -1 : 0;
 }
 
@@ -98,9 +98,9 @@ inline int surelyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
     const double all = a_lift.high * most(bx, by, cx, cy) + b_lift.high * most(cx, cy, ax, ay) +
                        c_lift.high * most(ax, ay, bx, by);
     // Some 20 roundings, each off by 2^-102 of its operands at most. What products lose that are
-    // too small for doubles is far less: `all` is above kLeast.
-    constexpr double kError = 0x1p-92, kLeast = 0x1p-600, kMost = 0x1p1000;
-    if (!(all > kLeast && all < kMost)) return 0;
+    // too small for doubles is far less: `all` is above kMinValue.
+    constexpr double kError = 0x1p-92, kMinValue = 0x1p-600, kMost = 0x1p1000;
+    if (!(all > kMinValue && all < kMost)) return 0;
     const double error = kError * all;
     return det.high > error ? 1 : det.high < -error ? -1 : 0;
 }

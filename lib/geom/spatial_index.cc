@@ -133,7 +133,7 @@ void BoxTree::build(std::uint32_t first, std::uint32_t count) {
 namespace {
 
 /// Coordinates beyond this are not turned: their products would overflow.
-constexpr double kFarthestTurned = 1e100;
+constexpr double kMaxTurned = 1e100;
 
 /// The direction, modulo a right angle, in which the segments run, weighted by length.
 Vec2 mainAxis(std::span<const Segment2> segments) {
@@ -156,7 +156,7 @@ SegmentTree::SegmentTree(std::span<const Segment2> segments) {
     double farthest = 0;
     for (const auto& [a, b] : segments)
         farthest = std::max({farthest, std::abs(a.x), std::abs(a.y), std::abs(b.x), std::abs(b.y)});
-    if (farthest <= kFarthestTurned) axis_ = mainAxis(segments);
+    if (farthest <= kMaxTurned) axis_ = mainAxis(segments);
     slack_ = 8 * std::numeric_limits<double>::epsilon() * farthest;
     std::vector<Box2> boxes;
     boxes.reserve(segments.size());

@@ -121,7 +121,7 @@ TEST(Visibility, RegionsAreUsedAgain) {
     const std::vector<Segment2> room = edgesOf(box(0, 0, 4, 4));
     const VisibilityMap map(room);
     VisibleRegion region = map.query({1, 1}, 2);
-    const SightEdge* const memory = region.edges.data();
+    const VisibilityEdge* const memory = region.edges.data();
     map.query({2, 2}, kInfinity, region);
     EXPECT_EQ(region.edges.data(), memory);
     EXPECT_DOUBLE_EQ(area(region), 16);
@@ -157,14 +157,14 @@ TEST(VisibilityBreadth, SameAsOneWayAfterTheOther) {
         const VisibleRegion in_turn = map.query(p, kInfinity);
         // A range that ends beyond all that is seen, but not beyond all lines.
         double farthest = 0;
-        for (const SightEdge& end : in_turn.edges)
+        for (const VisibilityEdge& end : in_turn.edges)
             farthest = std::max({farthest, distance(p, end.from), distance(p, end.to)});
         const VisibleRegion bounded = map.query(p, 1.001 * farthest);
         if (farthest > 25) continue;
         ++compared;
         ASSERT_EQ(in_turn.edges.size(), bounded.edges.size());
         for (std::size_t k = 0; k < in_turn.edges.size(); ++k) {
-            const SightEdge &a = in_turn.edges[k], &b = bounded.edges[k];
+            const VisibilityEdge &a = in_turn.edges[k], &b = bounded.edges[k];
             EXPECT_TRUE(a.from == b.from && a.to == b.to && a.line == b.line) << i << ' ' << k;
         }
     }

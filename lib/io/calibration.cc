@@ -86,7 +86,7 @@ class CalibrationReader {
     /// The numbers of a list, or of the `data` of a matrix. \param count 0: any
     [[nodiscard]] std::vector<double> matrix(std::initializer_list<const char*> names,
                                              std::size_t count) const {
-        constexpr double kLargest = 1e7;
+        constexpr double kMaxSize = 1e7;
         const char* const what = *names.begin();
         const YAML::Node node = find(names);
         if (!node) fail(root_, "no `" + std::string(what) + "`");
@@ -101,7 +101,7 @@ class CalibrationReader {
                            " numbers, wanted at most " + std::to_string(kMaxCoefficients));
         std::vector<double> values;
         for (const YAML::Node& one : data)
-            values.push_back(numberOf(one, what, -kLargest, kLargest));
+            values.push_back(numberOf(one, what, -kMaxSize, kMaxSize));
         return values;
     }
 

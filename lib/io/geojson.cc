@@ -162,7 +162,7 @@ void addElement(FeatureWriter& out, const Element& element, const ElementLines& 
         out.endAsNothing();
 }
 
-void addPlaced(FeatureWriter& out, const Scene& scene, const Placed& placed) {
+void addPlaced(FeatureWriter& out, const Scene& scene, const PlacedRecord& placed) {
     const Record& record = scene.records[placed.record];
     const Point2 place = placed.pose.position.onFloor();
     JsonWriter& json =
@@ -202,7 +202,7 @@ void addRoom(FeatureWriter& out, const Scene& scene) {
     const std::vector<Element>& elements = scene.environment.elements();
     const std::vector<ElementLines> lines = elementLinesOf(scene.environment);
     for (std::size_t i = 0; i < elements.size(); ++i) addElement(out, elements[i], lines[i]);
-    for (const Placed& placed : scene.placed) addPlaced(out, scene, placed);
+    for (const PlacedRecord& placed : scene.placed) addPlaced(out, scene, placed);
 }
 
 void addSlice(FeatureWriter& out, const Environment& environment, double height) {

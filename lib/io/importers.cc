@@ -238,14 +238,14 @@ const InputFormat* formatOf(const Source& source, Refuse refuse) {
 
 bool isPlan(std::string_view bytes, const std::string& operand, const ImportOptions& options,
             const Schemas& schemas) {
-    const InputFormat* format = formatOf({withoutMark(bytes), operand, options, schemas},
+    const InputFormat* format = formatOf({withoutBom(bytes), operand, options, schemas},
                                          [](int /*line*/, const std::string& /*message*/) {});
     return format != nullptr && format->is_plan;
 }
 
 Document parseDocument(std::string_view bytes, const std::string& operand,
                        const ImportOptions& options, const Schemas& schemas) {
-    const Source source{withoutMark(bytes), operand, options, schemas};
+    const Source source{withoutBom(bytes), operand, options, schemas};
     const InputFormat* format = formatOf(
         source, [&](int line, const std::string& message) { failFile(operand, message, line); });
     Document document = format->read(source);

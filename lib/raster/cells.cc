@@ -116,7 +116,7 @@ void CellPieces::addUp(std::vector<Index>& root) {
     }
 }
 
-std::optional<std::size_t> CellPieces::at(CellPlace place) const {
+std::optional<std::size_t> CellPieces::at(CellIndex place) const {
     if (place.x < 0 || place.y < 0 || place.x >= width_ || place.y >= height_) return std::nullopt;
     const std::size_t run = firstRun(place);
     if (run == row_begin_[static_cast<std::size_t>(place.y) + 1] || runs_[run].first > place.x)
@@ -124,7 +124,7 @@ std::optional<std::size_t> CellPieces::at(CellPlace place) const {
     return piece_of_[run];
 }
 
-std::size_t CellPieces::firstRun(CellPlace place) const {
+std::size_t CellPieces::firstRun(CellIndex place) const {
     const auto y = static_cast<std::size_t>(place.y);
     const auto begin = runs_.begin() + static_cast<std::ptrdiff_t>(row_begin_[y]);
     const auto end = runs_.begin() + static_cast<std::ptrdiff_t>(row_begin_[y + 1]);

@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-struct CellPlace {
+struct CellIndex {
     int x = 0, y = 0;
 };
 
@@ -25,7 +25,7 @@ struct RowRun {
 };
 
 /// The cells above, below and beside a cell.
-constexpr std::array<CellPlace, 4> kSides{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+constexpr std::array<CellIndex, 4> kSides{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
 /// A set of cells, one byte each; column 0 is on the left, row 0 at the bottom.
 class MapCells {
@@ -115,8 +115,8 @@ MapCells complement(const MapCells& cells);
 struct CellPiece {
     std::size_t cells = 0;
     std::size_t border = 0;     ///< of these, cells at the grid's border
-    CellPlace first;            ///< the lowest, then leftmost
-    CellPlace lowest, highest;  ///< corners of its bounding box
+    CellIndex first;            ///< the lowest, then leftmost
+    CellIndex lowest, highest;  ///< corners of its bounding box
     [[nodiscard]] int extent() const {
         return std::max(highest.x - lowest.x, highest.y - lowest.y) + 1;
     }
@@ -134,7 +134,7 @@ class CellPieces {
     [[nodiscard]] const CellPiece& operator[](std::size_t i) const { return pieces_[i]; }
     [[nodiscard]] std::size_t size() const { return pieces_.size(); }
     /// The piece that holds a cell; O(log runs of the row).
-    [[nodiscard]] std::optional<std::size_t> at(CellPlace place) const;
+    [[nodiscard]] std::optional<std::size_t> at(CellIndex place) const;
     /// Fraction of the grid's border that the piece occupies.
     [[nodiscard]] double borderShare(std::size_t piece) const;
     /// The cells of one piece, in a grid of the same size.
@@ -166,7 +166,7 @@ class CellPieces {
     void joinRows(Joined joined, std::vector<Index>& root) const;
     void addUp(std::vector<Index>& root);
     /// Index of the first run of the row that does not end left of the place.
-    [[nodiscard]] std::size_t firstRun(CellPlace place) const;
+    [[nodiscard]] std::size_t firstRun(CellIndex place) const;
 
     int width_, height_;
     std::vector<RowRun> runs_;

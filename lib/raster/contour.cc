@@ -31,22 +31,22 @@ enum Direction { East, North, West, South };
 
 /// Offset from a lattice point to the cell ahead on the left of each direction; the one ahead on
 /// the right is that of the direction to the right.
-constexpr std::array<CellPlace, 4> kAheadLeft{{{0, 0}, {-1, 0}, {-1, -1}, {0, -1}}};
+constexpr std::array<CellIndex, 4> kAheadLeft{{{0, 0}, {-1, 0}, {-1, -1}, {0, -1}}};
 
 Direction turned(Direction direction, int quarters) {
     return static_cast<Direction>((static_cast<int>(direction) + quarters + 4) % 4);
 }
 
-bool isSetAhead(const MapCells& cells, CellPlace at, Direction direction) {
-    const CellPlace offset = kAheadLeft[direction];
+bool isSetAhead(const MapCells& cells, CellIndex at, Direction direction) {
+    const CellIndex offset = kAheadLeft[direction];
     return cells.contains(at.x + offset.x, at.y + offset.y);
 }
 
 /// Follows the boundary with the set on the left from the lower edge of the cell at `start`;
 /// marks the cells whose lower edge it passes eastwards.
-Polygon walk(const MapCells& cells, CellPlace start, MapCells& passed) {
+Polygon walk(const MapCells& cells, CellIndex start, MapCells& passed) {
     Polygon corners;
-    CellPlace at = start;
+    CellIndex at = start;
     Direction direction = East;
     do {
         if (direction == East) passed.insert(at.x, at.y);

@@ -66,7 +66,7 @@ MapCells opened(const MapCells& cells, int side) { return dilated(eroded(cells, 
 
 MapCells grown(const MapCells& cells, int reach) { return dilated(cells, 2 * reach + 1, reach); }
 
-std::vector<CellPlace> deepestPlaces(const MapCells& cells, const CellPieces& pieces) {
+std::vector<CellIndex> deepestPlaces(const MapCells& cells, const CellPieces& pieces) {
     const int width = cells.width(), height = cells.height();
     // Steps to what is outside, with a column on each side, and a row below and above, of zeros.
     const std::size_t n = static_cast<std::size_t>(width) + 2;
@@ -85,7 +85,7 @@ std::vector<CellPlace> deepestPlaces(const MapCells& cells, const CellPieces& pi
         for (int x = width - 1; x >= 0; --x)
             row[x] = std::min(row[x], 1 + std::min(row[x + 1], above[x]));
     }
-    std::vector<CellPlace> places(pieces.size());
+    std::vector<CellIndex> places(pieces.size());
     std::vector<int> deepest(pieces.size());
     pieces.forEachRun([&](const RowRun& run, std::size_t piece) {
         const int* const row = row_of(run.row);
@@ -103,10 +103,10 @@ namespace {
 constexpr int kFar = 40'000;
 
 /// Distances within columns, kFar where there is none.
-std::vector<int> columnDistances(const MapCells& cells, Beyond beyond) {
+std::vector<int> columnDistances(const MapCells& cells, BorderRule beyond) {
     const int width = cells.width();
     const int height = cells.height();
-    const int edge = beyond == Beyond::Out ? 0 : kFar;
+    const int edge = beyond == BorderRule::Out ? 0 : kFar;
     std::vector<int> away(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     std::vector<int> last(static_cast<std::size_t>(width), edge);
     const auto pass = [&](int y) {
@@ -175,11 +175,11 @@ class RowEnvelope {
 
 }  // namespace
 
-std::vector<int> squaredDistances(const MapCells& cells, Beyond beyond) {
+std::vector<int> squaredDistances(const MapCells& cells, BorderRule beyond) {
     std::vector<int> result = columnDistances(cells, beyond);
     RowEnvelope envelope(cells.width());
     std::vector<std::int64_t> away(static_cast<std::size_t>(cells.width()) + 2);
-    away.front() = away.back() = beyond == Beyond::Out ? 0 : kFar;
+    away.front() = away.back() = beyond == BorderRule::Out ? 0 : kFar;
     for (int y = 0; y < cells.height(); ++y) {
         int* row = &result[cells.index(0, y)];
         std::copy(row, row + cells.width(), away.begin() + 1);
@@ -190,7 +190,7 @@ std::vector<int> squaredDistances(const MapCells& cells, Beyond beyond) {
     return result;
 }
 
-CellPlace widestPlace(const MapCells& cells) {
+CellIndex widestPlace(const MapCells& cells) {
     const int width = cells.width(), height = cells.height();
     // Rows with a column on each side, and a row below and above: rings grow from beyond the grid.
     // They are at most half as many as the shorter side, which 16 bits hold for any picture.
@@ -207,7 +207,7 @@ CellPlace widestPlace(const MapCells& cells) {
             if (is_in[x] != 0)
                 row[x] = grown(std::min({row[x - 1], below[x - 1], below[x], below[x + 1]}));
     }
-    CellPlace best;
+    CellIndex best;
     std::uint16_t widest = 0;
     for (int y = height - 1; y >= 0; --y) {
         std::uint16_t* const row = row_of(y);

@@ -65,7 +65,7 @@ TEST(DeepestPlaces, AreFarFromTheRimAndTheGridsEdge) {
                                     "#.....#.",  //
                                     ".......#"});
     const CellPieces pieces(cells, CellPieces::Joined::BySides);
-    const std::vector<CellPlace> places = deepestPlaces(cells, pieces);
+    const std::vector<CellIndex> places = deepestPlaces(cells, pieces);
     ASSERT_EQ(places.size(), 3U);
     EXPECT_EQ(places[0].x, 3);
     EXPECT_EQ(places[0].y, 2);
@@ -81,9 +81,9 @@ TEST(DeepestPlaces, EqualBruteForce) {
             for (int x = 0; x < cells.width(); ++x)
                 if (random() % 100 < 85) cells.insert(x, y);
         const CellPieces pieces(cells, CellPieces::Joined::BySides);
-        const std::vector<CellPlace> found = deepestPlaces(cells, pieces);
+        const std::vector<CellIndex> found = deepestPlaces(cells, pieces);
         std::vector<int> deepest(pieces.size());
-        std::vector<CellPlace> wanted(pieces.size());
+        std::vector<CellIndex> wanted(pieces.size());
         cells.forEach([&](int x, int y) {
             int steps = 100;
             for (int v = -1; v <= cells.height(); ++v)
@@ -110,7 +110,7 @@ TEST(SquaredDistances, EqualBruteForce) {
         for (int y = 0; y < cells.height(); ++y)
             for (int x = 0; x < cells.width(); ++x)
                 if (random() % 100 < density) cells.insert(x, y);
-        for (const Beyond beyond : {Beyond::In, Beyond::Out}) {
+        for (const BorderRule beyond : {BorderRule::In, BorderRule::Out}) {
             const std::vector<int> found = squaredDistances(cells, beyond);
             for (int y = 0; y < cells.height(); ++y)
                 for (int x = 0; x < cells.width(); ++x) {
@@ -119,7 +119,7 @@ TEST(SquaredDistances, EqualBruteForce) {
                         for (int u = -1; u <= cells.width(); ++u) {
                             const bool in_grid =
                                 u >= 0 && v >= 0 && u < cells.width() && v < cells.height();
-                            if (in_grid ? cells.contains(u, v) : beyond == Beyond::In) continue;
+                            if (in_grid ? cells.contains(u, v) : beyond == BorderRule::In) continue;
                             least = std::min(least, (u - x) * (u - x) + (v - y) * (v - y));
                         }
                     ASSERT_EQ(found[cells.index(x, y)], least) << x << ' ' << y;
@@ -129,7 +129,7 @@ TEST(SquaredDistances, EqualBruteForce) {
 }
 
 TEST(WidestPlace, OfANotchedSquare) {
-    const CellPlace place = widestPlace(cellsOf({".....#",  //
+    const CellIndex place = widestPlace(cellsOf({".....#",  //
                                                  ".....#",  //
                                                  ".....#",  //
                                                  ".....#",  //
@@ -137,7 +137,7 @@ TEST(WidestPlace, OfANotchedSquare) {
                                                  "....#."}));
     EXPECT_EQ(place.x, 2);
     EXPECT_EQ(place.y, 3);  // the ring below it holds the corner of the notch
-    const CellPlace corner = widestPlace(cellsOf({"#.", "##"}));
+    const CellIndex corner = widestPlace(cellsOf({"#.", "##"}));
     EXPECT_EQ(corner.x, 1);
     EXPECT_EQ(corner.y, 1);
 }
@@ -164,7 +164,7 @@ TEST(WidestPlace, EqualsBruteForce) {
         int best = 0;
         for (int y = 0; y < cells.height(); ++y)
             for (int x = 0; x < cells.width(); ++x) best = std::max(best, rings(x, y));
-        const CellPlace place = widestPlace(cells);
+        const CellIndex place = widestPlace(cells);
         EXPECT_EQ(rings(place.x, place.y), best);
     }
 }

@@ -123,7 +123,7 @@ void moveInFrame(Record& record, const Pose2& motion, double dz) {
         move.move(record, key);
     });
     for (const KeySpec& key : record.schema().keys) {
-        if (key.role == Role::Course && record.has(key.name)) move.move(record, key);
+        if (key.role == Role::MotionPlan && record.has(key.name)) move.move(record, key);
         if (key.role == Role::Heading && at_moves) move.turnHeading(record, key);
     }
 }

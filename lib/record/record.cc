@@ -114,7 +114,7 @@ void Record::setMesh(std::shared_ptr<const TriangleMesh> mesh) {
     data.rare = std::make_shared<const Rare>(std::move(rare));
 }
 
-void Record::setRead(const KeySpec& key, Value value, Spot spot) {
+void Record::setRead(const KeySpec& key, Value value, LineColumn spot) {
     const auto index = static_cast<std::uint32_t>(&key - schema_->keys.data());
     put(*data_, key, {spot, index, std::move(value)});
 }
@@ -274,7 +274,7 @@ std::string otherPlace(const Place& other, const Place& here) {
     return (same ? "" : displayName(*other.file) + ' ') + "line " + std::to_string(other.line);
 }
 
-std::string knownWords(std::string_view word, const std::vector<std::string>& known) {
+std::string spellingHint(std::string_view word, const std::vector<std::string>& known) {
     std::string near = didYouMean(word, known);
     if (!near.empty()) return near;
     std::string all;
@@ -285,12 +285,12 @@ std::string knownWords(std::string_view word, const std::vector<std::string>& kn
     return all;
 }
 
-bool RecordCollector::begin(std::string_view keyword, Spot spot, std::size_t keys) {
+bool RecordCollector::begin(std::string_view keyword, LineColumn spot, std::size_t keys) {
     const Schema* const schema = schemas_->find(keyword);
     if (schema == nullptr) {
         finding(spot, [&] {
             return "unknown keyword " + excerpt(keyword) +
-                   knownWords(keyword, schemas_->keywords());
+                   spellingHint(keyword, schemas_->keywords());
         });
         return false;
     }
@@ -298,21 +298,21 @@ bool RecordCollector::begin(std::string_view keyword, Spot spot, std::size_t key
     return true;
 }
 
-void RecordCollector::begin(const Schema& schema, Spot spot, std::size_t keys) {
+void RecordCollector::begin(const Schema& schema, LineColumn spot, std::size_t keys) {
     current_.emplace(schema, file_.at(spot), keys);
-    seen_.assign(schema.keys.size(), Spot{});
+    seen_.assign(schema.keys.size(), LineColumn{});
 }
 
-const KeySpec* RecordCollector::key(std::string_view name, Spot spot) {
+const KeySpec* RecordCollector::key(std::string_view name, LineColumn spot) {
     const Schema& schema = current_->schema();
     const KeySpec* const spec = schema.find(name);
     if (spec == nullptr) {
         finding(spot, [&] {
-            return "unknown key " + excerpt(name) + knownWords(name, schema.keyNames());
+            return "unknown key " + excerpt(name) + spellingHint(name, schema.keyNames());
         });
         return nullptr;
     }
-    Spot& first = seen_[static_cast<std::size_t>(spec - schema.keys.data())];
+    LineColumn& first = seen_[static_cast<std::size_t>(spec - schema.keys.data())];
     if (first.line > 0) {
         finding(spot, [&] {
             return "doubled key `" + spec->name + "`, first in " +
@@ -329,7 +329,7 @@ bool RecordCollector::isGiven(const KeySpec& key) const {
     return seen_[static_cast<std::size_t>(&key - current_->schema().keys.data())].line > 0;
 }
 
-void RecordCollector::text(const KeySpec& key, std::string_view text, Spot spot) {
+void RecordCollector::text(const KeySpec& key, std::string_view text, LineColumn spot) {
     try {
         current_->setRead(key, parseValue(key, text), spot);
     } catch (const FormatError& error) {
@@ -337,7 +337,7 @@ void RecordCollector::text(const KeySpec& key, std::string_view text, Spot spot)
     }
 }
 
-void RecordCollector::value(const KeySpec& key, Value value, Spot spot) {
+void RecordCollector::value(const KeySpec& key, Value value, LineColumn spot) {
     seen_[static_cast<std::size_t>(&key - current_->schema().keys.data())] = spot;
     current_->setRead(key, std::move(value), spot);
 }

@@ -23,7 +23,7 @@
 namespace ispace {
 
 /// Line and column in a file, from 1, columns in bytes; 0: none.
-struct Spot {
+struct LineColumn {
     int line = 0, column = 0;
 };
 
@@ -38,7 +38,7 @@ struct Place {
     /// " (included from b.yaml:2:3, from a.yaml:1:1)".
     [[nodiscard]] Diagnostic finding(std::string message) const;
     /// Another spot in the same file.
-    [[nodiscard]] Place at(Spot spot) const {
+    [[nodiscard]] Place at(LineColumn spot) const {
         return {file, spot.line, spot.column, included_from};
     }
     /// " (included from …)", or nothing for an operand.
@@ -75,7 +75,7 @@ class Record {
     void set(std::string_view key, Value value, const Place& place = {});
     /// The same for a checked value read from the record's own file, while the record is made.
     /// \pre `key` is one of the schema's, the value passes checkValue, nobody has copied the record
-    void setRead(const KeySpec& key, Value value, Spot spot);
+    void setRead(const KeySpec& key, Value value, LineColumn spot);
     void erase(std::string_view key);
 
     /// The written value, else the schema's default. \pre one of them exists and has this type
@@ -119,7 +119,7 @@ class Record {
 
   private:
     struct Entry {
-        Spot spot;          // in the record's file; none: that of the record
+        LineColumn spot;    // in the record's file; none: that of the record
         std::uint32_t key;  // index in the schema
         Value value;
     };
@@ -212,7 +212,7 @@ class IdTable {
 std::string otherPlace(const Place& other, const Place& here);
 
 /// ", did you mean …?" with the nearest of the known words, or ", known: " and all of them.
-std::string knownWords(std::string_view word, const std::vector<std::string>& known);
+std::string spellingHint(std::string_view word, const std::vector<std::string>& known);
 
 /// Builds checked records from keywords, keys and values and collects errors: the common part of
 /// the readers of text and of YAML.
@@ -236,16 +236,16 @@ class RecordCollector {
 
     /// Starts a record. False, and a finding, if the keyword is unknown.
     /// \param keys how many it seems to give
-    bool begin(std::string_view keyword, Spot spot, std::size_t keys = 0);
-    void begin(const Schema& schema, Spot spot, std::size_t keys = 0);
+    bool begin(std::string_view keyword, LineColumn spot, std::size_t keys = 0);
+    void begin(const Schema& schema, LineColumn spot, std::size_t keys = 0);
     /// A key of the current record; null, and a finding, if it is unknown or doubled.
-    const KeySpec* key(std::string_view name, Spot spot);
+    const KeySpec* key(std::string_view name, LineColumn spot);
     /// True if the current record gives the key, even with its default or a bad value.
     [[nodiscard]] bool isGiven(const KeySpec& key) const;
     /// Sets a key from its text.
-    void text(const KeySpec& key, std::string_view text, Spot spot);
+    void text(const KeySpec& key, std::string_view text, LineColumn spot);
     /// Sets a key. \pre the value is good
-    void value(const KeySpec& key, Value value, Spot spot);
+    void value(const KeySpec& key, Value value, LineColumn spot);
     /// Ends the record and checks that required keys are there. \return it, even with findings
     Record finish();
     /// finish(), and keeps the record. \throws FormatError for more than kMaxRecords
@@ -262,7 +262,7 @@ class RecordCollector {
         findings_.add(findings_.full() ? Diagnostic{} : place.finding(message()));
     }
     template <typename Message>
-    void finding(Spot spot, Message message) {
+    void finding(LineColumn spot, Message message) {
         finding(file_.at(spot), std::move(message));
     }
     void add(const FormatError& error) { findings_.add(error); }
@@ -277,8 +277,8 @@ class RecordCollector {
     Place file_;
     const Schemas* schemas_;
     Diagnostics findings_;
-    std::vector<Record> records_;  // also those with findings
-    std::vector<Spot> seen_;       // keys of the current record, by their index; line 0: not seen
+    std::vector<Record> records_;   // also those with findings
+    std::vector<LineColumn> seen_;  // keys of the current record, by their index; line 0: not seen
     std::optional<Record> current_;
 };
 

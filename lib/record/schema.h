@@ -57,13 +57,13 @@ enum class KeyType {
 /// converts records without knowing their keys.
 enum class Role {
     None,
-    Place,      ///< x,y[,z] or a list of them: moves with the record
-    Course,     ///< the same for a path to follow, besides the record's place
-    Heading,    ///< turns with the record
-    Tilt,       ///< above level; what --tilt changes
-    Carrier,    ///< id of the record in whose frame the places of this one are
-    Reference,  ///< id of another record
-    File,       ///< a path, relative to the folder of the file that names it
+    Place,       ///< x,y[,z] or a list of them: moves with the record
+    MotionPlan,  ///< the same for a path to follow, besides the record's place
+    Heading,     ///< turns with the record
+    Tilt,        ///< above level; what --tilt changes
+    Carrier,     ///< id of the record in whose frame the places of this one are
+    Reference,   ///< id of another record
+    File,        ///< a path, relative to the folder of the file that names it
 };
 
 struct KeySpec {

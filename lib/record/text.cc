@@ -39,7 +39,7 @@ bool isSurelyText(std::string_view bytes) {
 
 }  // namespace
 
-std::string_view withoutMark(std::string_view bytes) {
+std::string_view withoutBom(std::string_view bytes) {
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
     if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
     return bytes;
@@ -228,7 +228,7 @@ void readLine(std::string_view line, int number, RecordCollector& collector) {
     LineLexer lexer(line);
     const auto keyword = lexer.keyword();
     if (!keyword) return;
-    const Spot spot{number, keyword->column};
+    const LineColumn spot{number, keyword->column};
     if (keyword->text.find('=') != std::string_view::npos) {
         collector.finding(spot, [&] {
             return excerpt(keyword->text) + " found, wanted a keyword before the first key";
@@ -253,7 +253,7 @@ void readLine(std::string_view line, int number, RecordCollector& collector) {
 }  // namespace
 
 bool isRecordText(std::string_view bytes) {
-    bytes = withoutMark(bytes);
+    bytes = withoutBom(bytes);
     return bytes.starts_with(kEnvironmentMagic) || bytes.starts_with(kLayoutMagic);
 }
 
@@ -281,7 +281,7 @@ bool readInParts(std::string_view text, int before, RecordCollector& first) {
     const auto lines = static_cast<int>(std::count(front.begin(), front.end(), '\n'));
     RecordCollector second(*first.file().file, first.schemas());
     try {
-        doBoth(
+        parallelInvoke(
             true, [&] { readLines(front, before, first); },
             [&] { readLines(back, before + lines, second); });
         if (!second.findings().empty()) return false;
@@ -295,7 +295,7 @@ bool readInParts(std::string_view text, int before, RecordCollector& first) {
 }  // namespace
 
 Document readRecordText(std::string_view bytes, const std::string& name, const Schemas& schemas) {
-    bytes = withoutMark(bytes);
+    bytes = withoutBom(bytes);
     if (bytes.empty()) throw FormatError({name, 0, 0, std::string("empty file, ") + kWantedMagic});
     checkTextBytes(bytes, name);
     Document document;

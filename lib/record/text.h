@@ -17,7 +17,7 @@ namespace ispace {
 void checkTextBytes(std::string_view bytes, const std::string& name);
 
 /// The bytes without the UTF-8 byte order mark that some editors write at their start.
-std::string_view withoutMark(std::string_view bytes);
+std::string_view withoutBom(std::string_view bytes);
 
 /// Takes lines off the front of a text, their ends (LF or CR LF) removed.
 class LineReader {

@@ -13,11 +13,11 @@ namespace ispace {
 namespace {
 
 TEST(ByteOrderMark, IsTakenOffTheStartOnce) {
-    EXPECT_EQ(withoutMark("\xef\xbb\xbf#env 1"), "#env 1");
-    EXPECT_EQ(withoutMark("\xef\xbb\xbf"), "");
-    EXPECT_EQ(withoutMark("\xef\xbb\xbf\xef\xbb\xbfx"), "\xef\xbb\xbfx");
+    EXPECT_EQ(withoutBom("\xef\xbb\xbf#env 1"), "#env 1");
+    EXPECT_EQ(withoutBom("\xef\xbb\xbf"), "");
+    EXPECT_EQ(withoutBom("\xef\xbb\xbf\xef\xbb\xbfx"), "\xef\xbb\xbfx");
     for (const std::string_view other : {"", "#env 1", "\xef\xbb", "\xbb\xbf\xef", "x\xef\xbb\xbf"})
-        EXPECT_EQ(withoutMark(other), other);
+        EXPECT_EQ(withoutBom(other), other);
 }
 
 Document read(std::string_view text) { return readRecordText(text, "a.env", testSchemas()); }

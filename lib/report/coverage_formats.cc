@@ -138,7 +138,7 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
     out.begin("free", "free", "region");
     out.endAsArea(scene.environment.level(coverage.target.height)->freeFloor());
     const std::vector<std::uint32_t> times = timesSeen(coverage);
-    const std::uint32_t most = mostSeen(coverage, times);
+    const std::uint32_t most = maxMultiplicity(coverage, times);
     for (std::uint32_t k = 1; k <= most; ++k) {
         const std::vector<Region> pieces = seenBy(coverage, k, times);
         if (pieces.empty()) continue;
@@ -157,7 +157,7 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
         out.endAsArea(viewRegions(view, coverage.target.grid));
     }
     for (std::size_t i = 0; i < coverage.report.unseen.size(); ++i) {
-        const UnseenSpot& spot = coverage.report.unseen[i];
+        const UncoveredSpot& spot = coverage.report.unseen[i];
         out.begin("unseen-" + std::to_string(i + 1), "unseen", "spot")
             .key("area")
             .value(roundSignificant(spot.area));
@@ -355,7 +355,7 @@ std::string seenLayer(std::uint32_t times) { return "seen-" + std::to_string(tim
 
 std::string coverageDxf(const Scene& scene, const Coverage& coverage) {
     const std::vector<std::uint32_t> times = timesSeen(coverage);
-    const std::uint32_t most = mostSeen(coverage, times);
+    const std::uint32_t most = maxMultiplicity(coverage, times);
     std::vector<DxfLayer> layers = {{"unseen", palette::kLost}};
     for (std::uint32_t k = 1; k <= most; ++k)
         layers.push_back(
@@ -381,7 +381,7 @@ std::string coverageDxf(const Scene& scene, const Coverage& coverage) {
 
 namespace {
 
-constexpr double kMostValue = 100;
+constexpr double kMaxValue = 100;
 
 CoverageFiles filesOf(const Nav2Mask& mask, const std::string& picture_name) {
     Nav2MaskFiles files = nav2MaskFiles(mask, picture_name);
@@ -398,7 +398,7 @@ CoverageFiles coverageSpeedMask(const Coverage& coverage, double cell,
     const std::vector<std::uint32_t> times = timesSeen(coverage);
     target.free.forEach([&](std::size_t at) {
         const double speed = speeds[std::min<std::size_t>(times[at], speeds.size() - 1)];
-        mask.values[at] = static_cast<std::uint8_t>(std::lround(kMostValue * (1 - speed)));
+        mask.values[at] = static_cast<std::uint8_t>(std::lround(kMaxValue * (1 - speed)));
     });
     return filesOf(mask, picture_name);
 }
@@ -410,7 +410,7 @@ CoverageFiles coverageKeepoutMask(const Coverage& coverage, double cell,
     mask.values.resize(target.grid.size());
     const CellSet covered = coveredCells(coverage);
     target.free.forEach([&](std::size_t at) {
-        if (!covered.test(at)) mask.values[at] = static_cast<std::uint8_t>(kMostValue);
+        if (!covered.test(at)) mask.values[at] = static_cast<std::uint8_t>(kMaxValue);
     });
     return filesOf(mask, picture_name);
 }

@@ -86,7 +86,7 @@ void write(JsonWriter& json, const ZoneMetrics& zone) {
     json.endObject();
 }
 
-void write(JsonWriter& json, const UnseenSpot& spot) {
+void write(JsonWriter& json, const UncoveredSpot& spot) {
     json.beginObject();
     write(json, "x", spot.place.x);
     write(json, "y", spot.place.y);
@@ -112,7 +112,7 @@ void writeList(JsonWriter& json, const char* key, const std::vector<Item>& items
 
 }  // namespace
 
-std::string coverageJson(const CoverageReport& report, const RunSight* run) {
+std::string coverageJson(const CoverageReport& report, const RunCoverage* run) {
     const Box2& limits = report.limits;
     JsonWriter json;
     beginReport(json, "ispace-coverage/1", "coverage");
@@ -300,7 +300,7 @@ std::string piecesText(const CoverageReport& report) {
     text += "largest spots of free floor that no sensor sees:\n";
     std::vector<TextRow> rows;
     for (std::size_t i = 0; i < std::min(kSpotsListed, report.unseen.size()); ++i) {
-        const UnseenSpot& spot = report.unseen[i];
+        const UncoveredSpot& spot = report.unseen[i];
         rows.push_back({" ", area(spot.area), "around",
                         "(" + metres(spot.place.x) + ", " + metres(spot.place.y) + ")"});
     }

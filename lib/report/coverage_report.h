@@ -11,7 +11,7 @@ namespace ispace {
 
 /// One JSON object and a newline, schema ispace-coverage/1; with a member `run` unless that is
 /// null.
-std::string coverageJson(const CoverageReport& report, const RunSight* run = nullptr);
+std::string coverageJson(const CoverageReport& report, const RunCoverage* run = nullptr);
 /// The report as aligned lines of text.
 std::string coverageText(const CoverageReport& report);
 

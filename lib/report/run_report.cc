@@ -64,11 +64,11 @@ double shareOf(const std::vector<double>& shares, std::size_t k, bool and_more) 
     return sum;
 }
 
-std::size_t columnsOf(const RunSight& run) {
+std::size_t columnsOf(const RunCoverage& run) {
     return std::clamp<std::size_t>(run.all.time_shares.size(), 2, kColumns);
 }
 
-TextRow rowOf(const RunSight& run, const RunSightMetrics& metrics, bool is_way) {
+TextRow rowOf(const RunCoverage& run, const RunSightMetrics& metrics, bool is_way) {
     const std::vector<double>& shares = is_way ? metrics.way_shares : metrics.time_shares;
     const std::string who =
         metrics.id.empty() ? "all"
@@ -85,7 +85,7 @@ TextRow rowOf(const RunSight& run, const RunSightMetrics& metrics, bool is_way) 
     return row;
 }
 
-std::string tableOf(const RunSight& run, bool is_way) {
+std::string tableOf(const RunCoverage& run, bool is_way) {
     TextRow head = {is_way ? "share of its way" : "share of its time", is_way ? "way" : "there",
                     "unseen"};
     const std::size_t columns = columnsOf(run);
@@ -103,7 +103,7 @@ std::string tableOf(const RunSight& run, bool is_way) {
 
 }  // namespace
 
-void writeRun(JsonWriter& json, const RunSight& run) {
+void writeRun(JsonWriter& json, const RunCoverage& run) {
     json.key("run").beginObject();
     json.key("record").value(run.name);
     write(json, "begin", run.begin);
@@ -114,7 +114,7 @@ void writeRun(JsonWriter& json, const RunSight& run) {
     json.key("all");
     write(json, run.all);
     json.key("losses").beginArray();
-    for (const SightLoss& loss : run.losses) {
+    for (const TrackLoss& loss : run.losses) {
         json.beginObject();
         json.key("id").value(run.members[loss.who].id);
         write(json, "begin", loss.begin);
@@ -125,7 +125,7 @@ void writeRun(JsonWriter& json, const RunSight& run) {
     json.endArray().endObject();
 }
 
-std::string runText(const RunSight& run) {
+std::string runText(const RunCoverage& run) {
     std::string text = "run " + printable(run.name) + ", t=" + formatFixed(run.begin, 2) + " to " +
                        formatFixed(run.end, 2) + " s: seen by so many sensors\n" +
                        tableOf(run, false) + "\n" + tableOf(run, true);
@@ -133,7 +133,7 @@ std::string runText(const RunSight& run) {
     text += "\nwhere sight was lost:\n";
     std::vector<TextRow> rows;
     for (std::size_t i = 0; i < std::min(kLossesListed, run.losses.size()); ++i) {
-        const SightLoss& loss = run.losses[i];
+        const TrackLoss& loss = run.losses[i];
         rows.push_back({" ", printable(run.members[loss.who].id), "at " + pointText(loss.place),
                         "t=" + formatFixed(loss.begin, 2), "for " + seconds(loss.duration)});
     }
@@ -162,7 +162,7 @@ constexpr std::size_t kMaxMarked = 50;
 }  // namespace
 
 void drawRun(Picture& picture, const MapPicture& map) {
-    const RunSight* run = map.options.run;
+    const RunCoverage* run = map.options.run;
     if (run == nullptr) return;
     std::array<std::vector<std::vector<Point2>>, kRunColors.size()> chains;
     const double tolerance = 0.2 / map.view.scale;
@@ -178,7 +178,7 @@ void drawRun(Picture& picture, const MapPicture& map) {
         drawChosenRing(picture, map.view * run->losses[i].place, 0.5 * map.em, map.em);
 }
 
-LegendBlock runBlock(const RunSight& run) {
+LegendBlock runBlock(const RunCoverage& run) {
     using Sign = LegendItem::Sign;
     LegendBlock block{"Ways in the run, seen by", {}, {"time", "way"}};
     const auto share = [](const std::vector<double>& shares, std::size_t k) {

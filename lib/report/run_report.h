@@ -10,8 +10,8 @@ namespace ispace {
 class JsonWriter;
 
 /// The metrics of a run as aligned lines of text.
-std::string runText(const RunSight& run);
+std::string runText(const RunCoverage& run);
 /// Writes the member `run` of coverageJson().
-void writeRun(JsonWriter& json, const RunSight& run);
+void writeRun(JsonWriter& json, const RunCoverage& run);
 
 }  // namespace ispace

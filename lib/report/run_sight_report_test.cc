@@ -10,12 +10,12 @@ namespace ispace {
 namespace {
 
 /// A robot drives for `end` seconds at 1 m/s past a laser that sees 1 m around (0, 0).
-RunSight runOf(int end) {
+RunCoverage runOf(int end) {
     std::string robots = "t,id,x,y,heading_deg\n";
     for (int i = 0; i <= 50 * end; ++i)
         robots += std::to_string(i / 50.0) + ",r1," + std::to_string(-3 + i / 50.0) + ",0,0\n";
     RunReader reader(robots, "");
-    RunSight run =
+    RunCoverage run =
         measureRun(sceneOf("ispace size=8,6\nlaser at=0,0 range=1 fov=360\nrobot id=r1 at=-3,0\n"),
                    reader, {});
     run.name = "drive";
@@ -23,7 +23,7 @@ RunSight runOf(int end) {
 }
 
 TEST(RunSightReport, HasTextAndJson) {
-    const RunSight run = runOf(6);
+    const RunCoverage run = runOf(6);
     const std::string text = runText(run);
     EXPECT_NE(text.find("run drive, t=0.00 to 6.00 s"), std::string::npos) << text;
     EXPECT_NE(text.find("robot r1"), std::string::npos);

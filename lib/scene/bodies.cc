@@ -35,7 +35,7 @@ void addNose(Mesh& mesh, double from, double to, double half_width, double low, 
 
 using Meshes = std::vector<Mesh>;
 
-Meshes matBody(const Scene& scene, const Placed& placed) {
+Meshes matBody(const Scene& scene, const PlacedRecord& placed) {
     constexpr double kThickness = 0.01;
     const Tuple& size = scene.records[placed.record].tuple("size");
     Mesh plate = meshOf(Material::Mat);
@@ -43,7 +43,7 @@ Meshes matBody(const Scene& scene, const Placed& placed) {
     return {std::move(plate)};
 }
 
-Meshes gateBody(const Scene& scene, const Placed& placed) {
+Meshes gateBody(const Scene& scene, const PlacedRecord& placed) {
     constexpr double kPost = 0.04, kHead = 0.06;
     const Record& record = scene.records[placed.record];
     const double beside = record.number("width") / 2, height = record.number("height");
@@ -61,17 +61,17 @@ Meshes gateBody(const Scene& scene, const Placed& placed) {
     return {std::move(posts), std::move(heads)};
 }
 
-Meshes robotBody(const Scene& scene, const Placed& placed) {
+Meshes robotBody(const Scene& scene, const PlacedRecord& placed) {
     return {robotMesh(scene.robots[placed.index].model)};
 }
 
-Meshes humanBody(const Scene& scene, const Placed& placed) {
+Meshes humanBody(const Scene& scene, const PlacedRecord& placed) {
     return humanBodyOf(scene.records[placed.record].number("height"));
 }
 
 struct BodyRow {
     std::string_view keyword;
-    Meshes (*make)(const Scene&, const Placed&);
+    Meshes (*make)(const Scene&, const PlacedRecord&);
 };
 
 constexpr BodyRow kBodies[] = {
@@ -86,7 +86,7 @@ constexpr double kLeg = 0.035, kLegPlace = 0.055;  // radius, and distance from 
 
 }  // namespace
 
-std::vector<Mesh> bodyOf(const Scene& scene, const Placed& placed) {
+std::vector<Mesh> bodyOf(const Scene& scene, const PlacedRecord& placed) {
     const std::string& keyword = scene.records[placed.record].keyword();
     if (const SensorKind* kind = sensorKind(keyword)) return kind->body();
     const auto* row = std::find_if(std::begin(kBodies), std::end(kBodies),
@@ -94,7 +94,7 @@ std::vector<Mesh> bodyOf(const Scene& scene, const Placed& placed) {
     return row == std::end(kBodies) ? Meshes() : row->make(scene, placed);
 }
 
-std::optional<Mesh> viewOf(const Scene& scene, const Placed& placed) {
+std::optional<Mesh> viewOf(const Scene& scene, const PlacedRecord& placed) {
     const SensorKind* kind = sensorKind(scene.records[placed.record].keyword());
     if (kind == nullptr || kind->view == nullptr) return std::nullopt;
     const Box2 plan = scene.environment.limits();

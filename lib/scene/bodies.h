@@ -17,11 +17,11 @@ namespace ispace {
 /// A sensor's is that of its kind; a mat is a thin plate; a gate two posts across its heading with
 /// a head each at the beam's height; a robot is what sensors see of it, with a nose; a human is
 /// humanBodyOf().
-std::vector<Mesh> bodyOf(const Scene& scene, const Placed& placed);
+std::vector<Mesh> bodyOf(const Scene& scene, const PlacedRecord& placed);
 
 /// What a placed sensor looks at, as a translucent sheet in its frame, see SensorKind::view; no
 /// farther than the plan is wide, so that a model stays in scale. Nothing for everything else.
-std::optional<Mesh> viewOf(const Scene& scene, const Placed& placed);
+std::optional<Mesh> viewOf(const Scene& scene, const PlacedRecord& placed);
 
 /// Body of a robot, centre of rotation on the floor at the origin: the box or cylinder that sensors
 /// see, with a nose.

@@ -178,7 +178,7 @@ TEST(HumanParts, LimbsSwingAboutTheirJointsAndFeetStayOnTheFloor) {
 
 TEST(BodyOf, NothingForWhatHasNone) {
     const Scene made = scene("ispace size=8,6\n");
-    Placed wrong;
+    PlacedRecord wrong;
     EXPECT_TRUE(bodyOf(made, wrong).empty());
 }
 

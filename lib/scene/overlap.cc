@@ -145,7 +145,7 @@ std::optional<Overlap> overlapOf(const Polygon& a, const Polygon& b) {
     return Overlap{*depth, middleOf(shared.empty() ? b : shared)};
 }
 
-double wayBeyond(const Polygon& a, const Polygon& b, Vec2 direction) {
+double penetrationDepth(const Polygon& a, const Polygon& b, Vec2 direction) {
     return spanOf(a, direction).high - spanOf(b, direction).low;
 }
 

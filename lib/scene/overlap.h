@@ -32,7 +32,7 @@ std::optional<Overlap> overlapOf(const Polygon& a, const Polygon& b);
 
 /// How far `b` has to move along `direction`, a unit vector, until it is beyond `a`; negative if it
 /// is beyond already.
-double wayBeyond(const Polygon& a, const Polygon& b, Vec2 direction);
+double penetrationDepth(const Polygon& a, const Polygon& b, Vec2 direction);
 
 /// A place where a line runs within a polygon, not just along its edge; nothing if it does not.
 std::optional<Point2> placeWithin(const Segment2& line, const Polygon& polygon);

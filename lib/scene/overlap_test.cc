@@ -48,9 +48,9 @@ TEST(Overlap, OfLines) {
 }
 
 TEST(Overlap, WayBeyondParts) {
-    EXPECT_DOUBLE_EQ(wayBeyond(kSquare, moved(kSquare, {0.75, 0.5}), {1, 0}), 0.25);
-    EXPECT_DOUBLE_EQ(wayBeyond(kSquare, moved(kSquare, {0.75, 0.5}), {-1, 0}), 1.75);
-    EXPECT_LT(wayBeyond(kSquare, moved(kSquare, {3, 0}), {1, 0}), 0);
+    EXPECT_DOUBLE_EQ(penetrationDepth(kSquare, moved(kSquare, {0.75, 0.5}), {1, 0}), 0.25);
+    EXPECT_DOUBLE_EQ(penetrationDepth(kSquare, moved(kSquare, {0.75, 0.5}), {-1, 0}), 1.75);
+    EXPECT_LT(penetrationDepth(kSquare, moved(kSquare, {3, 0}), {1, 0}), 0);
 }
 
 TEST(Overlap, AgreesWithTheAreaInCommon) {

@@ -19,7 +19,7 @@ namespace {
 
 /// Above what any robot is or does: metres, metres a second (a second), degrees a second (a
 /// second).
-constexpr double kLargest = 100, kFastest = 1000, kFastestTurn = 1e5;
+constexpr double kMaxSize = 100, kFastest = 1000, kFastestTurn = 1e5;
 
 /// How motion and odometry stray with simrun --noise.
 void addStrayKeys(std::vector<KeySpec>& keys) {
@@ -49,7 +49,7 @@ void addStrayKeys(std::vector<KeySpec>& keys) {
 /// What a robot feels by itself.
 void addContactKeys(std::vector<KeySpec>& keys) {
     constexpr double kMost = 1000;
-    constexpr double kTurn = 360, kWidestCone = 90;
+    constexpr double kTurn = 360, kMaxCone = 90;
     const auto list = [&](std::string name, std::string help, std::size_t count) {
         keys.push_back({.name = std::move(name),
                         .type = KeyType::TupleList,
@@ -69,7 +69,7 @@ void addContactKeys(std::vector<KeySpec>& keys) {
                     .lower = 0,
                     .upper = kMost});
     keys.push_back(
-        positiveKey("sonar_fov", Unit::Angle, "full angle of the cone of a sonar", kWidestCone));
+        positiveKey("sonar_fov", Unit::Angle, "full angle of the cone of a sonar", kMaxCone));
     list("bumpers", "parts of its rim that feel: bearings from,to in degrees, counter-clockwise",
          2);
 }
@@ -79,7 +79,7 @@ void addContactKeys(std::vector<KeySpec>& keys) {
 void addRobotParameters(std::vector<KeySpec>& keys) {
     keys.push_back(positiveKey("radius", Unit::Length,
                                "of the circle about the centre of rotation that collides",
-                               kLargest));
+                               kMaxSize));
     keys.push_back({.name = "size",
                     .type = KeyType::Tuple,
                     .unit = Unit::Length,
@@ -87,16 +87,16 @@ void addRobotParameters(std::vector<KeySpec>& keys) {
                     .min_count = 2,
                     .max_count = 3,
                     .lower = 0,
-                    .upper = kLargest,
+                    .upper = kMaxSize,
                     .lower_open = true});
     keys.push_back({.name = "center",
                     .type = KeyType::Number,
                     .unit = Unit::Length,
                     .help = "how far the middle of the body lies ahead of the centre of rotation",
-                    .lower = -kLargest,
-                    .upper = kLargest});
+                    .lower = -kMaxSize,
+                    .upper = kMaxSize});
     keys.push_back(
-        positiveKey("height", Unit::Length, "height of the body, unless size holds it", kLargest));
+        positiveKey("height", Unit::Length, "height of the body, unless size holds it", kMaxSize));
     keys.push_back(
         positiveKey("speed", Unit::Length, "metres a second of FORWARD and BACKWARD", kFastest));
     keys.push_back(
@@ -134,8 +134,8 @@ KeySpec floorAtKey(std::string help) {
             .default_value = Tuple{0, 0},
             .min_count = 2,
             .max_count = 2,
-            .lower = -kFarthest,
-            .upper = kFarthest,
+            .lower = -kMaxDistance,
+            .upper = kMaxDistance,
             .role = Role::Place};
 }
 
@@ -147,9 +147,9 @@ void addCourse(std::vector<KeySpec>& keys) {
                     .help = "points x,y of the way, one after another",
                     .min_count = 2,
                     .max_count = 2,
-                    .lower = -kFarthest,
-                    .upper = kFarthest,
-                    .role = Role::Course});
+                    .lower = -kMaxDistance,
+                    .upper = kMaxDistance,
+                    .role = Role::MotionPlan});
     keys.push_back({.name = "loop",
                     .type = KeyType::Flag,
                     .help = "from the last point of path to the first, again and again",
@@ -211,7 +211,7 @@ KeySpec areaSizeKey(std::string help, Tuple standard) {
             .min_count = 2,
             .max_count = 2,
             .lower = 0,
-            .upper = kFarthest,
+            .upper = kMaxDistance,
             .lower_open = true};
 }
 
@@ -230,9 +230,10 @@ Schema matSchema() {
 }
 
 Schema gateSchema() {
-    KeySpec height = positiveKey("height", Unit::Length, "of the beam above the floor", kFarthest);
+    KeySpec height =
+        positiveKey("height", Unit::Length, "of the beam above the floor", kMaxDistance);
     height.default_value = 0.5;
-    KeySpec width = positiveKey("width", Unit::Length, "distance between its posts", kFarthest);
+    KeySpec width = positiveKey("width", Unit::Length, "distance between its posts", kMaxDistance);
     width.default_value = 1.0;
     return {.keyword = "gate",
             .type = RecordType::Placement,

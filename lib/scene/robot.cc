@@ -144,8 +144,8 @@ RobotModel robotOf(const Record& record, const DeviceCatalogue& devices) {
     return parametersOf<RobotModel>(record, deviceOf(record, devices));
 }
 
-Course courseOf(const Record& record) {
-    Course course;
+MotionPlan courseOf(const Record& record) {
+    MotionPlan course;
     if (record.has("path"))
         for (const Tuple& place : record.list("path")) course.path.push_back({place[0], place[1]});
     course.loop = record.flag("loop");

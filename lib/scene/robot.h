@@ -78,12 +78,12 @@ struct RobotModel {
 };
 
 /// Where a robot or a person goes without being told.
-struct Course {
+struct MotionPlan {
     std::vector<Point2> path;  ///< places to go to, one after another
     bool loop = false;         ///< from the last place to the first, again and again
     double pause = 0;          ///< seconds to stay at each place
     bool wander = false;       ///< wherever the way is free; with a path once that has ended
-    friend bool operator==(const Course&, const Course&) = default;
+    friend bool operator==(const MotionPlan&, const MotionPlan&) = default;
 };
 
 /// A robot where it starts.
@@ -92,7 +92,7 @@ struct PlacedRobot {
     RobotModel model;
     Pose2 pose;   ///< of the centre of rotation
     Place place;  ///< of its record, for messages
-    Course course = {};
+    MotionPlan course = {};
 };
 
 /// A person where she starts.
@@ -102,7 +102,7 @@ struct PlacedPerson {
     double speed = 1.2;  ///< m/s, when walking
     Pose2 pose;
     Place place;  ///< of the record, for messages
-    Course course = {};
+    MotionPlan course = {};
 };
 
 /// Parameters of a `robot` record: its explicit keys, else its model's, else the bare robot's.
@@ -117,7 +117,7 @@ RobotModel robotOf(const Record& record, const DeviceCatalogue& devices);
 RobotModel withParameters(RobotModel base, const Record& record);
 
 /// Keys of a `robot` or `human` record that say where it goes by itself.
-Course courseOf(const Record& record);
+MotionPlan courseOf(const Record& record);
 
 /// Pose of a `robot` record, or of any other with `at` and `heading`; without `at` at 0,0.
 Pose2 floorPoseOf(const Record& record);

@@ -107,7 +107,7 @@ struct Placements {
     std::vector<PendingSensor> pending;
     std::vector<PlacedRobot> robots;
     std::vector<PlacedPerson> people;
-    std::vector<Placed> placed;
+    std::vector<PlacedRecord> placed;
 };
 
 Pose3 onFloor(const Pose2& pose) {

@@ -27,7 +27,7 @@ struct PendingSensor {
 };
 
 /// A placement record that has its place: a sensor, a tag, a mat, a gate, a robot, a person.
-struct Placed {
+struct PlacedRecord {
     std::size_t record = 0;  ///< index in Scene::records
     Pose3 pose;              ///< in the world, where it starts; on the floor but for sensors
     /// Of a sensor in Scene::sensors, of a robot in Scene::robots, of a person in Scene::people.
@@ -46,7 +46,7 @@ struct Scene {
     std::vector<PendingSensor> pending;  ///< those without a place that arrange can place, in order
     std::vector<PlacedRobot> robots;     ///< in order
     std::vector<PlacedPerson> people;    ///< in order
-    std::vector<Placed> placed;          ///< all of them and everything else with a place, in order
+    std::vector<PlacedRecord> placed;    ///< all of them and everything else with a place, in order
     /// digest() where layout or edits changed what it is of; else "".
     std::string digest_of_other = {};
 

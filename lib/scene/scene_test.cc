@@ -202,7 +202,7 @@ TEST(MakeScene, EverythingWithAPlaceIsPlaced) {
                              "gate at=5,1 heading=-90\n"
                              "laser id=b on=s\n");
     std::vector<std::string> ids;
-    for (const Placed& placed : made.placed) ids.push_back(made.ids[placed.record]);
+    for (const PlacedRecord& placed : made.placed) ids.push_back(made.ids[placed.record]);
     EXPECT_EQ(ids, (std::vector<std::string>{"human1", "a", "k", "u", "r", "t", "c", "mat1", "s",
                                              "gate1", "b"}));
     const auto& placed = made.placed;

@@ -22,14 +22,14 @@ namespace {
 /// A sensor with what can be computed once for all its poses.
 struct Watcher {
     Sensor sensor;  // where it starts
-    std::uint32_t carrier = MovingBodies::kNobody;
+    std::uint32_t carrier = MovingBodies::kNoOwner;
     Pose3 from_carrier;                   // of one that rides on something
     std::optional<FieldOfView> view;      // of all but lasers, where it starts
     std::optional<BearingWindow> window;  // of lasers
     std::size_t together = 1;             // of its kind, before a place counts as seen
     bool is_blind = false;                // it stands in something
 
-    [[nodiscard]] bool rides() const { return carrier != MovingBodies::kNobody; }
+    [[nodiscard]] bool rides() const { return carrier != MovingBodies::kNoOwner; }
     [[nodiscard]] Pose3 poseAt(const WatchMoment& moment) const;
 };
 
@@ -43,7 +43,7 @@ Pose3 Watcher::poseAt(const WatchMoment& moment) const {
 /// Where the people of a scene start, in its order.
 std::vector<Pose2> peopleOf(const Scene& scene) {
     std::vector<Pose2> people;
-    for (const Placed& placed : scene.placed)
+    for (const PlacedRecord& placed : scene.placed)
         if (scene.records[placed.record].keyword() == "human")
             people.push_back({placed.pose.position.onFloor(), placed.pose.heading});
     return people;
@@ -69,7 +69,7 @@ Watcher watcherOf(const Sensor& sensor, const std::vector<Pose2>& people, double
 
 }  // namespace
 
-struct Watch::Data {
+struct DetectionMonitor::Data {
     Data(const Scene& scene, const WatchOptions& options);
 
     [[nodiscard]] bool sees(const Watcher& watcher, Point2 place, const WatchMoment& moment) const;
@@ -82,7 +82,7 @@ struct Watch::Data {
     std::vector<Watcher> watchers;
 };
 
-Watch::Data::Data(const Scene& scene, const WatchOptions& options)
+DetectionMonitor::Data::Data(const Scene& scene, const WatchOptions& options)
     : plane(options.plane), worlds(scene.environment) {
     const std::vector<Pose2> people = peopleOf(scene);
     for (const Sensor& sensor : scene.sensors) {
@@ -90,7 +90,7 @@ Watch::Data::Data(const Scene& scene, const WatchOptions& options)
         Watcher& watcher = watchers.emplace_back(watcherOf(sensor, people, options.density));
         const Point3 place = sensor.pose.position;
         watcher.is_blind =
-            !watcher.rides() && scene.environment.level(place.z)->isBuried(place.onFloor());
+            !watcher.rides() && scene.environment.level(place.z)->isInsideSolid(place.onFloor());
         if (scansSlice(sensor))
             worlds.prepare(sensor.pose);
         else
@@ -98,7 +98,7 @@ Watch::Data::Data(const Scene& scene, const WatchOptions& options)
     }
 }
 
-bool Watch::Data::isClear(const Sensor& sensor, Point3 origin, Point3 target) const {
+bool DetectionMonitor::Data::isClear(const Sensor& sensor, Point3 origin, Point3 target) const {
     if (target == origin) return true;
     const std::array<Point3, 1> targets = {target};
     std::array<std::uint8_t, 1> seen = {0};
@@ -107,7 +107,7 @@ bool Watch::Data::isClear(const Sensor& sensor, Point3 origin, Point3 target) co
 }
 
 /// A level scan: in its slice, or, if there are too many of these, in the mesh.
-bool Watch::Data::scans(const Watcher& watcher, const Pose3& pose, Point2 place) const {
+bool DetectionMonitor::Data::scans(const Watcher& watcher, const Pose3& pose, Point2 place) const {
     const Vec2 way = place - pose.position.onFloor();
     const double distance = std::hypot(way.x, way.y);
     const Laser& laser = watcher.sensor.as<Laser>();
@@ -125,7 +125,8 @@ bool Watch::Data::scans(const Watcher& watcher, const Pose3& pose, Point2 place)
 }
 
 /// A scan in a plane that is not level sees somebody where it passes over the floor.
-bool Watch::Data::scansAslant(const Watcher& watcher, const Pose3& pose, Point2 place) const {
+bool DetectionMonitor::Data::scansAslant(const Watcher& watcher, const Pose3& pose,
+                                         Point2 place) const {
     const Laser& laser = watcher.sensor.as<Laser>();
     const auto is_near = [&](Point3 target) {
         const Vec3 way = target - pose.position;
@@ -146,7 +147,8 @@ bool Watch::Data::scansAslant(const Watcher& watcher, const Pose3& pose, Point2 
            isClear(watcher.sensor, pose.position, target);
 }
 
-bool Watch::Data::sees(const Watcher& watcher, Point2 place, const WatchMoment& moment) const {
+bool DetectionMonitor::Data::sees(const Watcher& watcher, Point2 place,
+                                  const WatchMoment& moment) const {
     if (watcher.is_blind) return false;
     const Pose3 pose = watcher.poseAt(moment);
     if (!watcher.view) {
@@ -161,13 +163,13 @@ bool Watch::Data::sees(const Watcher& watcher, Point2 place, const WatchMoment& 
     return view.holds(target) && isClear(watcher.sensor, pose.position, target);
 }
 
-Watch::Watch(const Scene& scene, const WatchOptions& options)
+DetectionMonitor::DetectionMonitor(const Scene& scene, const WatchOptions& options)
     : data_(std::make_unique<Data>(scene, options)) {}
-Watch::~Watch() = default;
-Watch::Watch(Watch&&) noexcept = default;
-Watch& Watch::operator=(Watch&&) noexcept = default;
+DetectionMonitor::~DetectionMonitor() = default;
+DetectionMonitor::DetectionMonitor(DetectionMonitor&&) noexcept = default;
+DetectionMonitor& DetectionMonitor::operator=(DetectionMonitor&&) noexcept = default;
 
-std::size_t Watch::sensors() const {
+std::size_t DetectionMonitor::sensors() const {
     std::size_t alone = 0, parts = 0, together = 0;
     for (const Watcher& watcher : data_->watchers) {
         (watcher.together > 1 ? parts : alone) += 1;
@@ -176,13 +178,13 @@ std::size_t Watch::sensors() const {
     return alone + (parts > 0 && parts >= together ? 1 : 0);
 }
 
-bool Watch::rides() const {
+bool DetectionMonitor::rides() const {
     const auto& watchers = data_->watchers;
     return std::any_of(watchers.begin(), watchers.end(),
                        [](const Watcher& watcher) { return watcher.rides(); });
 }
 
-std::size_t Watch::seenBy(const Target& target, const WatchMoment& moment) const {
+std::size_t DetectionMonitor::seenBy(const Target& target, const WatchMoment& moment) const {
     std::size_t count = 0, parts = 0, together = 0;
     for (const Watcher& watcher : data_->watchers) {
         const bool is_own = watcher.rides() && watcher.carrier == target.owner;

@@ -32,13 +32,13 @@ struct WatchMoment {
 /// ultrasound on one plane. Walls and things hide, robots and people do not. All ultrasonic
 /// receivers count as one sensor, which sees where kMinReceivers of them hear. Sensors that ride on
 /// a robot or a person are taken where that is, and do not see their carrier.
-class Watch {
+class DetectionMonitor {
   public:
     /// The scene must outlive it.
-    explicit Watch(const Scene& scene, const WatchOptions& options = {});
-    ~Watch();
-    Watch(Watch&&) noexcept;
-    Watch& operator=(Watch&&) noexcept;
+    explicit DetectionMonitor(const Scene& scene, const WatchOptions& options = {});
+    ~DetectionMonitor();
+    DetectionMonitor(DetectionMonitor&&) noexcept;
+    DetectionMonitor& operator=(DetectionMonitor&&) noexcept;
 
     /// How many sensors could see somebody: all receivers count as one.
     [[nodiscard]] std::size_t sensors() const;
@@ -48,7 +48,7 @@ class Watch {
     /// Somebody; `owner` as carrierOf() names it.
     struct Target {
         Point2 place;
-        std::uint32_t owner = MovingBodies::kNobody;
+        std::uint32_t owner = MovingBodies::kNoOwner;
     };
     /// By how many sensors this target is seen now. Thread-safe.
     [[nodiscard]] std::size_t seenBy(const Target& target, const WatchMoment& moment = {}) const;

@@ -191,7 +191,7 @@ class Search {
         fit_ = 1e-3 * rounding_;
     }
 
-    std::optional<Fix> run() {
+    std::optional<PositionFix> run() {
         if (!(layout_.spread[1] > kLine * kLine * layout_.spread[2])) return std::nullopt;
         findCandidates();
         std::erase_if(candidates_, [this](const Candidate& one) { return !isHeard(one); });
@@ -288,9 +288,9 @@ class Search {
         return result;
     }
 
-    [[nodiscard]] Fix fixOf(const Candidate& candidate, const Vector3d& more) const {
+    [[nodiscard]] PositionFix fixOf(const Candidate& candidate, const Vector3d& more) const {
         const Vector3d variance = candidate.variance + more;
-        Fix fix;
+        PositionFix fix;
         fix.position = placeOf(candidate.x);
         fix.residual = std::sqrt(candidate.cost / static_cast<double>(heard_.size()));
         fix.pdop = std::sqrt(variance.sum());
@@ -311,7 +311,7 @@ class Search {
 
 }  // namespace
 
-std::optional<Fix> locate(std::span<const Hearing> heard) {
+std::optional<PositionFix> locate(std::span<const Hearing> heard) {
     if (heard.size() < kMinReceivers) return std::nullopt;
     return Search(heard).run();
 }

@@ -27,8 +27,8 @@ std::vector<double> distancesTo(const Points& receivers, Point3 place) {
 }
 
 /// The place by receivers that all have one cone, of half a space unless told otherwise.
-std::optional<Fix> locate(const Points& receivers, const std::vector<double>& distances, Vec3 axis,
-                          double fov = 180, double error = 0) {
+std::optional<PositionFix> locate(const Points& receivers, const std::vector<double>& distances,
+                                  Vec3 axis, double fov = 180, double error = 0) {
     std::vector<Hearing> heard;
     const double size = length(axis);
     for (std::size_t i = 0; i < receivers.size(); ++i)
@@ -205,7 +205,7 @@ struct Errors {
     double across = 0, up = 0;  // root mean squares
     double residual = 0;        // mean square
     double bias = 0;            // length of the mean error
-    Fix exact;
+    PositionFix exact;
 };
 Errors errorsOf(const Points& receivers, Point3 tag, double sigma, int rounds, unsigned seed) {
     const auto located = [&receivers, sigma](const std::vector<double>& distances) {
@@ -220,7 +220,7 @@ Errors errorsOf(const Points& receivers, Point3 tag, double sigma, int rounds, u
     for (int round = 0; round < rounds; ++round) {
         auto noisy = exact;
         for (double& d : noisy) d += sigma * random.normal();
-        const Fix fix = located(noisy);
+        const PositionFix fix = located(noisy);
         const Vec3 error = fix.position - tag;
         errors.across += (error.x * error.x + error.y * error.y) / rounds;
         errors.up += error.z * error.z / rounds;
@@ -266,10 +266,10 @@ TEST(Locate, ACrookedCeilingIsAPlaneAsFarAsNoiseTells) {
     for (int round = 0; round < 1000; ++round) {
         auto distances = distancesTo(receivers, tag);
         for (double& d : distances) d += 0.01 * random.normal();
-        const Fix fix = locate(receivers, distances, kDown, 360, 0.01).value();
+        const PositionFix fix = locate(receivers, distances, kDown, 360, 0.01).value();
         if (fix.position.z > 2.5) ++above;
         // It may as well be above: that a centimetre means so much is told.
-        const Fix sure = locate(receivers, distances, kDown, 180, 0.01).value();
+        const PositionFix sure = locate(receivers, distances, kDown, 180, 0.01).value();
         EXPECT_EQ(sure.position, fix.position);
         EXPECT_LT(sure.pdop, 2);
         EXPECT_GT(fix.pdop, 100);
@@ -287,7 +287,7 @@ TEST(Locate, NoiseBeyondThePlaneStaysFinite) {
         const Point3 tag = random.place({-1, -1, 2.3}, {3, 3, 2.5});
         auto distances = distancesTo(receivers, tag);
         for (double& d : distances) d = std::max(0.0, d + 0.05 * random.normal());
-        const Fix fix = locate(receivers, distances, kDown, 180, 0.05).value();
+        const PositionFix fix = locate(receivers, distances, kDown, 180, 0.05).value();
         ASSERT_LT(distance(fix.position, tag), 1);
         ASSERT_LE(fix.position.z, 2.5 + 1e-6);
         ASSERT_LT(fix.residual, 0.1);
@@ -352,7 +352,7 @@ TEST(Locate, ConesDecideBetweenMirrorImages) {
     EXPECT_LT(distance(ispace::locate(heard).value().position, tag), 1e-6);
     // All of space is heard: the axes still say which, and the dilution that they say no more.
     for (Hearing& one : heard) one.fov = Angle::degrees(360);
-    const Fix fix = ispace::locate(heard).value();
+    const PositionFix fix = ispace::locate(heard).value();
     EXPECT_LT(distance(fix.position, tag), 1e-6);
     EXPECT_TRUE(std::isinf(fix.pdop));
     EXPECT_TRUE(std::isinf(fix.vdop));

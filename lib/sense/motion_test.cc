@@ -26,7 +26,7 @@ std::vector<Scan> drive(const Scene& scene, const std::vector<TimedPose>& way, d
     const Sensors sensors = sensorsOf(scene, {});
     Worlds worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
-    ReadingTaker taker(sensors, worlds, bodies, {.follows_poses = true});
+    ReadingSampler taker(sensors, worlds, bodies, {.follows_poses = true});
     const ReadingJob job{0, 0, time, poseAlong(way, time), way};
     taker.prepare(job);
     return std::get<std::vector<Scan>>(taker.take(job));

@@ -90,12 +90,12 @@ TEST(Person, TheHeadIsABall) {
 }
 
 /// A camera that looks at a walker, and all its lines of sight.
-struct Look {
+struct Appearance {
     Camera camera;
     Pose3 pose;
     RayGrid grid;
 
-    Look(const Pose3& from, double fov) : pose(from) {
+    Appearance(const Pose3& from, double fov) : pose(from) {
         camera.columns = 40;
         camera.rows = 31;
         camera.fx = camera.fy = camera.focalFor(camera.columns, Angle::degrees(fov));
@@ -107,11 +107,11 @@ struct Look {
 
 /// What rays as those of tilted lasers and of level ones, one by one, and of rangers meet along a
 /// camera's lines of sight: multiples of them.
-std::array<std::vector<float>, 3> multiplesOf(const MovingBodies& bodies, const Look& look) {
+std::array<std::vector<float>, 3> multiplesOf(const MovingBodies& bodies, const Appearance& look) {
     const std::size_t count = look.grid.size();
     std::array<std::vector<float>, 3> out;
     out.fill(std::vector<float>(count, kNoReturn));
-    bodies.shorten(look.pose.position, look.grid, 100, MovingBodies::kNobody, out[0]);
+    bodies.shorten(look.pose.position, look.grid, 100, MovingBodies::kNoOwner, out[0]);
     Directions directions;
     directions.resize(count);
     std::vector<double> lengths;
@@ -127,11 +127,11 @@ std::array<std::vector<float>, 3> multiplesOf(const MovingBodies& bodies, const 
                                {directions.y[k]},
                                {0.0},
                                Directions::Arc{bearing, Angle::degrees(1)}};
-        bodies.shorten(look.pose.position, level, 100, MovingBodies::kNobody,
+        bodies.shorten(look.pose.position, level, 100, MovingBodies::kNoOwner,
                        std::span(out[2]).subspan(k, 1));
         out[2][k] = static_cast<float>(static_cast<double>(out[2][k]) / lengths[k]);
     }
-    bodies.shorten(look.pose.position, directions, 100, MovingBodies::kNobody, out[1]);
+    bodies.shorten(look.pose.position, directions, 100, MovingBodies::kNoOwner, out[1]);
     for (std::size_t k = 0; k < count; ++k)
         out[1][k] = static_cast<float>(static_cast<double>(out[1][k]) / lengths[k]);
     return out;
@@ -151,7 +151,7 @@ TEST(Person, LasersRangersAndCamerasAgreeOnWalkers) {
         const Angle bearing = Angle::degrees(360 * unit(random));
         const Point2 from = person.position - (1 + 2 * unit(random)) * unitVector(bearing);
         const double tilt = round % 2 == 0 ? 0 : 30 * unit(random) - 15;
-        const Look look(
+        const Appearance look(
             {{from.x, from.y, 0.05 + 1.65 * unit(random)}, bearing, Angle::degrees(tilt), {}},
             30 + 40 * unit(random));
         const Pose3 pose{{person.position.x, person.position.y, 0}, person.heading, {}, {}};

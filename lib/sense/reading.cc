@@ -39,7 +39,7 @@ std::vector<Scan> scansOf(const Laser& laser, const ReadingJob& job) {
 
 }  // namespace
 
-struct ReadingTaker::Data {
+struct ReadingSampler::Data {
     const Sensors& sensors;
     Worlds& worlds;
     const MovingBodies& bodies;
@@ -77,7 +77,7 @@ struct ReadingTaker::Data {
     Reading take(const Camera& camera, const ReadingJob& job);
 };
 
-void ReadingTaker::Data::prepare(const Laser& laser, const ReadingJob& job) {
+void ReadingSampler::Data::prepare(const Laser& laser, const ReadingJob& job) {
     if (laser.sweep == SweepAxis::Tilt || laser.sweep == SweepAxis::Roll) {
         // One of its scans may be level.
         worlds.prepare({job.pose.position, {}, {}, {}});
@@ -90,14 +90,14 @@ void ReadingTaker::Data::prepare(const Laser& laser, const ReadingJob& job) {
         worlds.prepareMesh();
 }
 
-Reading ReadingTaker::Data::take(const Laser& laser, const ReadingJob& job) {
+Reading ReadingSampler::Data::take(const Laser& laser, const ReadingJob& job) {
     std::vector<Scan> scans = scansOf(laser, job);
     LaserCaster& caster = casterOf(job.sensor);
     for (Scan& scan : scans) caster.cast(scan);
     return scans;
 }
 
-Reading ReadingTaker::Data::take(const Ranger& /*ranger*/, const ReadingJob& job) {
+Reading ReadingSampler::Data::take(const Ranger& /*ranger*/, const ReadingJob& job) {
     const Pose3 pose = job.way.empty() ? job.pose : poseAlong(job.way, job.time);
     DepthFrame frame = castDepth(worlds.mesh(), bodies, sensors.read[job.sensor], pose, job.frame,
                                  {options.noise_seed});
@@ -105,29 +105,29 @@ Reading ReadingTaker::Data::take(const Ranger& /*ranger*/, const ReadingJob& job
     return frame;
 }
 
-Reading ReadingTaker::Data::take(const Tag& /*tag*/, const ReadingJob& job) {
+Reading ReadingSampler::Data::take(const Tag& /*tag*/, const ReadingJob& job) {
     return castBurst(worlds.mesh(Surfaces::Solid), bodies, sensors.read[job.sensor],
                      sensors.receivers, job.frame, job.time, {options.celsius, options.noise_seed});
 }
 
-Reading ReadingTaker::Data::take(const Camera& /*camera*/, const ReadingJob& job) {
+Reading ReadingSampler::Data::take(const Camera& /*camera*/, const ReadingJob& job) {
     const Pose3 pose = job.way.empty() ? job.pose : poseAlong(job.way, job.time);
     Photo photo = options.photographer->take(sensors.read[job.sensor], pose, job.frame);
     photo.time = job.time;
     return photo;
 }
 
-ReadingTaker::ReadingTaker(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,
-                           const TakerOptions& options)
+ReadingSampler::ReadingSampler(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,
+                               const TakerOptions& options)
     : data_(std::make_unique<Data>(Data{sensors, worlds, bodies, options, {}})) {}
-ReadingTaker::~ReadingTaker() = default;
+ReadingSampler::~ReadingSampler() = default;
 
-void ReadingTaker::prepare(const ReadingJob& job) {
+void ReadingSampler::prepare(const ReadingJob& job) {
     std::visit([&](const auto& model) { data_->prepare(model, job); },
                data_->sensors.read[job.sensor].model);
 }
 
-Reading ReadingTaker::take(const ReadingJob& job) {
+Reading ReadingSampler::take(const ReadingJob& job) {
     return std::visit([&](const auto& model) { return data_->take(model, job); },
                       data_->sensors.read[job.sensor].model);
 }

@@ -41,14 +41,14 @@ struct TakerOptions {
 };
 
 /// Takes readings in any order on any thread; each depends only on its job.
-class ReadingTaker {
+class ReadingSampler {
   public:
     /// \pre all arguments outlive it
-    ReadingTaker(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,
-                 const TakerOptions& options);
-    ~ReadingTaker();
-    ReadingTaker(const ReadingTaker&) = delete;
-    ReadingTaker& operator=(const ReadingTaker&) = delete;
+    ReadingSampler(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,
+                   const TakerOptions& options);
+    ~ReadingSampler();
+    ReadingSampler(const ReadingSampler&) = delete;
+    ReadingSampler& operator=(const ReadingSampler&) = delete;
 
     /// Prepares the worlds for a job. Called by one thread in the order of jobs, while others may
     /// take readings.

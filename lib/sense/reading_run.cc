@@ -192,7 +192,7 @@ constexpr std::size_t kBatchRays = 1 << 15;
 /// Rays of the sensor with the most.
 std::size_t mostRays(const Sensors& sensors) {
     std::size_t most = 1;
-    for (const Sensor& sensor : sensors.read) most = std::max(most, raysOf(sensor.model));
+    for (const Sensor& sensor : sensors.read) most = std::max(most, rayCount(sensor.model));
     return most;
 }
 
@@ -203,7 +203,7 @@ std::size_t batchesOf(const Sensors& sensors) {
     std::size_t bytes = 1;
     for (const Sensor& sensor : sensors.read) {
         const std::size_t of_ray = sensor.is<Camera>() ? 200 : 64;
-        bytes = std::max(bytes, of_ray * raysOf(sensor.model));
+        bytes = std::max(bytes, of_ray * rayCount(sensor.model));
     }
     const auto cores = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     return std::clamp<std::size_t>(kMaxBytes / bytes, 1, 2 * std::max<std::size_t>(1, cores));
@@ -211,7 +211,7 @@ std::size_t batchesOf(const Sensors& sensors) {
 
 }  // namespace
 
-void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sensors,
+void runReadings(ReadingSource& source, ReadingSampler& taker, const Sensors& sensors,
                  const ReadingFormat& format, Packing packing, Coordinates coordinates,
                  Progress& progress, const std::function<void(Readings&)>& write) {
     using Batch = std::shared_ptr<Readings>;

@@ -129,7 +129,7 @@ enum class Packing { Stream, Files, Clouds };
 /// Takes all readings of a source on all cores and hands them to `write` in order, from one thread
 /// at a time. Memory is bounded by the number of cores, not of jobs. If the source fails,
 /// everything before the error is still written.
-void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sensors,
+void runReadings(ReadingSource& source, ReadingSampler& taker, const Sensors& sensors,
                  const ReadingFormat& format, Packing packing, Coordinates coordinates,
                  Progress& progress, const std::function<void(Readings&)>& write);
 

@@ -25,7 +25,7 @@ std::string run(const Scene& scene, const std::string& format, int frames,
     const Sensors sensors = sensorsOf(scene, {});
     Worlds worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
-    ReadingTaker taker(sensors, worlds, bodies, options);
+    ReadingSampler taker(sensors, worlds, bodies, options);
     StillSource source(sensors, frames);
     SilentProgress progress;
     const auto writer = makeFormat(format, sensors, {});
@@ -112,7 +112,7 @@ TEST(ReadingRun, WhatComesBeforeAFailureIsWritten) {
     for (int i = 0; i < 10; ++i) {
         Worlds worlds(scene.environment);
         const MovingBodies nobody;
-        ReadingTaker taker(sensors, worlds, nobody, {});
+        ReadingSampler taker(sensors, worlds, nobody, {});
         Failing source;
         SilentProgress progress;
         const auto raw = makeFormat("raw", sensors, {});

@@ -70,7 +70,7 @@ double wholeNanoseconds(double seconds) {
 std::uint32_t carrierOf(const Sensor& sensor) {
     if (sensor.mount) return static_cast<std::uint32_t>(sensor.mount->robot);
     if (sensor.person) return kFirstPerson + static_cast<std::uint32_t>(*sensor.person);
-    return MovingBodies::kNobody;
+    return MovingBodies::kNoOwner;
 }
 
 MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner) {

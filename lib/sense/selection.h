@@ -40,7 +40,7 @@ std::vector<MovingBody> bodiesOf(const Scene& scene);
 constexpr std::uint32_t kFirstPerson = 1U << 31U;
 
 /// Owner of the bodies that do not hide anything from a sensor: the robot or person that carries
-/// it, or MovingBodies::kNobody.
+/// it, or MovingBodies::kNoOwner.
 std::uint32_t carrierOf(const Sensor& sensor);
 
 MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner);

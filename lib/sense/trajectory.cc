@@ -30,7 +30,7 @@ std::string_view nextWord(std::string_view& line) {
 }
 
 /// Plans lie within this of the origin, in metres.
-constexpr double kFarthest = 1e6;
+constexpr double kMaxDistance = 1e6;
 
 }  // namespace
 
@@ -56,7 +56,7 @@ std::optional<TimedPose> parseTumLine(std::string_view line) {
     if (count < values.size())
         fail(0, std::to_string(count) + " columns; a pose is `t x y z qx qy qz qw`");
     const auto [t, x, y, z, qx, qy, qz, qw] = values;
-    if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > kFarthest)
+    if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > kMaxDistance)
         fail(columns[1], "the place is more than 1000 km away");
     // What nanoseconds in 64 bits can count.
     constexpr double kLongest = 9e9;

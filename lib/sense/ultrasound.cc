@@ -31,9 +31,9 @@ bool isWithinCone(Angle fov, double axis_cosine) {
 /// Bodies of neither carrier are in the way.
 bool isBodyBetween(const MovingBodies& bodies, Point3 a, Point3 b, std::uint32_t carrier_of_a,
                    std::uint32_t carrier_of_b) {
-    if (carrier_of_a == MovingBodies::kNobody || carrier_of_a == carrier_of_b)
+    if (carrier_of_a == MovingBodies::kNoOwner || carrier_of_a == carrier_of_b)
         return bodies.between(a, b, carrier_of_b);
-    if (carrier_of_b == MovingBodies::kNobody) return bodies.between(a, b, carrier_of_a);
+    if (carrier_of_b == MovingBodies::kNoOwner) return bodies.between(a, b, carrier_of_a);
     // A robot that hears another one is rare.
     const double distance = length(b - a);
     const Vec3 direction = (1 / distance) * (b - a);
@@ -91,8 +91,8 @@ double errorOf(const RangeNoise& noise, double distance) {
     return std::hypot(sigma, noise.bias, noise.resolution);
 }
 
-std::optional<Fix> fixOf(std::span<const TimeOfFlight> heard, std::span<const Sensor> receivers,
-                         bool has_noise) {
+std::optional<PositionFix> fixOf(std::span<const TimeOfFlight> heard,
+                                 std::span<const Sensor> receivers, bool has_noise) {
     std::vector<Hearing> hearings;
     hearings.reserve(heard.size());
     for (const TimeOfFlight& flight : heard) {

@@ -24,7 +24,7 @@ struct TimeOfFlight {
 };
 
 /// A position computed from distances by least squares.
-struct Fix {
+struct PositionFix {
     Point3 position;
     double residual = 0;  ///< root mean square of measured less computed distances, metres
     /// Dilution of precision: the factor from the error of a distance to that of the position, in
@@ -56,7 +56,7 @@ struct Hearing {
 /// place is left, or if two are and the axes point along the plane. Across the plane of the
 /// receivers the dilution of precision of a place in it is unbounded and may be +infinity. \pre
 /// distances are finite
-std::optional<Fix> locate(std::span<const Hearing> heard);
+std::optional<PositionFix> locate(std::span<const Hearing> heard);
 
 /// One burst of a tag.
 struct Burst {
@@ -64,7 +64,7 @@ struct Burst {
     int frame = 0;
     Pose3 pose;                       ///< the tag's true one
     std::vector<TimeOfFlight> heard;  ///< in the order of receivers
-    std::optional<Fix> fix;           ///< of a tag located by times of flight
+    std::optional<PositionFix> fix;   ///< of a tag located by times of flight
     std::optional<Point2> simple;     ///< of one located by the simple model
 };
 

@@ -329,10 +329,11 @@ TEST(Burst, PlacesErrBySigmaTimesDilution) {
     const RayWorld world = room();
     const auto receivers = ceiling(kSigma);
     const Sensor tag = tagAt({3.2, 2.7, 0.9});
-    const Fix exact = burstOf(world, tag, receivers).fix.value();
+    const PositionFix exact = burstOf(world, tag, receivers).fix.value();
     double across = 0, up = 0;
     for (int frame = 0; frame < kFrames; ++frame) {
-        const Fix fix = burstOf(world, tag, receivers, {.noise_seed = 11}, frame).fix.value();
+        const PositionFix fix =
+            burstOf(world, tag, receivers, {.noise_seed = 11}, frame).fix.value();
         const Vec3 error = fix.position - tag.pose.position;
         across += error.x * error.x + error.y * error.y;
         up += error.z * error.z;

@@ -3,14 +3,14 @@
 
 namespace ispace {
 
-bool BurialTest::isBuried(Point3 point) {
+bool BurialTest::isInsideSolid(Point3 point) {
     constexpr std::size_t kMaxHeights = 64;
     auto known = levels_.find(point.z);
     if (known == levels_.end()) {
         if (levels_.size() == kMaxHeights) return false;
         known = levels_.emplace(point.z, environment_.level(point.z)).first;
     }
-    return known->second->isBuried(point.onFloor());
+    return known->second->isInsideSolid(point.onFloor());
 }
 
 }  // namespace ispace

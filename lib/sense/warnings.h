@@ -8,12 +8,12 @@
 
 namespace ispace {
 
-/// Tests many points for solids around them, see Level::isBuried. Each height costs a slice, so
-/// only points at the first 64 heights are tested; at others the answer is no.
+/// Tests many points for solids around them, see Level::isInsideSolid. Each height costs a slice,
+/// so only points at the first 64 heights are tested; at others the answer is no.
 class BurialTest {
   public:
     explicit BurialTest(const Environment& environment) : environment_(environment) {}
-    [[nodiscard]] bool isBuried(Point3 point);
+    [[nodiscard]] bool isInsideSolid(Point3 point);
 
   private:
     const Environment& environment_;

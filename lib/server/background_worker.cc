@@ -6,9 +6,9 @@
 
 namespace ispace {
 
-Workshop::Workshop(std::function<void()> wake) : wake_(std::move(wake)) {}
+BackgroundWorker::BackgroundWorker(std::function<void()> wake) : wake_(std::move(wake)) {}
 
-Workshop::~Workshop() {
+BackgroundWorker::~BackgroundWorker() {
     {
         const std::lock_guard lock(mutex_);
         ends_ = true;
@@ -19,7 +19,7 @@ Workshop::~Workshop() {
 }
 
 /// Starts it if that has not been done.
-bool Workshop::hasThread() {
+bool BackgroundWorker::hasThread() {
     if (thread_.joinable() || is_refused_) return !is_refused_;
     try {
         thread_ = std::thread([this] { run(); });
@@ -29,7 +29,7 @@ bool Workshop::hasThread() {
     return !is_refused_;
 }
 
-void Workshop::give(Job job) {
+void BackgroundWorker::give(Job job) {
     ++open_;
     if (!hasThread()) {
         Done done = doneNow(std::move(job));
@@ -47,12 +47,12 @@ void Workshop::give(Job job) {
     changed_.notify_all();
 }
 
-void Workshop::doNow(Job job) {
+void BackgroundWorker::doNow(Job job) {
     const Done done = doneNow(std::move(job));
     done.job.deliver(done.failure);
 }
 
-bool Workshop::collect() {
+bool BackgroundWorker::collect() {
     std::vector<Done> done;
     {
         const std::lock_guard lock(mutex_);
@@ -63,7 +63,7 @@ bool Workshop::collect() {
     return !done.empty();
 }
 
-void Workshop::collectWithin(std::chrono::nanoseconds patience) {
+void BackgroundWorker::collectWithin(std::chrono::nanoseconds patience) {
     if (open_ > 0) {
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, patience, [this] { return !done_.empty(); });
@@ -71,11 +71,11 @@ void Workshop::collectWithin(std::chrono::nanoseconds patience) {
     collect();
 }
 
-void Workshop::collectAll() {
+void BackgroundWorker::collectAll() {
     while (open_ > 0) collectWithin(std::chrono::seconds(1));
 }
 
-Workshop::Done Workshop::doneNow(Job job) {
+BackgroundWorker::Done BackgroundWorker::doneNow(Job job) {
     Done done{std::move(job), nullptr};
     try {
         done.job.work();
@@ -86,7 +86,7 @@ Workshop::Done Workshop::doneNow(Job job) {
     return done;
 }
 
-void Workshop::run() {
+void BackgroundWorker::run() {
     std::unique_lock lock(mutex_);
     while (true) {
         changed_.wait(lock, [this] { return ends_ || !waiting_.empty(); });

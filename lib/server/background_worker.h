@@ -18,14 +18,14 @@ namespace ispace {
 /// the order they were given. It begins with the first job. It is there however many threads may
 /// compute (TBB's limit, which holds for what a job does): clients are served meanwhile. Where the
 /// system refuses another thread, the owner's does each job as it is given.
-class Workshop {
+class BackgroundWorker {
   public:
     /// \param wake is called by that thread when a job is done
-    explicit Workshop(std::function<void()> wake);
+    explicit BackgroundWorker(std::function<void()> wake);
     /// Waits for the job that is being done, and drops the others.
-    ~Workshop();
-    Workshop(const Workshop&) = delete;
-    Workshop& operator=(const Workshop&) = delete;
+    ~BackgroundWorker();
+    BackgroundWorker(const BackgroundWorker&) = delete;
+    BackgroundWorker& operator=(const BackgroundWorker&) = delete;
 
     struct Job {
         /// In the thread of the workshop, where what it holds also ends.

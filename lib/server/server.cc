@@ -143,7 +143,7 @@ void Server::Data::stepped() {
         connection->stepped(may_be_late || steady_clock::now() < end);
     for (DevicePort& device : devices) device.stepped();
     if (web) web->stepped();
-    static_cast<void>(state.hasNews());
+    static_cast<void>(state.hasUpdates());
     has_news = false;
     next_news = steady_clock::now() + kNewsEvery;
 }
@@ -191,7 +191,7 @@ void Server::Data::serveClients() {
         device.serve(steady_clock::now());
         if (has_made) device.stepped();
     }
-    has_news = state.hasNews() || has_news;
+    has_news = state.hasUpdates() || has_news;
     if (has_news && steady_clock::now() >= next_news) stepped();
     if (limits.watchdog.count() > 0) {
         const WallTime since = steady_clock::now() - limits.watchdog;

@@ -105,7 +105,7 @@ void ServerState::sync() {
     kept_ = 0;
 }
 
-bool ServerState::hasNews() {
+bool ServerState::hasUpdates() {
     const std::int64_t changes = simulation_->world().changes();
     const std::int64_t event = simulation_->events().next();
     const bool none = told_changes_ == changes && told_event_ == event;
@@ -138,11 +138,11 @@ bool ServerState::holdsWorld() const {
     return may_wait && !isAtRest();
 }
 
-void ServerState::doAside(Workshop::Job job) {
+void ServerState::runInBackground(BackgroundWorker::Job job) {
     if (workshop_)
         workshop_->give(std::move(job));
     else
-        Workshop::doNow(std::move(job));
+        BackgroundWorker::doNow(std::move(job));
 }
 
 bool ServerState::collect() {
@@ -152,11 +152,11 @@ bool ServerState::collect() {
 }
 
 /// In the thread that builds, if there is one.
-void ServerState::build(Workshop::Job job) {
+void ServerState::build(BackgroundWorker::Job job) {
     if (builders_)
         builders_->give(std::move(job));
     else
-        Workshop::doNow(std::move(job));
+        BackgroundWorker::doNow(std::move(job));
 }
 
 /// To end a world takes long, too.
@@ -272,11 +272,11 @@ std::shared_ptr<const ServerState::Asked> ServerState::refusal(std::size_t senso
     const auto sensors = simulation_->world().sensors();
     double pixels = pixelsOf(sensors[sensor]);
     for (const Making& making : makings_) pixels += making.pixels;
-    if (makings_.empty() || pixels <= kMostWaitingPixels) return nullptr;
+    if (makings_.empty() || pixels <= kMaxWaitingPixels) return nullptr;
     return std::make_shared<const Asked>(Asked{
         counted(errorLine(
             409, {"pictures of ", formatFixed(pixels, 0), " pixels would wait to be made, at most ",
-                  formatFixed(kMostWaitingPixels, 0), " may: ask again later"})),
+                  formatFixed(kMaxWaitingPixels, 0), " may: ask again later"})),
         true});
 }
 
@@ -301,7 +301,7 @@ std::function<SensorReading()> ServerState::beginMaking(Making& making) {
         making.reading = std::make_shared<SensorReading>(world.reading(making.sensor));
     } else if (!making.reading) {
         making.reading = std::make_shared<SensorReading>();
-        take = world.takeLater(making.sensor);
+        take = world.captureLater(making.sensor);
     }
     making.pixels = pixelsOf(world.sensors()[making.sensor]);
     makings_.push_back(making);
@@ -313,25 +313,26 @@ void ServerState::make(const Making& making, std::function<SensorReading()> take
     World& world = simulation_->world();
     const auto text = std::make_shared<std::string>();
     const bool takes = take != nullptr;
-    doAside({[making, text, take = std::move(take), sensor = world.sensors()[making.sensor],
-              use = std::move(frame.use)] {
-                 if (take) *making.reading = take();
-                 if (use) use(*making.reading);
-                 if (making.form) *text = scanText(sensor, *making.reading, *making.form);
-             },
-             [this, making, text, takes,
-              deliver = std::move(frame.deliver)](const std::exception_ptr& failure) {
-                 std::erase_if(makings_,
-                               [&](const Making& other) { return other.asked == making.asked; });
-                 const bool is_same = making.changes == simulation_->world().changes();
-                 if (!failure && takes && is_same)
-                     simulation_->world().put(making.sensor, *making.reading);
-                 if (deliver) return deliver(failure);
-                 making.asked->is_error = failure != nullptr;
-                 making.asked->bytes = counted(failure ? errorLineOf(failure) : std::move(*text));
-                 if (is_same && !failure)
-                     keep(textOf(making.sensor, *making.form), making.seq, making.asked->bytes);
-             }});
+    runInBackground(
+        {[making, text, take = std::move(take), sensor = world.sensors()[making.sensor],
+          use = std::move(frame.use)] {
+             if (take) *making.reading = take();
+             if (use) use(*making.reading);
+             if (making.form) *text = scanText(sensor, *making.reading, *making.form);
+         },
+         [this, making, text, takes,
+          deliver = std::move(frame.deliver)](const std::exception_ptr& failure) {
+             std::erase_if(makings_,
+                           [&](const Making& other) { return other.asked == making.asked; });
+             const bool is_same = making.changes == simulation_->world().changes();
+             if (!failure && takes && is_same)
+                 simulation_->world().put(making.sensor, *making.reading);
+             if (deliver) return deliver(failure);
+             making.asked->is_error = failure != nullptr;
+             making.asked->bytes = counted(failure ? errorLineOf(failure) : std::move(*text));
+             if (is_same && !failure)
+                 keep(textOf(making.sensor, *making.form), making.seq, making.asked->bytes);
+         }});
 }
 
 std::shared_ptr<const std::string> ServerState::counted(std::string text) const {

@@ -158,7 +158,7 @@ class ServerState {
         if (isAtRest()) prepare({});
     }
     /// True if there may be news for clients since the last call: a change, a mark.
-    [[nodiscard]] bool hasNews();
+    [[nodiscard]] bool hasUpdates();
 
     [[nodiscard]] StepQueue& steps() { return steps_; }
     /// Of all clients together.
@@ -179,7 +179,7 @@ class ServerState {
     /// Takes a frame for a record, likewise; those who ask() for the same one share it.
     void takeFrame(FrameJob job);
     /// Does something, in another thread if makeAside() was called; collect() then delivers it.
-    void doAside(Workshop::Job job);
+    void runInBackground(BackgroundWorker::Job job);
     /// Lets another thread make what takes long. It calls `wake` when something is ready for
     /// collect(). \param stopped true once nobody waits for that any more
     void makeAside(const std::function<void()>& wake, std::function<bool()> stopped) {
@@ -231,7 +231,7 @@ class ServerState {
     void make(const Making& making, std::function<SensorReading()> take, FrameJob frame = {});
     bool prepare(std::optional<SimTime> to);
     bool goOnSeeking();
-    void build(Workshop::Job job);
+    void build(BackgroundWorker::Job job);
     void endLater(std::shared_ptr<const void> old);
     void adopt(WorldChange change, std::exception_ptr failure, WallTime began,
                const std::function<void(const std::exception_ptr& failure)>& end);
@@ -244,7 +244,7 @@ class ServerState {
     std::optional<WorldEditor> editor_;
     ChangeBudget changes_;
     std::int64_t seen_changes_ = 0;                   // of the world
-    std::int64_t told_changes_ = 0, told_event_ = 0;  // at the last hasNews()
+    std::int64_t told_changes_ = 0, told_event_ = 0;  // at the last hasUpdates()
     TokenBucket pauses_, wrong_tokens_;
     std::vector<std::vector<Text>> texts_;  // of each sensor, in every form that was asked for
     std::size_t kept_ = 0;                  // bytes in texts_
@@ -255,7 +255,7 @@ class ServerState {
     std::shared_ptr<Seek> seek_;  // null: there is none
     std::function<bool()> stopped_;
     // The last, as their jobs are about the others: of pictures, and of changes of the world.
-    std::optional<Workshop> workshop_, builders_;
+    std::optional<BackgroundWorker> workshop_, builders_;
 };
 
 }  // namespace ispace

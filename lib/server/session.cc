@@ -117,7 +117,7 @@ std::span<const Session::Request> Session::requests() {
     constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
     static constexpr auto kRequests = std::to_array<Request>({
         {"TOKEN", "x", std::nullopt, 1, 1, &C::token},
-        {"ROBOT", "id", Role::None, 1, 1, &C::takeRobot},
+        {"ROBOT", "id", Role::None, 1, 1, &C::acquireRobot},
         {"PERSON", "id", Role::None, 1, 1, &C::takePerson},
         {"LASER", "id", Role::None, 1, 1, &C::takeLaser},
         {"SENSOR", "id", Role::None, 1, 1, &C::takeSensor},
@@ -219,7 +219,7 @@ void Session::request(std::string_view line) {
         out_.resize(before);
         out_ += errorLineOf(std::current_exception());
     }
-    tellEnds();
+    sendCompletions();
 }
 
 void Session::tooLong(std::size_t limit) {
@@ -231,7 +231,7 @@ void Session::tooLong(std::size_t limit) {
 void Session::stepped(bool has_room) {
     sync();
     receiveAsked();
-    tellEnds();
+    sendCompletions();
     if (has_room) tellEvents();
     if (every_ > 0) streamSensor();
     if (seek_ && seek_->is_over) answerSeek();
@@ -262,7 +262,7 @@ void Session::silent() {
     sync();
     if (!drives()) return;
     world().command(subject_, {Verb::Stop, 0});
-    tellEnds();
+    sendCompletions();
 }
 
 void Session::finish() {
@@ -412,7 +412,7 @@ void Session::leave() {
     coming_.reset();
 }
 
-void Session::tellEnds() {
+void Session::sendCompletions() {
     if (running_.empty()) return;
     for (const CommandEnd& end : world().ends()) {
         if (end.robot != subject_ || std::erase(running_, end.id) == 0) continue;

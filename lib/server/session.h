@@ -124,7 +124,7 @@ class Session {
     void lose();
     bool mayAskFor(std::string_view verb);
     void leave();
-    void tellEnds();
+    void sendCompletions();
     void tellEvents();
     void answerStep();
     void answerSeek();
@@ -138,7 +138,7 @@ class Session {
     void receiveAsked();
 
     void token(Words words);
-    void takeRobot(Words words);
+    void acquireRobot(Words words);
     void takePerson(Words words);
     [[nodiscard]] bool seize(Role role, std::string_view id, std::size_t mover);
     void takeLaser(Words words);

@@ -35,8 +35,8 @@ void Session::token(Words words) {
         return;
     }
     wrong.take();
-    constexpr int kMostWrong = 3;
-    closing_ = ++wrong_tokens_ == kMostWrong;
+    constexpr int kMaxWrong = 3;
+    closing_ = ++wrong_tokens_ == kMaxWrong;
     error(401, {"this is not the token of this run"});
 }
 

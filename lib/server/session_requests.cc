@@ -237,7 +237,7 @@ std::string speedsText(const RobotModel& model) {
 
 }  // namespace
 
-void Session::takeRobot(Words words) {
+void Session::acquireRobot(Words words) {
     const auto robot = world().robotNamed(words[1]);
     if (!robot) return error(404, {unknownThing("robot", words[1], idsOf(world().robots()))});
     if (!seize(Role::Robot, words[1], *robot)) return;

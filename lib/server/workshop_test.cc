@@ -13,10 +13,10 @@ namespace {
 
 using Control = tbb::global_control;
 
-TEST(Workshop, DoesJobsInOrderInAnotherThread) {
+TEST(BackgroundWorker, DoesJobsInOrderInAnotherThread) {
     const Control two(Control::max_allowed_parallelism, 2);
     std::atomic<int> wakes = 0;
-    Workshop workshop([&wakes] { ++wakes; });
+    BackgroundWorker workshop([&wakes] { ++wakes; });
     std::string worked, delivered;
     const auto owner = std::this_thread::get_id();
     for (const char name : {'a', 'b', 'c'})
@@ -37,8 +37,8 @@ TEST(Workshop, DoesJobsInOrderInAnotherThread) {
     EXPECT_FALSE(workshop.collect());
 }
 
-TEST(Workshop, DeliversWhatAJobThrows) {
-    Workshop workshop([] {});
+TEST(BackgroundWorker, DeliversWhatAJobThrows) {
+    BackgroundWorker workshop([] {});
     std::string told;
     workshop.give({[] { throw std::runtime_error("no paper"); },
                    [&told](const std::exception_ptr& failure) {
@@ -52,8 +52,8 @@ TEST(Workshop, DeliversWhatAJobThrows) {
     EXPECT_EQ(told, "no paper");
 }
 
-TEST(Workshop, GivesJobsWhileDelivering) {
-    Workshop workshop([] {});
+TEST(BackgroundWorker, GivesJobsWhileDelivering) {
+    BackgroundWorker workshop([] {});
     int left = 5;
     std::function<void(const std::exception_ptr&)> again = [&](const std::exception_ptr&) {
         if (--left > 0) workshop.give({[] {}, again});
@@ -64,9 +64,9 @@ TEST(Workshop, GivesJobsWhileDelivering) {
 }
 
 /// Whose clients would wait for a picture otherwise.
-TEST(Workshop, HasItsThreadWhereOneAloneMayCompute) {
+TEST(BackgroundWorker, HasItsThreadWhereOneAloneMayCompute) {
     const Control one(Control::max_allowed_parallelism, 1);
-    Workshop workshop([] {});
+    BackgroundWorker workshop([] {});
     const auto owner = std::this_thread::get_id();
     bool is_delivered = false;
     workshop.give({[owner] { EXPECT_NE(std::this_thread::get_id(), owner); },
@@ -75,12 +75,12 @@ TEST(Workshop, HasItsThreadWhereOneAloneMayCompute) {
     EXPECT_EQ(workshop.open(), 0U);
 }
 
-TEST(Workshop, DropsWhatIsNotBegun) {
+TEST(BackgroundWorker, DropsWhatIsNotBegun) {
     const Control two(Control::max_allowed_parallelism, 2);
     std::atomic<bool> begun = false, may_end = false;
     std::atomic<int> worked = 0;
     {
-        Workshop workshop([] {});
+        BackgroundWorker workshop([] {});
         const auto nothing = [](const std::exception_ptr&) { FAIL(); };
         workshop.give({[&] {
                            begun = true;

@@ -19,7 +19,7 @@ namespace ispace {
 namespace {
 
 /// A slip of a digit, not a way to go; it also keeps poses within what doubles resolve.
-constexpr double kFarthest = 1e6;
+constexpr double kMaxDistance = 1e6;
 
 constexpr std::string_view kPathExample = "PATH 1,0;1,2 speed=0.3";
 
@@ -86,10 +86,10 @@ ParsedCommand parseValue(const VerbFacts& facts, std::string_view text) {
             CommandError::Kind::Range,
             join({facts.name, " takes no negative ", facts.value_name, ", use ", facts.opposite}));
     }
-    if (comesToAnEnd(facts.verb) && *value > kFarthest) {
+    if (comesToAnEnd(facts.verb) && *value > kMaxDistance) {
         return refuse(CommandError::Kind::Range,
-                      join({facts.name, " takes at most ", formatDouble(kFarthest), " ", facts.unit,
-                            ", found ", excerpt(text)}));
+                      join({facts.name, " takes at most ", formatDouble(kMaxDistance), " ",
+                            facts.unit, ", found ", excerpt(text)}));
     }
     // Adding 0 drops the sign of minus zero.
     return {Command{facts.verb, *value + 0.0}, {}};
@@ -127,7 +127,7 @@ std::string applyPathKey(std::string_view text, Command& command) {
     } else if (key == "speed" && number && *number > 0) {
         command.speed = *number;
     } else if (key == "pause" && number && *number >= 0) {
-        command.course.pause = std::min(*number, kFarthest);
+        command.course.pause = std::min(*number, kMaxDistance);
     } else {
         return join(
             {"PATH takes speed= in metres a second above 0, pause= in seconds and "
@@ -144,9 +144,9 @@ ParsedCommand parsePath(std::span<const Piece> words) {
         return refusePath("PATH wants places x,y;x,y in metres" + found);
     }
     for (const Point2 p : *places)
-        if (!(std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest))
+        if (!(std::abs(p.x) <= kMaxDistance && std::abs(p.y) <= kMaxDistance))
             return refuse(CommandError::Kind::Range,
-                          join({"PATH goes at most ", formatDouble(kFarthest), " metres"}));
+                          join({"PATH goes at most ", formatDouble(kMaxDistance), " metres"}));
     Command command = pathCommand({.path = *places});
     for (const Piece& word : words.subspan(1))
         if (std::string wrong = applyPathKey(word.text, command); !wrong.empty())
@@ -156,7 +156,7 @@ ParsedCommand parsePath(std::span<const Piece> words) {
 
 }  // namespace
 
-Command pathCommand(Course course, double speed) {
+Command pathCommand(MotionPlan course, double speed) {
     double length = 0;
     for (std::size_t i = 1; i < course.path.size(); ++i)
         length += distance(course.path[i - 1], course.path[i]);
@@ -299,7 +299,7 @@ std::vector<TimedCommand> ScriptReader::take() {
 
 std::vector<TimedCommand> readScript(std::string_view text, const std::string& file,
                                      const World& world) {
-    text = withoutMark(text);
+    text = withoutBom(text);
     checkTextBytes(text, file);
     ScriptReader reader(file, world);
     LineReader lines(text);

@@ -32,13 +32,13 @@ std::optional<Verb> verbNamed(std::string_view name);
 struct Command {
     Verb verb = Verb::Stop;
     double value = 0;
-    Course course = {};  ///< of Path: at least one place
-    double speed = 0;    ///< of Path, m/s; 0: the usual one
+    MotionPlan course = {};  ///< of Path: at least one place
+    double speed = 0;        ///< of Path, m/s; 0: the usual one
     friend bool operator==(const Command&, const Command&) = default;
 };
 
 /// A Path over these places. \pre there is one
-Command pathCommand(Course course, double speed = 0);
+Command pathCommand(MotionPlan course, double speed = 0);
 
 /// Why a text is no command.
 struct CommandError {

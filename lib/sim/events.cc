@@ -109,7 +109,7 @@ struct EventLog::Data {
     };
     std::vector<Walker> walkers;                         // as World::movers()
     std::map<std::string, std::vector<std::string>> on;  // who was on each mat
-    std::optional<Watch> watch;                          // once sight is asked for
+    std::optional<DetectionMonitor> watch;               // once sight is asked for
     std::int64_t look = -1;                              // the last one
 };
 

@@ -169,7 +169,7 @@ struct ExpectationJudge::Data {
     std::vector<Expectation> expectations;
     std::vector<std::vector<Polygon>> zones;  // of the expectations; empty without
     std::vector<Trial> trials;
-    std::optional<Watch> watch;
+    std::optional<DetectionMonitor> watch;
     std::vector<Pose2> poses;  // of all movers, for the watch
     std::int64_t changes = 0;  // of the world, when everything was found
 };

@@ -83,7 +83,7 @@ AllReadings readByScan(const Scene& scene, bool noise, double duration) {
     const Photographer photographer(scene, {.seed = 7, .with_noise = noise});
     TakerOptions options{.photographer = &photographer};
     if (noise) options.noise_seed = 7;
-    ReadingTaker taker(sensors, worlds, bodies, options);
+    ReadingSampler taker(sensors, worlds, bodies, options);
     for (std::size_t i = 0; i < sensors.read.size(); ++i) {
         const double rate = readingRate(sensors.read[i].model);
         for (int frame = 0; frame / rate <= duration + 1e-9; ++frame) {

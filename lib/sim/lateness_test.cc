@@ -43,7 +43,7 @@ TEST_F(LatenessTest, WhoSleepsIsLateWithoutWork) {
 TEST_F(LatenessTest, WhoWorksIsLateByIt) {
     // A quarter of a second is forgiven, and on a busy machine little work may take as long: then
     // it is less work's turn, as often as needed.
-    constexpr milliseconds kStep(5), kRounding(1), kLeast(20);
+    constexpr milliseconds kStep(5), kRounding(1), kMinValue(20);
     milliseconds work(60);
     for (int tries = 0; tries < 100; ++tries) {
         const nanoseconds lost = simulation_.lost();
@@ -51,7 +51,7 @@ TEST_F(LatenessTest, WhoWorksIsLateByIt) {
         while (std::clock() - begin < work.count() * (CLOCKS_PER_SEC / 1000)) continue;
         simulation_.run(steady_clock::now(), kLong);
         if (simulation_.lost() == lost) break;
-        work = std::max(work / 2, kLeast);
+        work = std::max(work / 2, kMinValue);
     }
     EXPECT_GE(simulation_.lateness().own, work - kStep - kRounding);
     EXPECT_LE(simulation_.lateness().own, simulation_.lateness().most);

@@ -51,7 +51,7 @@ TEST(Later, LasersAreReadAsInTheirStep) {
     int stops = 0;
     for (std::size_t i = 1; i <= 200; ++i) {
         whole.step();
-        parts.stepUnread();
+        parts.stepDeferred();
         ASSERT_TRUE(std::equal(whole.read().begin(), whole.read().end(), parts.read().begin(),
                                parts.read().end()));
         // One is asked for before the others, and what robots are told matters from the next step
@@ -73,7 +73,7 @@ TEST(Later, AChangedWorldHasWhatWasDue) {
     World whole(room, milliseconds(5)), parts(room, milliseconds(5));
     for (int i = 0; i < 10; ++i) {
         whole.step();
-        parts.stepUnread();
+        parts.stepDeferred();
     }
     for (World* world : {&whole, &parts}) world->change(Scene(world->scene()));
     for (std::size_t k = 0; k < whole.sensors().size(); ++k) expectSame(parts, whole, k);
@@ -86,7 +86,7 @@ TEST(Later, APictureOutlivesItsWorld) {
               "ranger id=d1 at=-3,1,1 pixels=40,30 range=0.3,9\nhuman id=h1 at=1,1\n");
     World still(room, milliseconds(5));
     World world(std::make_shared<const Scene>(room), milliseconds(5));
-    const auto photograph = world.takeLater(0), sense = world.takeLater(1);
+    const auto photograph = world.captureLater(0), sense = world.captureLater(1);
     world.restart(scene("ispace size=20,20\n", ""));
     EXPECT_TRUE(std::get<Photo>(photograph().value).rgb ==
                 std::get<Photo>(still.take(0).value).rgb);
@@ -106,7 +106,7 @@ TEST(Later, APictureShowsTheWorldAsItWasAskedOf) {
             for (int i = 0; i < 300; ++i) each->step();
         }
         ASSERT_FALSE(world.isTaken(sensor));
-        const auto take = world.takeLater(sensor);
+        const auto take = world.captureLater(sensor);
         // It goes on meanwhile, and somebody looks at it.
         SensorReading later;
         std::thread other([&] { later = take(); });

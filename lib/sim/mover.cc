@@ -17,23 +17,23 @@ namespace {
 
 /// Shortest time between two moments of which both are kept.
 SimTime spacingOf(SimTime length, const Movers& movers) {
-    constexpr std::size_t kMostBodies = std::size_t{1} << 19U;
+    constexpr std::size_t kMaxBodies = std::size_t{1} << 19U;
     constexpr std::size_t kPartsOfPerson = 16;
     const std::size_t bodies = movers.robots.size() + kPartsOfPerson * movers.people.size();
-    const auto moments = std::clamp<std::size_t>(kMostBodies / (bodies + 1), 16, 4096);
+    const auto moments = std::clamp<std::size_t>(kMaxBodies / (bodies + 1), 16, 4096);
     return length / static_cast<SimTime::rep>(moments);
 }
 
 }  // namespace
 
-Places::Places(const Movers& movers) : swings(movers.swings.begin(), movers.swings.end()) {
+MoverPoses::MoverPoses(const Movers& movers) : swings(movers.swings.begin(), movers.swings.end()) {
     robots.reserve(movers.robots.size());
     for (const Motion& motion : movers.robots) robots.push_back(motion.pose);
     people.reserve(movers.people.size());
     for (const Motion& motion : movers.people) people.push_back(motion.pose);
 }
 
-void Trail::add(SimTime time, const Movers& movers, bool moved) {
+void PoseHistory::add(SimTime time, const Movers& movers, bool moved) {
     if (!isKept()) return;
     std::shared_ptr<Moment> moment;
     if (!moved && !entries_.empty()) moment = entries_.back().moment;
@@ -42,12 +42,13 @@ void Trail::add(SimTime time, const Movers& movers, bool moved) {
     if (entries_.size() > 1 &&
         entries_[entries_.size() - 2].time + spacingOf(length_, movers) > time)
         entries_.pop_back();
-    if (!moment) moment = std::make_shared<Moment>(Moment{Places(movers)});
+    if (!moment) moment = std::make_shared<Moment>(Moment{MoverPoses(movers)});
     entries_.push_back({time, std::move(moment)});
     while (entries_.size() > 1 && entries_[1].time + length_ <= time) entries_.pop_front();
 }
 
-void Trail::goOn(const Trail& before, Indices robots, Indices people, const Places& now) {
+void PoseHistory::goOn(const PoseHistory& before, Indices robots, Indices people,
+                       const MoverPoses& now) {
     entries_.clear();
     if (!isKept()) return;
     const Moment* last = nullptr;
@@ -57,7 +58,7 @@ void Trail::goOn(const Trail& before, Indices robots, Indices people, const Plac
             continue;
         }
         last = entry.moment.get();
-        const Places& was = last->places;
+        const MoverPoses& was = last->places;
         auto moment = std::make_shared<Moment>(Moment{now});
         for (std::size_t i = 0; i < robots.size(); ++i)
             if (robots[i]) moment->places.robots[i] = was.robots[*robots[i]];
@@ -70,7 +71,7 @@ void Trail::goOn(const Trail& before, Indices robots, Indices people, const Plac
     }
 }
 
-void Trail::makeBodies(SimTime since, const SetBodies& set_bodies) {
+void PoseHistory::makeBodies(SimTime since, const SetBodies& set_bodies) {
     std::vector<Moment*> bare;
     for (std::size_t i = entries_.size(); i-- > 0;) {
         Moment& moment = *entries_[i].moment;
@@ -81,7 +82,7 @@ void Trail::makeBodies(SimTime since, const SetBodies& set_bodies) {
                       [&](std::size_t i) { set_bodies(bare[i]->places, bare[i]->bodies); });
 }
 
-bool Trail::isStillSince(SimTime time) const {
+bool PoseHistory::isStillSince(SimTime time) const {
     if (entries_.empty()) return true;
     const auto* const last = entries_.back().moment.get();
     // Once somebody has moved, earlier moments are others.
@@ -92,30 +93,32 @@ bool Trail::isStillSince(SimTime time) const {
     return true;
 }
 
-Trail::Walk::Walk(const Trail& trail, SimTime begin) : trail_(&trail), begin_(begin) { to(0); }
+PoseHistory::Walk::Walk(const PoseHistory& trail, SimTime begin) : trail_(&trail), begin_(begin) {
+    to(0);
+}
 
-double Trail::Walk::secondsTo(std::size_t entry) const {
+double PoseHistory::Walk::secondsTo(std::size_t entry) const {
     return seconds(trail_->entries_[entry].time - begin_);
 }
 
-void Trail::Walk::to(double later) {
+void PoseHistory::Walk::to(double later) {
     const std::size_t count = trail_->entries_.size();
     while (after_ < count && secondsTo(after_) < later) ++after_;
     before_ = after_ == 0 ? 0 : after_ - 1;
 }
 
-double Trail::Walk::end() const {
+double PoseHistory::Walk::end() const {
     return after_ < trail_->entries_.size() ? secondsTo(after_)
                                             : std::numeric_limits<double>::infinity();
 }
 
-Trail::Walk::Share Trail::Walk::share() const {
+PoseHistory::Walk::Share PoseHistory::Walk::share() const {
     if (before_ == last()) return {};
     const double from = secondsTo(before_), rate = 1 / (secondsTo(after_) - from);
     return {-from * rate, rate};
 }
 
-const MovingBodies& Trail::Walk::bodies(double share) const {
+const MovingBodies& PoseHistory::Walk::bodies(double share) const {
     constexpr double kHalf = 0.5;
     return trail_->entries_[share > kHalf ? last() : before_].moment->bodies;
 }

@@ -20,12 +20,12 @@
 namespace ispace {
 
 /// Where robots and people are, in the order of the scene.
-struct Places {
+struct MoverPoses {
     std::vector<Pose2> robots, people;
     std::vector<Angle> swings;  ///< of the people's limbs
 
-    Places() = default;
-    explicit Places(const Movers& movers);
+    MoverPoses() = default;
+    explicit MoverPoses(const Movers& movers);
 };
 
 /// Where robots and people were in the last steps, for scans that take longer than one. Before the
@@ -34,10 +34,10 @@ struct Places {
 /// From step to step a carrier goes along an arc and turns evenly, which is how robots move at
 /// constant speeds. A trail has a moment for each step, or fewer where memory would run out: some
 /// 2^19 bodies are kept.
-class Trail {
+class PoseHistory {
   public:
     /// \param length of the longest scan, 0: nothing is kept
-    explicit Trail(SimTime length = SimTime(0)) : length_(length) {}
+    explicit PoseHistory(SimTime length = SimTime(0)) : length_(length) {}
 
     [[nodiscard]] bool isKept() const { return length_ > SimTime(0); }
     /// After a step, or once more after it. \param moved false: all are where they were at the last
@@ -48,9 +48,9 @@ class Trail {
     /// Goes on from that of another scene. `robots` and `people` have for each of this scene's its
     /// index in the other one, or nothing: then it counts as having stood where it is now.
     using Indices = std::span<const std::optional<std::size_t>>;
-    void goOn(const Trail& before, Indices robots, Indices people, const Places& now);
+    void goOn(const PoseHistory& before, Indices robots, Indices people, const MoverPoses& now);
 
-    using SetBodies = std::function<void(const Places& places, MovingBodies& bodies)>;
+    using SetBodies = std::function<void(const MoverPoses& places, MovingBodies& bodies)>;
     /// Makes the bodies that a walk from this time on asks for, in parallel.
     void makeBodies(SimTime since, const SetBodies& set_bodies);
 
@@ -65,7 +65,7 @@ class Trail {
     class Walk {
       public:
         /// \pre the trail is not empty
-        Walk(const Trail& trail, SimTime begin);
+        Walk(const PoseHistory& trail, SimTime begin);
         /// Goes on to the leg of some seconds after the beginning. \pre not before those of the
         /// last call
         void to(double later);
@@ -79,28 +79,28 @@ class Trail {
         };
         [[nodiscard]] Share share() const;
         /// Where the leg begins and ends.
-        [[nodiscard]] const Places& from() const { return placesAt(before_); }
-        [[nodiscard]] const Places& to() const { return placesAt(last()); }
+        [[nodiscard]] const MoverPoses& from() const { return placesAt(before_); }
+        [[nodiscard]] const MoverPoses& to() const { return placesAt(last()); }
         /// The bodies of the nearest moment, for a share of the leg. \pre they are made
         [[nodiscard]] const MovingBodies& bodies(double share) const;
 
       private:
         [[nodiscard]] double secondsTo(std::size_t entry) const;
-        [[nodiscard]] const Places& placesAt(std::size_t entry) const {
+        [[nodiscard]] const MoverPoses& placesAt(std::size_t entry) const {
             return trail_->entries_[entry].moment->places;
         }
         [[nodiscard]] std::size_t last() const {
             return after_ < trail_->entries_.size() ? after_ : before_;
         }
 
-        const Trail* trail_;
+        const PoseHistory* trail_;
         SimTime begin_;
         std::size_t before_ = 0, after_ = 0;  // entries
     };
 
   private:
     struct Moment {
-        Places places;
+        MoverPoses places;
         MovingBodies bodies = {};
         bool has_bodies = false;
     };
@@ -118,7 +118,7 @@ struct Mover {
     std::string id;
     RobotModel model;
     Pose2 pose;  ///< at the start
-    Course course;
+    MotionPlan course;
     Place place;  ///< of the record, for messages
     bool is_person = false;
 };

@@ -27,10 +27,10 @@ double degreesOff(Angle a, Angle b) { return wrapped(a - b).degrees(); }
 
 }  // namespace
 
-Pilot::Pilot(const Mover& mover, std::uint64_t seed)
+Navigator::Navigator(const Mover& mover, std::uint64_t seed)
     : model_(mover.model), seed_(seed), id_(hashOf(mover.id)) {}
 
-void Pilot::follow(const Course& course, double speed, bool commanded) {
+void Navigator::follow(const MotionPlan& course, double speed, bool commanded) {
     const bool goes = course.wander || !course.path.empty();
     course_ = course;
     speed_ = speed;
@@ -44,19 +44,19 @@ void Pilot::follow(const Course& course, double speed, bool commanded) {
 }
 
 /// In [0, 1).
-double Pilot::random() {
+double Navigator::random() {
     float value = 0;
     draw({seed_, Purpose::Wander, id_, draws_++}, 0, {.uniform = std::span(&value, 1)});
     return static_cast<double>(value);
 }
 
 /// Seconds ahead that have to be free: enough to brake.
-double Pilot::horizon(double speed) const {
-    constexpr double kLeast = 2, kSlack = 0.5;
-    return std::max(kLeast, speed / model_.accel + kSlack);
+double Navigator::horizon(double speed) const {
+    constexpr double kMinValue = 2, kSlack = 0.5;
+    return std::max(kMinValue, speed / model_.accel + kSlack);
 }
 
-void Pilot::steer(const Helm& helm, Motion& motion) {
+void Navigator::steer(const SteeringState& helm, Motion& motion) {
     due_ = helm.time + kInterval;
     idle_ = false;
     if (gained_ == kNever) {
@@ -70,7 +70,7 @@ void Pilot::steer(const Helm& helm, Motion& motion) {
         wander(helm, motion);
 }
 
-bool Pilot::stopsAtNext(SimTime step) const {
+bool Navigator::stopsAtNext(SimTime step) const {
     constexpr double kStraight = 20;  // degrees
     const std::vector<Point2>& path = course_.path;
     if (step > kInterval || course_.pause > 0 || (next_ + 1 == path.size() && !course_.loop))
@@ -82,7 +82,7 @@ bool Pilot::stopsAtNext(SimTime step) const {
            std::cos(Angle::degrees(kStraight).radians()) * length(before) * length(after);
 }
 
-void Pilot::arrive(SimTime time) {
+void Navigator::arrive(SimTime time) {
     nearest_ = kForever;
     gained_ = time;
     if (course_.pause > 0) pause_until_ = time + simSeconds(course_.pause);
@@ -90,7 +90,7 @@ void Pilot::arrive(SimTime time) {
 }
 
 /// On to the next place.
-void Pilot::leave(SimTime time) {
+void Navigator::leave(SimTime time) {
     nearest_ = kForever;
     gained_ = time;
     if (++next_ < course_.path.size()) return;
@@ -100,7 +100,7 @@ void Pilot::leave(SimTime time) {
         state_ = State::Arrived;
 }
 
-void Pilot::walk(const Helm& helm, Motion& motion) {
+void Navigator::walk(const SteeringState& helm, Motion& motion) {
     if (helm.time < pause_until_) return stand(motion);
     const Vec2 way = course_.path[next_] - motion.pose.position;
     const double left = length(way);
@@ -134,14 +134,14 @@ void Pilot::walk(const Helm& helm, Motion& motion) {
     const Angle direct = Angle::radians(std::atan2(way.y, way.x));
     // What lies behind the place does not matter.
     const auto needed = [&](double speed) { return std::min(horizon(speed), left / speed); };
-    constexpr double kLeast = 0.3;  // seconds
+    constexpr double kMinValue = 0.3;  // seconds
     double pace = speed_;
-    FreeWay free = steering.choose(direct, needed(pace));
-    while (free.time < std::min(kLeast, needed(pace)) && pace >= 2 * kPace) {
+    FreeHeading free = steering.choose(direct, needed(pace));
+    while (free.time < std::min(kMinValue, needed(pace)) && pace >= 2 * kPace) {
         pace /= 2;
         free = lookAbout(helm, pace).choose(direct, needed(pace));
     }
-    if (free.time < std::min(kLeast, needed(pace))) {
+    if (free.time < std::min(kMinValue, needed(pace))) {
         stand(motion);
         return stepAside(helm, steering, motion);
     }
@@ -152,12 +152,13 @@ void Pilot::walk(const Helm& helm, Motion& motion) {
     go(motion, free.direction, speed, stop);
 }
 
-Steering Pilot::lookAbout(const Helm& helm, double speed) const {
+Steering Navigator::lookAbout(const SteeringState& helm, double speed) const {
     return {helm, speed, horizon(speed)};
 }
 
 /// Waits a while, then tries a way aside.
-void Pilot::stepAside(const Helm& helm, const Steering& steering, const Motion& motion) {
+void Navigator::stepAside(const SteeringState& helm, const Steering& steering,
+                          const Motion& motion) {
     constexpr double kWait = 1, kWaitMore = 2, kAside = 0.7;  // seconds
     if (blocked_since_ == kNever) {
         blocked_since_ = helm.time + simSeconds(kWait + kWaitMore * random());
@@ -166,15 +167,15 @@ void Pilot::stepAside(const Helm& helm, const Steering& steering, const Motion& 
     if (helm.time < blocked_since_) return;
     blocked_since_ = kNever;
     const Angle first = motion.pose.heading + Angle::degrees(90 + 180 * random());
-    const FreeWay aside = steering.choose(first, kAside);
+    const FreeHeading aside = steering.choose(first, kAside);
     if (aside.time < kAside / 2) return;
     aside_ = aside.direction;
     aside_until_ = helm.time + simSeconds(kAside + 2 * random());
 }
 
-void Pilot::wander(const Helm& helm, Motion& motion) {
+void Navigator::wander(const SteeringState& helm, Motion& motion) {
     constexpr double kBend = 30, kOften = 2, kSeldom = 4;
-    constexpr double kLeast = 0.5;  // seconds
+    constexpr double kMinValue = 0.5;  // seconds
     if (!has_aim_) aim_ = motion.pose.heading;
     if (helm.time >= turn_at_) {
         if (has_aim_) aim_ = aim_ + Angle::degrees(kBend * (2 * random() - 1));
@@ -182,7 +183,7 @@ void Pilot::wander(const Helm& helm, Motion& motion) {
     }
     has_aim_ = true;
     double pace = speed_;
-    FreeWay free = lookAbout(helm, pace).choose(aim_, horizon(pace));
+    FreeHeading free = lookAbout(helm, pace).choose(aim_, horizon(pace));
     const auto suits = [&] {
         return free.time >= horizon(pace) &&
                std::abs(degreesOff(free.direction, motion.pose.heading)) < kWide;
@@ -191,9 +192,9 @@ void Pilot::wander(const Helm& helm, Motion& motion) {
         pace /= 2;
         free = lookAbout(helm, pace).choose(aim_, horizon(pace));
     }
-    if (free.time < kLeast)
+    if (free.time < kMinValue)
         free = lookAbout(helm, pace).choose(aim_ + Angle::degrees(180), horizon(pace));
-    if (free.time < kLeast) {
+    if (free.time < kMinValue) {
         aim_ = aim_ + Angle::degrees(360 * random());
         return stand(motion);
     }
@@ -201,12 +202,12 @@ void Pilot::wander(const Helm& helm, Motion& motion) {
     go(motion, aim_, pace * std::min(1.0, free.time), kForever);
 }
 
-void Pilot::stand(Motion& motion) {
+void Navigator::stand(Motion& motion) {
     idle_ = true;
     motion.drive.goal = motion.turn.goal = motion.side.goal = {};
 }
 
-void Pilot::go(Motion& motion, Angle direction, double speed, double stop) {
+void Navigator::go(Motion& motion, Angle direction, double speed, double stop) {
     constexpr double kAligned = 1, kExact = 1e-9;  // degrees
     const double off = degreesOff(direction, motion.pose.heading);
     if (std::abs(off) > kExact) {

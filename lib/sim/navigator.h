@@ -27,7 +27,7 @@ namespace ispace {
 ///
 /// Wandering it keeps its direction, changes it a little every few seconds, and turns away from
 /// what is ahead, as Stage's controller of that name does.
-class Pilot {
+class Navigator {
   public:
     static constexpr SimTime kInterval = std::chrono::milliseconds(100);
     static constexpr SimTime kPatience = std::chrono::seconds(10);
@@ -35,16 +35,16 @@ class Pilot {
 
     enum class State { Off, Underway, Arrived, Failed };
 
-    Pilot() = default;
+    Navigator() = default;
     /// For a mover with that id, wherever it stands.
-    Pilot(const Mover& mover, std::uint64_t seed);
+    Navigator(const Mover& mover, std::uint64_t seed);
 
     /// Sets out. \param speed m/s, at most the mover's greatest
-    void follow(const Course& course, double speed, bool commanded);
+    void follow(const MotionPlan& course, double speed, bool commanded);
     void turnOff() { state_ = State::Off; }
     [[nodiscard]] bool isOn() const { return state_ == State::Underway; }
     [[nodiscard]] State state() const { return state_; }
-    [[nodiscard]] const Course& course() const { return course_; }
+    [[nodiscard]] const MotionPlan& course() const { return course_; }
     [[nodiscard]] double speed() const { return speed_; }
 
     /// True if steer() is due at that time or, as its goals are reached, before.
@@ -52,7 +52,7 @@ class Pilot {
         return isOn() && (time >= due_ || (motion.arrived() && !idle_));
     }
     /// Sets the goals of the motion. \pre isDue()
-    void steer(const Helm& helm, Motion& motion);
+    void steer(const SteeringState& helm, Motion& motion);
     /// Its step was cancelled: somebody was in the way.
     void bumped() {
         due_ = {};
@@ -60,13 +60,13 @@ class Pilot {
     }
 
   private:
-    void walk(const Helm& helm, Motion& motion);
-    void wander(const Helm& helm, Motion& motion);
+    void walk(const SteeringState& helm, Motion& motion);
+    void wander(const SteeringState& helm, Motion& motion);
     void arrive(SimTime time);
     void leave(SimTime time);
     /// What is in the way of going at that speed.
-    [[nodiscard]] Steering lookAbout(const Helm& helm, double speed) const;
-    void stepAside(const Helm& helm, const Steering& steering, const Motion& motion);
+    [[nodiscard]] Steering lookAbout(const SteeringState& helm, double speed) const;
+    void stepAside(const SteeringState& helm, const Steering& steering, const Motion& motion);
     /// \param stop metres from here where it comes to rest, if the direction leads there
     void go(Motion& motion, Angle direction, double speed, double stop);
     void stand(Motion& motion);
@@ -74,7 +74,7 @@ class Pilot {
     [[nodiscard]] double horizon(double speed) const;
     double random();
 
-    Course course_;
+    MotionPlan course_;
     RobotModel model_;
     std::uint64_t seed_ = 0, id_ = 0, draws_ = 0;
     double speed_ = 0;

@@ -30,7 +30,7 @@ ISPACE_INLINE double cosine(double square) {
 }
 
 /// An arc from its beginning on.
-struct Course {
+struct MotionPlan {
     double half, whole;
     double chord_x, chord_y;
 };
@@ -40,7 +40,7 @@ struct Part {
     double x, y, cos, sin;
 };
 
-ISPACE_INLINE Part partOf(Course course, double share) {
+ISPACE_INLINE Part partOf(MotionPlan course, double share) {
     const double angle = share * course.half, square = angle * angle;
     const double over = sineOver(square), c = cosine(square), s = angle * over;
     // An arc of this angle has a chord that points half of it to the side.
@@ -58,7 +58,7 @@ struct Begin {
 
 // Structures come by value: they are then known not to change while the arrays do.
 ISPACE_SIMD_CLONES
-void carryAlong(Course course, Begin begin, double first, double step, int count, double* x,
+void carryAlong(MotionPlan course, Begin begin, double first, double step, int count, double* x,
                 double* y, double* cos, double* sin) {
     for (int k = 0; k < count; ++k) {
         const Part part = partOf(course, first + k * step);

@@ -36,12 +36,12 @@ bool isAt(const World& world, std::size_t mover, Point2 place, double within) {
     return distance(world.status(mover).pose.position, place) <= within;
 }
 
-TEST(Pilot, ARobotComesToRestExactlyAtTheEnd) {
+TEST(Navigator, ARobotComesToRestExactlyAtTheEnd) {
     const Scene room = scene(kRoom, "robot id=r1 at=-3,0 path=0,0;0,2;-1,3\n");
     World world(room, kStep);
     bool corner = false;
     ASSERT_TRUE(timeUntil(world, seconds(60), [&] {
-        corner = corner || isAt(world, 0, {0, 0}, Pilot::kArrive);
+        corner = corner || isAt(world, 0, {0, 0}, Navigator::kArrive);
         return isAt(world, 0, {-1, 3}, 1e-3) && world.status(0).speed == 0;
     }));
     EXPECT_TRUE(corner);
@@ -52,7 +52,7 @@ TEST(Pilot, ARobotComesToRestExactlyAtTheEnd) {
     EXPECT_EQ(world.status(0).pose, pose) << "and stays";
 }
 
-TEST(Pilot, APersonKeepsHerSpeedPastPlaces) {
+TEST(Navigator, APersonKeepsHerSpeedPastPlaces) {
     const Scene room = scene(kRoom, "human id=ann at=-4,-2 speed=1 path=4,-2;4,2;-4,2\n");
     World world(room, kStep);
     const auto time = timeUntil(world, seconds(40), [&] { return isAt(world, 0, {-4, 2}, 0.011); });
@@ -62,7 +62,7 @@ TEST(Pilot, APersonKeepsHerSpeedPastPlaces) {
     EXPECT_LT(*time, milliseconds(23500));
 }
 
-TEST(Pilot, LoopsAndPauses) {
+TEST(Navigator, LoopsAndPauses) {
     const Scene room =
         scene(kRoom, "human id=ann at=0,0 speed=1 path=2,0;0,0 loop=yes pause=1.5\n");
     World world(room, milliseconds(20));
@@ -83,7 +83,7 @@ TEST(Pilot, LoopsAndPauses) {
     EXPECT_LT(rest, visits * milliseconds(2600));
 }
 
-TEST(Pilot, ACommandedPathIsDone) {
+TEST(Navigator, ACommandedPathIsDone) {
     const Scene room = scene(kRoom, "robot id=r1\nhuman id=ann at=0,2\n");
     World world(room, kStep);
     for (const std::size_t mover : {std::size_t{0}, std::size_t{1}}) {
@@ -104,7 +104,7 @@ TEST(Pilot, ACommandedPathIsDone) {
     EXPECT_TRUE(isAt(world, ends[0].robot, {3, 1}, 0.01));
 }
 
-TEST(Pilot, APathThroughAWallFails) {
+TEST(Navigator, APathThroughAWallFails) {
     const Scene room = scene(std::string(kRoom) + "wall from=1,-4 to=1,4\n", "robot id=r1\n");
     World world(room, kStep);
     world.command(0, pathCommand({.path = {{3, 0}}}));
@@ -118,7 +118,7 @@ TEST(Pilot, APathThroughAWallFails) {
     EXPECT_LE(world.status(0).pose.position.x, 0.7 + 1e-9);
 }
 
-TEST(Pilot, AStopEndsAPath) {
+TEST(Navigator, AStopEndsAPath) {
     const Scene room = scene(kRoom, "robot id=r1\n");
     World world(room, kStep);
     const int id = world.command(0, pathCommand({.path = {{3, 0}}}));
@@ -132,7 +132,7 @@ TEST(Pilot, AStopEndsAPath) {
     EXPECT_EQ(world.status(0).speed, 0);
 }
 
-TEST(Pilot, DegeneratePathsHarmNobody) {
+TEST(Navigator, DegeneratePathsHarmNobody) {
     // To where it stands, twice the same place, into a wall, out of the room, round and round on
     // the spot.
     const Scene room = scene(kRoom,
@@ -154,7 +154,7 @@ TEST(Pilot, DegeneratePathsHarmNobody) {
     }
 }
 
-TEST(Pilot, WhoStartsInAThingMayLeaveIt) {
+TEST(Navigator, WhoStartsInAThingMayLeaveIt) {
     // She sits half on a table's edge.
     const Scene room =
         scene(std::string(kRoom) + "wall from=0,-1 to=0,1\n", "human id=ann at=0.2,0 path=3,0\n");
@@ -162,7 +162,7 @@ TEST(Pilot, WhoStartsInAThingMayLeaveIt) {
     EXPECT_TRUE(timeUntil(world, seconds(20), [&] { return isAt(world, 0, {3, 0}, 0.02); }));
 }
 
-TEST(Pilot, TwoWhoMeetInACorridorPass) {
+TEST(Navigator, TwoWhoMeetInACorridorPass) {
     const Scene room =
         scene(kCorridor, "human id=ann at=-5,0 path=5,0\nhuman id=bob at=5,0 path=-5,0\n");
     World world(room, kStep);
@@ -171,7 +171,7 @@ TEST(Pilot, TwoWhoMeetInACorridorPass) {
     }));
 }
 
-TEST(Pilot, APersonStepsRoundARobot) {
+TEST(Navigator, APersonStepsRoundARobot) {
     const Scene room = scene(kRoom, "robot id=r1\nhuman id=ann at=-4,0 path=4,0\n");
     World world(room, kStep);
     const auto time = timeUntil(world, seconds(30), [&] { return isAt(world, 1, {4, 0}, 0.02); });
@@ -180,13 +180,13 @@ TEST(Pilot, APersonStepsRoundARobot) {
     EXPECT_FALSE(world.status(1).stall);
 }
 
-TEST(Pilot, SomebodyInACornerGetsOut) {
+TEST(Navigator, SomebodyInACornerGetsOut) {
     const Scene room = scene(kRoom, "human id=ann at=-5.7,-3.7 heading=225 walk=wander\n");
     World world(room, kStep);
     EXPECT_TRUE(timeUntil(world, seconds(20), [&] { return !isAt(world, 0, {-5.7, -3.7}, 2); }));
 }
 
-TEST(Pilot, FastWanderersSlowDownToWhatTheRoomAllows) {
+TEST(Navigator, FastWanderersSlowDownToWhatTheRoomAllows) {
     for (const char* who : {"robot id=a speed=5 max_speed=5 accel=5", "human id=a speed=5",
                             "robot id=a speed=20 max_speed=20 accel=5", "human id=a speed=20"}) {
         const Scene cell = scene("ispace size=8,8\n", std::string(who) + " walk=wander\n");
@@ -208,7 +208,7 @@ TEST(Pilot, FastWanderersSlowDownToWhatTheRoomAllows) {
 /// Two barriers of the thesis' room.
 constexpr const char* kBarriers = "barrier at=0.5,0.3\nbarrier at=1.2,0.95 heading=90\n";
 
-TEST(Pilot, WhoTouchesAThingTurnsAwayInPlace) {
+TEST(Navigator, WhoTouchesAThingTurnsAwayInPlace) {
     const Scene room =
         scene(std::string(kRoom) + kBarriers,
               "robot id=r1 model=pioneer-2dx at=1.475,1.263 heading=-93.327 walk=wander\n");
@@ -216,7 +216,7 @@ TEST(Pilot, WhoTouchesAThingTurnsAwayInPlace) {
     EXPECT_TRUE(timeUntil(world, seconds(5), [&] { return !isAt(world, 0, {1.475, 1.263}, 1); }));
 }
 
-TEST(Pilot, APathLeadsAwayFromAThing) {
+TEST(Navigator, APathLeadsAwayFromAThing) {
     for (const Point2 target : {Point2{0.5, -2}, Point2{1.475, -1}, Point2{3, 1.3}, Point2{2, 3}}) {
         const Scene room = scene(std::string(kRoom) + kBarriers,
                                  "robot id=r1 model=pioneer-2dx at=1.475,1.263 heading=-93.327\n");
@@ -232,7 +232,7 @@ TEST(Pilot, APathLeadsAwayFromAThing) {
     }
 }
 
-TEST(Pilot, WanderersKeepMoving) {
+TEST(Navigator, WanderersKeepMoving) {
     std::string layout;
     for (int i = 0; i < 6; ++i) {
         const std::string x = std::to_string(i - 3);
@@ -256,7 +256,7 @@ TEST(Pilot, WanderersKeepMoving) {
         EXPECT_GT(path[i], 0.3 * 120 * world.movers()[i].model.speed) << world.movers()[i].id;
 }
 
-TEST(Pilot, TheSeedDecidesHowTheyWander) {
+TEST(Navigator, TheSeedDecidesHowTheyWander) {
     const Scene room = scene(kRoom, "human id=ann walk=wander\nrobot id=r1 at=2,2 walk=wander\n");
     const auto ends = [&](std::uint64_t seed) {
         World world(room, kStep, {.seed = seed});
@@ -267,7 +267,7 @@ TEST(Pilot, TheSeedDecidesHowTheyWander) {
     EXPECT_NE(ends(1), ends(2));
 }
 
-TEST(Pilot, LongStepsDoNoHarm) {
+TEST(Navigator, LongStepsDoNoHarm) {
     const Scene room =
         scene(kRoom, "human id=ann at=-4,0 path=4,0;4,2\nrobot id=r1 at=0,3 walk=wander\n");
     World world(room, seconds(1));

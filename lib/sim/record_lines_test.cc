@@ -99,7 +99,7 @@ TEST_F(RecordLines, FramesMayBeMadeAside) {
         RecordOptions options;
         if (aside)
             options.frame_taker = [&](const FrameJob& job) {
-                jobs.push_back([take = world.takeLater(job.sensor), job] {
+                jobs.push_back([take = world.captureLater(job.sensor), job] {
                     const SensorReading reading = take();
                     job.use(reading);
                     job.deliver(nullptr);

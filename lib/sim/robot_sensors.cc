@@ -154,7 +154,7 @@ std::vector<MoverShape> moverShapes(const Scene& scene) {
             m.length > 0 ? std::fabs(m.center) + std::hypot(m.length / 2, m.width / 2) : m.radius;
         shapes.push_back({robot.id, false, std::max(m.radius, body), m.height, m});
     }
-    for (const Placed& placed : scene.placed) {
+    for (const PlacedRecord& placed : scene.placed) {
         const Record& record = scene.records[placed.record];
         if (record.keyword() != "human") continue;
         const double height = record.number("height");
@@ -164,7 +164,7 @@ std::vector<MoverShape> moverShapes(const Scene& scene) {
 }
 
 FloorSensors::FloorSensors(const Scene& scene) : movers_(moverShapes(scene)) {
-    for (const Placed& placed : scene.placed) {
+    for (const PlacedRecord& placed : scene.placed) {
         const Record& record = scene.records[placed.record];
         const Pose2 pose{placed.pose.position.onFloor(), placed.pose.heading};
         if (record.keyword() == "mat") {

@@ -39,6 +39,6 @@ void checkLoad(const RunLoad& before, const RunLoad& after);
 double pixelsOf(const RunSensor& sensor);
 
 /// Pixels of pictures and depth frames that clients may let wait to be made, all together.
-constexpr double kMostWaitingPixels = 64e6;
+constexpr double kMaxWaitingPixels = 64e6;
 
 }  // namespace ispace

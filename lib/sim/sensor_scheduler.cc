@@ -44,7 +44,7 @@ int SensorReader::frameOf(std::int64_t number) {
     return static_cast<int>(std::min(number, kLast));
 }
 
-SensorReader::SensorReader(Setting& setting, const Options& options)
+SensorReader::SensorReader(SceneResources& setting, const Options& options)
     : scene_(setting.scene.get()),
       options_{.noise_seed = noiseSeedOf(options)},
       sound_{.noise_seed = noiseSeedOf(options)},
@@ -80,9 +80,9 @@ SensorReader::SensorReader(Setting& setting, const Options& options)
         casters_[i].emplace(*worlds_, bodies_, *sensor, sensor->mount.has_value(), options_,
                             beams.of(*laser));
     }
-    if (count > 0) trail_ = Trail(*std::max_element(durations_.begin(), durations_.end()));
+    if (count > 0) trail_ = PoseHistory(*std::max_element(durations_.begin(), durations_.end()));
     spin_heights_ = spinHeights();
-    for (const Placed& placed : scene_->placed)
+    for (const PlacedRecord& placed : scene_->placed)
         if (scene_->records[placed.record].keyword() == "human")
             people_starts_.push_back(
                 {placed.pose.position.onFloor(), wrapped(placed.pose.heading)});
@@ -226,7 +226,7 @@ void SensorReader::update(std::span<const std::size_t> due, SimTime time, const 
         const bool sweeps = laser != nullptr && laser->sweep != SweepAxis::None;
         if (sensor->mount || sensor->person || sweeps)
             reading.pose = durations_[i] > SimTime(0)
-                               ? poseOf(*sensor, Trail::Walk(trail_, reading.time), 0)
+                               ? poseOf(*sensor, PoseHistory::Walk(trail_, reading.time), 0)
                                : poseOf(*sensor, movers);
         if (laser != nullptr) {
             if (sweeps)
@@ -250,11 +250,11 @@ void SensorReader::update(std::span<const std::size_t> due, SimTime time, const 
 
 void SensorReader::updateBodies(const Movers& movers) {
     if (!std::exchange(moved_, false)) return;
-    setBodies(Places(movers), {}, bodies_);
+    setBodies(MoverPoses(movers), {}, bodies_);
     kept_bodies_.reset();
 }
 
-void SensorReader::setBodies(const Places& places, std::span<const double> heights,
+void SensorReader::setBodies(const MoverPoses& places, std::span<const double> heights,
                              MovingBodies& bodies) const {
     // Kept for its memory.
     thread_local std::vector<MovingBody> list;
@@ -349,7 +349,7 @@ std::shared_ptr<const SensorReader::Stage> SensorReader::stage(const Movers& mov
     std::vector<Pose3> poses;
     poses.reserve(scene_->placed.size());
     std::size_t person = 0;
-    for (const Placed& placed : scene_->placed) {
+    for (const PlacedRecord& placed : scene_->placed) {
         const std::string& keyword = scene_->records[placed.record].keyword();
         Pose3 pose = placed.pose;
         if (sensorKind(keyword) != nullptr) {
@@ -411,8 +411,8 @@ void SensorReader::take(std::size_t sensor, SimTime time, const Movers& movers) 
     latest_.insert(std::upper_bound(latest_.begin(), latest_.end(), sensor), sensor);
 }
 
-std::function<SensorReading()> SensorReader::takeLater(std::size_t sensor, SimTime time,
-                                                       const Movers& movers) {
+std::function<SensorReading()> SensorReader::captureLater(std::size_t sensor, SimTime time,
+                                                          const Movers& movers) {
     const Sensor& taken = *sensors_[sensor].sensor();
     const SensorReading begun = this->begun(sensor, time, movers);
     if (taken.is<Camera>())

@@ -25,7 +25,7 @@
 
 namespace ispace {
 
-struct Setting;
+struct SceneResources;
 
 /// Reads the sensors of a world when they are due: in the first step at or after the beginning of
 /// a period, all at the moment of that step. The beams of a laser that spins follow one another
@@ -39,7 +39,7 @@ class SensorReader {
         SimTime step = SimTime(1);  ///< of the world
     };
     /// The setting must outlive it, and be that of no other.
-    SensorReader(Setting& setting, const Options& options);
+    SensorReader(SceneResources& setting, const Options& options);
 
     /// After each step: follows those who move, and reads what is due, in parallel. Heavy
     /// sensors are left out.
@@ -88,9 +88,9 @@ class SensorReader {
     }
     /// Reads a heavy sensor now if it is not taken.
     void take(std::size_t sensor, SimTime time, const Movers& movers);
-    /// The same in two parts: see World::takeLater.
-    std::function<SensorReading()> takeLater(std::size_t sensor, SimTime time,
-                                             const Movers& movers);
+    /// The same in two parts: see World::captureLater.
+    std::function<SensorReading()> captureLater(std::size_t sensor, SimTime time,
+                                                const Movers& movers);
     void put(std::size_t sensor, SensorReading reading);
 
     [[nodiscard]] const FloorSensors& floor() const { return floor_; }
@@ -126,17 +126,18 @@ class SensorReader {
     [[nodiscard]] std::vector<double> spinHeights() const;
     void makeTrailBodies(std::span<const std::size_t> due);
     /// \param heights those of all level rays that will meet them; empty: rays go everywhere
-    void setBodies(const Places& places, std::span<const double> heights,
+    void setBodies(const MoverPoses& places, std::span<const double> heights,
                    MovingBodies& bodies) const;
     void followTrail(const SensorReader& before,
                      const std::unordered_set<std::string_view>& stayers, const Movers& movers);
     static SimTime durationOf(const Laser& laser, SimTime step);
     [[nodiscard]] SimTime beginOf(std::size_t sensor, SimTime time) const;
     [[nodiscard]] Pose3 poseOf(const Sensor& sensor, const Movers& movers) const;
-    [[nodiscard]] Pose3 poseOf(const Sensor& sensor, const Trail::Walk& walk, double later) const;
+    [[nodiscard]] Pose3 poseOf(const Sensor& sensor, const PoseHistory::Walk& walk,
+                               double later) const;
     [[nodiscard]] Pose3 poseOn(const Sensor& sensor, const Pose2& carrier) const;
     [[nodiscard]] Pose3 mountOf(const Sensor& sensor) const;
-    static const Pose2& carrierIn(const Places& places, const Sensor& sensor);
+    static const Pose2& carrierIn(const MoverPoses& places, const Sensor& sensor);
     class BeamOrder;
     void sweep(const Laser& laser, std::size_t sensor);
     template <typename Visit>
@@ -184,7 +185,7 @@ class SensorReader {
     bool pictures_moved_ = true;                       // since those of pictures were
     bool trail_moved_ = true;                          // since the trail's last moment
     MovingBodies bodies_;
-    Trail trail_;                                 // for scans that take a while
+    PoseHistory trail_;                           // for scans that take a while
     std::vector<double> spin_heights_;            // of their rays, if all are level; else empty
     std::vector<std::vector<BeamsAmong>> parts_;  // of each laser's last scan; kept for the memory
 };

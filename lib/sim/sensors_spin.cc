@@ -67,11 +67,12 @@ SimTime SensorReader::beginOf(std::size_t sensor, SimTime time) const {
     return atStep(periods_[sensor].begin(period), step_);
 }
 
-const Pose2& SensorReader::carrierIn(const Places& places, const Sensor& sensor) {
+const Pose2& SensorReader::carrierIn(const MoverPoses& places, const Sensor& sensor) {
     return sensor.mount ? places.robots[sensor.mount->robot] : places.people[sensor.person.value()];
 }
 
-Pose3 SensorReader::poseOf(const Sensor& sensor, const Trail::Walk& walk, double later) const {
+Pose3 SensorReader::poseOf(const Sensor& sensor, const PoseHistory::Walk& walk,
+                           double later) const {
     if (!sensor.mount && !sensor.person) return sensor.pose;
     const ArcWay way(carrierIn(walk.from(), sensor), carrierIn(walk.to(), sensor));
     return poseOn(sensor, way.at(walk.share().at(later)));
@@ -98,7 +99,7 @@ void SensorReader::makeTrailBodies(std::span<const std::size_t> due) {
         if (durations_[i] > SimTime(0))
             since = std::min(since.value_or(SimTime::max()), readings_[i].time);
     if (!since || trail_.isStillSince(*since)) return;
-    trail_.makeBodies(*since, [this](const Places& places, MovingBodies& bodies) {
+    trail_.makeBodies(*since, [this](const MoverPoses& places, MovingBodies& bodies) {
         setBodies(places, spin_heights_, bodies);
     });
 }
@@ -119,7 +120,7 @@ void SensorReader::followTrail(const SensorReader& before,
         return found;
     };
     trail_.goOn(before.trail_, indices(scene_->robots, before.scene_->robots),
-                indices(scene_->people, before.scene_->people), Places(movers));
+                indices(scene_->people, before.scene_->people), MoverPoses(movers));
 }
 
 /// Measures beam after beam.
@@ -151,7 +152,7 @@ template <typename Visit>
 void SensorReader::forEachLeg(const BeamOrder& order, std::size_t sensor, Visit visit) {
     std::vector<BeamsAmong>& parts = parts_[sensor];
     parts.clear();
-    Trail::Walk walk(trail_, readings_[sensor].time);
+    PoseHistory::Walk walk(trail_, readings_[sensor].time);
     constexpr double kHalf = 0.5;
     for (std::size_t begin = 0; begin < order.count();) {
         walk.to(order.timeOf(begin));
@@ -176,15 +177,16 @@ void SensorReader::sweepInSpace(const Laser& laser, std::size_t sensor) {
     const BeamOrder order(laser);
     scan.beam_poses.resize(order.count());
     bool moves = false;
-    forEachLeg(order, sensor, [&](const Trail::Walk& walk, std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) {
-            const double later = order.timeOf(n);
-            const Pose3 pose = sweptPose(laser, poseOf(*sensors_[sensor].sensor(), walk, later),
-                                         scan.number + later * laser.rate);
-            moves = moves || pose != scan.pose;
-            scan.beam_poses[order.beam(n)] = pose;
-        }
-    });
+    forEachLeg(
+        order, sensor, [&](const PoseHistory::Walk& walk, std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) {
+                const double later = order.timeOf(n);
+                const Pose3 pose = sweptPose(laser, poseOf(*sensors_[sensor].sensor(), walk, later),
+                                             scan.number + later * laser.rate);
+                moves = moves || pose != scan.pose;
+                scan.beam_poses[order.beam(n)] = pose;
+            }
+        });
     if (!moves) scan.beam_poses.clear();
 }
 
@@ -197,16 +199,17 @@ bool SensorReader::sweepLevel(const Laser& laser, std::size_t sensor, BeamFrames
     const Pose3 on = is_carried ? mountOf(placed) : Pose3();
     const Pose2 mount{on.position.onFloor(), on.heading};
     bool moves = false;
-    forEachLeg(order, sensor, [&](const Trail::Walk& walk, std::size_t begin, std::size_t end) {
-        if (!is_carried) return;
-        const Pose2& from = carrierIn(walk.from(), placed);
-        const Pose2& to = carrierIn(walk.to(), placed);
-        moves = moves || from != to;
-        const auto share = walk.share();
-        const BeamsAmong beams = order.beams(begin, end, bodies_);
-        ArcWay(from, to).carry(mount, share.at(order.timeOfBeam(beams.begin)),
-                               order.step() * share.rate, beams.begin, beams.end, frames);
-    });
+    forEachLeg(
+        order, sensor, [&](const PoseHistory::Walk& walk, std::size_t begin, std::size_t end) {
+            if (!is_carried) return;
+            const Pose2& from = carrierIn(walk.from(), placed);
+            const Pose2& to = carrierIn(walk.to(), placed);
+            moves = moves || from != to;
+            const auto share = walk.share();
+            const BeamsAmong beams = order.beams(begin, end, bodies_);
+            ArcWay(from, to).carry(mount, share.at(order.timeOfBeam(beams.begin)),
+                                   order.step() * share.rate, beams.begin, beams.end, frames);
+        });
     return moves;
 }
 

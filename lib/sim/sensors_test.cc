@@ -19,10 +19,10 @@ using std::chrono::nanoseconds;
 using std::chrono::seconds;
 using testing::scene;
 
-TEST(Setting, HasTheMeshThatItsSensorsNeed) {
+TEST(SceneResources, HasTheMeshThatItsSensorsNeed) {
     const auto has_mesh = [](const std::string& records) {
         const auto room = std::make_shared<const Scene>(scene("ispace size=8,6\n", records));
-        return Setting(room, {}, {}).worlds.meshes().opaque;
+        return SceneResources(room, {}, {}).worlds.meshes().opaque;
     };
     EXPECT_FALSE(has_mesh("robot id=r1 at=0,0\nlaser at=1,1 beams=3\n"));
     EXPECT_TRUE(has_mesh("ranger at=1,1 pixels=4,4\n"));

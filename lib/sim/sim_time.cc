@@ -10,7 +10,7 @@ namespace ispace {
 
 namespace {
 
-constexpr std::int64_t kMax = kLongestTime.count();
+constexpr std::int64_t kMax = kMaxTime.count();
 constexpr int kNanoseconds = 9;  // powers of ten to a second
 constexpr std::uint64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;
 

@@ -13,7 +13,7 @@ namespace ispace {
 using SimTime = std::chrono::nanoseconds;
 
 /// Runs end at this time at the latest: a hundred years.
-constexpr SimTime kLongestTime = std::chrono::hours(24) * 36525;
+constexpr SimTime kMaxTime = std::chrono::hours(24) * 36525;
 
 /// The nearest double, for formats that want seconds as a number.
 double seconds(SimTime time);

@@ -21,7 +21,7 @@ using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
 constexpr double kFastestRate = 1e6;
-constexpr nanoseconds kLongestLag = std::chrono::milliseconds(250);
+constexpr nanoseconds kMaxLag = std::chrono::milliseconds(250);
 constexpr std::string_view kReal = "real:";
 
 /// Processor time of this thread.
@@ -61,7 +61,7 @@ Simulation::Simulation(World& world, std::vector<TimedCommand> script, Clock clo
       events_(world),
       script_(std::move(script)),
       clock_(clock),
-      until_(std::min(until.value_or(kLongestTime), kLongestTime)),
+      until_(std::min(until.value_or(kMaxTime), kMaxTime)),
       paused_(clock.kind == Clock::Kind::Step) {
     if (!script_.empty())
         for (const Mover& mover : world.movers()) scripted_.push_back(mover.id);
@@ -135,7 +135,7 @@ void Simulation::step() {
     if (replay_ != nullptr)
         replay_->step(*world_);
     else
-        world_->stepUnread();
+        world_->stepDeferred();
     events_.stepped();
     // Before the next commands: one of motion would wipe out the stall flag of this step.
     if (recorder_ != nullptr) recorder_->record(*world_);
@@ -152,11 +152,11 @@ void Simulation::startAt(WallTime now) {
 WallTime Simulation::dueAt() const {
     // From the start each time, so that no rounding adds up. 64 bits hold every nanosecond, and a
     // slow clock may have its next step beyond all of them.
-    constexpr long double kFarthest = 3e18L;  // 95 years
+    constexpr long double kMaxDistance = 3e18L;  // 95 years
     const auto simulated = (world_->time() - start_time_ + world_->stepLength()).count();
     const long double wall =
         std::ceil(static_cast<long double>(simulated) / static_cast<long double>(clock_.rate));
-    return started_.value() + nanoseconds(static_cast<std::int64_t>(std::min(wall, kFarthest)));
+    return started_.value() + nanoseconds(static_cast<std::int64_t>(std::min(wall, kMaxDistance)));
 }
 
 std::optional<WallTime> Simulation::due() const {
@@ -175,7 +175,7 @@ void Simulation::noteLateness() {
 
 void Simulation::forgive(WallTime now) {
     const auto lag = now - dueAt();
-    if (lag <= kLongestLag) return;
+    if (lag <= kMaxLag) return;
     started_.value() += lag;
     lost_ += lag;
 }

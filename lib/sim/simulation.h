@@ -37,7 +37,7 @@ Clock parseClock(const std::string& text);
 class Simulation {
   public:
     /// The last step is the first one that ends at `until` or later; without it a run ends at
-    /// kLongestTime. Later commands of the script are never given, nor are those to robots that the
+    /// kMaxTime. Later commands of the script are never given, nor are those to robots that the
     /// world has lost since, or that cannot do them any more. \pre the script is in order of time
     Simulation(World& world, std::vector<TimedCommand> script, Clock clock,
                std::optional<SimTime> until);

@@ -211,16 +211,16 @@ TEST(Spin, TheSameForAnyNumberOfThreads) {
     EXPECT_EQ(runs[0], runs[1]);
 }
 
-TEST(Trail, ALongOneStaysSmall) {
+TEST(PoseHistory, ALongOneStaysSmall) {
     // A scan of a hundred seconds in steps of a millisecond.
-    Trail trail(std::chrono::seconds(100));
+    PoseHistory trail(std::chrono::seconds(100));
     std::vector<Motion> robots(1);
     for (int i = 0; i <= 200'000; ++i) {
         robots[0].pose.position.x = i * 1e-3;
         trail.add(milliseconds(i), {robots, {}, {}}, true);
     }
     EXPECT_LE(trail.size(), 2U * 4096 + 3);
-    Trail::Walk walk(trail, milliseconds(100'000));
+    PoseHistory::Walk walk(trail, milliseconds(100'000));
     for (double later = 0; later <= 100; later += 0.37) {
         walk.to(later);
         const ArcWay way(walk.from().robots[0], walk.to().robots[0]);
@@ -228,8 +228,8 @@ TEST(Trail, ALongOneStaysSmall) {
     }
 }
 
-TEST(Trail, StandsWhereNothingMoves) {
-    Trail trail(milliseconds(100));
+TEST(PoseHistory, StandsWhereNothingMoves) {
+    PoseHistory trail(milliseconds(100));
     std::vector<Motion> robots(1);
     for (int i = 0; i <= 100; ++i) trail.add(milliseconds(i), {robots, {}, {}}, i == 50);
     EXPECT_TRUE(trail.isStillSince(milliseconds(50)));

@@ -40,7 +40,7 @@ bool comesNear(const Segment2& way, const Segment2& line, double reach) {
 
 }  // namespace
 
-Steering::Steering(const Helm& helm, double speed, double horizon)
+Steering::Steering(const SteeringState& helm, double speed, double horizon)
     : place_(helm.around->motions[helm.mover].pose.position),
       radius_(helm.around->movers[helm.mover].model.radius),
       speed_(speed),
@@ -66,7 +66,7 @@ void Steering::findNeighbours(const Surroundings& around, std::size_t mover) {
     });
 }
 
-void Steering::findLines(const Helm& helm) {
+void Steering::findLines(const SteeringState& helm) {
     const double ahead = speed_ * horizon_ + kGap;
     if (helm.clearance > ahead) return;
     helm.vicinity->forEachWithin(
@@ -93,9 +93,9 @@ double Steering::untilNeighbour(Vec2 velocity) const {
 
 /// Looks at `most` of the horizon.
 double Steering::untilLine(Vec2 velocity, double most) const {
-    constexpr double kLeast = 1.0 / 8;
+    constexpr double kMinValue = 1.0 / 8;
     if (lines_.empty()) return kNever;
-    for (double share = most; share >= kLeast; share /= 2) {
+    for (double share = most; share >= kMinValue; share /= 2) {
         const Segment2 way{place_, place_ + share * horizon_ * velocity};
         const bool is_free = std::none_of(lines_.begin(), lines_.end(), [&](const Line& line) {
             return comesNear(way, line.line, line.reach);
@@ -111,11 +111,11 @@ double Steering::freeTime(Angle direction, double share) const {
     return time == 0 ? 0 : std::min(time, untilLine(velocity, share));
 }
 
-FreeWay Steering::choose(Angle desired, double needed) const {
+FreeHeading Steering::choose(Angle desired, double needed) const {
     constexpr std::array<double, 11> kTurns = {0, -15, 15, -30, 30, -50, 50, -75, 75, -100, 100};
     // Degrees of turning that a second of free way is worth.
     constexpr double kWorth = 120, kAside = 0.25;
-    FreeWay best{desired, 0};
+    FreeHeading best{desired, 0};
     double best_worth = -kNever;
     for (const double turn : kTurns) {
         const Angle direction = desired + Angle::degrees(turn);

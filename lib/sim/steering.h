@@ -21,7 +21,7 @@ struct Surroundings {
 };
 
 /// Where somebody is who looks about.
-struct Helm {
+struct SteeringState {
     const Surroundings* around = nullptr;
     const Obstacles* obstacles = nullptr;
     Vicinity* vicinity = nullptr;  ///< of the mover, among these obstacles
@@ -31,7 +31,7 @@ struct Helm {
 };
 
 /// A direction, and for how many seconds one can go there.
-struct FreeWay {
+struct FreeHeading {
     Angle direction;
     double time = 0;
 };
@@ -43,7 +43,7 @@ struct FreeWay {
 class Steering {
   public:
     /// Looks ahead as far as one gets in `horizon` seconds at `speed`.
-    Steering(const Helm& helm, double speed, double horizon);
+    Steering(const SteeringState& helm, double speed, double horizon);
 
     /// Seconds until somebody or something is in the way, at most `horizon`; until things in steps
     /// of a half, a quarter, an eighth of it.
@@ -52,7 +52,7 @@ class Steering {
     /// to a little more than square; else the one that is free longest, less so the farther it
     /// leads aside. Who turns aside to pass somebody turns back in time: things count for a quarter
     /// of the horizon there. Of left and right it is right, so that two who meet pass each other.
-    [[nodiscard]] FreeWay choose(Angle desired, double needed) const;
+    [[nodiscard]] FreeHeading choose(Angle desired, double needed) const;
 
   private:
     struct Neighbour {
@@ -60,7 +60,7 @@ class Steering {
         double reach;  // of both circles and the gap
     };
     void findNeighbours(const Surroundings& around, std::size_t mover);
-    void findLines(const Helm& helm);
+    void findLines(const SteeringState& helm);
     [[nodiscard]] double untilNeighbour(Vec2 velocity) const;
     [[nodiscard]] double untilLine(Vec2 velocity, double most) const;
     [[nodiscard]] double freeTime(Angle direction, double share) const;

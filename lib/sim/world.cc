@@ -23,7 +23,8 @@ constexpr std::size_t kMaxEnds = 4096;
 
 World::World(std::shared_ptr<const Scene> scene, SimTime step, const RunOptions& options)
     : data_(std::make_shared<Data>(
-          std::make_shared<Setting>(std::move(scene), options, Worlds::Meshes()), step, options)) {
+          std::make_shared<SceneResources>(std::move(scene), options, Worlds::Meshes()), step,
+          options)) {
     assert(kShortestStep <= step && step <= kLongestStep);
     data_->sensors.read(data_->time, data_->where());
 }
@@ -110,8 +111,8 @@ bool World::isTaken(std::size_t sensor) const {
     return data_->sensors.isTaken(sensor, data_->time);
 }
 
-std::function<SensorReading()> World::takeLater(std::size_t sensor) {
-    return [data = data_, take = data_->sensors.takeLater(sensor, data_->time, data_->where())] {
+std::function<SensorReading()> World::captureLater(std::size_t sensor) {
+    return [data = data_, take = data_->sensors.captureLater(sensor, data_->time, data_->where())] {
         return take();
     };
 }
@@ -240,7 +241,7 @@ Scan World::look(const Sensor& laser) { return data_->sensors.look(laser, data_-
 std::function<NextScene(Scene scene)> World::preparer() const {
     return [options = data_->options, meshes = data_->setting->worlds.meshes()](Scene scene) {
         NextScene next{std::make_shared<Scene>(std::move(scene)), nullptr};
-        next.setting = std::make_shared<Setting>(next.scene, options, meshes);
+        next.setting = std::make_shared<SceneResources>(next.scene, options, meshes);
         return next;
     };
 }
@@ -248,7 +249,7 @@ std::function<NextScene(Scene scene)> World::preparer() const {
 std::shared_ptr<const void> World::change(const NextScene& next,
                                           std::span<const std::string> placed) {
     data_->sensors.finish();
-    auto stayers = stayersOf(*data_->scene, *next.scene);
+    auto stayers = unchangedMovers(*data_->scene, *next.scene);
     for (const std::string& id : placed) stayers.erase(id);
     keepInPlace(*next.scene, stayers, data_->places());
     return std::exchange(data_, data_->next(next.setting, stayers));
@@ -294,11 +295,11 @@ std::shared_ptr<const void> World::rewind(const NextScene& next) {
 }
 
 void World::step() {
-    stepUnread();
+    stepDeferred();
     data_->sensors.finish();
 }
 
-void World::stepUnread() {
+void World::stepDeferred() {
     Data& data = *data_;
     // Sensors first look at what is moved now.
     data.sensors.finish();

@@ -58,13 +58,13 @@ struct Collision {
 };
 
 struct WheelOrder;
-struct Setting;
+struct SceneResources;
 
 /// A scene that is ready for a world to go on in, once. See World::preparer().
 struct NextScene {
     /// Until then it may be replaced by one whose environment and models are the same.
     std::shared_ptr<Scene> scene;
-    std::shared_ptr<Setting> setting;  ///< of that scene, private to lib/sim
+    std::shared_ptr<SceneResources> setting;  ///< of that scene, private to lib/sim
 };
 
 /// What a run is besides its scene.
@@ -155,7 +155,7 @@ class World {
     /// this returns reads the sensor as it is now, in any thread, and while the world goes on or is
     /// changed. Then put() makes that its reading, unless the world was changed.
     /// \pre it is heavy
-    std::function<SensorReading()> takeLater(std::size_t sensor);
+    std::function<SensorReading()> captureLater(std::size_t sensor);
     void put(std::size_t sensor, SensorReading reading);
     /// What the sonars of a robot measure now, in the order of its model: metres, +infinity without
     /// an echo. See robot_sensors.h.
@@ -183,7 +183,7 @@ class World {
     void step();
     /// The same, but sensors are read by readSome(), or each with others when reading() asks for
     /// it: for those who have somebody else to serve meanwhile. Readings do not depend on it.
-    void stepUnread();
+    void stepDeferred();
     /// Reads sensors that are due since the last step until all are, or about until then.
     /// \returns true if all are read
     bool readSome(std::chrono::steady_clock::time_point until);

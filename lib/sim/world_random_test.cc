@@ -121,7 +121,7 @@ TEST(WorldRandom, NothingEverOverlaps) {
     for (const PlacedRobot& robot : room.robots)
         bands.push_back(room.environment.band(0, robot.model.height));
     std::vector<Point2> people;
-    for (const Placed& placed : room.placed)
+    for (const PlacedRecord& placed : room.placed)
         if (room.records[placed.record].keyword() == "human")
             people.push_back(placed.pose.position.onFloor());
     ASSERT_GE(people.size(), 3U);

@@ -16,8 +16,8 @@
 
 namespace ispace {
 
-Setting::Setting(std::shared_ptr<const Scene> made_of, const RunOptions& options,
-                 const Worlds::Meshes& meshes)
+SceneResources::SceneResources(std::shared_ptr<const Scene> made_of, const RunOptions& options,
+                               const Worlds::Meshes& meshes)
     : scene(std::move(made_of)),
       obstacles(obstaclesOf(scene->environment, moversOf(*scene))),
       friction(scene->environment),
@@ -68,7 +68,7 @@ bool sameStart(const Record& a, const Record& b) {
 
 }  // namespace
 
-std::unordered_set<std::string_view> stayersOf(const Scene& before, const Scene& next) {
+std::unordered_set<std::string_view> unchangedMovers(const Scene& before, const Scene& next) {
     std::unordered_map<std::string_view, std::size_t> records;
     for (std::size_t i = 0; i < before.records.size(); ++i)
         if (isPlaced(before.records[i])) records.emplace(before.ids[i], i);
@@ -87,7 +87,7 @@ std::unordered_set<std::string_view> stayersOf(const Scene& before, const Scene&
 void keepInPlace(Scene& next, const std::unordered_set<std::string_view>& stayers,
                  const std::unordered_map<std::string_view, Pose2>& places) {
     std::vector<Pose2> people_before, people;
-    for (Placed& placed : next.placed) {
+    for (PlacedRecord& placed : next.placed) {
         const Record& record = next.records[placed.record];
         if (!isMover(record)) continue;
         const std::string& id = next.ids[placed.record];
@@ -102,7 +102,7 @@ void keepInPlace(Scene& next, const std::unordered_set<std::string_view>& stayer
         }
         start = pose;
     }
-    for (Placed& placed : next.placed) {
+    for (PlacedRecord& placed : next.placed) {
         if (sensorKind(next.records[placed.record].keyword()) == nullptr) continue;
         Sensor& sensor = next.sensors[placed.index];
         if (sensor.mount)
@@ -125,7 +125,7 @@ std::map<std::string_view, std::size_t> indexById(const auto& things) {
 
 }  // namespace
 
-World::Data::Data(std::shared_ptr<Setting> room, SimTime length, const RunOptions& run)
+World::Data::Data(std::shared_ptr<SceneResources> room, SimTime length, const RunOptions& run)
     : setting(std::move(room)),
       scene(setting->scene),
       start(scene),
@@ -154,7 +154,7 @@ World::Data::Data(std::shared_ptr<Setting> room, SimTime length, const RunOption
         states[i].obstacles = &setting->obstacles.at(model.height);
         states[i].limits = limitsOf(model, 0);
         if (!is_person) odometers.emplace_back(movers[i], options.seed, options.noise);
-        pilots[i] = Pilot(movers[i], options.seed);
+        pilots[i] = Navigator(movers[i], options.seed);
         pilots[i].follow(course, model.speed, false);
         moves[i].limits = &states[i].limits;
         moves[i].duration = seconds(length);
@@ -214,7 +214,8 @@ std::unordered_map<std::string_view, Pose2> World::Data::places() const {
 }
 
 std::shared_ptr<World::Data> World::Data::next(
-    std::shared_ptr<Setting> room, const std::unordered_set<std::string_view>& stayers) const {
+    std::shared_ptr<SceneResources> room,
+    const std::unordered_set<std::string_view>& stayers) const {
     auto after = std::make_shared<Data>(std::move(room), step_length, options);
     after->start = start;
     after->latest_start = latest_start;

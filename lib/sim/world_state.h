@@ -27,11 +27,11 @@
 namespace ispace {
 
 /// A scene with what is made of it wherever robots and people are, which takes long.
-struct Setting {
+struct SceneResources {
     /// \param meshes that somebody will need; others are made when they are needed
     /// \throws FormatError for a texture that cannot be read, if there are cameras
-    Setting(std::shared_ptr<const Scene> made_of, const RunOptions& options,
-            const Worlds::Meshes& meshes);
+    SceneResources(std::shared_ptr<const Scene> made_of, const RunOptions& options,
+                   const Worlds::Meshes& meshes);
 
     std::shared_ptr<const Scene> scene;
     ObstacleSets obstacles;
@@ -43,7 +43,7 @@ struct Setting {
 /// Ids of what goes on as it is when `next` follows `before`: robots and people in both whose
 /// records say the same of where they are, and sensors, mats and the like whose records are the
 /// same. The scene before must outlive them.
-std::unordered_set<std::string_view> stayersOf(const Scene& before, const Scene& next);
+std::unordered_set<std::string_view> unchangedMovers(const Scene& before, const Scene& next);
 
 /// Puts the robots and people who stay, and the sensors they carry, where they are now. Their
 /// records still say where they began. \pre `places` has them
@@ -70,7 +70,7 @@ struct MoverState {
 };
 
 struct World::Data {
-    Data(std::shared_ptr<Setting> room, SimTime step_length, const RunOptions& run);
+    Data(std::shared_ptr<SceneResources> room, SimTime step_length, const RunOptions& run);
 
     [[nodiscard]] std::optional<std::size_t> moverNamed(std::string_view id) const {
         const auto found = mover_index.find(id);
@@ -124,9 +124,10 @@ struct World::Data {
     /// Another scene, with what goes on: of those who stay their motion, of the others what their
     /// clients know them by.
     [[nodiscard]] std::shared_ptr<Data> next(
-        std::shared_ptr<Setting> room, const std::unordered_set<std::string_view>& stayers) const;
+        std::shared_ptr<SceneResources> room,
+        const std::unordered_set<std::string_view>& stayers) const;
 
-    std::shared_ptr<Setting> setting;
+    std::shared_ptr<SceneResources> setting;
     std::shared_ptr<const Scene> scene;         // of it
     std::shared_ptr<const Scene> start;         // of the run
     std::shared_ptr<const Scene> latest_start;  // that, or of the last restart
@@ -142,7 +143,7 @@ struct World::Data {
     std::vector<MoverState> states;
     std::vector<Gait> gaits;    // of people
     std::vector<Angle> swings;  // of their limbs
-    std::vector<Pilot> pilots;
+    std::vector<Navigator> pilots;
     std::vector<Odometer> odometers;       // of robots
     std::vector<std::size_t> kept_starts;  // whose start errors lead nowhere
     std::vector<Move> moves;

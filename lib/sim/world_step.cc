@@ -183,10 +183,10 @@ void World::Data::finish(std::size_t mover, Chunk& chunk) {
         odometers[mover].count(steps);
     if (states[mover].running == 0) return;
     const auto end = [&](Outcome outcome) { chunk.ends.push_back({mover, 0, outcome, time}); };
-    if (Pilot& pilot = pilots[mover]; pilot.isOn()) {
+    if (Navigator& pilot = pilots[mover]; pilot.isOn()) {
         return;
-    } else if (pilot.state() != Pilot::State::Off) {
-        end(pilot.state() == Pilot::State::Arrived ? Outcome::Done : Outcome::Unreached);
+    } else if (pilot.state() != Navigator::State::Off) {
+        end(pilot.state() == Navigator::State::Arrived ? Outcome::Done : Outcome::Unreached);
         pilot.turnOff();
     } else if (states[mover].stall) {
         end(Outcome::Stall);

@@ -12,7 +12,7 @@ namespace ispace {
 namespace {
 
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kNobody = MovingBodies::kNobody;
+constexpr std::uint32_t kNoOwner = MovingBodies::kNoOwner;
 
 MovingBody box(Point2 place, double heading, double length, double width, double bottom,
                double top) {
@@ -58,7 +58,7 @@ View viewSlowly(const MovingBodies& bodies, Point3 origin, const RayGrid& grid, 
     View view(grid);
     for (const MovingBody& body : bodies.bodies()) {
         if (body.owner == own) continue;
-        const BodyFrom from(body, cosSin(body.pose.heading), origin);
+        const BodyFrame from(body, cosSin(body.pose.heading), origin);
         for (std::size_t k = 0; k < grid.size(); ++k) {
             const auto columns = static_cast<std::size_t>(grid.columns);
             const Vec3 ray = grid.ray(static_cast<int>(k % columns), static_cast<int>(k / columns));
@@ -104,7 +104,7 @@ TEST(BodyPicture, AgreesWithEveryBodyAndPixel) {
         RayGrid grid = picture(pose, columns, rows);
         if (round % 20 == 7) grid.right = {};
         const double most = round % 4 == 0 ? 3 : std::numeric_limits<double>::infinity();
-        const std::uint32_t own = round % 2 == 0 ? kNobody : 3;
+        const std::uint32_t own = round % 2 == 0 ? kNoOwner : 3;
         View view(grid);
         bodies.shorten(pose.position, grid, most, own, view.multiples, view.cosines);
         EXPECT_EQ(view, viewSlowly(bodies, pose.position, grid, most, own)) << round;
@@ -138,14 +138,14 @@ TEST(BodyPicture, CosinesOfFacesAndRounds) {
         const Vec3 d = (1 / length(way)) * way;
         const Directions one{{d.x}, {d.y}, {d.z}};
         float range = kNoReturn, found = -1;
-        bodies.shorten(origin, one, 10, kNobody, {&range, 1}, {&found, 1});
+        bodies.shorten(origin, one, 10, kNoOwner, {&range, 1}, {&found, 1});
         float moved = kNoReturn, again = -1;
-        bodies.shorten({&origin, 1}, one, 0, 1, 10, kNobody, {&moved, 1}, {&again, 1});
+        bodies.shorten({&origin, 1}, one, 0, 1, 10, kNoOwner, {&moved, 1}, {&again, 1});
         EXPECT_EQ(moved, range);
         EXPECT_EQ(again, found);
         const RayGrid grid{way, {1, 0, 0}, {0, 1, 0}, 1, 1};
         View view(grid);
-        bodies.shorten(origin, grid, 100, kNobody, view.multiples, view.cosines);
+        bodies.shorten(origin, grid, 100, kNoOwner, view.multiples, view.cosines);
         EXPECT_NEAR(view.multiples[0] * length(way), range, 1e-6);
         EXPECT_NEAR(view.cosines[0], found, 1e-6);
         return found;
@@ -162,7 +162,7 @@ TEST(BodyPicture, CosinesOfFacesAndRounds) {
     const Directions one{{1}, {0}, {0}};
     for (const float nearer : {2.0F, 2.5F}) {
         float range = nearer, kept = 0.25F;
-        bodies.shorten({0, 0, 0.5}, one, 10, kNobody, {&range, 1}, {&kept, 1});
+        bodies.shorten({0, 0, 0.5}, one, 10, kNoOwner, {&range, 1}, {&kept, 1});
         EXPECT_EQ(range, nearer);
         EXPECT_EQ(kept, 0.25F);
     }
@@ -193,11 +193,11 @@ TEST(MovingBodies, OriginsOfEachRay) {
         }
         std::vector<float> ranges(100, kNoReturn), cosines(100, 1);
         const std::size_t begin = round % 3, end = 100 - begin;
-        bodies.shorten(origins, directions, begin, end, 4, kNobody, ranges, cosines);
+        bodies.shorten(origins, directions, begin, end, 4, kNoOwner, ranges, cosines);
         for (std::size_t k = begin; k < end; ++k) {
             float range = kNoReturn, cosine = 1;
             const Vec3 d = directions[k];
-            bodies.shorten(origins[k], Directions{{d.x}, {d.y}, {d.z}}, 4, kNobody, {&range, 1},
+            bodies.shorten(origins[k], Directions{{d.x}, {d.y}, {d.z}}, 4, kNoOwner, {&range, 1},
                            {&cosine, 1});
             EXPECT_EQ(ranges[k], range);
             EXPECT_EQ(cosines[k], cosine);
@@ -209,19 +209,19 @@ TEST(MovingBodies, Between) {
     MovingBody mine = cylinder({3, 0}, 0.5, 0, 1);
     mine.owner = 4;
     const MovingBodies bodies({mine, box({0, 5}, 0, 1, 1, 0, 1)});
-    EXPECT_TRUE(bodies.between({0, 0, 0.5}, {6, 0, 0.5}, kNobody));
-    EXPECT_TRUE(bodies.between({6, 0, 0.5}, {0, 0, 0.5}, kNobody));
+    EXPECT_TRUE(bodies.between({0, 0, 0.5}, {6, 0, 0.5}, kNoOwner));
+    EXPECT_TRUE(bodies.between({6, 0, 0.5}, {0, 0, 0.5}, kNoOwner));
     EXPECT_FALSE(bodies.between({0, 0, 0.5}, {6, 0, 0.5}, 4));
-    EXPECT_FALSE(bodies.between({0, 0, 0.5}, {2.49, 0, 0.5}, kNobody));
-    EXPECT_TRUE(bodies.between({0, 0, 0.5}, {2.5, 0, 0.5}, kNobody));
-    EXPECT_FALSE(bodies.between({4, 0, 0.5}, {6, 0, 0.5}, kNobody));
-    EXPECT_FALSE(bodies.between({0, 0, 1.2}, {6, 0, 1.2}, kNobody));
-    EXPECT_TRUE(bodies.between({0, 0, 0}, {6, 0, 1.6}, kNobody));     // through its side
-    EXPECT_FALSE(bodies.between({0, 0, 2}, {2.9, 0, 1.1}, kNobody));  // ends over it
-    EXPECT_TRUE(bodies.between({3, 0, 3}, {3, 0, 0.5}, kNobody));     // from above into it
-    EXPECT_TRUE(bodies.between({3, 0, 0.4}, {3, 0.1, 0.5}, kNobody));
+    EXPECT_FALSE(bodies.between({0, 0, 0.5}, {2.49, 0, 0.5}, kNoOwner));
+    EXPECT_TRUE(bodies.between({0, 0, 0.5}, {2.5, 0, 0.5}, kNoOwner));
+    EXPECT_FALSE(bodies.between({4, 0, 0.5}, {6, 0, 0.5}, kNoOwner));
+    EXPECT_FALSE(bodies.between({0, 0, 1.2}, {6, 0, 1.2}, kNoOwner));
+    EXPECT_TRUE(bodies.between({0, 0, 0}, {6, 0, 1.6}, kNoOwner));     // through its side
+    EXPECT_FALSE(bodies.between({0, 0, 2}, {2.9, 0, 1.1}, kNoOwner));  // ends over it
+    EXPECT_TRUE(bodies.between({3, 0, 3}, {3, 0, 0.5}, kNoOwner));     // from above into it
+    EXPECT_TRUE(bodies.between({3, 0, 0.4}, {3, 0.1, 0.5}, kNoOwner));
     EXPECT_TRUE(bodies.between({0, 0, 0.5}, {0, 9, 0.5}, 4));
-    EXPECT_FALSE(MovingBodies().between({0, 0, 0}, {1, 0, 0}, kNobody));
+    EXPECT_FALSE(MovingBodies().between({0, 0, 0}, {1, 0, 0}, kNoOwner));
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ void BodyScan::meet(const MovingBody& body, const BodyExtent& extent) {
         const double size = dot(flat, flat), aside = cross(way, flat);
         const double end = static_cast<double>(ranges_[k]) + radius;
         if (aside * aside > radius * radius * size + 1e-12 || dot(way, way) > end * end) continue;
-        ranges_.shorten(k, BodyFrom(body, extent.axes, from).meet(directions_[k]), 1);
+        ranges_.shorten(k, BodyFrame(body, extent.axes, from).meet(directions_[k]), 1);
     }
 }
 
@@ -185,7 +185,7 @@ PixelBox BodyPicture::pixelsOf(const MovingBody& body, const BodyExtent& extent)
 
 void BodyPicture::meet(const MovingBody& body, const BodyExtent& extent) {
     const PixelBox pixels = pixelsOf(body, extent);
-    const BodyFrom from(body, extent.axes, origin_);
+    const BodyFrame from(body, extent.axes, origin_);
     for (int row = pixels.top; row < pixels.bottom; ++row) {
         for (int column = pixels.left; column < pixels.right; ++column) {
             const Vec3 ray = grid_.ray(column, row);
@@ -335,14 +335,14 @@ void BodyArc::meetCollected() {
     for (std::size_t i = 0; i < size_; ++i) {
         const Waiting& waiting = waiting_[i];
         if (!isSeen(waiting)) continue;
-        const BodyFrom body(bodies_[waiting.body], extents_[waiting.body].axes, origin_);
+        const BodyFrame body(bodies_[waiting.body], extents_[waiting.body].axes, origin_);
         meetBeams(body, waiting.first, waiting.last, waiting.nearest);
         meetBeams(body, waiting.other_first, waiting.other_last, waiting.nearest);
     }
     size_ = 0;
 }
 
-void BodyArc::meetBeams(const BodyFrom& body, std::int32_t first, std::int32_t last,
+void BodyArc::meetBeams(const BodyFrame& body, std::int32_t first, std::int32_t last,
                         double nearest) {
     if (first > last) return;
     const auto begin = static_cast<std::size_t>(first), end = static_cast<std::size_t>(last) + 1;

@@ -82,9 +82,9 @@ struct BodyMeeting {
 };
 
 /// A body as seen from one place; what its rays share is computed once.
-class BodyFrom {
+class BodyFrame {
   public:
-    BodyFrom(const MovingBody& body, CosSin axes, Point3 origin)
+    BodyFrame(const MovingBody& body, CosSin axes, Point3 origin)
         : body_(body), axes_(axes), height_(origin.z) {
         offset_ = turned(origin.onFloor() - body.pose.position);
         offset_.x -= body.lean * (height_ - body.middle());
@@ -246,7 +246,7 @@ class BodyArc {
     void meetCollected();
     [[nodiscard]] bool isSeen(const Waiting& waiting) const;
     [[nodiscard]] bool isSeen(std::int32_t first, std::int32_t last, double nearest) const;
-    void meetBeams(const BodyFrom& body, std::int32_t first, std::int32_t last, double nearest);
+    void meetBeams(const BodyFrame& body, std::int32_t first, std::int32_t last, double nearest);
     void findFarthest(std::size_t block);
 
     Point3 origin_;

@@ -18,9 +18,9 @@ struct TracedBody {
 
     explicit TracedBody(const MovingBody& moving)
         : body(moving), axes(cosSin(moving.pose.heading)) {}
-    /// See BodyFrom::meet(): the same numbers as all other sensors get.
+    /// See BodyFrame::meet(): the same numbers as all other sensors get.
     [[nodiscard]] BodyMeeting meet(Point3 origin, Vec3 direction, double least) const {
-        return BodyFrom(body, axes, origin).meet(direction, least);
+        return BodyFrame(body, axes, origin).meet(direction, least);
     }
 };
 

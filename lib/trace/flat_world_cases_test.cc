@@ -47,7 +47,7 @@ class FlatWorldCases : public ::testing::TestWithParam<Pose2> {
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(Places, FlatWorldCases,
+INSTANTIATE_TEST_SUITE_P(MoverPoses, FlatWorldCases,
                          ::testing::Values(Pose2{}, Pose2{{1e5, -2e5}, {}},
                                            Pose2{{3.3, -1.7}, Angle::degrees(17)},
                                            Pose2{{3.3, -1.7}, Angle::degrees(45)},

@@ -28,7 +28,7 @@ MovingBody MovingBody::cutAt(double z) const {
 }
 
 Vec3 MovingBody::normalAt(Point3 place) const {
-    const BodyFrom from(*this, cosSin(pose.heading), place);
+    const BodyFrame from(*this, cosSin(pose.heading), place);
     const Vec2 at = from.offset();
     const Vec2 along = unitVector(pose.heading), across = perpendicular(along);
     const auto in_world = [&](Vec3 n) {
@@ -70,7 +70,7 @@ MovingBody movingBody(const BodyPart& part, const Pose2& pose, CosSin axes, std:
 }
 
 double MovingBody::meet(Point3 origin, Vec3 direction) const {
-    return BodyFrom(*this, cosSin(pose.heading), origin).meet(direction).multiple;
+    return BodyFrame(*this, cosSin(pose.heading), origin).meet(direction).multiple;
 }
 
 void FloorGrid::rebuild(std::span<const Point2> places, double reach) {
@@ -195,7 +195,7 @@ bool MovingBodies::between(Point3 a, Point3 b, std::uint32_t own) const {
     bool is_between = false;
     grid_.forEachNear(box, [&](std::size_t i) {
         if (is_between || bodies_[i].owner == own) return;
-        const Stretch stretch = BodyFrom(bodies_[i], extents_[i].axes, a).within(b - a);
+        const Stretch stretch = BodyFrame(bodies_[i], extents_[i].axes, a).within(b - a);
         is_between = stretch.from <= stretch.to && stretch.from <= 1 && stretch.to >= 0;
     });
     return is_between;

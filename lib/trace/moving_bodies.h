@@ -86,7 +86,7 @@ class FloorGrid {
 /// The moving bodies at one moment. Moving them leaves the ray worlds of the environment alone.
 class MovingBodies {
   public:
-    static constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+    static constexpr std::uint32_t kNoOwner = std::numeric_limits<std::uint32_t>::max();
 
     MovingBodies() = default;
     explicit MovingBodies(std::vector<MovingBody> bodies);

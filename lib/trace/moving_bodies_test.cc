@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kNobody = MovingBodies::kNobody;
+constexpr std::uint32_t kNoOwner = MovingBodies::kNoOwner;
 
 Angle degrees(double value) { return Angle::degrees(value); }
 
@@ -143,7 +143,7 @@ TEST(MovingBody, IsMetWhereItsSurfaceIs) {
             // The normal points out, and the slope is how the ray meets it.
             const Vec3 normal = body.normalAt(place);
             EXPECT_GT(outside(body, place + 1e-6 * normal), 0.5e-6);
-            const BodyFrom from(body, cosSin(body.pose.heading), origin);
+            const BodyFrame from(body, cosSin(body.pose.heading), origin);
             EXPECT_NEAR(from.meet(direction).slope, std::abs(dot(normal, direction)), 1e-6);
         }
         const double end = std::min(meeting, 8.0);
@@ -225,12 +225,12 @@ struct Sensor {
         return out;
     }
     [[nodiscard]] std::vector<float> read(const MovingBodies& bodies, std::vector<float> ranges,
-                                          std::uint32_t own = kNobody) const {
+                                          std::uint32_t own = kNoOwner) const {
         bodies.shorten(pose.position, directions(), max_range, own, ranges);
         return ranges;
     }
     [[nodiscard]] std::vector<float> read(const MovingBodies& bodies,
-                                          std::uint32_t own = kNobody) const {
+                                          std::uint32_t own = kNoOwner) const {
         return read(bodies, std::vector<float>(beams, kNoReturn), own);
     }
     /// Every body and every beam.
@@ -352,7 +352,7 @@ TEST(MovingBodies, AgreeWithEveryBodyAndBeam) {
         std::vector<float> before(sensor.beams, kNoReturn);
         for (float& range : before)
             if (unit(random) < 0.3) range = static_cast<float>(sensor.max_range * unit(random));
-        const std::uint32_t own = round % 2 == 0 ? kNobody : count / 4;
+        const std::uint32_t own = round % 2 == 0 ? kNoOwner : count / 4;
         const std::vector<float> ranges = sensor.read(bodies, before, own);
         EXPECT_EQ(ranges, sensor.readSlowly(bodies, before, own)) << round;
         for (std::size_t k = 0; k < ranges.size(); ++k)

@@ -113,7 +113,7 @@ std::vector<std::pair<int, Pose2>> cases() {
     }
     return all;
 }
-INSTANTIATE_TEST_SUITE_P(Places, RayWorldCases, ::testing::ValuesIn(cases()));
+INSTANTIATE_TEST_SUITE_P(MoverPoses, RayWorldCases, ::testing::ValuesIn(cases()));
 
 TEST_P(RayWorldCases, Room) {
     const World room = world(rectangleLines({0, 0}, {8, 6}));

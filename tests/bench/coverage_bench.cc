@@ -110,7 +110,7 @@ void measure(benchmark::State& state, const Case& test, const std::string& folde
 
 /// Edges between the faces into which the views of all sensors part the floor.
 std::size_t edgesOf(const Case& test) {
-    const Sight sight(test.scene.environment, 0);
+    const VisibleArea sight(test.scene.environment, 0);
     std::vector<Layer> layers;
     for (const Sensor& sensor : test.scene.sensors)
         layers.push_back({.curves = *sight.regionOf(sensor),

@@ -56,9 +56,9 @@ struct Case {
 };
 
 /// The ways, each for one fan at a time; memory is kept from fan to fan.
-class Ways {
+class EdgeWaypoints {
   public:
-    explicit Ways(Case& test)
+    explicit EdgeWaypoints(Case& test)
         : test_(test),
           ranges_([&test] { return std::vector<float>(test.directions.front().size()); }),
           plain_([&test] { return makeCaster(test, {}); }),
@@ -102,7 +102,7 @@ class Ways {
 };
 
 void verify(Case& test) {
-    Ways ways(test);
+    EdgeWaypoints ways(test);
     std::vector<float> cast, scanned;
     for (std::size_t i = 0; i < test.sensors.size(); ++i) {
         for (const float range : ways.cast(i)) cast.push_back(range);
@@ -113,7 +113,7 @@ void verify(Case& test) {
 }
 
 void measure(benchmark::State& state, Case& test, int threads) {
-    Ways ways(test);
+    EdgeWaypoints ways(test);
     bench::Contest contest;
     const auto add = [&](auto way) {
         contest.add([&test, threads, way] { bench::shareOut(threads, test.sensors.size(), way); });

@@ -29,7 +29,7 @@ constexpr std::size_t kLanes = 8;
 
 /// Beams from that of (ahead) to where each edge begins, counter-clockwise.
 ISPACE_SIMD_CLONES
-void measureTurns(const SightEdge* edges, std::size_t count, Point2 viewpoint, Vec2 ahead,
+void measureTurns(const VisibilityEdge* edges, std::size_t count, Point2 viewpoint, Vec2 ahead,
                   double beams_per_radian, double* turns) {
     for (std::size_t i = 0; i < count; ++i) {
         const double x = edges[i].from.x - viewpoint.x, y = edges[i].from.y - viewpoint.y;
@@ -102,8 +102,8 @@ class Sampler {
     }
     void draw(const VisibleRegion& region, std::size_t index, std::size_t begin, std::size_t end) {
         if (begin >= end) return;
-        const SightEdge& edge = region.edges[index];
-        if (edge.line == SightEdge::kArc) {
+        const VisibilityEdge& edge = region.edges[index];
+        if (edge.line == VisibilityEdge::kArc) {
             std::fill_n(inverse_range_.data() + begin, end - begin, -1.0);
         } else if (edge.line >= first_round_) {
             const RoundFrom round(tree_.rounds[edge.line - first_round_], region.viewpoint.x,

@@ -39,7 +39,7 @@ using ExactPolygon = CGAL::Polygon_2<Kernel>;
 constexpr double kRange = 4;
 constexpr std::size_t kViews[] = {3, 10, 30, 100, 300, 1000};
 /// CGAL takes seconds for more.
-constexpr std::size_t kMostForCgal = 300;
+constexpr std::size_t kMaxForCgal = 300;
 
 /// The outlines of k views, with arcs and with chords for them.
 struct Case {
@@ -48,7 +48,7 @@ struct Case {
     std::vector<ExactPolygon> polygons;
     std::size_t edges = 0;
 
-    [[nodiscard]] bool isForCgal() const { return polygons.size() <= kMostForCgal; }
+    [[nodiscard]] bool isForCgal() const { return polygons.size() <= kMaxForCgal; }
 };
 
 /// The union by Clipper, with chords for arcs.

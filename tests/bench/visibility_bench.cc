@@ -96,7 +96,7 @@ void fail(const std::string& name, Point2 p, const char* what, double ours, doub
 
 bool isEnclosed(const VisibleRegion& region) {
     return std::none_of(region.edges.begin(), region.edges.end(),
-                        [](const SightEdge& end) { return end.line == SightEdge::kArc; });
+                        [](const VisibilityEdge& end) { return end.line == VisibilityEdge::kArc; });
 }
 
 /// Ends the program unless a part of the regions has the areas that CGAL says.
@@ -184,7 +184,7 @@ void mustGoRound(const std::string& name, const VisibleRegion& region) {
     const Point2 v = region.viewpoint;
     double turned = 0;
     for (std::size_t i = 0; i < region.edges.size(); ++i) {
-        const SightEdge& end = region.edges[i];
+        const VisibilityEdge& end = region.edges[i];
         const Vec2 from = end.from - v, to = end.to - v;
         const Vec2 next = region.edges[(i + 1) % region.edges.size()].from - v;
         if (!(cross(from, to) > 0)) fail(name, v, "turn of an end", cross(from, to), 1);

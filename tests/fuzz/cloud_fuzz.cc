@@ -14,8 +14,8 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
         bounds.add({p.x, p.y});
     });
     // Millions of empty cells take a second and show no other paths.
-    constexpr double kWidest = 100;
-    if (!(bounds.width() < kWidest && bounds.depth() < kWidest)) return;
+    constexpr double kMaxWidth = 100;
+    if (!(bounds.width() < kMaxWidth && bounds.depth() < kMaxWidth)) return;
     ImportOptions options;
     options.slice_walls = 0.5;
     options.slice_top = 1.5;

@@ -19,7 +19,7 @@ namespace {
 constexpr double kDoor = 0.9, kDoorDepth = 0.7;  // free width on both sides of it
 constexpr double kFromDoor = 0.35;               // other walls end at least this far from a door
 constexpr double kFromWall = 0.06, kApart = 0.08;
-constexpr double kNarrowest = 2.2;  // of a room
+constexpr double kMinWidth = 2.2;  // of a room
 
 std::string point(Point2 p) { return formatDouble(p.x) + ',' + formatDouble(p.y); }
 
@@ -179,8 +179,8 @@ class PlanMaker {
             parts.first.push_back(end);
             parts.second.push_back(end);
         }
-        if (ends.size() != 2 || !isFine(room, ends) || widthOf(parts.first) < kNarrowest ||
-            widthOf(parts.second) < kNarrowest)
+        if (ends.size() != 2 || !isFine(room, ends) || widthOf(parts.first) < kMinWidth ||
+            widthOf(parts.second) < kMinWidth)
             return std::nullopt;
         addWall({ends[0], ends[1]});
         return parts;

@@ -58,13 +58,13 @@ void raceOfTasks() {
 
 void raceOfPipelines() {
     Meeting meeting;
-    ispace::makeInOrder(
+    ispace::orderedPipeline(
         2, [&](std::size_t) { countTogether(meeting); }, [](std::size_t) {});
 }
 
 /// The world is moved by one thread and looked at by another one.
-template <typename Look>
-void raceOfWorld(Look look) {
+template <typename Appearance>
+void raceOfWorld(Appearance look) {
     TestWorld room;
     Meeting meeting;
     std::thread other([&] {
@@ -98,7 +98,7 @@ bool orderedPipelines() {
     for (std::size_t round = 0; round < kRounds; ++round) {
         std::array<std::vector<std::size_t>, ispace::kBlocksAtOnce> slots;
         std::vector<std::size_t> taken;
-        ispace::makeInOrder(
+        ispace::orderedPipeline(
             kBlocks,
             [&](std::size_t block) { slots[block % slots.size()].assign(10, round + block); },
             [&](std::size_t block) { taken.push_back(slots[block % slots.size()].back()); });
@@ -113,7 +113,7 @@ bool stoppedPipelines() {
     for (int round = 0; round < 50; ++round) {
         std::size_t taken = 0;
         try {
-            ispace::makeInOrder(
+            ispace::orderedPipeline(
                 100,
                 [](std::size_t block) {
                     if (block == 30) throw std::runtime_error("stop");

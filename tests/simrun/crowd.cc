@@ -120,7 +120,7 @@ void stumble(World& world, std::uint64_t seed) {
     // Each robot thinks again every half second, not all at the same step.
     const auto step = static_cast<std::uint64_t>(world.steps());
     for (std::size_t i = 0; i < world.movers().size(); ++i) {
-        if ((step + 7 * i) % 100 != 0 || world.movers()[i].course != Course()) continue;
+        if ((step + 7 * i) % 100 != 0 || world.movers()[i].course != MotionPlan()) continue;
         std::mt19937_64 random(seed ^ (step << 20U) ^ i);
         const RobotModel& model = world.movers()[i].model;
         const double range = std::uniform_real_distribution<double>(-1, 1)(random);

@@ -22,7 +22,7 @@ inline std::vector<Reading> readings(const Scene& scene, const TakerOptions& opt
     const Sensors sensors = sensorsOf(scene, {});
     Worlds worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
-    ReadingTaker taker(sensors, worlds, bodies, options);
+    ReadingSampler taker(sensors, worlds, bodies, options);
     std::vector<Reading> out;
     for (std::size_t i = 0; i < sensors.read.size(); ++i) {
         const ReadingJob job{i, frame, 0, sensors.read[i].pose, {}};

@@ -106,7 +106,7 @@ inline const Schemas& placedSchemas() {
         height.default_value = 0.7;
         KeySpec size = testKey("size", KeyType::Tuple, Unit::Length);
         size.max_count = 3;
-        KeySpec path = testPlace("path", 2), course = testPlace("path", 2, Role::Course);
+        KeySpec path = testPlace("path", 2), course = testPlace("path", 2, Role::MotionPlan);
         path.type = course.type = KeyType::TupleList;
         KeySpec file = testKey("file", KeyType::Text);
         file.role = Role::File;

@@ -30,11 +30,11 @@ inline void expectSound(const VisibleRegion& region, double slack = 1e-9) {
     const Point2 v = region.viewpoint;
     double turned = 0;
     for (std::size_t i = 0; i < region.edges.size(); ++i) {
-        const SightEdge& end = region.edges[i];
+        const VisibilityEdge& end = region.edges[i];
         const Vec2 from = end.from - v, to = end.to - v;
         EXPECT_GT(cross(from, to), 0);
         turned += std::atan2(cross(from, to), dot(from, to));
-        if (end.line == SightEdge::kArc) {
+        if (end.line == VisibilityEdge::kArc) {
             EXPECT_GE(dot(from, to), -1e-9 * dot(from, from));
             EXPECT_NEAR(length(from), region.max_range, 1e-9 * region.max_range);
             EXPECT_NEAR(length(to), region.max_range, 1e-9 * region.max_range);

@@ -194,8 +194,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               Enters::BaseName);
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
                 Enters::History);
-    constexpr int kNarrowest = 200, kWidest = 10000;
-    line.count("--width", "PIXELS", o.map.width, kNarrowest, kWidest, "width of a PNG or SVG",
+    constexpr int kMinWidth = 200, kMaxWidth = 10000;
+    line.count("--width", "PIXELS", o.map.width, kMinWidth, kMaxWidth, "width of a PNG or SVG",
                Enters::History);
     line.choice("--color", words.color, {"redundancy", "sensor", "density"},
                 "colour the floor by how many sensors see it, by which, or by the pixels a metre "

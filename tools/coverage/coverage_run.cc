@@ -65,11 +65,11 @@ Measured measure(const CoverageToolOptions& options, const Scene& scene, const S
     return measured;
 }
 
-std::optional<RunSight> lookAtRun(const CoverageToolOptions& options, const Scene& scene) {
+std::optional<RunCoverage> lookAtRun(const CoverageToolOptions& options, const Scene& scene) {
     if (options.run.empty()) return std::nullopt;
     RunReader reader(options.run);
     RunChanges changes = changesOfRun(options.run, scene);
-    RunSight run =
+    RunCoverage run =
         measureRun(scene, reader,
                    {.plane = options.measure.plane, .density = options.measure.density}, &changes);
     if (!changes.failure().empty()) warn(options.common, "coverage", changes.failure());
@@ -262,8 +262,8 @@ class BatchWriter {
     void take(const BatchJob& job, const SceneOutcome& outcome) {
         reports_.write(outcome.report);
         for (const std::string& message : outcome.messages)
-            sayLine({"coverage: ", displayName(options_.batch), ":", std::to_string(job.line), ": ",
-                     printable(message)});
+            writeErrorLine({"coverage: ", displayName(options_.batch), ":",
+                            std::to_string(job.line), ": ", printable(message)});
         if (outcome.failed) ++failed_;
         if (!unmetText(outcome.verdicts).empty()) ++unmet_;
         verdicts_.insert(verdicts_.end(), outcome.verdicts.begin(), outcome.verdicts.end());

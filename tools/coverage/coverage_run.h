@@ -29,7 +29,7 @@ struct Measured {
 Measured measure(const CoverageToolOptions& options, const Scene& scene, const Scene* other);
 
 /// What the layout saw of a recorded run; nothing without --run.
-std::optional<RunSight> lookAtRun(const CoverageToolOptions& options, const Scene& scene);
+std::optional<RunCoverage> lookAtRun(const CoverageToolOptions& options, const Scene& scene);
 
 /// Writes the map to -o, with what stands beside it. \pre there is a format
 void writeProduct(const CoverageToolOptions& options, const SceneInput& input,

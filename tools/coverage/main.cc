@@ -56,7 +56,7 @@ void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
 }
 
 std::string reportText(const CoverageToolOptions& options, const CoverageReport& report,
-                       const RunSight* run) {
+                       const RunCoverage* run) {
     if (options.json) return coverageJson(report, run);
     return coverageText(report) + (run == nullptr ? "" : "\n" + runText(*run));
 }
@@ -85,7 +85,7 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     if (const std::string text = largeCellsText(options.measure, report.grid);
         !text.empty() && !options.common.quiet)
         std::cerr << "coverage: " << text << '\n';
-    const std::optional<RunSight> run = lookAtRun(options, input.scene);
+    const std::optional<RunCoverage> run = lookAtRun(options, input.scene);
     if (run) options.map.run = &*run;
     if (run) files.push_back(RecordedFiles(options.run).robots);
     if (options.format != nullptr) {

@@ -28,7 +28,7 @@ class BuriedPoses {
     explicit BuriedPoses(const Environment& environment) : burial_(environment) {}
     void count(const std::vector<ReadingJob>& jobs) {
         for (const ReadingJob& job : jobs)
-            if (burial_.isBuried(job.pose.position) && count_++ == 0) first_ = job;
+            if (burial_.isInsideSolid(job.pose.position) && count_++ == 0) first_ = job;
     }
     [[nodiscard]] std::vector<std::string> phrases() const {
         if (count_ == 0) return {};
@@ -79,7 +79,7 @@ void scan(const ScanCommand& command) {
     if (std::any_of(sensors.read.begin(), sensors.read.end(),
                     [](const Sensor& one) { return one.is<Camera>(); }))
         taking.photographer = &photographer.emplace(scene, options.photo);
-    ReadingTaker taker(sensors, worlds, bodies, taking);
+    ReadingSampler taker(sensors, worlds, bodies, taking);
     const ReadingWork work = workOf(command, input, sensors, *format);
     if (!work.delivery)
         return talk(options.common, "scan", options.common.output + " is done already");

@@ -169,10 +169,10 @@ void addViewOptions(CommandLine& line, ViewToolOptions& options) {
         Enters::BaseName);
 }
 
-ShownSight shownSight(const std::string& text) {
-    if (text == "beams") return ShownSight::Beams;
-    if (text == "area") return ShownSight::Area;
-    if (text == "none") return ShownSight::None;
+OverlayLayers shownSight(const std::string& text) {
+    if (text == "beams") return OverlayLayers::Beams;
+    if (text == "area") return OverlayLayers::Area;
+    if (text == "none") return OverlayLayers::None;
     throw UsageError("`" + text + "` is none of beams|area|none");
 }
 
@@ -185,12 +185,13 @@ void checkViewOptions(const CommandLine& line, ViewToolOptions& options) {
 }
 
 PictureSize pictureSize(const std::string& text) {
-    constexpr std::int64_t kLeast = 16, kMost = 16384;
+    constexpr std::int64_t kMinValue = 16, kMost = 16384;
     const auto side = [&](const std::string& word) {
         const std::optional<std::int64_t> pixels = parseInteger(word);
-        if (!pixels || *pixels < kLeast || *pixels > kMost)
+        if (!pixels || *pixels < kMinValue || *pixels > kMost)
             throw UsageError("`" + text + "`: wanted W or W,H, each from " +
-                             std::to_string(kLeast) + " to " + std::to_string(kMost) + " pixels");
+                             std::to_string(kMinValue) + " to " + std::to_string(kMost) +
+                             " pixels");
         return static_cast<int>(*pixels);
     };
     const std::size_t comma = text.find(',');

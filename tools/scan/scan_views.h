@@ -26,7 +26,7 @@ void addViewOptions(CommandLine& line, ViewToolOptions& options);
 void checkViewOptions(const CommandLine& line, ViewToolOptions& options);
 
 /// \throws UsageError
-ShownSight shownSight(const std::string& text);
+OverlayLayers shownSight(const std::string& text);
 
 /// `N` or `W,H`, each side from 16 to 16384 pixels; rows are 0 for N. \throws UsageError
 PictureSize pictureSize(const std::string& text);

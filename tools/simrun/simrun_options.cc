@@ -153,7 +153,7 @@ void SimrunCommand::declareRun() {
         "length of a step (default 5ms)", Enters::History);
     line_.parsed(
         "--until", "TIME",
-        [&o](const std::string& text) { o.until = timeOption(text, SimTime(0), kLongestTime); },
+        [&o](const std::string& text) { o.until = timeOption(text, SimTime(0), kMaxTime); },
         "end the run at this simulated time (90, 90s, 1.5min)", Enters::History);
     line_.flag("--noise", o.noise,
                "sensors have the noise of their records; robots, their odometry and their starts "
@@ -218,7 +218,7 @@ void SimrunCommand::declareReplay() {
         Enters::BaseName);
     line_.parsed(
         "--from", "TIME",
-        [&o](const std::string& text) { o.from = timeOption(text, SimTime(0), kLongestTime); },
+        [&o](const std::string& text) { o.from = timeOption(text, SimTime(0), kMaxTime); },
         "begin the replay at this time of the record", Enters::History);
     line_.flag("--hold", o.holds,
                "serve the last moment of the record on and on, instead of ending with it",
@@ -246,8 +246,8 @@ void SimrunCommand::declareDrawing() {
     DrawingOptions& o = options_.drawing;
     line_.choice("--to", to_, formats(), "format of FILE (default: its suffix, else png)",
                  Enters::Nothing);
-    constexpr int kNarrowest = 200, kWidest = 10000;
-    line_.count("--width", "PIXELS", o.width, kNarrowest, kWidest,
+    constexpr int kMinWidth = 200, kMaxWidth = 10000;
+    line_.count("--width", "PIXELS", o.width, kMinWidth, kMaxWidth,
                 "width of the picture or the film", Enters::Nothing);
     const auto positive = [this](const std::string& name, double& variable, double most,
                                  const std::string& help) {
@@ -255,8 +255,8 @@ void SimrunCommand::declareDrawing() {
             name, "N",
             [&variable, most](const std::string& text) {
                 const auto value = parseDouble(text);
-                constexpr double kLeast = 0.001;
-                if (!value || *value < kLeast || *value > most)
+                constexpr double kMinValue = 0.001;
+                if (!value || *value < kMinValue || *value > most)
                     throw UsageError(excerpt(text) + " is no number from 0.001 to " +
                                      formatDouble(most));
                 variable = *value;

@@ -148,11 +148,11 @@ RunningRecord::RunningRecord(const SimrunOptions& options, Simulation& simulatio
 /// What the record of a run until a given time holds at least is known before it begins.
 void checkRecord(const SimrunOptions& options, const World& world) {
     if (options.record.empty() || !options.until) return;
-    constexpr double kShortestLine = 20;  // bytes, of robots.csv
+    constexpr double kMinLine = 20;  // bytes, of robots.csv
     const double steps =
         static_cast<double>(options.until->count()) / static_cast<double>(options.step.count());
     const double lines = std::ceil(steps) * static_cast<double>(world.movers().size());
-    if (lines * kShortestLine <= static_cast<double>(options.max_recorded)) return;
+    if (lines * kMinLine <= static_cast<double>(options.max_recorded)) return;
     throw UsageError("--record: " + formatDouble(lines) + " lines of robots and people until t=" +
                      formatSimTime(*options.until) + " are more than --record-limit, which is " +
                      byteCountText(options.max_recorded) + "; is --until in seconds?");
@@ -236,7 +236,7 @@ namespace {
 constexpr double kRounding = 1e-9;  // s
 
 double endOf(const SimrunOptions& options) {
-    return seconds(options.until.value_or(kLongestTime)) + kRounding;
+    return seconds(options.until.value_or(kMaxTime)) + kRounding;
 }
 
 /// Reads the record up to --until; `before` hears of each moment that is still to be added.

@@ -10,8 +10,8 @@
 
 namespace ispace {
 
-SeenRuns runsOf(const CandidateSet& set, std::uint32_t candidate) {
-    SeenRuns runs, joined;
+CellRuns runsOf(const CandidateSet& set, std::uint32_t candidate) {
+    CellRuns runs, joined;
     set.forEachRun(candidate, [&runs](const CellRun& run) { runs.push_back(run); });
     std::sort(runs.begin(), runs.end(),
               [](const CellRun& a, const CellRun& b) { return a.first < b.first; });
@@ -24,8 +24,8 @@ SeenRuns runsOf(const CandidateSet& set, std::uint32_t candidate) {
     return joined;
 }
 
-SeenRuns commonOf(const SeenRuns& a, const SeenRuns& b) {
-    SeenRuns both;
+CellRuns commonOf(const CellRuns& a, const CellRuns& b) {
+    CellRuns both;
     for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
         const CellRun run{std::max(a[i].first, b[j].first), std::min(a[i].end, b[j].end)};
         if (run.first < run.end) both.push_back(run);
@@ -37,7 +37,7 @@ SeenRuns commonOf(const SeenRuns& a, const SeenRuns& b) {
     return both;
 }
 
-void MaskedSums::assign(const SeenRuns& runs, const std::uint32_t* weights) {
+void MaskedSums::assign(const CellRuns& runs, const std::uint32_t* weights) {
     std::uint32_t sum = 0;
     std::size_t cell = 0;
     const auto at = [this](std::size_t i) {

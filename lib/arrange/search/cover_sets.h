@@ -143,12 +143,12 @@ void CandidateSet::forEachRun(std::size_t candidate, Visit visit) const {
 }
 
 /// What candidates see: runs of cells, ascending, that do not touch each other.
-using SeenRuns = std::vector<CellRun>;
+using CellRuns = std::vector<CellRun>;
 
 /// What a candidate sees. O(n log n) for n runs.
-SeenRuns runsOf(const CandidateSet& set, std::uint32_t candidate);
+CellRuns runsOf(const CandidateSet& set, std::uint32_t candidate);
 /// What is in both. O(n)
-SeenRuns commonOf(const SeenRuns& a, const SeenRuns& b);
+CellRuns commonOf(const CellRuns& a, const CellRuns& b);
 
 /// Weights of what one candidate sees, summed up, so that its share of what others see is quick to
 /// tell.
@@ -156,9 +156,9 @@ class MaskedSums {
   public:
     explicit MaskedSums(std::size_t cells) : sums_(cells + 1) {}
     /// O(cells)
-    void assign(const SeenRuns& runs, const std::uint32_t* weights);
+    void assign(const CellRuns& runs, const std::uint32_t* weights);
     /// Weight of what is seen in these runs, too. O(n) for n runs.
-    [[nodiscard]] std::int64_t of(const SeenRuns& runs) const {
+    [[nodiscard]] std::int64_t of(const CellRuns& runs) const {
         std::uint32_t sum = 0;
         for (const CellRun& run : runs) sum += sums_[run.end] - sums_[run.first];
         return sum;

@@ -13,7 +13,7 @@ namespace {
 
 Solution kicked(const Problem& problem, const Solution& start, const KickOptions& options = {}) {
     SilentProgress progress;
-    return improveByKicks(problem, start, options, progress);
+    return iteratedLocalSearch(problem, start, options, progress);
 }
 
 Solution greedyStart(const Problem& problem) {
@@ -94,7 +94,7 @@ TEST(KickSearch, StoppedItKeepsWhatItHas) {
     const Solution start = greedyStart(random.problem);
     for (const int times : {0, 1, 10, 100, 1000}) {
         StopWhen progress(afterAsking(times));
-        const Solution end = improveByKicks(random.problem, start, {}, progress);
+        const Solution end = iteratedLocalSearch(random.problem, start, {}, progress);
         EXPECT_GE(end.value, start.value);
         EXPECT_EQ(end.value, valueOf(random.problem, end.chosen));
         EXPECT_EQ(progress.begun, progress.ended);

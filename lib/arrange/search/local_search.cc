@@ -271,11 +271,11 @@ void LocalSearch::improveByPairs(CoverageState& state) {
 namespace {
 
 constexpr std::size_t kChains = 4;
-constexpr std::uint64_t kKicks = 12;                // of a chain in a round
-constexpr std::size_t kLeastOut = 2, kMostOut = 4;  // sensors taken out by a kick
-constexpr std::size_t kNeighbours = 5;              // of which the others are drawn
-constexpr float kSlack = 0.002F;                    // a chain may go on from what is so much worse,
-constexpr float kForgiving = 0.1F;                  // one time in ten
+constexpr std::uint64_t kKicks = 12;             // of a chain in a round
+constexpr std::size_t kMinOut = 2, kMaxOut = 4;  // sensors taken out by a kick
+constexpr std::size_t kNeighbours = 5;           // of which the others are drawn
+constexpr float kSlack = 0.002F;                 // a chain may go on from what is so much worse,
+constexpr float kForgiving = 0.1F;               // one time in ten
 /// The sequence of a kick does not meet those of the starts' kicks.
 constexpr std::uint64_t kFirstKey = 1ULL << 32U;
 
@@ -324,7 +324,7 @@ class Chain {
         kPivot,
         kOut,
         kWhich,  ///< one for each that goes with the pivot
-        kPutIn = kWhich + kMostOut - 1,
+        kPutIn = kWhich + kMaxOut - 1,
         kPlaces  ///< tries of a place
     };
     static constexpr std::size_t kTries = 24, kDraws = kPlaces + kTries;
@@ -374,7 +374,7 @@ class Chain {
             return a.first != b.first ? a.first > b.first : a.second < b.second;
         });
         if (others.size() > kNeighbours) others.resize(kNeighbours);
-        const std::size_t count = kLeastOut + indexOf(draws[kOut], kMostOut - kLeastOut + 1);
+        const std::size_t count = kMinOut + indexOf(draws[kOut], kMaxOut - kMinOut + 1);
         std::vector<Choice> out = {pivot};
         while (out.size() < count && !others.empty()) {
             const std::size_t which = indexOf(draws[kWhich + out.size() - 1], others.size());
@@ -393,9 +393,9 @@ class Chain {
 
 }  // namespace
 
-Solution improveByKicks(const Problem& problem, const Solution& start, const KickOptions& options,
-                        Progress& progress) {
-    if (start.chosen.size() < kLeastOut || start.value >= options.enough) return start;
+Solution iteratedLocalSearch(const Problem& problem, const Solution& start,
+                             const KickOptions& options, Progress& progress) {
+    if (start.chosen.size() < kMinOut || start.value >= options.enough) return start;
     progress.begin("improving", 0);
     const SearchBasis basis(problem);
     ResponseCache cache;

@@ -110,7 +110,7 @@ struct KickOptions {
 /// Stützle 2003). Chains run side by side for a round of a dozen kicks each, from the best so far.
 /// Never worse than `start`. The same for any number of threads unless progress says stop.
 /// \pre start is feasible
-Solution improveByKicks(const Problem& problem, const Solution& start, const KickOptions& options,
-                        Progress& progress);
+Solution iteratedLocalSearch(const Problem& problem, const Solution& start,
+                             const KickOptions& options, Progress& progress);
 
 }  // namespace ispace

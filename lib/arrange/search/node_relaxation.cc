@@ -116,13 +116,13 @@ std::vector<std::uint32_t> NodeRelaxation::mostPromising(const OpenGroup& group,
 }
 
 void NodeRelaxation::widen() {
-    constexpr std::size_t kLeast = 24, kPerSensor = 8;
+    constexpr std::size_t kMinValue = 24, kPerSensor = 8;
     if (is_working_.empty())
         for (const auto& kind : problem_.kinds)
             is_working_.emplace_back(kind.candidates->sites(), 0);
     for (const OpenGroup& group : groups_) {
         const CandidateSet& set = *problem_.kinds[group.kind].candidates;
-        for (const std::uint32_t i : mostPromising(group, kLeast + kPerSensor * group.count))
+        for (const std::uint32_t i : mostPromising(group, kMinValue + kPerSensor * group.count))
             is_working_[group.kind][set.siteOf(i)] = 1;
     }
     working_sites_.assign(sites_.size(), {});
@@ -232,7 +232,7 @@ std::vector<Choice> NodeRelaxation::takeForced(std::uint64_t cut) {
 }
 
 NodeCore NodeRelaxation::core(std::size_t size) const {
-    constexpr std::size_t kLeast = 16;
+    constexpr std::size_t kMinValue = 16;
     constexpr float kRare = 1e-3F;
     std::size_t sensors = 0;
     for (const OpenGroup& group : groups_) sensors += group.count;
@@ -241,7 +241,7 @@ NodeCore NodeRelaxation::core(std::size_t size) const {
         const OpenGroup& group = groups_[g];
         std::vector<char>& own = is_core.emplace_back(group.list.size(), 0);
         const std::size_t part = size * group.count / std::max<std::size_t>(sensors, 1);
-        for (const std::uint32_t i : mostPromising(group, kLeast + part)) {
+        for (const std::uint32_t i : mostPromising(group, kMinValue + part)) {
             const auto at = std::lower_bound(group.list.begin(), group.list.end(), i);
             own[static_cast<std::size_t>(at - group.list.begin())] = 1;
         }

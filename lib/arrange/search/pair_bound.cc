@@ -41,10 +41,10 @@ std::uint64_t OverlapRelaxation::evaluateWorking(const std::vector<std::uint32_t
 std::uint64_t OverlapRelaxation::boundOf(const std::vector<std::uint32_t>& multipliers, bool is_all,
                                          const Progress& progress) {
     constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
-    constexpr std::size_t kMostViews = 200'000;
+    constexpr std::size_t kMaxViews = 200'000;
     number_ = std::int64_t{multipliers.back()} * kNumberUnit;
     findPlaces(multipliers, is_all);
-    if (views_.size() > kMostViews) return kNoLimit;
+    if (views_.size() > kMaxViews) return kNoLimit;
     for (std::size_t i = from_root_.size(); i-- > 0;) {
         if (progress.stopped()) return kNoLimit;
         gather(areas_[from_root_[i]], multipliers);
@@ -215,7 +215,7 @@ void OverlapRelaxation::setCover() {
     std::fill(cover_.begin(), cover_.end(), 0.0F);
     std::size_t chosen = 0;
     std::vector<char> is_seen;
-    const auto add = [&](const SeenRuns& runs, float part, bool is_new) {
+    const auto add = [&](const CellRuns& runs, float part, bool is_new) {
         for (const CellRun& run : runs)
             for (std::uint32_t i = run.first; i < run.end; ++i)
                 if (!is_new || is_seen[i] == 0) cover_[i] += part;
@@ -223,7 +223,7 @@ void OverlapRelaxation::setCover() {
     for (const Area& area : areas_) {
         if (area.best == kNone) continue;
         const Place& place = area.places[area.best];
-        const SeenRuns& own = seenFrom(place);
+        const CellRuns& own = seenFrom(place);
         is_seen.assign(cover_.size(), 0);
         for (const CellRun& run : own)
             std::fill(is_seen.begin() + run.first, is_seen.begin() + run.end, 1);
@@ -244,7 +244,7 @@ void OverlapRelaxation::setCover() {
 
 namespace {
 
-constexpr std::size_t kLeastSensors = 6, kMostSensors = 64;
+constexpr std::size_t kMinSensors = 6, kMaxSensors = 64;
 constexpr int kTrials = 10;     // between two evaluations of all candidates
 constexpr int kRoundsBack = 4;  // by what these gain
 
@@ -257,7 +257,7 @@ bool isBoundByOverlaps(const Problem& problem) {
         std::all_of(cells.needs.begin(), cells.needs.end(),
                     [&cells](std::uint16_t need) { return need <= cells.multiplicities[0]; });
     const std::size_t sensors = CountChoice(problem).total();
-    return is_single && sensors >= kLeastSensors && sensors <= kMostSensors &&
+    return is_single && sensors >= kMinSensors && sensors <= kMaxSensors &&
            problem.kinds[0].candidates->size() > sensors;
 }
 
@@ -396,7 +396,7 @@ void OverlapRelaxation::join(std::uint32_t least) {
     }
 }
 
-auto OverlapRelaxation::viewOf(std::uint32_t candidate) -> const SeenRuns& {
+auto OverlapRelaxation::viewOf(std::uint32_t candidate) -> const CellRuns& {
     if (view_of_[candidate] != kNone) return views_[view_of_[candidate]];
     view_of_[candidate] = static_cast<std::uint32_t>(views_.size());
     views_.push_back(runsOf(set_, candidate));
@@ -405,8 +405,8 @@ auto OverlapRelaxation::viewOf(std::uint32_t candidate) -> const SeenRuns& {
 }
 
 void OverlapRelaxation::addToBundle(std::uint32_t candidate) {
-    constexpr double kLike = 0.8, kLeast = 0.7;
-    const SeenRuns& view = views_.back();
+    constexpr double kLike = 0.8, kMinValue = 0.7;
+    const CellRuns& view = views_.back();
     seen_.assign(view, cells_.weights.data());
     const auto own = static_cast<double>(seen_.of(view));
     std::vector<Bundle>& bundles = areas_[area_of_[candidate]].bundles;
@@ -414,7 +414,7 @@ void OverlapRelaxation::addToBundle(std::uint32_t candidate) {
     double most = 0;
     for (std::size_t i = 0; i < bundles.size(); ++i) {
         const auto common = static_cast<double>(seen_.of(bundles[i].common));
-        if (common < kLike * own || common < kLeast * static_cast<double>(bundles[i].founder) ||
+        if (common < kLike * own || common < kMinValue * static_cast<double>(bundles[i].founder) ||
             common <= most)
             continue;
         best = i;

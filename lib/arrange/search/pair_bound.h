@@ -58,7 +58,7 @@ class OverlapRelaxation {
 
     /// Places that see much the same, so that most are told from a best one together.
     struct Bundle {
-        SeenRuns common;                   ///< what all of them see
+        CellRuns common;                   ///< what all of them see
         std::uint64_t founder = 0;         ///< weight of what the first of them sees
         std::vector<std::uint32_t> ranks;  ///< of the places that are in it now, the best first
         std::int64_t best = 0;
@@ -86,7 +86,7 @@ class OverlapRelaxation {
     };
 
     void join(std::uint32_t least);
-    const SeenRuns& viewOf(std::uint32_t candidate);
+    const CellRuns& viewOf(std::uint32_t candidate);
     void addToBundle(std::uint32_t candidate);
     void findPlaces(const std::vector<std::uint32_t>& multipliers, bool is_all);
     void findCrowd(Area& area, const std::vector<std::uint32_t>& multipliers) const;
@@ -99,7 +99,7 @@ class OverlapRelaxation {
     void sortBundles(Area& area, Value value) const;
     void choose();
     void setCover();
-    [[nodiscard]] const SeenRuns& seenFrom(const Place& place) const {
+    [[nodiscard]] const CellRuns& seenFrom(const Place& place) const {
         return views_[view_of_[place.candidate]];
     }
 
@@ -107,7 +107,7 @@ class OverlapRelaxation {
     const CandidateSet& set_;
     std::size_t sensors_;
     std::vector<std::uint32_t> view_of_;  // by candidate
-    std::vector<SeenRuns> views_;
+    std::vector<CellRuns> views_;
     std::vector<std::uint32_t> bundle_of_;  // by view
     MaskedSums seen_;                       // scratch
     std::vector<std::uint32_t> weights_;    // of candidates

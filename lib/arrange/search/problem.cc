@@ -129,12 +129,12 @@ class UnionFind {
     std::vector<std::size_t> parents_;
 };
 
-constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+constexpr std::size_t kNoOwner = static_cast<std::size_t>(-1);
 
 }  // namespace
 
 Connection::Connection(const Problem& problem, const std::vector<Choice>& chosen)
-    : problem_(&problem), part_of_cell_(problem.cells(), kNobody) {
+    : problem_(&problem), part_of_cell_(problem.cells(), kNoOwner) {
     // Member 0 are those that stand, member 1 + i is choice i; at first a cell's is who sees it.
     UnionFind members(chosen.size() + 1);
     bool has_standing = false;
@@ -147,7 +147,7 @@ Connection::Connection(const Problem& problem, const std::vector<Choice>& chosen
         const auto see = [&](const CellRun& run) {
             for (std::uint32_t cell = run.first; cell < run.end; ++cell) {
                 if (problem.weights[cell] == 0) continue;
-                if (part_of_cell_[cell] == kNobody)
+                if (part_of_cell_[cell] == kNoOwner)
                     part_of_cell_[cell] = i + 1;
                 else
                     members.join(part_of_cell_[cell], i + 1);
@@ -155,13 +155,13 @@ Connection::Connection(const Problem& problem, const std::vector<Choice>& chosen
         };
         problem.kinds[chosen[i].kind].candidates->forEachRun(chosen[i].candidate, see);
     }
-    std::vector<std::size_t> part_of_member(chosen.size() + 1, kNobody);
+    std::vector<std::size_t> part_of_member(chosen.size() + 1, kNoOwner);
     for (std::size_t i = has_standing ? 0 : 1; i <= chosen.size(); ++i) {
         std::size_t& part = part_of_member[members.rootOf(i)];
-        if (part == kNobody) part = parts_++;
+        if (part == kNoOwner) part = parts_++;
     }
     for (std::size_t& member : part_of_cell_)
-        if (member != kNobody) member = part_of_member[members.rootOf(member)];
+        if (member != kNoOwner) member = part_of_member[members.rootOf(member)];
 }
 
 bool Connection::isJoinedBy(const Choice& choice) const {

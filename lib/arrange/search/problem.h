@@ -99,7 +99,7 @@ class Connection {
   private:
     const Problem* problem_;
     std::size_t parts_ = 0;
-    std::vector<std::size_t> part_of_cell_;          // kNobody: of none
+    std::vector<std::size_t> part_of_cell_;          // kNoOwner: of none
     mutable std::vector<WeightSums> cells_of_part_;  // 1 for its cells; made when first asked for
 };
 

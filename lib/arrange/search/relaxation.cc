@@ -268,10 +268,10 @@ void MultiplierSearch::report(double bound, std::span<const float> cover) {
 
 void MultiplierSearch::settle() {
     constexpr double kLittle = 0.02;  // of the distance to the target
-    constexpr double kLess = 0.7, kLeast = 0.005;
+    constexpr double kLess = 0.7, kMinValue = 0.005;
     if (pace_.patience == 0 || ++reports_ % pace_.patience != 0) return;
     if (settled_ - bound_ < kLittle * (bound_ - target_))
-        mixing_ = std::max(mixing_ * kLess, kLeast);
+        mixing_ = std::max(mixing_ * kLess, kMinValue);
     settled_ = bound_;
 }
 

@@ -190,7 +190,7 @@ class Search {
         options.enough = enoughOf(problem_, result_.bound, options_.gap);
         result_ = recalled(share_, problem_, "kicked", unpackResult, progress_, [&] {
             SearchResult better = result_;
-            better.best = improveByKicks(problem_, result_.best, options, progress_);
+            better.best = iteratedLocalSearch(problem_, result_.best, options, progress_);
             return better;
         });
         noteProgress(problem_, result_, progress_);

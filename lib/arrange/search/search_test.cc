@@ -14,9 +14,9 @@ namespace ispace {
 namespace {
 
 /// Ends after so many steps, and keeps what was said.
-class Watch final : public Progress {
+class DetectionMonitor final : public Progress {
   public:
-    explicit Watch(int left = 1'000'000'000, std::string_view last = {})
+    explicit DetectionMonitor(int left = 1'000'000'000, std::string_view last = {})
         : left_(left), last_(last) {}
     void begin(std::string_view phase, std::int64_t /*total*/) override {
         if (phase == last_) left_ = 0;
@@ -60,7 +60,7 @@ TEST(Search, ValueIsBelowTheBestAndBoundAbove) {
 }
 
 TEST(Search, TellsValueAndBound) {
-    Watch watch;
+    DetectionMonitor watch;
     RandomProblemOptions options;
     options.most = 2;
     const RandomProblem random = randomProblem(4, options);
@@ -79,14 +79,14 @@ TEST(Search, StoppedAnywhereGivesTheBestSoFar) {
     SilentProgress silent;
     const SearchResult exact = search(random.problem, {.optimizer = Optimizer::Exact}, silent);
     for (const int steps : {0, 1, 2, 4, 8, 16, 32}) {
-        Watch watch(steps);
+        DetectionMonitor watch(steps);
         const SearchResult result = search(random.problem, {.optimizer = Optimizer::Exact}, watch);
         EXPECT_LE(result.best.value, exact.best.value);
         EXPECT_GE(result.bound, exact.best.value);
         EXPECT_TRUE(isFeasible(random.problem, result.best.chosen));
         EXPECT_TRUE(!result.is_complete || result.bound == result.best.value) << steps;
     }
-    Watch at_once(0);
+    DetectionMonitor at_once(0);
     const SearchResult nothing = search(random.problem, {}, at_once);
     EXPECT_GE(nothing.bound, exact.best.value);
     EXPECT_LT(nothing.bound, random.problem.totalWeight());
@@ -102,7 +102,7 @@ TEST(Search, HasABoundBeforeTheSwaps) {
     options.max_range = 12;
     options.most = 12;
     const RandomProblem random = randomProblem(3, options);
-    Watch watch(1'000'000'000, "improving");
+    DetectionMonitor watch(1'000'000'000, "improving");
     const SearchResult result = search(random.problem, {}, watch);
     EXPECT_FALSE(result.is_complete);
     EXPECT_LT(result.bound, result.best.value * 12 / 10);

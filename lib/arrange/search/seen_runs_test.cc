@@ -8,7 +8,7 @@
 namespace ispace {
 namespace {
 
-TEST(SeenRuns, CommonOnesAndTheirWeightAreThoseOfCells) {
+TEST(CellRuns, CommonOnesAndTheirWeightAreThoseOfCells) {
     std::mt19937_64 random(11);
     for (int round = 0; round < 300; ++round) {
         const std::size_t cells = 1 + random() % 60;
@@ -20,7 +20,7 @@ TEST(SeenRuns, CommonOnesAndTheirWeightAreThoseOfCells) {
             weights[i] = static_cast<std::uint32_t>(random() % 100);
         }
         const auto runs_of = [cells](const auto& is_in) {
-            SeenRuns runs;
+            CellRuns runs;
             for (std::uint32_t i = 0; i < cells; ++i) {
                 if (!is_in(i)) continue;
                 if (!runs.empty() && runs.back().end == i)
@@ -30,8 +30,8 @@ TEST(SeenRuns, CommonOnesAndTheirWeightAreThoseOfCells) {
             }
             return runs;
         };
-        const SeenRuns a = runs_of([&](std::size_t i) { return in_a[i] != 0; });
-        const SeenRuns b = runs_of([&](std::size_t i) { return in_b[i] != 0; });
+        const CellRuns a = runs_of([&](std::size_t i) { return in_a[i] != 0; });
+        const CellRuns b = runs_of([&](std::size_t i) { return in_b[i] != 0; });
         std::int64_t wanted = 0;
         for (std::size_t i = 0; i < cells; ++i)
             if (in_a[i] != 0 && in_b[i] != 0) wanted += weights[i];
@@ -39,8 +39,8 @@ TEST(SeenRuns, CommonOnesAndTheirWeightAreThoseOfCells) {
         sums.assign(b, weights.data());  // is written over
         sums.assign(a, weights.data());
         EXPECT_EQ(sums.of(b), wanted);
-        const SeenRuns common = commonOf(a, b);
-        const SeenRuns both = runs_of([&](std::size_t i) { return in_a[i] != 0 && in_b[i] != 0; });
+        const CellRuns common = commonOf(a, b);
+        const CellRuns both = runs_of([&](std::size_t i) { return in_a[i] != 0 && in_b[i] != 0; });
         ASSERT_EQ(common.size(), both.size());
         for (std::size_t i = 0; i < both.size(); ++i) {
             EXPECT_EQ(common[i].first, both[i].first);

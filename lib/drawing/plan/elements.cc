@@ -35,7 +35,7 @@ double encoded(double linear) {
 }  // namespace
 
 Color displayColor(Material material) {
-    const Look& look = lookOf(material);
+    const Appearance& look = lookOf(material);
     return {encoded(look.color[0]), encoded(look.color[1]), encoded(look.color[2]), look.opacity};
 }
 
@@ -197,8 +197,8 @@ namespace {
 /// What a round prism becomes.
 enum class Rounds { Inscribed, OfSameArea };
 
-std::vector<PartAbove> partsWith(Rounds rounds, const Body& body) {
-    std::vector<PartAbove> parts;
+std::vector<OverheadPart> partsWith(Rounds rounds, const Body& body) {
+    std::vector<OverheadPart> parts;
     parts.reserve(body.prisms.size() + body.meshes.size());
     for (const Prism& prism : body.prisms)
         parts.push_back({{rounds == Rounds::OfSameArea && prism.curve ? outlineOf(*prism.curve)
@@ -207,7 +207,7 @@ std::vector<PartAbove> partsWith(Rounds rounds, const Body& body) {
                          prism.top,
                          prism.material});
     for (const Mesh& mesh : body.meshes) {
-        PartAbove part{silhouette(mesh), 0, 0, mesh.material};
+        OverheadPart part{silhouette(mesh), 0, 0, mesh.material};
         if (part.curves.empty()) continue;
         part.bottom = std::numeric_limits<double>::infinity();
         part.top = -part.bottom;
@@ -218,7 +218,7 @@ std::vector<PartAbove> partsWith(Rounds rounds, const Body& body) {
         parts.push_back(std::move(part));
     }
     std::stable_sort(parts.begin(), parts.end(),
-                     [](const PartAbove& a, const PartAbove& b) { return a.top < b.top; });
+                     [](const OverheadPart& a, const OverheadPart& b) { return a.top < b.top; });
     for (std::size_t high = 1; high < parts.size(); ++high) {
         const std::vector<Polygon>& above = parts[high].curves;
         if (above.size() != 1 || !isConvex(above.front())) continue;
@@ -231,24 +231,24 @@ std::vector<PartAbove> partsWith(Rounds rounds, const Body& body) {
 
 }  // namespace
 
-std::vector<PartAbove> partsFromAbove(const Body& body) {
+std::vector<OverheadPart> partsFromAbove(const Body& body) {
     return partsWith(Rounds::Inscribed, body);
 }
 
 std::vector<Region> footprintOf(const Body& body) {
-    std::vector<PartAbove> parts = partsWith(Rounds::OfSameArea, body);
-    std::erase_if(parts, [](const PartAbove& part) { return part.hidden; });
+    std::vector<OverheadPart> parts = partsWith(Rounds::OfSameArea, body);
+    std::erase_if(parts, [](const OverheadPart& part) { return part.hidden; });
     // A board below a smaller thing of the same body is not hidden, but covers.
-    for (const PartAbove& part : parts) {
+    for (const OverheadPart& part : parts) {
         if (part.curves.size() != 1 || !isConvex(part.curves.front())) continue;
         const Cover cover(part.curves.front());
         if (std::all_of(parts.begin(), parts.end(),
-                        [&](const PartAbove& other) { return cover.holds(other.curves); }))
+                        [&](const OverheadPart& other) { return cover.holds(other.curves); }))
             return {{part.curves.front(), {}}};
     }
     if (parts.size() == 1) return regionsOf(std::move(parts.front().curves));
     std::vector<Polygon> solids;
-    for (PartAbove& part : parts)
+    for (OverheadPart& part : parts)
         for (Region& region : regionsOf(std::move(part.curves)))
             solids.push_back(std::move(region.outline));  // holes of meshes are lost under others
     return unite(solids);
@@ -300,7 +300,7 @@ using namespace palette;
 /// What begins above people's heads is drawn as what hangs.
 constexpr double kOverhead = 1.9;
 
-double areaOf(const PartAbove& part) {
+double areaOf(const OverheadPart& part) {
     double area = 0;
     for (const Polygon& curve : part.curves) area += signedArea(curve);
     return std::abs(area);
@@ -320,7 +320,7 @@ std::vector<PlanDrawing::Thing> PlanDrawing::thingsOf(const Environment& environ
     const auto look_at = [](Thing& thing) {
         thing.parts = partsFromAbove(thing.element->body);
         double largest = -1;
-        for (const PartAbove& part : thing.parts) {
+        for (const OverheadPart& part : thing.parts) {
             thing.bottom = std::min(thing.bottom, part.bottom);
             thing.top = std::max(thing.top, part.top);
             for (const Polygon& curve : part.curves)
@@ -369,14 +369,14 @@ void PlanDrawing::drawThing(const Thing& thing) {
     // A pen that leaves small things their colour.
     const double side = std::min(thing.box.width(), thing.box.depth());
     const double width = std::clamp(0.05 * side / metres(1), 0.045, 0.07);
-    for (const PartAbove& part : thing.parts) {
+    for (const OverheadPart& part : thing.parts) {
         if (part.hidden) continue;
         const Color color = displayColor(part.material);
         picture_.area(part.curves,
                       {mixed(color, kWhite, 0.3), pen(mixed(color, kInk, 0.6).faded(1), width)});
     }
     // Feet and panels below a board, as plans have hidden edges.
-    for (const PartAbove& part : thing.parts) {
+    for (const OverheadPart& part : thing.parts) {
         const Color edge = mixed(displayColor(part.material), kInk, 0.5).faded(0.55);
         if (part.hidden) picture_.area(part.curves, {pen(edge, 0.04, {0.2, 0.15})});
     }
@@ -384,7 +384,7 @@ void PlanDrawing::drawThing(const Thing& thing) {
 
 void PlanDrawing::drawNeutralThing(const Thing& thing) {
     for (const bool at_cut : {false, true})
-        for (const PartAbove& part : thing.parts) {
+        for (const OverheadPart& part : thing.parts) {
             if (standsAt(part.bottom, part.top, style_.cut) != at_cut) continue;
             // What does not stand in the way lets the floor's colour through.
             if (at_cut)
@@ -399,7 +399,7 @@ void PlanDrawing::drawOverhead() {
     for (const Thing& thing : things_) {
         if (!isOverhead(thing)) continue;
         picture_.pushGroup(thing.element->id, thingTitle(thing));
-        for (const PartAbove& part : thing.parts)
+        for (const OverheadPart& part : thing.parts)
             picture_.area(part.curves,
                           {pen(mixed(displayColor(part.material), kInk, 0.5), 0.07, {0.4, 0.25})});
         picture_.pop();

@@ -14,7 +14,7 @@
 namespace ispace {
 
 /// A part of a body, seen from above.
-struct PartAbove {
+struct OverheadPart {
     std::vector<Polygon> curves;  ///< by the even-odd rule
     double bottom = 0, top = 0;
     Material material = Material::Wood;
@@ -23,7 +23,7 @@ struct PartAbove {
 
 /// Prisms and meshes of a body, lower ones first; no sheets, no plates. Parts below one convex part
 /// are marked hidden, within a micrometre.
-std::vector<PartAbove> partsFromAbove(const Body& body);
+std::vector<OverheadPart> partsFromAbove(const Body& body);
 
 /// The floor that triangles cover, by the even-odd rule. Exact (see unite) for few triangles; for
 /// larger meshes the outline of cells, a 500th of the longer side, smoothed by half a cell.

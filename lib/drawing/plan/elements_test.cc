@@ -45,13 +45,13 @@ TEST(Footprint, WhatLiesBelowABoardIsHidden) {
         EXPECT_NEAR(pieces.front().area(), largest, 1e-9) << line;
     }
     std::size_t seen = 0;
-    for (const PartAbove& part : partsFromAbove(bodyFrom("desk at=1,2 heading=33")))
+    for (const OverheadPart& part : partsFromAbove(bodyFrom("desk at=1,2 heading=33")))
         seen += part.hidden ? 0 : 1;
     EXPECT_EQ(seen, 1U);
 }
 
 TEST(Footprint, PartsComeLowestFirst) {
-    const std::vector<PartAbove> parts = partsFromAbove(bodyFrom("table at=1,2"));
+    const std::vector<OverheadPart> parts = partsFromAbove(bodyFrom("table at=1,2"));
     ASSERT_EQ(parts.size(), 3U);
     EXPECT_TRUE(parts[0].hidden);
     EXPECT_FALSE(parts[2].hidden);

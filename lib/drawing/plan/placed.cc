@@ -49,7 +49,7 @@ void fillBody(Picture& picture, SensorSign sign, double radius, Color color, dou
 
 }  // namespace
 
-BearingSpan bearingsOf(const Scene& scene, const Placed& placed) {
+BearingSpan bearingsOf(const Scene& scene, const PlacedRecord& placed) {
     const Record& record = scene.records[placed.record];
     const SensorKind* kind = sensorKind(record.keyword());
     if (kind != nullptr && kind->bearings != nullptr)
@@ -162,7 +162,7 @@ bool looksAside(const Record& record, const Pose3& pose) {
 bool isPerson(const Record& record) { return record.keyword() == "human"; }
 bool movesItself(const Record& record) { return isPerson(record) || record.keyword() == "robot"; }
 
-Pose2 levelPose(const Placed& placed) {
+Pose2 levelPose(const PlacedRecord& placed) {
     return {placed.pose.position.onFloor(), placed.pose.heading};
 }
 
@@ -197,7 +197,7 @@ void drawPerson(Picture& picture, const Pose2& pose, double tall, const Stroke& 
 void PlanDrawing::drawFieldsOfView() {
     const std::vector<Polygon> indoor = curvesOf(scene_.environment.indoor());
     const PlanLayer layer(*this, "fields of view", indoor);
-    for (const Placed& placed : scene_.placed) {
+    for (const PlacedRecord& placed : scene_.placed) {
         if (!looksAside(scene_.records[placed.record], placed.pose)) continue;
         const Point2 place = placed.pose.position.onFloor();
         const BearingSpan glyph = bearingsOf(scene_, placed);
@@ -210,7 +210,7 @@ void PlanDrawing::drawFieldsOfView() {
 
 void PlanDrawing::drawRobots() {
     const PlanLayer layer(*this, "robots");
-    for (const Placed& placed : scene_.placed) {
+    for (const PlacedRecord& placed : scene_.placed) {
         const Record& record = scene_.records[placed.record];
         if (!movesItself(record)) continue;
         const std::string& id = scene_.ids[placed.record];
@@ -232,7 +232,7 @@ void PlanDrawing::drawRobots() {
 
 void PlanDrawing::drawSensors() {
     const PlanLayer layer(*this, "sensors");
-    for (const Placed& placed : scene_.placed) {
+    for (const PlacedRecord& placed : scene_.placed) {
         const Record& record = scene_.records[placed.record];
         if (movesItself(record)) continue;
         const std::string& id = scene_.ids[placed.record];
@@ -319,13 +319,13 @@ void PlanDrawing::drawPlacedNames() {
     if (scene_.placed.size() > kMaxNames) return;
     const Box2 page{{0, 0}, {picture_.width(), picture_.height()}};
     LabelPlacer places(page, style_.em);
-    for (const Placed& placed : scene_.placed) {
+    for (const PlacedRecord& placed : scene_.placed) {
         const bool has_arrow = looksAside(scene_.records[placed.record], placed.pose);
         places.addMark(picture_.toPage(placed.pose.position.onFloor()),
                        has_arrow ? headingOf(placed.pose) : std::nullopt);
     }
     TextStyle style{0.85 * style_.em, true, Align::Center, {}, kWhite.faded(0.85)};
-    for (const Placed& placed : scene_.placed) {
+    for (const PlacedRecord& placed : scene_.placed) {
         const Record& record = scene_.records[placed.record];
         const std::string& id = scene_.ids[placed.record];
         style.color = isPerson(record)      ? kPerson

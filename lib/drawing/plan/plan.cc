@@ -72,9 +72,9 @@ double paperScale(const Box2& box) {
 
 /// Metres between lines: 1, unless lines would lie too near each other, or none in sight.
 double gridStep(const Page& page) {
-    constexpr double kNearest = 0.7, kFarthest = 25;  // in sizes of text
+    constexpr double kNearest = 0.7, kMaxDistance = 25;  // in sizes of text
     if (page.metres(kNearest) > 1) return roundStep(page.metres(kNearest));
-    if (page.metres(kFarthest) < 1) return std::min(1.0, roundStep(page.metres(4)));
+    if (page.metres(kMaxDistance) < 1) return std::min(1.0, roundStep(page.metres(4)));
     return 1;
 }
 

@@ -50,7 +50,7 @@ struct SensorMark {
 };
 
 /// The bearings that a placed sensor shows on a plan.
-BearingSpan bearingsOf(const Scene& scene, const Placed& placed);
+BearingSpan bearingsOf(const Scene& scene, const PlacedRecord& placed);
 
 /// The horizontal direction of a pose, if it has one.
 std::optional<Angle> headingOf(const Pose3& pose);
@@ -127,7 +127,7 @@ class PlanDrawing {
     friend class PlanLayer;
     struct Thing {
         const Element* element;
-        std::vector<PartAbove> parts;
+        std::vector<OverheadPart> parts;
         Box2 box;
         double bottom = 0, top = 0;
         double height = 0;  ///< of its largest part, by which things are laid over each other

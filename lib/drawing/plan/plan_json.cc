@@ -173,7 +173,7 @@ void addObject(DxfWriter& out, const Body& body) {
     }
     Body meshes;
     meshes.meshes = body.meshes;
-    for (const PartAbove& part : partsFromAbove(meshes))
+    for (const OverheadPart& part : partsFromAbove(meshes))
         for (const Polygon& ring : part.curves)
             out.path("objects", ring, true, 0, {part.bottom, part.top - part.bottom});
 }
@@ -184,7 +184,7 @@ void addName(DxfWriter& out, const Polygon& outline, const std::string& id) {
 }
 
 /// A sector about a sensor, or a circle if it sees all around; no farther than the plan is wide.
-void addView(DxfWriter& out, const Scene& scene, const Placed& placed) {
+void addView(DxfWriter& out, const Scene& scene, const PlacedRecord& placed) {
     const BearingSpan span = bearingsOf(scene, placed);
     const std::optional<Angle> heading = headingOf(placed.pose);
     const Box2& plan = scene.environment.limits();
@@ -214,7 +214,7 @@ void addRobot(DxfWriter& out, const Pose2& pose, const RobotModel& robot) {
         out.circle("robots", middle, robot.radius);
 }
 
-void addPlaced(DxfWriter& out, const Scene& scene, const Placed& placed) {
+void addPlaced(DxfWriter& out, const Scene& scene, const PlacedRecord& placed) {
     const Record& record = scene.records[placed.record];
     const std::string& id = scene.ids[placed.record];
     const Pose2 pose{placed.pose.position.onFloor(), placed.pose.heading};
@@ -310,7 +310,7 @@ std::string writeDxf(const Scene& scene, std::optional<double> slice_height) {
     DxfWriter out(layers);
     addAreas(out, scene.environment);
     addRoomToDxf(out, scene.environment);
-    for (const Placed& placed : scene.placed) addPlaced(out, scene, placed);
+    for (const PlacedRecord& placed : scene.placed) addPlaced(out, scene, placed);
     return out.finish();
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kCellsPerEdge = 2;
 constexpr std::size_t kCellsPerPoint = 1;
-constexpr int kSmallestShift = 4;  // of a cell's side
+constexpr int kMinShift = 4;  // of a cell's side
 
 }  // namespace
 
@@ -18,7 +18,7 @@ CellGrid::CellGrid(const Box& box, std::size_t most) : box_(box) {
     const std::int64_t width = std::int64_t{box.high.x} - box.low.x;
     const std::int64_t depth = std::int64_t{box.high.y} - box.low.y;
     const auto limit = static_cast<std::int64_t>(most);
-    for (int s = shift_; s >= kSmallestShift; --s) {
+    for (int s = shift_; s >= kMinShift; --s) {
         const std::int64_t across = (width >> s) + 1, along = (depth >> s) + 1;
         if (across > limit || along > limit || across * along > limit) break;
         shift_ = s;

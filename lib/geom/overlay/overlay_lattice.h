@@ -125,7 +125,7 @@ struct Columns {
 void mustBeFew(std::size_t crossings);
 
 /// The points that each edge is led through, between its ends and in their order.
-struct Ways {
+struct EdgeWaypoints {
     std::vector<std::size_t> first;  // of the points of each edge, and the end
     std::vector<Index> points;
 
@@ -137,13 +137,14 @@ struct Ways {
 /// Snap rounding (Hobby 1999), in three steps; see snapRounded(). Edges are merged() before each.
 ///
 /// First, edges pass the ends of others within the square of half-width 1 about them.
-std::vector<Edge> ledThroughEnds(const std::vector<Edge>& edges, const std::vector<Point>& points);
+std::vector<Edge> splitAtVertices(const std::vector<Edge>& edges, const std::vector<Point>& points);
 /// Then, they pass all ends and crossings in these columns, rounded to the lattice, which are added
 /// to the table. What lies in other columns makes no difference.
 /// \throws FormatError (without a place) for edges that cross by the ten million
-Ways waysThroughPixels(const std::vector<Edge>& edges, PointTable& table, const Columns& columns);
+EdgeWaypoints waysThroughPixels(const std::vector<Edge>& edges, PointTable& table,
+                                const Columns& columns);
 /// Each edge cut in pieces from point to point; those from or to kNone are left out.
-std::vector<Edge> routed(const std::vector<Edge>& edges, const Ways& ways);
+std::vector<Edge> routed(const std::vector<Edge>& edges, const EdgeWaypoints& ways);
 
 /// Edges that meet at common ends only, in place of these (which are merged()): each is led through
 /// points near it. First through ends of others, so that edges that lay along each other before

@@ -32,11 +32,11 @@ struct Pass {
 };
 
 /// By edge, in their order along it.
-Ways waysOf(const std::vector<Pass>& passes, std::size_t edges) {
+EdgeWaypoints waysOf(const std::vector<Pass>& passes, std::size_t edges) {
     std::vector<std::size_t> next(edges + 1, 0);
     for (const Pass& pass : passes) ++next[pass.edge + 1];
     std::partial_sum(next.begin(), next.end(), next.begin());
-    Ways ways{next, {}};
+    EdgeWaypoints ways{next, {}};
     std::vector<Pass> ordered(passes.size());
     for (const Pass& pass : passes) ordered[next[pass.edge]++] = pass;
     ways.points.reserve(passes.size());
@@ -179,7 +179,7 @@ std::vector<Pass> passesOfPixels(const std::vector<Edge>& edges, PointTable& tab
 
 }  // namespace
 
-std::vector<Edge> routed(const std::vector<Edge>& edges, const Ways& ways) {
+std::vector<Edge> routed(const std::vector<Edge>& edges, const EdgeWaypoints& ways) {
     std::vector<Edge> pieces;
     pieces.reserve(edges.size() + ways.points.size());
     for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -195,17 +195,19 @@ std::vector<Edge> routed(const std::vector<Edge>& edges, const Ways& ways) {
     return pieces;
 }
 
-std::vector<Edge> ledThroughEnds(const std::vector<Edge>& edges, const std::vector<Point>& points) {
+std::vector<Edge> splitAtVertices(const std::vector<Edge>& edges,
+                                  const std::vector<Point>& points) {
     return routed(edges, waysOf(passesOfEnds(edges, points), edges.size()));
 }
 
-Ways waysThroughPixels(const std::vector<Edge>& edges, PointTable& table, const Columns& columns) {
+EdgeWaypoints waysThroughPixels(const std::vector<Edge>& edges, PointTable& table,
+                                const Columns& columns) {
     return waysOf(passesOfPixels(edges, table, columns), edges.size());
 }
 
 std::vector<Edge> snapRounded(std::vector<Edge> edges, PointTable& table, SetStore& sets) {
-    edges = merged(ledThroughEnds(edges, table.points()), table.points(), sets);
-    const Ways ways = waysThroughPixels(edges, table, {});
+    edges = merged(splitAtVertices(edges, table.points()), table.points(), sets);
+    const EdgeWaypoints ways = waysThroughPixels(edges, table, {});
     return merged(routed(edges, ways), table.points(), sets);
 }
 

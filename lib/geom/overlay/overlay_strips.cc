@@ -25,7 +25,7 @@ constexpr std::size_t kQuick = 2048;
 /// With fewer layers than this not many edges lie along each other, and bundles do not pay.
 constexpr std::size_t kManyLayers = 256;
 /// Strips in which an edge lies, on average, at most.
-constexpr std::size_t kMostStrips = 6;
+constexpr std::size_t kMaxStrips = 6;
 /// Points that a thread takes at once.
 constexpr std::size_t kAtOnce = 16'384;
 
@@ -36,8 +36,8 @@ struct Bundle {
     std::unique_ptr<SetStore> sets;
 };
 
-/// merged(ledThroughEnds()): many edges lie along each other at walls, and through the ends of all,
-/// but their pieces are few. So they are merged where they are made, and then all together.
+/// merged(splitAtVertices()): many edges lie along each other at walls, and through the ends of
+/// all, but their pieces are few. So they are merged where they are made, and then all together.
 class EndRouter {
   public:
     EndRouter(const std::vector<Edge>& edges, const std::vector<Point>& points, SetStore& sets)
@@ -121,7 +121,7 @@ class EndRouter {
             edges.back().to = number_of(edges_[i].to);
         }
         bundle.sets = std::make_unique<SetStore>(&sets_);
-        bundle.pieces = merged(ledThroughEnds(edges, points), points, *bundle.sets);
+        bundle.pieces = merged(splitAtVertices(edges, points), points, *bundle.sets);
         bundle.pieces.shrink_to_fit();  // there may have been a hundred times as many
         for (Edge& piece : bundle.pieces) {
             piece.from = numbers[piece.from];
@@ -149,7 +149,7 @@ struct Strip {
     std::vector<Index> points;  // numbers of the ends that lie in it
     PointTable table;           // its points, then ends elsewhere
     std::vector<Edge> parts;    // as edges, by its own table
-    Ways ways;
+    EdgeWaypoints ways;
     std::vector<Crossing> entering;
     std::vector<Point> beyond;  // where the last piece of each edge ends that leaves it
     std::size_t open = 0;       // edges of which that is not known yet
@@ -198,7 +198,7 @@ class Sweep {
     void run(const PartVisitor& visit) {
         last_of_.resize(edges_.size());
         const auto at_once = 8 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-        InOrder products(strips_.size());
+        OrderedCalls products(strips_.size());
         // Strips before `made` are parts, those up to `known` become parts, all up to `found` have
         // their ways, and the next ones get theirs: all at once.
         std::size_t found = 0, known = 0, made = 0;
@@ -243,7 +243,7 @@ class Sweep {
     [[nodiscard]] bool areWide() const {
         std::size_t count = 0;
         for (const Edge& edge : edges_) count += lastOf(edge) - firstOf(edge) + 1;
-        return count <= kMostStrips * edges_.size();
+        return count <= kMaxStrips * edges_.size();
     }
 
     std::function<void()> partFrom(Strip& strip, const PartVisitor& visit) const {
@@ -351,7 +351,7 @@ void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTa
     // Who waits in here does not begin with other work.
     if (tbb::this_task_arena::isolate([&] {
             if (layers.size() < kManyLayers || table.points().size() < 2 * kQuick)
-                edges = merged(ledThroughEnds(edges, table.points()), table.points(), sets);
+                edges = merged(splitAtVertices(edges, table.points()), table.points(), sets);
             else
                 edges = EndRouter(edges, table.points(), sets).run();
             std::size_t ends = at_least == 0 ? kQuick : at_least;
@@ -364,7 +364,7 @@ void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTa
             return false;
         }))
         return;
-    const Ways ways = waysThroughPixels(edges, table, {});
+    const EdgeWaypoints ways = waysThroughPixels(edges, table, {});
     edges = merged(routed(edges, ways), table.points(), sets);
     std::vector<EdgeLabels> labels = labelsOf(layers, table.points(), edges, sets);
     visit({table.points(), std::move(edges), std::move(labels), true})();

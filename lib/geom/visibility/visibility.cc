@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kWholeTurn = 2 * std::numbers::pi;
 
-bool isArc(const SightEdge& edge) { return edge.line == SightEdge::kArc; }
+bool isArc(const VisibilityEdge& edge) { return edge.line == VisibilityEdge::kArc; }
 
 /// From direction a counter-clockwise to b, in [0, 2 pi).
 double angleBetween(Vec2 a, Vec2 b) {
@@ -25,7 +25,7 @@ double angleBetween(Vec2 a, Vec2 b) {
 }
 
 /// The point of the edge in a direction.
-Point2 pointIn(const VisibleRegion& region, const SightEdge& edge, Vec2 direction) {
+Point2 pointIn(const VisibleRegion& region, const VisibilityEdge& edge, Vec2 direction) {
     if (isArc(edge)) return region.viewpoint + region.max_range * direction;
     const Vec2 a = edge.from - region.viewpoint, b = edge.to - region.viewpoint;
     const double right = -cross(direction, a), left = cross(direction, b);
@@ -34,7 +34,7 @@ Point2 pointIn(const VisibleRegion& region, const SightEdge& edge, Vec2 directio
     return edge.from + share * (edge.to - edge.from);
 }
 
-void addEdge(VisibleRegion& region, const SightEdge& edge) {
+void addEdge(VisibleRegion& region, const VisibilityEdge& edge) {
     if (cross(edge.from - region.viewpoint, edge.to - region.viewpoint) > 0)
         region.edges.push_back(edge);
 }
@@ -43,7 +43,7 @@ void addEdge(VisibleRegion& region, const SightEdge& edge) {
 
 double area(const VisibleRegion& region) {
     double twice = 0;
-    for (const SightEdge& edge : region.edges) {
+    for (const VisibilityEdge& edge : region.edges) {
         const Vec2 from = edge.from - region.viewpoint, to = edge.to - region.viewpoint;
         twice += isArc(edge) ? region.max_range * region.max_range * angleBetween(from, to)
                              : cross(from, to);
@@ -60,7 +60,7 @@ Curve outlineOf(const VisibleRegion& region) {
     };
     if (!region.is_whole) go_to(region.viewpoint, region.edges.front().from);
     for (std::size_t i = 0; i < region.edges.size(); ++i) {
-        const SightEdge& edge = region.edges[i];
+        const VisibilityEdge& edge = region.edges[i];
         if (i > 0) go_to(region.edges[i - 1].to, edge.from);
         curve.push_back({edge.from, edge.to});
         if (isArc(edge)) {
@@ -86,7 +86,7 @@ VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
     // a turn. The least of them may be a tie, or one of the last by rounding.
     std::vector<double> stops;
     stops.reserve(region.edges.size());
-    for (const SightEdge& edge : region.edges)
+    for (const VisibilityEdge& edge : region.edges)
         stops.push_back(angleBetween(begin, edge.to - region.viewpoint));
     std::size_t start = 0;
     double drop = stops.back() - stops.front();
@@ -98,7 +98,7 @@ VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
     const std::size_t count = region.edges.size();
     sector.edges.reserve(count + 1);
     for (std::size_t i = 0; i <= count; ++i) {
-        SightEdge edge = region.edges[(start + i) % count];
+        VisibilityEdge edge = region.edges[(start + i) % count];
         const bool comes_back = i == count;
         const double from = angleBetween(begin, edge.from - region.viewpoint);
         // If the first edge begins before the sector, its angle is almost a whole turn.
@@ -120,7 +120,7 @@ VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
 bool holds(const VisibleRegion& region, Point2 p) {
     const Vec2 way = p - region.viewpoint;
     if (way == Vec2()) return !region.edges.empty();
-    return std::any_of(region.edges.begin(), region.edges.end(), [&](const SightEdge& edge) {
+    return std::any_of(region.edges.begin(), region.edges.end(), [&](const VisibilityEdge& edge) {
         const Vec2 from = edge.from - region.viewpoint, to = edge.to - region.viewpoint;
         if (cross(from, way) < 0 || cross(way, to) < 0) return false;
         if (isArc(edge)) return dot(way, way) <= region.max_range * region.max_range;

@@ -16,7 +16,7 @@ namespace ispace {
 constexpr double kRayEpsilon = 1e-4;
 
 /// An edge of a visibility polygon: a piece of a line, or an arc at the maximum range.
-struct SightEdge {
+struct VisibilityEdge {
     static constexpr std::uint32_t kArc = std::numeric_limits<std::uint32_t>::max();
     Point2 from, to;  ///< counter-clockwise seen from the viewpoint, in different directions
     /// Index of a line that blocks the view there, or kArc. Round bodies are numbered after the
@@ -35,7 +35,7 @@ struct VisibleRegion {
     bool is_whole = true;
     /// Counter-clockwise, without gaps or overlaps in direction; each spans less than a half turn,
     /// arcs at most a quarter. Empty if nothing is visible.
-    std::vector<SightEdge> edges;
+    std::vector<VisibilityEdge> edges;
 };
 
 /// In closed form. O(edges)

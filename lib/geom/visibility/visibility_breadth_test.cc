@@ -23,8 +23,9 @@ void expandFrom(Search& search, std::uint32_t triangle) {
 }
 
 template <bool kBounded>
-std::vector<SightEdge> depthFirst(const SightMesh& mesh, Point2 p, double range, double farthest) {
-    std::vector<SightEdge> edges;
+std::vector<VisibilityEdge> depthFirst(const ExpansionMesh& mesh, Point2 p, double range,
+                                       double farthest) {
+    std::vector<VisibilityEdge> edges;
     Expansion<kBounded, false> search(mesh.portals.data(), p, range, farthest, {}, edges);
     expandFrom(search, mesh.locate(p));
     search.out().finish();
@@ -32,9 +33,9 @@ std::vector<SightEdge> depthFirst(const SightMesh& mesh, Point2 p, double range,
 }
 
 template <bool kBounded>
-std::vector<SightEdge> breadthFirst(const SightMesh& mesh, Point2 p, double range,
-                                    double farthest) {
-    std::vector<SightEdge> edges;
+std::vector<VisibilityEdge> breadthFirst(const ExpansionMesh& mesh, Point2 p, double range,
+                                         double farthest) {
+    std::vector<VisibilityEdge> edges;
     Expansion<kBounded, false> search(mesh.portals.data(), p, range, farthest, {}, edges);
     BreadthFirst<kBounded> breadth(mesh.portals.data(), p, farthest, search);
     expandFrom(breadth, mesh.locate(p));
@@ -47,7 +48,8 @@ void mustHaveSameBits(Point2 a, Point2 b) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(a.y), std::bit_cast<std::uint64_t>(b.y));
 }
 
-void mustBeSame(const std::vector<SightEdge>& edges, const std::vector<SightEdge>& wanted) {
+void mustBeSame(const std::vector<VisibilityEdge>& edges,
+                const std::vector<VisibilityEdge>& wanted) {
     ASSERT_EQ(edges.size(), wanted.size());
     for (std::size_t i = 0; i < edges.size(); ++i) {
         mustHaveSameBits(edges[i].from, wanted[i].from);
@@ -59,7 +61,7 @@ void mustBeSame(const std::vector<SightEdge>& edges, const std::vector<SightEdge
 TEST(VisibilityBreadth, GivesTheBitsOfDepth) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         const Region plan = makePlan(seed, {5, 4, 60, 9, 120});
-        const SightMesh mesh(test::linesOf(plan));
+        const ExpansionMesh mesh(test::linesOf(plan));
         const double farthest = length(mesh.box.high - mesh.box.low);
         std::mt19937_64 random(seed);
         for (int i = 0; i < 200; ++i) {
@@ -77,7 +79,7 @@ TEST(VisibilityBreadth, GivesTheBitsOfDepth) {
 TEST(VisibilityBreadth, PrunesInTheOpen) {
     // Hardly anything is within range: views end at edges of triangles.
     const std::vector<Segment2> lines = {{{-40, -3}, {40, -3}}, {{50, 60}, {60, 50}}};
-    const SightMesh mesh(lines);
+    const ExpansionMesh mesh(lines);
     const double farthest = length(mesh.box.high - mesh.box.low);
     for (const double range : {1.0, 3.0, 3.5, 20.0, 500.0}) {
         const auto edges = breadthFirst<true>(mesh, {1, 2}, range, farthest);

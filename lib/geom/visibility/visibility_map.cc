@@ -49,7 +49,7 @@ double farthestIn(const Box2& box, Point2 p) {
 
 /// From a viewpoint at a corner: through the edges opposite to it of all triangles there.
 template <typename Search>
-void expandAroundCorner(const SightMesh& mesh, Index corner, Search& search) {
+void expandAroundCorner(const ExpansionMesh& mesh, Index corner, Search& search) {
     const Index first = corner;
     do {
         search.throughEdge(corner);
@@ -61,7 +61,7 @@ void expandAroundCorner(const SightMesh& mesh, Index corner, Search& search) {
 
 /// From a viewpoint in a triangle, in it or on its boundary.
 template <typename Search>
-void expandAround(const SightMesh& mesh, Index triangle, Search& search) {
+void expandAround(const ExpansionMesh& mesh, Index triangle, Search& search) {
     std::array<bool, 3> is_on;
     for (Index i = 0; i < 3; ++i)
         is_on[i] = !(search.turn(3 * triangle + (i + 1) % 3, 3 * triangle + (i + 2) % 3) > 0);
@@ -85,7 +85,7 @@ void expandAround(const SightMesh& mesh, Index triangle, Search& search) {
 
 /// From a viewpoint outside of the box: through the sides that face it, and past them.
 template <typename Search>
-void expandFromOutside(const SightMesh& mesh, Point2 viewpoint, Search& search) {
+void expandFromOutside(const ExpansionMesh& mesh, Point2 viewpoint, Search& search) {
     const Box2& box = mesh.box;
     const std::array<bool, 4> faces{viewpoint.y<box.low.y, viewpoint.x> box.high.x,
                                     viewpoint.y > box.high.y, viewpoint.x < box.low.x};
@@ -106,7 +106,7 @@ void expandFromOutside(const SightMesh& mesh, Point2 viewpoint, Search& search) 
 }
 
 /// Whether BreadthFirst is faster up to this range.
-bool isInBreadth(const SightMesh& mesh, double range) {
+bool isInBreadth(const ExpansionMesh& mesh, double range) {
     // There are about as many cells as triangles.
     const double per_area = mesh.columns_per_metre * mesh.rows_per_metre;
     return mesh.portals.size() >= 3 * kManyTriangles &&
@@ -114,7 +114,7 @@ bool isInBreadth(const SightMesh& mesh, double range) {
 }
 
 /// False only if nothing within kRayEpsilon of p lies outside of its triangle or on its boundary.
-bool isNearEdge(const SightMesh& mesh, Point2 p, Index triangle) {
+bool isNearEdge(const ExpansionMesh& mesh, Point2 p, Index triangle) {
     const std::size_t portal = std::size_t{3} * triangle;
     const Vec2 a = mesh.portals[portal].corner - p, b = mesh.portals[portal + 1].corner - p;
     const Vec2 c = mesh.portals[portal + 2].corner - p;
@@ -140,13 +140,13 @@ Point2 offBoundary(const Box2& box, Point2 p) {
 
 /// A query from inside of the box.
 struct Query {
-    const SightMesh& mesh;
+    const ExpansionMesh& mesh;
     Point2 viewpoint;
     Index triangle;  ///< with the viewpoint
     double range;
     double farthest;  ///< no corner is farther from the viewpoint
     std::span<const Index> transparent;
-    std::vector<SightEdge>& edges;
+    std::vector<VisibilityEdge>& edges;
 };
 
 template <bool kBounded, bool kTouches>
@@ -181,8 +181,9 @@ ISPACE_SIMD_CLONES [[gnu::flatten]] void queryBounded(const Query& query) {
 }  // namespace
 
 struct VisibilityMap::Data {
-    Data(SightMesh lines, RoundBodies bodies) : mesh(std::move(lines)), rounds(std::move(bodies)) {}
-    SightMesh mesh;
+    Data(ExpansionMesh lines, RoundBodies bodies)
+        : mesh(std::move(lines)), rounds(std::move(bodies)) {}
+    ExpansionMesh mesh;
     RoundBodies rounds;
 
     static std::unique_ptr<Data> of(std::span<const Segment2> lines,
@@ -192,7 +193,7 @@ struct VisibilityMap::Data {
         const auto make_rounds = [&] {
             rounds.emplace(ellipses, static_cast<Index>(lines.size()));
         };
-        std::optional<SightMesh> mesh;
+        std::optional<ExpansionMesh> mesh;
         const auto make_mesh = [&] { mesh.emplace(lines); };
         if (ellipses.size() < kMany) {
             make_rounds();
@@ -217,7 +218,7 @@ void VisibilityMap::query(Point2 viewpoint, double max_range, VisibleRegion& reg
 }
 
 void VisibilityMap::queryLines(Point2 viewpoint, double max_range, VisibleRegion& region) const {
-    const SightMesh& mesh = data_->mesh;
+    const ExpansionMesh& mesh = data_->mesh;
     viewpoint = withinSight(viewpoint);
     region.viewpoint = viewpoint;
     region.max_range = max_range;
@@ -249,7 +250,7 @@ void VisibilityMap::queryLines(Point2 viewpoint, double max_range, VisibleRegion
     const double range =
         std::min(max_range, std::isinf(max_range) ? std::max(farthestIn(mesh.box, viewpoint),
                                                              data_->rounds.farthest(viewpoint))
-                                                  : kFarthestSight);
+                                                  : kMaxSight);
     if (touches) region.viewpoint = viewpoint;
     region.max_range = range;
     const bool bounded = range < farthestIn(mesh.cells_box, viewpoint);

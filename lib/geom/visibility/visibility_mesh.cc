@@ -208,7 +208,7 @@ class LineFinder {
 
 }  // namespace
 
-SightMesh::SightMesh(std::span<const Segment2> all_lines) : in() {
+ExpansionMesh::ExpansionMesh(std::span<const Segment2> all_lines) : in() {
     std::vector<Segment2> lines(all_lines.begin(), all_lines.end());
     for (auto& [a, b] : lines) a = withinSight(a), b = withinSight(b);
     const std::vector<LinePiece> pieces = noded(linePieces(lines));
@@ -226,7 +226,8 @@ SightMesh::SightMesh(std::span<const Segment2> all_lines) : in() {
     tbb::this_task_arena::isolate([&] { makeTriangles(lines, names); });
 }
 
-void SightMesh::makeTriangles(const std::vector<Segment2>& lines, const std::vector<Index>& names) {
+void ExpansionMesh::makeTriangles(const std::vector<Segment2>& lines,
+                                  const std::vector<Index>& names) {
     const bool are_many = lines.size() >= kMany;
     std::optional<LineFinder> finder;
     std::optional<Delaunay> net;
@@ -277,7 +278,7 @@ void SightMesh::makeTriangles(const std::vector<Segment2>& lines, const std::vec
         are_many, [&] { net.reset(); }, [&] { makeCells(faces.size()); });
 }
 
-std::size_t SightMesh::cellOf(Point2 p) const {
+std::size_t ExpansionMesh::cellOf(Point2 p) const {
     const auto step = [](double offset, double per_metre, Index count) -> std::size_t {
         const double cell = offset * per_metre;
         if (!(cell > 0)) return 0;
@@ -287,7 +288,7 @@ std::size_t SightMesh::cellOf(Point2 p) const {
            step(p.x - cells_box.low.x, columns_per_metre, columns);
 }
 
-void SightMesh::makeCells(std::size_t count) {
+void ExpansionMesh::makeCells(std::size_t count) {
     if (cells_box.empty()) cells_box = {{0, 0}, {0, 0}};
     const double width = cells_box.width(), depth = cells_box.depth();
     const auto most = static_cast<double>(count);
@@ -322,7 +323,7 @@ void SightMesh::makeCells(std::size_t count) {
     });
 }
 
-Index SightMesh::locateFrom(Point2 p, Index triangle) const {
+Index ExpansionMesh::locateFrom(Point2 p, Index triangle) const {
     // A walk towards p may go in circles where lines keep triangles from being Delaunay: after some
     // steps it takes edges in random order, and at last every triangle has its turn.
     constexpr int kStraightSteps = 200, kMaxSteps = 100'000;

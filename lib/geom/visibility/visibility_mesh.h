@@ -38,11 +38,10 @@ struct alignas(32) Portal {
 
 /// Lines, viewpoints and ranges are clamped to this, in metres, so that products of four lengths
 /// are finite.
-constexpr double kFarthestSight = 1e75;
+constexpr double kMaxSight = 1e75;
 
 inline Point2 withinSight(Point2 p) {
-    return {std::clamp(p.x, -kFarthestSight, kFarthestSight),
-            std::clamp(p.y, -kFarthestSight, kFarthestSight)};
+    return {std::clamp(p.x, -kMaxSight, kMaxSight), std::clamp(p.y, -kMaxSight, kMaxSight)};
 }
 
 /// The next and the previous portal of the same triangle, counter-clockwise. Branch-free.
@@ -55,7 +54,7 @@ inline std::uint32_t beforeOf(std::uint32_t portal) {
 
 /// Triangulation of lines and a box around them; the box is not a line, and the view beyond it is
 /// free.
-struct SightMesh {
+struct ExpansionMesh {
     std::vector<Portal> portals;
     Box2 box;                         ///< of all triangles; lines lie strictly inside
     std::array<std::uint32_t, 4> in;  ///< portals through its lower, right, upper and left side
@@ -67,7 +66,7 @@ struct SightMesh {
     std::vector<std::uint32_t> cells;
 
     /// \throws FormatError (without a place) for lines that cross by the million
-    explicit SightMesh(std::span<const Segment2> lines);
+    explicit ExpansionMesh(std::span<const Segment2> lines);
 
     /// What blocks the view at an edge, seen from inside, or the portal behind it.
     [[nodiscard]] std::uint32_t targetOf(std::uint32_t edge) const {
@@ -110,7 +109,7 @@ inline double errorOfTurns(double length) {
 /// The edges on lines close to a viewpoint, and where they move it.
 class TouchedLines {
   public:
-    explicit TouchedLines(const SightMesh& mesh) : mesh_(mesh) {}
+    explicit TouchedLines(const ExpansionMesh& mesh) : mesh_(mesh) {}
 
     /// Finds the edges of lines within kRayEpsilon of p. \pre p lies in the triangle
     void gather(Point2 p, std::uint32_t triangle);
@@ -125,7 +124,7 @@ class TouchedLines {
     [[nodiscard]] double squaredDistance(Point2 p, std::uint32_t edge) const;
     void add(std::uint32_t triangle);
 
-    const SightMesh& mesh_;
+    const ExpansionMesh& mesh_;
     std::vector<std::uint32_t> lines_;        // edges, one or both sides of each
     std::vector<std::uint32_t> triangles_;    // that come as near
     std::unordered_set<std::uint32_t> many_;  // the same once they are many

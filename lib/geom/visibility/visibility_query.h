@@ -22,13 +22,13 @@ namespace ispace {
 /// query.
 class EdgeWriter {
   public:
-    EdgeWriter(Point2 viewpoint, double range, std::vector<SightEdge>& edges)
+    EdgeWriter(Point2 viewpoint, double range, std::vector<VisibilityEdge>& edges)
         : viewpoint_(viewpoint), range_(range), edges_(edges) {}
 
     ISPACE_INLINE void addLine(std::uint32_t line, Point2 from, Point2 to) {
         if (has_arc_) flushArc();
         if (!edges_.empty()) {
-            SightEdge& last = edges_.back();
+            VisibilityEdge& last = edges_.back();
             if (last.line == line && last.to == from &&
                 cross(last.from - viewpoint_, to - viewpoint_) > 0) {
                 last.to = to;
@@ -55,12 +55,12 @@ class EdgeWriter {
     void finish() {
         if (has_arc_) flushArc();
         if (edges_.size() < 2) return;
-        SightEdge& first = edges_.front();
-        const SightEdge& last = edges_.back();
+        VisibilityEdge& first = edges_.front();
+        const VisibilityEdge& last = edges_.back();
         if (first.line != last.line || last.to != first.from) return;
         const Vec2 from = last.from - viewpoint_, to = first.to - viewpoint_;
         if (!(cross(from, to) > 0)) return;
-        if (first.line == SightEdge::kArc && dot(from, to) < 0) return;
+        if (first.line == VisibilityEdge::kArc && dot(from, to) < 0) return;
         first.from = last.from;
         edges_.pop_back();
     }
@@ -74,7 +74,8 @@ class EdgeWriter {
     }
     void addArc(Vec2 from, Vec2 to) {
         const Point2 a = onCircle(from), b = onCircle(to);
-        if (cross(a - viewpoint_, b - viewpoint_) > 0) edges_.push_back({a, b, SightEdge::kArc});
+        if (cross(a - viewpoint_, b - viewpoint_) > 0)
+            edges_.push_back({a, b, VisibilityEdge::kArc});
     }
     void addQuarter() {
         const Vec2 to = perpendicular(arc_from_);
@@ -88,7 +89,7 @@ class EdgeWriter {
 
     Point2 viewpoint_;
     double range_;
-    std::vector<SightEdge>& edges_;
+    std::vector<VisibilityEdge>& edges_;
     bool has_arc_ = false;  // begun, and not yet written
     Vec2 arc_from_, arc_to_;
 };
@@ -179,7 +180,7 @@ class Expansion {
 
     /// \param farthest no corner is farther from the viewpoint
     Expansion(const Portal* portals, Point2 viewpoint, double range, double farthest,
-              std::span<const Index> transparent, std::vector<SightEdge>& edges)
+              std::span<const Index> transparent, std::vector<VisibilityEdge>& edges)
         : portals_(portals),
           viewpoint_(viewpoint),
           squared_range_(range * range),

@@ -16,7 +16,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Tangent of the widest angle from the middle of a shadow: that of a body in contact takes a half
 /// turn but for as many radians as one over this.
-constexpr double kWidest = 1e9;
+constexpr double kMaxWidth = 1e9;
 
 /// Directions about the middle of a shadow, by the tangent of their angle from it. Along a straight
 /// line the inverse range of its places, one over their distance ahead, is linear in that.
@@ -62,7 +62,7 @@ struct NearSide {
     double nearest = kInfinity;  ///< upper bound of its inverse range
 
     [[nodiscard]] double slope(std::size_t i) const {
-        if (widest && (i == 0 || i + 1 == places.size())) return i == 0 ? -kWidest : kWidest;
+        if (widest && (i == 0 || i + 1 == places.size())) return i == 0 ? -kMaxWidth : kMaxWidth;
         return places[i].y / places[i].x;
     }
     bool widest = false;  ///< over half a turn
@@ -129,9 +129,9 @@ NearSide farSide(Point2 viewpoint, const Ellipse& round, const Polygon& outline)
     for (const Point2 place : far) places.push_back(side.frame.local(place - viewpoint));
     // Close to the viewpoint the view along the surface ends within the body.
     const double close = places.empty() ? kRayEpsilon : length(places.front()) / 2;
-    side.add({close / kWidest, -close});
+    side.add({close / kMaxWidth, -close});
     for (const Vec2 place : places) side.add(place);
-    side.add({close / kWidest, close});
+    side.add({close / kMaxWidth, close});
     return side;
 }
 
@@ -163,8 +163,8 @@ class Cut {
     /// Whether something of the body may be nearer than what was seen.
     [[nodiscard]] bool mayBeSeen() const {
         for (std::size_t k = 0; k < covered_; ++k) {
-            const SightEdge& edge = region_.edges[at(k)];
-            if (edge.line == SightEdge::kArc) {
+            const VisibilityEdge& edge = region_.edges[at(k)];
+            if (edge.line == VisibilityEdge::kArc) {
                 if (1 / region_.max_range < side_.nearest) return true;
                 continue;
             }
@@ -195,7 +195,7 @@ class Cut {
         return local.y / local.x;
     }
     [[nodiscard]] Reach reachOf(std::size_t i) const {
-        if (region_.edges[i].line == SightEdge::kArc) return {0, 0, region_.max_range};
+        if (region_.edges[i].line == VisibilityEdge::kArc) return {0, 0, region_.max_range};
         return Reach::ofLine(side_.frame.local(from(i)), side_.frame.local(to(i)));
     }
     [[nodiscard]] Reach edgeReach(std::size_t edge) const {
@@ -275,13 +275,13 @@ class Cut {
 
     /// Replaces the covered edges by the parts.
     void write() {
-        std::vector<SightEdge> made;
-        const SightEdge& first = region_.edges[first_];
-        const SightEdge& last = region_.edges[at(covered_ - 1)];
+        std::vector<VisibilityEdge> made;
+        const VisibilityEdge& first = region_.edges[first_];
+        const VisibilityEdge& last = region_.edges[at(covered_ - 1)];
         for (std::size_t k = 0; k < parts_.size(); ++k) {
             const Part& part = parts_[k];
             const bool is_body = part.edge != Part::kNoEdge;
-            SightEdge edge = is_body ? bodyEdge(part) : seenEdge(part);
+            VisibilityEdge edge = is_body ? bodyEdge(part) : seenEdge(part);
             if (!is_body && k == 0) edge.from = first.from;
             if (!is_body && k + 1 == parts_.size()) edge.to = last.to;
             if (is_body && k == 0) push({first.from, seenPlace(first_, right_), first.line}, made);
@@ -295,15 +295,15 @@ class Cut {
         edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(covered_));
         edges.insert(edges.begin(), made.begin(), made.end());
     }
-    void push(const SightEdge& edge, std::vector<SightEdge>& made) const {
+    void push(const VisibilityEdge& edge, std::vector<VisibilityEdge>& made) const {
         if (cross(edge.from - region_.viewpoint, edge.to - region_.viewpoint) > 0)
             made.push_back(edge);
     }
     [[nodiscard]] Point2 seenPlace(std::size_t i, Vec2 way) const {
         return reachOf(i).place(side_.frame, slopeOf(way));
     }
-    [[nodiscard]] SightEdge seenEdge(const Part& part) const {
-        const SightEdge& old = region_.edges[part.seen];
+    [[nodiscard]] VisibilityEdge seenEdge(const Part& part) const {
+        const VisibilityEdge& old = region_.edges[part.seen];
         const Reach reach = reachOf(part.seen);
         const auto place = [&](double slope, Point2 own, Vec2 way) {
             return side_.frame.local(way).x > 0 && slope == slopeOf(way)
@@ -313,7 +313,7 @@ class Cut {
         return {place(part.low, old.from, from(part.seen)), place(part.high, old.to, to(part.seen)),
                 old.line};
     }
-    [[nodiscard]] SightEdge bodyEdge(const Part& part) const {
+    [[nodiscard]] VisibilityEdge bodyEdge(const Part& part) const {
         const Reach reach = edgeReach(part.edge);
         const auto place = [&](double slope, std::size_t i) {
             if (slope != side_.slope(i)) return reach.place(side_.frame, slope);

@@ -16,7 +16,7 @@ namespace ispace {
 /// them: no query crosses their outlines edge by edge.
 class RoundBodies {
   public:
-    /// \param first_line SightEdge::line of the first of them
+    /// \param first_line VisibilityEdge::line of the first of them
     RoundBodies(std::span<const Ellipse> rounds, std::uint32_t first_line);
 
     [[nodiscard]] bool empty() const { return rounds_.empty(); }

@@ -37,7 +37,7 @@ TEST(Visibility, SquareRoom) {
         EXPECT_EQ(region.edges.size(), 4U);
         EXPECT_DOUBLE_EQ(area(region), 16);
         expectSound(region);
-        for (const SightEdge& end : region.edges) {
+        for (const VisibilityEdge& end : region.edges) {
             EXPECT_EQ(room[end.line].a, end.from);
             EXPECT_EQ(room[end.line].b, end.to);
         }
@@ -112,8 +112,8 @@ TEST(Visibility, VerticesAreExact) {
     const VisibilityMap map(lines);
     int exact = 0;
     for (int i = 0; i < 50; ++i) {
-        for (const SightEdge& end : map.query(test::randomInside(random, plan), 6).edges) {
-            if (end.line == SightEdge::kArc) continue;
+        for (const VisibilityEdge& end : map.query(test::randomInside(random, plan), 6).edges) {
+            if (end.line == VisibilityEdge::kArc) continue;
             for (const Point2 p : {end.from, end.to}) {
                 for (const Point2 vertex : {lines[end.line].a, lines[end.line].b}) {
                     if (distance(p, vertex) > 1e-12) continue;
@@ -354,8 +354,8 @@ TEST(Visibility, LinesOfEndsAreThere) {
     for (int i = 0; i < 200; ++i) {
         const VisibleRegion region = map.query({place(random), place(random)}, 5);
         expectSound(region);
-        for (const SightEdge& end : region.edges) {
-            if (end.line == SightEdge::kArc) continue;
+        for (const VisibilityEdge& end : region.edges) {
+            if (end.line == VisibilityEdge::kArc) continue;
             ASSERT_LT(end.line, lines.size());
             EXPECT_LT(distance(end.from, lines[end.line]), 1e-12);
             EXPECT_LT(distance(end.to, lines[end.line]), 1e-12);

@@ -98,7 +98,7 @@ GlbSurface surfaceOf(const Mesh& mesh, Point3 origin) {
 int GlbBuilder::material(Material material, bool double_sided) {
     const auto [place, is_new] = materials_.try_emplace({material, double_sided}, material_count_);
     if (!is_new) return place->second;
-    const Look& look = lookOf(material);
+    const Appearance& look = lookOf(material);
     JsonWriter& json = beginMaterial(look.name);
     if (look.opacity < 1) json.key("alphaMode").value("BLEND");
     if (double_sided) json.key("doubleSided").value(true);

@@ -34,7 +34,7 @@ void addNode(std::vector<ModelNode>& nodes, ModelNode node) {
 
 void addPlaced(std::vector<ModelNode>& nodes, const Scene& scene, bool with_views) {
     addNode(nodes, {"floor", "", {}, {scene.environment.floor()}});
-    for (const Placed& placed : scene.placed) {
+    for (const PlacedRecord& placed : scene.placed) {
         std::vector<Mesh> meshes = bodyOf(scene, placed);
         if (auto view = with_views ? viewOf(scene, placed) : std::nullopt)
             meshes.push_back(std::move(*view));
@@ -302,7 +302,7 @@ void addElements(const std::vector<Element>& elements, Point3 origin, GlbScene& 
         auto next = prepared[block % kBlocksAtOnce].begin();
         for (const Element& element : elements_of(block)) nodes.add(element, *next++);
     };
-    makeInOrder((elements.size() + kBlock - 1) / kBlock, make, take);
+    orderedPipeline((elements.size() + kBlock - 1) / kBlock, make, take);
 }
 
 }  // namespace
@@ -327,7 +327,7 @@ void writeGlb(const Scene& scene, const Document& document, const ByteSink& sink
         placed = placedNodes(scene, true);
         records = recordsText(document);
     };
-    doBoth(at_once, add_elements, prepare_rest);
+    parallelInvoke(at_once, add_elements, prepare_rest);
     for (const ModelNode& node : placed) nodes.add(node);
     builder.finish(records, gltfAxes(origin - Point3()), sink);
 }

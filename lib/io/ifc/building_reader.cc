@@ -15,8 +15,8 @@ namespace ispace {
 namespace {
 
 constexpr double kAboveFloor = 1;      // metres, of sections: over most sills, under most lintels
-constexpr double kLowestSpace = 1.2;   // metres: lower ones are no rooms
-constexpr double kWidestColumn = 2.5;  // metres
+constexpr double kMinSpace = 1.2;      // metres: lower ones are no rooms
+constexpr double kMaxColumn = 2.5;     // metres
 constexpr std::size_t kMaxBoxes = 40;  // of one thing
 constexpr double kLooseBox = 1.3;      // a thing's box takes so much more floor than its parts'
 
@@ -199,7 +199,7 @@ class BuildingReader {
             if (wall.section.empty() || !box) continue;
             wall.box = *box;
             // What leans, as rafters, is no column.
-            if (is_column && std::max(box->length, box->width) > kWidestColumn) continue;
+            if (is_column && std::max(box->length, box->width) > kMaxColumn) continue;
             out_.walls.push_back(std::move(wall));
         }
     }
@@ -221,7 +221,7 @@ class BuildingReader {
             space.storey = storeyAtHeight(heights.low);
         space.areas = tree_.areasOf(id);
         for (StatedArea& area : space.areas) area.area *= frames_.units().area;
-        if (heights.high - heights.low < kLowestSpace) return;
+        if (heights.high - heights.low < kMinSpace) return;
         out_.spaces.push_back(std::move(space));
     }
 

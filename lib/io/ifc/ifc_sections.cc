@@ -201,9 +201,9 @@ BuildingBox boxAlong(const Polygon& hull, Vec2 along) {
 }
 
 bool isRound(const Polygon& hull, const BuildingBox& box) {
-    constexpr std::size_t kFewest = 8;
+    constexpr std::size_t kMinCount = 8;
     const double share = signedArea(hull) / (box.length * box.width);
-    return hull.size() >= kFewest && std::abs(share / (std::numbers::pi / 4) - 1) < 0.06 &&
+    return hull.size() >= kMinCount && std::abs(share / (std::numbers::pi / 4) - 1) < 0.06 &&
            std::abs(box.length / box.width - 1) < 0.05;
 }
 

@@ -187,7 +187,7 @@ class RoomWriter {
         addSpaces(walls);
         for (const Element& element : elements_)
             if (isThing(element.record)) addThing(element);
-        for (const Placed& placed : scene_.placed) addPlaced(placed);
+        for (const PlacedRecord& placed : scene_.placed) addPlaced(placed);
         relate("IFCRELAGGREGATES", "storey", IfcModel::ref(storey_), stepList(spaces_), spaces_);
         relate("IFCRELCONTAINEDINSPATIALSTRUCTURE", "storey", stepList(contained_),
                IfcModel::ref(storey_), contained_);
@@ -379,7 +379,7 @@ class RoomWriter {
                            model_.addPlacement(place_, pose), std::move(shape), row.kind));
     }
 
-    void addPlaced(const Placed& placed) {
+    void addPlaced(const PlacedRecord& placed) {
         const Record& record = scene_.records[placed.record];
         const SensorKind* const kind = sensorKind(record.keyword());
         const Sensor* const sensor = kind == nullptr ? nullptr : &scene_.sensors[placed.index];

@@ -19,8 +19,8 @@ namespace {
 constexpr double kStoreyHeight = 1.8;  // metres to the next floor, at least
 constexpr double kBelowFloor = 0.3;    // how far things may begin below the floor they stand on
 constexpr double kThinnestThing = 0.01;
-constexpr double kWidestProxy = 5;  // metres: larger proxies are terrain, or all of a building
-constexpr double kWidestRailing = 0.3;
+constexpr double kMaxProxy = 5;  // metres: larger proxies are terrain, or all of a building
+constexpr double kMaxRailing = 0.3;
 constexpr double kAreaDiffers = 0.1;  // share
 
 /// Writes the records of a storey.
@@ -281,9 +281,9 @@ class StoreyImport {
         for (const BuildingThing& thing : building_.things)
             for (const BuildingBox& box : thing.boxes) {
                 if (thing.type == "IFCBUILDINGELEMENTPROXY" &&
-                    std::max(box.length, box.width) > kWidestProxy)
+                    std::max(box.length, box.width) > kMaxProxy)
                     continue;
-                if (thing.type == "IFCRAILING" && std::min(box.length, box.width) > kWidestRailing)
+                if (thing.type == "IFCRAILING" && std::min(box.length, box.width) > kMaxRailing)
                     continue;
                 writeBox(box, box.is_round ? "cylinder" : "cube", thing.name);
             }

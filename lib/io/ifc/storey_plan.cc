@@ -15,14 +15,14 @@ namespace ispace {
 namespace {
 
 constexpr double kParallel = 0.017;  // sine of a degree
-constexpr double kLeastShare = 0.6;  // of an opening's width that a face has to bear
-constexpr double kNarrowest = 0.3;   // metres, of openings
+constexpr double kMinShare = 0.6;    // of an opening's width that a face has to bear
+constexpr double kMinWidth = 0.3;    // metres, of openings
 /// From boxes to the faces that they go through, in metres: those of holes, and of doors
 /// themselves.
 constexpr double kHoleReach = 0.05, kDoorReach = 0.5;
-constexpr double kThickestPane = 0.5;      // metres
-constexpr double kJambReach = 0.4;         // beyond a door to the ends of walls beside it
-constexpr double kFarthestThrough = 0.99;  // openings reach through no thicker walls
+constexpr double kThickestPane = 0.5;  // metres
+constexpr double kJambReach = 0.4;     // beyond a door to the ends of walls beside it
+constexpr double kMaxThrough = 0.99;   // openings reach through no thicker walls
 
 std::vector<Segment2> linesOf(std::span<const Region> solids) {
     std::vector<Segment2> lines;
@@ -66,7 +66,7 @@ std::vector<WallFaces::Beside> WallFaces::facesBeside(const BuildingBox& box, do
         if (std::abs(cross(u, along)) > kParallel * length(along)) continue;
         const double a = dot(line.a - box.center, u), b = dot(line.b - box.center, u);
         const double from = std::max(std::min(a, b), -half), to = std::min(std::max(a, b), half);
-        if (to - from < std::max(kNarrowest, kLeastShare * box.length)) continue;
+        if (to - from < std::max(kMinWidth, kMinShare * box.length)) continue;
         const double aside = (dot(line.a - box.center, v) + dot(line.b - box.center, v)) / 2;
         if (std::abs(aside) <= beyond) beside.push_back({&faces_[i], from, to, aside, b > a});
     }
@@ -87,7 +87,7 @@ std::optional<StoreyOpening> WallFaces::through(const BuildingBox& box, bool is_
     }
     if (lower == nullptr || upper == nullptr) return std::nullopt;
     const double depth = upper->aside - lower->aside;
-    if (!(depth > 0) || depth > kFarthestThrough) return std::nullopt;
+    if (!(depth > 0) || depth > kMaxThrough) return std::nullopt;
     const bool host_is_lower = lower->to - lower->from >= upper->to - upper->from;
     const Beside& host = host_is_lower ? *lower : *upper;
     const auto clipped = [&](const Beside& face, double from, double to) {
@@ -125,7 +125,7 @@ std::optional<StoreyOpening> WallFaces::across(const BuildingBox& box) const {
         if (nearest > half + kJambReach || nearest < half / 2) return std::nullopt;
         jambs[side] = wholeMicrometres(box.center + nearest * out);
     }
-    if (isInWall(box.center) || distance(jambs[0], jambs[1]) < kNarrowest) return std::nullopt;
+    if (isInWall(box.center) || distance(jambs[0], jambs[1]) < kMinWidth) return std::nullopt;
     StoreyOpening opening;
     opening.line = {jambs[0], jambs[1]};
     return opening;
@@ -141,7 +141,7 @@ std::optional<StoreyOpening> WallFaces::find(const BuildingBox& box, bool is_hol
         if (auto opening = across(*one)) return opening;
     // A window or door that is a wall itself, as panes from floor to ceiling.
     const BuildingBox& longer = box.length >= box.width ? box : turned;
-    if (is_hole || longer.length < kNarrowest || longer.width > kThickestPane ||
+    if (is_hole || longer.length < kMinWidth || longer.width > kThickestPane ||
         isInWall(box.center))
         return std::nullopt;
     const Vec2 half = longer.length / 2 * longer.along;

@@ -36,7 +36,7 @@ constexpr double kSmallRoom = 2, kLargeRoom = 2000;
 struct Choice {
     Point2 point;
     bool is_option = false;  ///< from --inside, not from a record of another input
-    CellPlace place;
+    CellIndex place;
 };
 
 /// Turns cells into records, step by step.
@@ -66,7 +66,7 @@ class CellMapImport {
         throw FormatError(Diagnostic{source_.file, 0, 0, message});
     }
 
-    [[nodiscard]] bool isInGrid(CellPlace place) const {
+    [[nodiscard]] bool isInGrid(CellIndex place) const {
         return place.x >= 0 && place.y >= 0 && place.x < floor_.width() &&
                place.y < floor_.height();
     }
@@ -98,7 +98,7 @@ class CellMapImport {
                       " m opens the room to the picture's border");
             return false;
         }
-        tellGaps(map_, cut, pieces, rooms, *options_.close_gaps, out_);
+        reportClosedGaps(map_, cut, pieces, rooms, *options_.close_gaps, out_);
         keepRooms(pieces, rooms);
         return true;
     }
@@ -126,7 +126,7 @@ class CellMapImport {
 
     [[noreturn]] void refuse(const Choice& choice) const {
         const std::string name = nameOf(choice);
-        const CellPlace place = choice.place;
+        const CellIndex place = choice.place;
         const auto width = static_cast<double>(floor_.width());
         const auto height = static_cast<double>(floor_.height());
         if (!isInGrid(place))
@@ -150,8 +150,8 @@ class CellMapImport {
             keepRoom(pieces, room, cleaning);
         }
         warnOfExtent();
-        tellRest(map_, pieces, rooms, options_, out_);
-        tellCleaning(map_, cleaning, cells, out_);
+        reportDroppedCells(map_, pieces, rooms, options_, out_);
+        reportCleaning(map_, cleaning, cells, out_);
     }
 
     /// The cost of a room is its bounding box, and rooms may enclose each other.
@@ -218,7 +218,7 @@ class CellMapImport {
             if (std::find(rooms.begin(), rooms.end(), whole) == rooms.end()) rooms.push_back(whole);
         }
         std::erase_if(rooms, [this](const auto& room) {
-            return std::any_of(kept_.begin(), kept_.end(), [&room](CellPlace place) {
+            return std::any_of(kept_.begin(), kept_.end(), [&room](CellIndex place) {
                 return room.first->at(place) == room.second;
             });
         });
@@ -230,7 +230,7 @@ class CellMapImport {
     }
 
     void handOver(const CellPieces& pieces, std::size_t piece) {
-        const CellPlace place = widestPlace(pieces.cellsOf(piece));
+        const CellIndex place = widestPlace(pieces.cellsOf(piece));
         const Point2 point = map_.middleOf(place);
         Cleaning not_told;
         try {
@@ -246,7 +246,7 @@ class CellMapImport {
                                         const std::vector<Choice>& choices, Cleaning& cleaning,
                                         bool talks) {
         MapRoom room = cutOut(pieces, piece);
-        std::vector<CellPlace> keep;
+        std::vector<CellIndex> keep;
         keep.reserve(choices.size());
         for (const Choice& choice : choices)
             keep.push_back({choice.place.x - room.offset.x, choice.place.y - room.offset.y});
@@ -282,7 +282,7 @@ class CellMapImport {
     }
 
     /// The cells of the map within a room's grid.
-    static MapCells cutOf(const MapCells& map, const MapCells& grid, CellPlace offset) {
+    static MapCells cutOf(const MapCells& map, const MapCells& grid, CellIndex offset) {
         MapCells cells(grid.width(), grid.height());
         const int left = std::max(offset.x, 0),
                   right = std::min(offset.x + grid.width(), map.width());
@@ -308,7 +308,7 @@ class CellMapImport {
     [[nodiscard]] MapRoom cutOut(const CellPieces& pieces, std::size_t piece) const {
         constexpr int kRim = 3;
         const CellPiece& box = pieces[piece];
-        const CellPlace offset{box.lowest.x - kRim, box.lowest.y - kRim};
+        const CellIndex offset{box.lowest.x - kRim, box.lowest.y - kRim};
         MapCells floor(box.highest.x - box.lowest.x + 1 + 2 * kRim,
                        box.highest.y - box.lowest.y + 1 + 2 * kRim);
         pieces.forEachRunOfPiece(piece, [&](const RowRun& run) {
@@ -318,7 +318,7 @@ class CellMapImport {
         return {std::move(floor), std::move(occupied), offset};
     }
 
-    void keepReachable(MapRoom& room, const std::vector<CellPlace>& from, bool talks) {
+    void keepReachable(MapRoom& room, const std::vector<CellIndex>& from, bool talks) {
         const std::size_t before = room.floor.count();
         const std::string radius = formatDouble(*options_.reachable) + " m";
         room.floor = reachedByDisc(room.floor, *options_.reachable / map_.resolution, from);
@@ -356,7 +356,7 @@ class CellMapImport {
     [[nodiscard]] Outlined outlined(const MapRoom& room, double tolerance,
                                     const std::optional<MapCells>& rigid) const {
         Region region = vectorised(room.floor, tolerance, rigid ? &*rigid : nullptr);
-        const CellPlace widest = widestPlace(room.floor);
+        const CellIndex widest = widestPlace(room.floor);
         const Point2 middle{widest.x + 0.5, widest.y + 0.5};
         // Simplification may have removed the widest place.
         const Point2 within =
@@ -403,7 +403,7 @@ class CellMapImport {
     std::optional<MapCells> barrier_;  ///< under walls that were added
     std::vector<Choice> choices_;
     Box2 extent_;                  ///< of the rooms written
-    std::vector<CellPlace> kept_;  ///< places in them, if all rooms are asked for
+    std::vector<CellIndex> kept_;  ///< places in them, if all rooms are asked for
 };
 
 }  // namespace
@@ -418,7 +418,7 @@ Point2 CellMap::inCells(Point2 point) const {
     return {dot(way, right) / resolution, cross(right, way) / resolution};
 }
 
-CellPlace CellMap::placeOf(Point2 point) const {
+CellIndex CellMap::placeOf(Point2 point) const {
     constexpr double kFar = 1e9;
     const Point2 cells = inCells(point);
     return {static_cast<int>(std::clamp(std::floor(cells.x), -kFar, kFar)),

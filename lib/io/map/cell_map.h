@@ -26,8 +26,8 @@ struct CellMap {
     [[nodiscard]] Point2 inMap(Point2 cells) const;
     [[nodiscard]] Point2 inCells(Point2 point) const;
     /// The cell of a point, which may lie outside the grid.
-    [[nodiscard]] CellPlace placeOf(Point2 point) const;
-    [[nodiscard]] Point2 middleOf(CellPlace place) const {
+    [[nodiscard]] CellIndex placeOf(Point2 point) const;
+    [[nodiscard]] Point2 middleOf(CellIndex place) const {
         return inMap({place.x + 0.5, place.y + 0.5});
     }
     /// In square metres.
@@ -72,8 +72,9 @@ void writeCellMap(const CellMap& map, const CellMapSource& source, const ImportO
 
 /// Reports free cells that are not kept: a warning if they are more than half of the indoor cells
 /// and nobody chose the rooms, else a note.
-void tellRest(const CellMap& map, const CellPieces& pieces, const std::vector<std::size_t>& rooms,
-              const ImportOptions& options, ImportRecords& out);
+void reportDroppedCells(const CellMap& map, const CellPieces& pieces,
+                        const std::vector<std::size_t>& rooms, const ImportOptions& options,
+                        ImportRecords& out);
 
 /// Warns of a room that leaves the picture through an opening of 0.5 m or more. Along most of the
 /// border the picture's edges may be its walls: then the warning comes only if closing doors would
@@ -82,11 +83,11 @@ void warnOfBorder(const CellMap& map, const MapRoom& room, double border_share, 
 
 /// Notes what cleaning removed from all rooms, of so many cells before; warns where
 /// spikes were more than a hundredth of them.
-void tellCleaning(const CellMap& map, const Cleaning& cleaning, std::size_t cells,
-                  ImportRecords& out);
+void reportCleaning(const CellMap& map, const Cleaning& cleaning, std::size_t cells,
+                    ImportRecords& out);
 
 /// Notes the gaps closed beside the rooms.
-void tellGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
-              const std::vector<std::size_t>& rooms, double widest, ImportRecords& out);
+void reportClosedGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
+                      const std::vector<std::size_t>& rooms, double widest, ImportRecords& out);
 
 }  // namespace ispace

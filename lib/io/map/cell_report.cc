@@ -22,7 +22,7 @@ namespace ispace {
 namespace {
 
 constexpr double kMinOpening = 0.5;       ///< metres of the picture's border
-constexpr double kWidestDoor = 1.2;       ///< metres
+constexpr double kMaxDoor = 1.2;          ///< metres
 constexpr double kGapOfPoints = 0.3;      ///< metres between points of a wall: not told one by one
 constexpr double kShareBehindDoor = 0.1;  ///< of the floor, for a warning
 
@@ -44,10 +44,10 @@ struct Opening {
 
 std::vector<Opening> openingsOf(const CellMap& map, const MapRoom& room) {
     std::vector<Opening> openings;
-    const auto follow = [&](CellPlace at, CellPlace step, int count) {
+    const auto follow = [&](CellIndex at, CellIndex step, int count) {
         int length = 0;
         for (int i = 0; i <= count; ++i) {
-            const CellPlace place{at.x + i * step.x, at.y + i * step.y};
+            const CellIndex place{at.x + i * step.x, at.y + i * step.y};
             if (i < count &&
                 room.floor.contains(place.x - room.offset.x, place.y - room.offset.y)) {
                 ++length;
@@ -72,7 +72,7 @@ std::vector<Opening> openingsOf(const CellMap& map, const MapRoom& room) {
 /// The largest part of a room that closing doors would separate from the picture's border.
 struct BehindDoor {
     std::size_t cells = 0;
-    CellPlace place;
+    CellIndex place;
 };
 
 BehindDoor behindDoors(const CellMap& map, const MapRoom& room) {
@@ -81,7 +81,7 @@ BehindDoor behindDoors(const CellMap& map, const MapRoom& room) {
     for (int y = 0; y < room.floor.height(); ++y)
         for (int x = 0; x < room.floor.width(); ++x)
             if (room.floor.contains(x, y)) floor.insert(x + room.offset.x, y + room.offset.y);
-    const MapCells cut = gapCells(floor, kWidestDoor / map.resolution);
+    const MapCells cut = gapCells(floor, kMaxDoor / map.resolution);
     const CellPieces pieces(difference(floor, cut), CellPieces::Joined::BySides);
     BehindDoor result;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -110,7 +110,7 @@ void warnOfOpenings(const CellMap& map, const MapRoom& room, ImportRecords& out)
 
 /// From corner to corner of the box around a gap's cells, the way they run.
 Segment2 acrossGap(const CellMap& map, const CellPieces& gaps, std::size_t gap) {
-    const CellPlace low = gaps[gap].lowest, high = gaps[gap].highest;
+    const CellIndex low = gaps[gap].lowest, high = gaps[gap].highest;
     const bool rises = 2 * gaps[gap].first.x <= low.x + high.x;  // the lowest cell lies on the left
     const double left = rises ? low.y : high.y + 1, right = rises ? high.y + 1 : low.y;
     return {map.inMap({static_cast<double>(low.x), left}), map.inMap({high.x + 1.0, right})};
@@ -118,8 +118,9 @@ Segment2 acrossGap(const CellMap& map, const CellPieces& gaps, std::size_t gap) 
 
 }  // namespace
 
-void tellRest(const CellMap& map, const CellPieces& pieces, const std::vector<std::size_t>& rooms,
-              const ImportOptions& options, ImportRecords& out) {
+void reportDroppedCells(const CellMap& map, const CellPieces& pieces,
+                        const std::vector<std::size_t>& rooms, const ImportOptions& options,
+                        ImportRecords& out) {
     std::size_t kept = 0, all = 0, indoor = 0;
     std::optional<std::size_t> largest;
     const std::vector<bool> are_rooms = areRooms(pieces, rooms);
@@ -156,12 +157,12 @@ void warnOfBorder(const CellMap& map, const MapRoom& room, double border_share,
     if (cells < kShareBehindDoor * static_cast<double>(room.floor.count())) return;
     out.warn("the room runs along " + formatFixed(100 * border_share, 0) +
              "% of the picture's border and may be the outside; --close-gaps " +
-             formatDouble(kWidestDoor) + " parts " + areaText(map.area(inner.cells)) + " at " +
+             formatDouble(kMaxDoor) + " parts " + areaText(map.area(inner.cells)) + " at " +
              placeText(map.middleOf(inner.place)) + " from it");
 }
 
-void tellCleaning(const CellMap& map, const Cleaning& cleaning, std::size_t cells,
-                  ImportRecords& out) {
+void reportCleaning(const CellMap& map, const Cleaning& cleaning, std::size_t cells,
+                    ImportRecords& out) {
     const std::size_t filled = cleaning.speck_cells + cleaning.slit_cells;
     if (filled + cleaning.spike_cells == 0) return;
     std::string text = "below the map's noise: " + countText(cleaning.specks, "speck") +
@@ -172,14 +173,14 @@ void tellCleaning(const CellMap& map, const Cleaning& cleaning, std::size_t cell
     is_much ? out.warn(std::move(text)) : out.note(std::move(text));
 }
 
-void tellGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
-              const std::vector<std::size_t>& rooms, double widest, ImportRecords& out) {
+void reportClosedGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
+                      const std::vector<std::size_t>& rooms, double widest, ImportRecords& out) {
     const CellPieces gaps(cut, CellPieces::Joined::ByCorners);
     const std::vector<bool> are_rooms = areRooms(pieces, rooms);
     std::vector<bool> is_ours(gaps.size());
     gaps.forEachRun([&](const RowRun& run, std::size_t gap) {
         for (int x = run.first; x <= run.last; ++x)
-            for (const CellPlace side : kSides)
+            for (const CellIndex side : kSides)
                 if (const auto piece = pieces.at({x + side.x, run.row + side.y});
                     piece && are_rooms[*piece])
                     is_ours[gap] = true;

@@ -43,7 +43,7 @@ std::optional<std::size_t> likeliestRoom(const CellPieces& pieces, double resolu
 
 std::vector<std::size_t> closedRooms(const MapCells& cells, const CellPieces& pieces,
                                      double resolution) {
-    const std::vector<int> clearance = squaredDistances(cells, Beyond::In);
+    const std::vector<int> clearance = squaredDistances(cells, BorderRule::In);
     std::vector<int> widest(pieces.size());
     pieces.forEachRun([&](const RowRun& run, std::size_t piece) {
         const int* row = &clearance[cells.index(0, run.row)];
@@ -91,10 +91,10 @@ class WideningFlood {
 
   private:
     /// \param width squared clearance of the narrowest cell on the way so far
-    void pushAround(CellPlace from, int width) {
+    void pushAround(CellIndex from, int width) {
         const Owner owner = owners_[free_.index(from.x, from.y)];
-        for (const CellPlace side : kSides) {
-            const CellPlace to{from.x + side.x, from.y + side.y};
+        for (const CellIndex side : kSides) {
+            const CellIndex to{from.x + side.x, from.y + side.y};
             if (!free_.contains(to.x, to.y)) continue;
             const std::size_t i = free_.index(to.x, to.y);
             if (owners_[i] != Nobody) continue;
@@ -106,7 +106,7 @@ class WideningFlood {
     const MapCells& free_;
     const std::vector<int>& clearance_;
     std::vector<Owner>& owners_;
-    std::vector<std::vector<CellPlace>> open_;  ///< by the squared clearance on the way
+    std::vector<std::vector<CellIndex>> open_;  ///< by the squared clearance on the way
 };
 
 }  // namespace
@@ -126,7 +126,7 @@ MapCells barrierCells(const std::vector<Segment2>& lines, int width, int height)
 }
 
 MapCells gapCells(const MapCells& free, double width) {
-    const std::vector<int> clearance = squaredDistances(free, Beyond::In);
+    const std::vector<int> clearance = squaredDistances(free, BorderRule::In);
     // Wider than the grid is as wide as it.
     const double half =
         (std::min(width, static_cast<double>(free.width() + free.height())) + 1) / 2;
@@ -145,8 +145,8 @@ MapCells gapCells(const MapCells& free, double width) {
     for (int y = 0; y < free.height(); ++y)
         for (int x = 0; x < free.width(); ++x) {
             if (owners[free.index(x, y)] != Outside) continue;
-            for (const CellPlace side : kSides) {
-                const CellPlace to{x + side.x, y + side.y};
+            for (const CellIndex side : kSides) {
+                const CellIndex to{x + side.x, y + side.y};
                 if (free.contains(to.x, to.y) && owners[free.index(to.x, to.y)] == Rooms)
                     cut.insert(x, y);
             }
@@ -168,10 +168,10 @@ MapCells cellsWhere(const MapCells& like, const std::vector<int>& values, Test t
 
 }  // namespace
 
-MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<CellPlace>& from) {
+MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<CellIndex>& from) {
     // Half a cell: the edge of the cells outside lies that much before their middles.
     const double reach = (radius + 0.5) * (radius + 0.5);
-    const MapCells middles = cellsWhere(cells, squaredDistances(cells, Beyond::Out),
+    const MapCells middles = cellsWhere(cells, squaredDistances(cells, BorderRule::Out),
                                         [reach](int squared) { return squared >= reach; });
     const CellPieces pieces(middles, CellPieces::Joined::BySides);
     MapCells chosen(cells.width(), cells.height());
@@ -189,7 +189,7 @@ MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<C
             list.begin()));
     }
     const int steps = static_cast<int>(std::ceil(radius));
-    for (const CellPlace place : from) {
+    for (const CellIndex place : from) {
         // The nearest middle whose disc covers the place.
         std::optional<std::size_t> nearest;
         double least = reach;
@@ -202,7 +202,7 @@ MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<C
             }
         if (nearest) choose(*nearest);
     }
-    return cellsWhere(cells, squaredDistances(complement(chosen), Beyond::In),
+    return cellsWhere(cells, squaredDistances(complement(chosen), BorderRule::In),
                       [reach](int squared) { return squared < reach; });
 }
 
@@ -225,16 +225,16 @@ class SlitFilling {
     }
 
   private:
-    static constexpr std::array<CellPlace, 8> kAround{
+    static constexpr std::array<CellIndex, 8> kAround{
         {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
-    void follow(CellPlace at) {
+    void follow(CellIndex at) {
         while (isTip(at)) {
             room_.floor.insert(at.x, at.y);
             ++filled_;
             // At most one group of cells is left around it: the slit goes on there.
-            for (const CellPlace step : kAround) {
-                const CellPlace next{at.x + step.x, at.y + step.y};
+            for (const CellIndex step : kAround) {
+                const CellIndex next{at.x + step.x, at.y + step.y};
                 if (!isTip(next)) continue;
                 at = next;
                 break;
@@ -242,7 +242,7 @@ class SlitFilling {
         }
     }
 
-    [[nodiscard]] bool isTip(CellPlace at) const {
+    [[nodiscard]] bool isTip(CellIndex at) const {
         if (at.x < 1 || at.y < 1 || at.x + 1 >= room_.floor.width() ||
             at.y + 1 >= room_.floor.height() || room_.floor.contains(at.x, at.y) ||
             room_.occupied.contains(at.x, at.y))
@@ -270,7 +270,7 @@ class Flattener {
     explicit Flattener(MapCells& floor) : floor_(floor) {}
 
     /// \param along, across unit steps along the wall, and from the wall to the bump
-    void run(CellPlace along, CellPlace across) {
+    void run(CellIndex along, CellIndex across) {
         for (int y = 0; y < floor_.height(); ++y)
             for (int x = 0; x < floor_.width(); ++x) {
                 x = firstEdge(x, y, across);
@@ -293,7 +293,7 @@ class Flattener {
 
     /// From (x, y) on along the row, the first cell that is perhaps not of the kind of the one
     /// across.
-    [[nodiscard]] int firstEdge(int x, int y, CellPlace across) const {
+    [[nodiscard]] int firstEdge(int x, int y, CellIndex across) const {
         constexpr int kAtOnce = 32;
         const bool in_grid = y + across.y >= 0 && y + across.y < floor_.height();
         if (x == 0 || !in_grid) return x;
@@ -304,7 +304,7 @@ class Flattener {
         return x;
     }
 
-    void flatten(CellPlace at, CellPlace along, CellPlace across, bool kind) {
+    void flatten(CellIndex at, CellIndex along, CellIndex across, bool kind) {
         int length = 1;
         while (length <= kMaxBump && isKind(at.x + length * along.x, at.y + length * along.y, kind))
             ++length;
@@ -336,7 +336,7 @@ constexpr double kCoarse = 0.3;         ///< of the width: one such cell is no n
 
 void flattenWalls(MapCells& floor) {
     Flattener flattener(floor);
-    for (const CellPlace along : {CellPlace{1, 0}, CellPlace{0, 1}})
+    for (const CellIndex along : {CellIndex{1, 0}, CellIndex{0, 1}})
         for (const int side : {1, -1}) flattener.run(along, {side * along.y, side * along.x});
 }
 
@@ -431,7 +431,7 @@ Cleaning& Cleaning::operator+=(const Cleaning& other) {
 }
 
 Cleaning cleanRoom(MapRoom& room, double resolution, double width,
-                   const std::vector<CellPlace>& keep) {
+                   const std::vector<CellIndex>& keep) {
     Cleaning done;
     if (resolution >= kCoarse * width) return done;
     fillSpecks(room, resolution, width, done);

@@ -46,12 +46,12 @@ MapCells gapCells(const MapCells& free, double width);
 /// Empty if the disc fits nowhere (there).
 /// \param radius in cells: the disc's centre stays at least this far from the
 /// edge of the set
-MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<CellPlace>& from);
+MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<CellIndex>& from);
 
 /// A room of a map, cut out with at least one row and column of other cells around it.
 struct MapRoom {
     MapCells floor, occupied;
-    CellPlace offset;  ///< of the cut in the map
+    CellIndex offset;  ///< of the cut in the map
 };
 
 /// Metres; smaller features of a robot's map are noise of its sensor.
@@ -84,11 +84,11 @@ struct Cleaning {
 /// With cells of 0.3 times the width or more nothing is done. The result is connected by sides.
 /// O(cells). \param resolution, width metres: of a cell, and below which features are noise
 Cleaning cleanRoom(MapRoom& room, double resolution, double width,
-                   const std::vector<CellPlace>& keep);
+                   const std::vector<CellIndex>& keep);
 
 /// Removes strips of floor that are one cell wide, or at most `width` metres where no occupied cell
 /// is near, with what is connected only through them; see cleanRoom(). O(cells)
 void removeSpikes(MapRoom& room, double resolution, double width,
-                  const std::vector<CellPlace>& keep, Cleaning& done);
+                  const std::vector<CellIndex>& keep, Cleaning& done);
 
 }  // namespace ispace

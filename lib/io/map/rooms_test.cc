@@ -15,7 +15,7 @@ using testing::cellsOf;
 using testing::rowsOf;
 
 /// The likeliest room of cells of a metre, by its first cell.
-CellPlace roomOf(const std::vector<std::string>& rows) {
+CellIndex roomOf(const std::vector<std::string>& rows) {
     const CellPieces pieces(cellsOf(rows), CellPieces::Joined::BySides);
     return pieces[likeliestRoom(pieces, 1).value()].first;
 }

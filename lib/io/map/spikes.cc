@@ -46,7 +46,7 @@ class Strips {
 
     /// Marks what stays: rooms, the pieces with the places of `keep`, the strips that join them,
     /// and strips that are bumps.
-    void choose(double resolution, const std::vector<CellPlace>& keep) {
+    void choose(double resolution, const std::vector<CellIndex>& keep) {
         markRooms(resolution, keep);
         const std::size_t start = static_cast<std::size_t>(
             std::find(stays_.begin(), stays_.end(), true) - stays_.begin());
@@ -77,7 +77,7 @@ class Strips {
     }
 
   private:
-    void meet(CellPlace place, std::size_t strip) {
+    void meet(CellIndex place, std::size_t strip) {
         const auto piece = broad_.at(place);
         if (!piece) return;
         std::vector<std::size_t>& around = neighbours_[broad_.size() + strip];
@@ -88,8 +88,8 @@ class Strips {
         neighbours_[*piece].push_back(broad_.size() + strip);
     }
 
-    void markRooms(double resolution, const std::vector<CellPlace>& keep) {
-        for (const CellPlace place : keep) {
+    void markRooms(double resolution, const std::vector<CellIndex>& keep) {
+        for (const CellIndex place : keep) {
             if (const auto piece = broad_.at(place))
                 stays_[*piece] = true;
             else if (const auto strip = strips_.at(place))
@@ -150,7 +150,7 @@ class Strips {
 }  // namespace
 
 void removeSpikes(MapRoom& room, double resolution, double width,
-                  const std::vector<CellPlace>& keep, Cleaning& done) {
+                  const std::vector<CellIndex>& keep, Cleaning& done) {
     const MapCells broad =
         broadFloor(room, std::max(2, static_cast<int>(width / resolution * 1.001)));
     Strips strips(room.floor, broad);

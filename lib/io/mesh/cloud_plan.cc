@@ -28,7 +28,7 @@ constexpr double kMostCells = 25e6;   // of the grid in which points are counted
 constexpr double kCellsPerUnit = 4;   // of Budget
 constexpr int kRim = 3;               // cells around, so that the outside is connected
 constexpr int kManyPoints = 10;       // in half of the cells: then a single one is a stray
-constexpr int kSmallestThing = 3;     // cells; smaller ones are noise
+constexpr int kMinThing = 3;          // cells; smaller ones are noise
 constexpr double kBelowTop = 0.15;    // metres: what ends so far below the upper height is no wall
 constexpr double kFloorNoise = 0.1;   // metres above the floor
 constexpr double kStands = 0.25;      // metres: what begins below stands on the floor
@@ -203,7 +203,7 @@ class CloudPlan {
     /// Islands that end below the upper height are no walls but furniture, or noise.
     void takeThings(MapCells& occupied) {
         const CellPieces pieces(occupied, CellPieces::Joined::ByCorners);
-        std::vector<std::vector<CellPlace>> places(pieces.size());
+        std::vector<std::vector<CellIndex>> places(pieces.size());
         std::vector<CloudThing> things(pieces.size());
         for (CloudThing& thing : things) thing = {{}, {}, 0, 0, HUGE_VAL, -HUGE_VAL, false};
         pieces.forEachRun([&](const RowRun& run, std::size_t piece) {
@@ -216,8 +216,8 @@ class CloudPlan {
         });
         for (std::size_t i = 0; i < pieces.size(); ++i) {
             if (things[i].top > *options_.slice_top - kBelowTop) continue;
-            for (const CellPlace place : places[i]) occupied.erase(place.x, place.y);
-            if (places[i].size() < kSmallestThing) continue;
+            for (const CellIndex place : places[i]) occupied.erase(place.x, place.y);
+            if (places[i].size() < kMinThing) continue;
             const double bottom = things[i].bottom - floor_;
             things[i].bottom = bottom < kStands ? 0 : bottom;
             things[i].top -= floor_;
@@ -226,19 +226,19 @@ class CloudPlan {
         }
     }
 
-    [[nodiscard]] Point2 middleOf(CellPlace place) const {
+    [[nodiscard]] Point2 middleOf(CellIndex place) const {
         return {corner_.x + (place.x + 0.5) * cell_, corner_.y + (place.y + 0.5) * cell_};
     }
 
     /// The smallest rectangle around the middles of the cells: points lie on the faces of things,
     /// which pass through cells anywhere.
-    void fit(CloudThing& thing, const std::vector<CellPlace>& places) const {
+    void fit(CloudThing& thing, const std::vector<CellIndex>& places) const {
         double least = HUGE_VAL;
         for (int degrees = 0; degrees < kHeadings; ++degrees) {
             const Vec2 along = unitVector(Angle::degrees(degrees));
             const Vec2 across = perpendicular(along);
             Box2 box;
-            for (const CellPlace place : places) {
+            for (const CellIndex place : places) {
                 const Vec2 way = middleOf(place) - Point2{};
                 box.add({dot(way, along), dot(way, across)});
             }

@@ -119,12 +119,12 @@ std::optional<std::string> objUpComment(std::string_view bytes) {
 
 std::string objUpAxis(std::string_view bytes, double metres) {
     if (auto axis = objUpComment(bytes)) return *std::move(axis);
-    constexpr double kLower = 0.95, kLeastFloor = 4;
+    constexpr double kLower = 0.95, kMinFloor = 4;
     VertexExtent extent;
     while (!bytes.empty())
         if (const std::string_view line = takeLine(bytes); line.starts_with("v ")) extent.add(line);
     const double floor = extent.along(0) * extent.along(1) * metres * metres;
-    return extent.along(2) < kLower * extent.along(1) && floor >= kLeastFloor ? "z" : "y";
+    return extent.along(2) < kLower * extent.along(1) && floor >= kMinFloor ? "z" : "y";
 }
 
 bool isMeshFile(std::string_view bytes) { return meshFormatOf(bytes).has_value(); }

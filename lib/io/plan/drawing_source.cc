@@ -20,7 +20,7 @@ namespace {
 constexpr double kLikelyPlan = 3, kUnlikelyPlan = 300;
 
 /// Metres; other drawings have another unit than they say.
-constexpr double kSmallestPlan = 1, kLargestPlan = 2000;
+constexpr double kMinPlan = 1, kMaxPlan = 2000;
 
 /// Rooms whose areas differ by a smaller share are the same one.
 constexpr double kSameRoom = 0.01;
@@ -126,9 +126,9 @@ std::string otherUnitHint(double extent, const DrawingSource& drawing,
 void checkScale(double extent, const DrawingSource& drawing, const std::string& name,
                 const ImportOptions& options) {
     if (!options.units.empty() || options.width_is) return;
-    if (extent >= kSmallestPlan && extent <= kLargestPlan) return;
+    if (extent >= kMinPlan && extent <= kMaxPlan) return;
     const std::string hint = otherUnitHint(extent, drawing, options);
-    const std::string metres = extent < kLargestPlan ? lengthText(extent) : formatFixed(extent, 0);
+    const std::string metres = extent < kMaxPlan ? lengthText(extent) : formatFixed(extent, 0);
     failFile(name, "the plan is " + metres + " m wide: is its unit right?" +
                        (hint.empty() ? " Else " + std::string(kScaleHint)
                                      : hint + "; or say how wide it is, with --width-is 8.3m"));

@@ -17,13 +17,13 @@ constexpr double kNarrowLeaf = 0.4, kWideLeaf = 1.5;  // metres
 /// Of the leaf's width: how far lengths and ends may be off.
 constexpr double kOff = 0.12;
 /// Angle between the leaf and the closed door.
-constexpr double kLeastOpen = 5, kMostOpen = 110;  // degrees
+constexpr double kMinOpen = 5, kMostOpen = 110;  // degrees
 
 /// A curve turns by less at each of its points, one way, and has few of them.
-constexpr double kMostTurn = 35;  // degrees
-constexpr std::size_t kLeastPieces = 2, kMostPieces = 200;
+constexpr double kMaxTurn = 35;  // degrees
+constexpr std::size_t kMinPieces = 2, kMaxPieces = 200;
 /// Metres; no swing is shorter or longer.
-constexpr double kShortestSwing = 0.05, kLongestSwing = 2 * kWideLeaf;
+constexpr double kMinSwing = 0.05, kMaxSwing = 2 * kWideLeaf;
 
 /// An end of a leaf that another wall meets this closely is no free end.
 constexpr double kMeets = 2 * kDefaultSnap;
@@ -76,7 +76,7 @@ class DoorFinder {
     /// Those of one path, whose first piece has this index.
     void findRuns(const PlanPath& path, std::size_t first) {
         const std::size_t count = path.pieceCount();
-        if (count < kLeastPieces) return;
+        if (count < kMinPieces) return;
         const auto turn_after = [&](std::size_t i) {
             const Segment2 here = pieces_[first + i], next = pieces_[first + (i + 1) % count];
             return degreesBetween(here.b - here.a, next.b - next.a);
@@ -85,7 +85,7 @@ class DoorFinder {
         double way = 0;
         for (std::size_t i = 0; i + 1 < count; ++i) {
             const double turn = turn_after(i);
-            const bool is_curve = turn != 0 && std::abs(turn) <= kMostTurn;
+            const bool is_curve = turn != 0 && std::abs(turn) <= kMaxTurn;
             if (is_curve && (run.count == 1 || turn * way > 0)) {
                 ++run.count;
                 way = turn;
@@ -98,14 +98,14 @@ class DoorFinder {
     }
 
     void keep(const Run& run) {
-        if (run.count < kLeastPieces || run.count > kMostPieces) return;
+        if (run.count < kMinPieces || run.count > kMaxPieces) return;
         double length = 0, longest = 0;
         for (std::size_t i = run.first; i < run.first + run.count; ++i) {
             const double piece = distance(pieces_[i].a, pieces_[i].b);
             length += piece;
             longest = std::max(longest, piece);
         }
-        if (length >= kShortestSwing && length <= kLongestSwing && longest < kNarrowLeaf)
+        if (length >= kMinSwing && length <= kMaxSwing && longest < kNarrowLeaf)
             runs_.push_back(run);
     }
 
@@ -137,7 +137,7 @@ class DoorFinder {
                         return distance(at, piece) <= kOff * width;
                     });
                 const double open = std::abs(degreesBetween(end - hinge, latch - hinge));
-                if (meets && open >= kLeastOpen && open <= kMostOpen)
+                if (meets && open >= kMinOpen && open <= kMostOpen)
                     leaves.push_back({i, hinge, end, latch});
             }
         }

@@ -89,7 +89,7 @@ class PointWelder {
         }
     };
     /// Points that stand are apart: few are in a cell, which is so many reaches wide.
-    struct Standing {
+    struct PlacementFrame {
         Point2 at;
         std::uint32_t next;  // in the same cell
     };
@@ -123,7 +123,7 @@ class PointWelder {
 
     double reach_;
     std::unordered_map<Cell, std::uint32_t, CellHash> cells_;  // the latest of each
-    std::vector<Standing> standing_;
+    std::vector<PlacementFrame> standing_;
     std::uint32_t best_ = kNone;
     double nearest_ = 0;
 };

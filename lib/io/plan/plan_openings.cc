@@ -24,12 +24,12 @@ namespace {
 constexpr double kReach = 0.1;      // frames keep leaves and hinges off the walls
 constexpr double kOnWall = 0.02;    // of lines drawn upon a wall
 constexpr double kNearWall = 0.06;  // of swings that end beside the closed door
-constexpr double kNarrowest = 0.4;  // metres; narrower ones are frames and jambs
+constexpr double kMinWidth = 0.4;   // metres; narrower ones are frames and jambs
 
 /// Short lines across a wall at the ends of an opening, where a drawing has them.
-constexpr double kShortestJamb = 0.03, kLongestJamb = 0.25;  // metres
-constexpr double kAcross = 0.2;                              // cosine of the angle to the wall
-constexpr double kWidestDoorway = 1.3;
+constexpr double kMinJamb = 0.03, kMaxJamb = 0.25;  // metres
+constexpr double kAcross = 0.2;                     // cosine of the angle to the wall
+constexpr double kMaxDoorway = 1.3;
 constexpr std::size_t kMinMarkedDoors = 3;
 
 /// Every pair is compared: more are not doors.
@@ -88,11 +88,11 @@ class Walls {
     [[nodiscard]] std::optional<std::size_t> wallAcross(std::size_t jamb) const {
         const auto [a, b] = walls_[jamb];
         const double length_of_it = distance(a, b);
-        if (length_of_it < kShortestJamb || length_of_it > kLongestJamb) return std::nullopt;
+        if (length_of_it < kMinJamb || length_of_it > kMaxJamb) return std::nullopt;
         const Point2 middle = a + 0.5 * (b - a);
         for (const std::size_t i : search_.near(middle, kOnWall)) {
             const Vec2 along = walls_[i].b - walls_[i].a;
-            if (length(along) > kLongestJamb && distance(middle, walls_[i]) <= kOnWall &&
+            if (length(along) > kMaxJamb && distance(middle, walls_[i]) <= kOnWall &&
                 std::abs(dot(along, b - a)) <= kAcross * length(along) * length_of_it)
                 return i;
         }
@@ -153,7 +153,7 @@ class Finder {
             });
             for (std::size_t i = 0; i + 1 < jambs.size(); ++i) {
                 const double width = distance(jambs[i], jambs[i + 1]);
-                if (width < kNarrowest || width > kWidestDoorway) continue;
+                if (width < kMinWidth || width > kMaxDoorway) continue;
                 keep({{wholeMicrometres(nearestPoint(line, jambs[i])),
                        wholeMicrometres(nearestPoint(line, jambs[i + 1]))},
                       wall,
@@ -173,7 +173,7 @@ class Finder {
 
     [[nodiscard]] std::optional<Candidate> candidate(const Segment2& line, int drawn_on,
                                                      double on_wall = kOnWall) const {
-        if (distance(line.a, line.b) < kNarrowest) return std::nullopt;
+        if (distance(line.a, line.b) < kMinWidth) return std::nullopt;
         if (const auto wall = walls_.wallUnder(line, on_wall)) {
             const auto foot = [&](Point2 p) {
                 return wholeMicrometres(nearestPoint(walls_[*wall], p));
@@ -181,7 +181,7 @@ class Finder {
             return Candidate{{{foot(line.a), foot(line.b)}, wall, are_windows_, drawn_on}, 0};
         }
         const auto a = walls_.anchor(line.a), b = walls_.anchor(line.b);
-        if (!a || !b || distance(a->place, b->place) < kNarrowest) return std::nullopt;
+        if (!a || !b || distance(a->place, b->place) < kMinWidth) return std::nullopt;
         const Point2 middle = a->place + 0.5 * (b->place - a->place);
         if (walls_.isOnWall(middle)) return std::nullopt;
         return Candidate{{{a->place, b->place}, std::nullopt, are_windows_, drawn_on},

@@ -27,7 +27,7 @@ constexpr double kOnLine = 3 * kWeldDistance;
 
 /// No disc of this diameter fits between the two lines of a wall, nor one of this share of the
 /// plan's extent, whatever its scale.
-constexpr double kNarrowestRoom = 0.5, kWallShare = 12;
+constexpr double kMinRoom = 0.5, kWallShare = 12;
 
 /// An inside point closer than this to a free-standing line is replaced by the clearest of a grid.
 constexpr double kClear = 0.05;
@@ -213,7 +213,7 @@ void PlanFaces::takeFaces(std::span<const Segment2> doors) {
         all.add(boxes_.back().low);
         all.add(boxes_.back().high);
     }
-    thinnest_ = std::min(kNarrowestRoom, std::max(all.width(), all.depth()) / kWallShare) / 2;
+    thinnest_ = std::min(kMinRoom, std::max(all.width(), all.depth()) / kWallShare) / 2;
     makeGroups(doors);
 }
 

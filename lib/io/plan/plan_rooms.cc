@@ -28,7 +28,7 @@ constexpr std::size_t kMaxLinesTried = 10'000, kMaxFacesTried = 1'000;
 constexpr double kSmallShare = 0.5;
 
 /// Wider gaps are doorways, between corners of thick walls, too.
-constexpr double kNarrowestDoorway = 0.3;
+constexpr double kMinDoorway = 0.3;
 
 /// If all rooms are kept, smaller ones are shafts, and smaller ones inside another room are things.
 constexpr double kMinRoom = 1, kMinInnerRoom = 4;
@@ -156,7 +156,7 @@ class RoomChooser {
     }
 
     /// Lines that could close gaps, the narrowest first, so that those up to a width are a prefix.
-    struct Ways {
+    struct EdgeWaypoints {
         std::vector<Segment2> lines;
         std::vector<double> widths;  // of the gaps, that grow
 
@@ -166,11 +166,11 @@ class RoomChooser {
         }
     };
 
-    [[nodiscard]] Ways waysUpTo(double width) const {
-        Ways ways;
+    [[nodiscard]] EdgeWaypoints waysUpTo(double width) const {
+        EdgeWaypoints ways;
         if (!(width > 0)) return ways;
         std::vector<Point2> corners;
-        if (width >= kNarrowestDoorway) corners = PlanFaces(lines_).wallCorners();
+        if (width >= kMinDoorway) corners = PlanFaces(lines_).wallCorners();
         for (const Closing& gap : closings(lines_, corners, width)) {
             const Segment2 line{wholeMicrometres(gap.line.a), wholeMicrometres(gap.line.b)};
             if (line.a == line.b) continue;
@@ -180,7 +180,7 @@ class RoomChooser {
         return ways;
     }
 
-    [[nodiscard]] Attempt attempt(double width, const Ways& ways) const {
+    [[nodiscard]] Attempt attempt(double width, const EdgeWaypoints& ways) const {
         const std::span<const Segment2> closing = ways.upTo(width);
         return attemptOf(width, closing.size(), PlanFaces(lines_, plan_.doors, closing));
     }
@@ -247,7 +247,8 @@ class RoomChooser {
     /// that finding faces is a walk. Rooms are those of attempt() up to rounding.
     class Trials {
       public:
-        Trials(const RoomChooser& chooser, const Ways& ways) : chooser_(chooser), ways_(ways) {
+        Trials(const RoomChooser& chooser, const EdgeWaypoints& ways)
+            : chooser_(chooser), ways_(ways) {
             std::vector<Segment2> all = chooser.lines_;
             all.insert(all.end(), ways.lines.begin(), ways.lines.end());
             std::vector<LinePiece> cut = noded(linePieces(all));
@@ -275,7 +276,7 @@ class RoomChooser {
 
       private:
         const RoomChooser& chooser_;
-        const Ways& ways_;
+        const EdgeWaypoints& ways_;
         PlanFaces::Pieces pieces_;
         std::vector<std::size_t>
             needs_;  // number of closed gaps from which a piece exists; ascending
@@ -287,7 +288,7 @@ class RoomChooser {
         std::vector<Attempt> attempts;
         double best = 0;
         bool any_whole = false;
-        const Ways ways = waysUpTo(widths.back());
+        const EdgeWaypoints ways = waysUpTo(widths.back());
         const Trials trials(*this, ways);
         for (const double width : widths) {
             // Without a new gap the rooms are those of the width before.

@@ -28,7 +28,7 @@ constexpr std::array<const char*, 3> kIncludable{"model", "light", "actor"};
 /// Units of Budget for a file, however small: its nodes take 32 kB.
 constexpr std::size_t kFileWork = 100;
 /// How many missing models a message names.
-constexpr std::size_t kMostNamed = 8;
+constexpr std::size_t kMaxNamed = 8;
 
 std::string joined(const std::string& folder, std::string_view path) {
     return (fs::path(folder) / path).lexically_normal().string();
@@ -248,10 +248,10 @@ void SdfFiles::loadIncludes(pugi::xml_node parent) {
     }
     if (missing.empty()) return;
     std::string names;
-    for (std::size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i)
+    for (std::size_t i = 0; i < std::min(missing.size(), kMaxNamed); ++i)
         names += (i == 0 ? "" : ", ") + missing[i];
-    if (missing.size() > kMostNamed)
-        names += " and " + std::to_string(missing.size() - kMostNamed) + " more";
+    if (missing.size() > kMaxNamed)
+        names += " and " + std::to_string(missing.size() - kMaxNamed) + " more";
     fail(first, names + (missing.size() == 1 ? " is" : " are") +
                     " not in the world's folder, in ../models or below: say with --models DIR (or "
                     "GAZEBO_MODEL_PATH) which folder holds the models, write the world with "
@@ -300,7 +300,7 @@ double SdfFiles::lengthIn(pugi::xml_node parent, const char* key) const {
 
 namespace {
 
-constexpr int kLongestChain = 200;  // frames relative to frames
+constexpr int kMaxChain = 200;  // frames relative to frames
 
 using Transform = Eigen::Isometry3d;
 
@@ -397,9 +397,9 @@ Transform SdfFrames::frameCalled(std::string_view name, const SdfScope& scope, p
 const Transform& SdfFrames::frameOf(pugi::xml_node node, const SdfScope& scope, int length) {
     if (const auto known = frames_.find(node.hash_value()); known != frames_.end())
         return *known->second;
-    if (length > kLongestChain)
+    if (length > kMaxChain)
         files_.fail(node, "its pose is relative to itself, by more than " +
-                              std::to_string(kLongestChain) + " frames");
+                              std::to_string(kMaxChain) + " frames");
     const std::string_view kind = node.name();
     std::string_view base = poseNode(node).attribute("relative_to").value();
     if (base.empty() && kind == "frame") base = node.attribute("attached_to").value();

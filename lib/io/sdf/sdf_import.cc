@@ -29,7 +29,7 @@ constexpr double kFloorTop = 0.02;  // metres: a box that ends below this is flo
 constexpr double kMeshCut = 0.3;    // metres: over most feet, under most sills
 
 /// Doors, in metres; wider ones have two leaves.
-constexpr double kNarrowestDoor = 0.6, kWidestDoor = 2, kDoorHeight = 2;
+constexpr double kMinDoor = 0.6, kMaxDoor = 2, kDoorHeight = 2;
 
 class SdfImporter {
   public:
@@ -84,7 +84,7 @@ class SdfImporter {
     void addPolyline(const SdfShape& shape, const SdfPolyline& polyline) {
         const Eigen::Isometry3d& pose = shape.world_from_shape;
         const double bottom = pose.translation().z();
-        const double foot = options_.slice_walls.value_or(kHighestFoot);
+        const double foot = options_.slice_walls.value_or(kMaxFoot);
         if (!isUpright(pose.linear().col(2)) || pose.linear()(2, 2) < 0 || bottom > foot ||
             polyline.points.size() < 3) {
             ++world_.left_out["polyline off the floor"];
@@ -243,7 +243,7 @@ class SdfImporter {
     void addDoors(std::vector<Segment2>& gaps) {
         std::erase_if(gaps, [this](const Segment2& gap) {
             const double width = distance(gap.a, gap.b);
-            if (width < kNarrowestDoor || width > kWidestDoor) return false;
+            if (width < kMinDoor || width > kMaxDoor) return false;
             const Segment2 line{wholeMicrometres(gap.a), wholeMicrometres(gap.b)};
             const std::string wall = out_.freeId("gap", "gap");
             out_.wall(line, wall, 0);

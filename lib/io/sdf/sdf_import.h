@@ -16,7 +16,7 @@
 namespace ispace {
 
 /// How far from the floor, in metres, what stands on it may begin.
-constexpr double kHighestFoot = 0.1;
+constexpr double kMaxFoot = 0.1;
 
 /// True for an axis, of length 1, that points up or down.
 bool isUpright(const Eigen::Vector3d& axis);

@@ -234,7 +234,7 @@ void addSdfParts(pugi::xml_node link, const std::vector<SdfPart>& parts,
 namespace {
 
 /// What libsdformat accepts as a horizontal field of view, in radians, and as a far plane.
-constexpr double kLeastFov = 0.1, kWidestFov = 6.283186, kLeastFar = 0.1;
+constexpr double kMinFov = 0.1, kMaxFov = 6.283186, kMinFar = 0.1;
 /// A picture needs a near plane.
 constexpr double kNear = 0.01;
 
@@ -272,7 +272,7 @@ void addRange(pugi::xml_node lidar, double min_range, double max_range, const Ra
 
 /// Field of view between the outer edges of a picture, and its size.
 void addImage(pugi::xml_node camera, double fov, int columns, int rows, std::string_view format) {
-    addText(camera, "horizontal_fov", formatDouble(std::clamp(fov, kLeastFov, kWidestFov)));
+    addText(camera, "horizontal_fov", formatDouble(std::clamp(fov, kMinFov, kMaxFov)));
     pugi::xml_node image = camera.append_child("image");
     addText(image, "width", std::to_string(columns));
     addText(image, "height", std::to_string(rows));
@@ -282,7 +282,7 @@ void addImage(pugi::xml_node camera, double fov, int columns, int rows, std::str
 void addClip(pugi::xml_node camera, double near, double far) {
     pugi::xml_node clip = camera.append_child("clip");
     addText(clip, "near", metres(std::max(near, kNear)));
-    addText(clip, "far", metres(std::max(far, kLeastFar)));
+    addText(clip, "far", metres(std::max(far, kMinFar)));
 }
 
 /// SDF counts pixels from the picture's edge, not from the middle of the first one.

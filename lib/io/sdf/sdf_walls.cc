@@ -27,13 +27,13 @@ constexpr double kUpright = 1e-6;   // of a unit vector, how far an axis may lea
 constexpr double kRoundTurn = 1e9;  // steps a degree
 
 // What makes a wall of a box: metres, and shares of its thickness.
-constexpr double kThickestWall = 0.5, kLeastLength = 3, kLeastHeight = 2;
+constexpr double kThickestWall = 0.5, kMinLength = 3, kMinHeight = 2;
 /// How far beyond the face of a wall another one may end that is meant to meet it.
 constexpr double kLooseEnd = 0.02;
 
 /// A mesh that encloses this share of the world's extent is its walls; so many are tried, by size.
 constexpr double kShareOfWorld = 0.5;
-constexpr std::size_t kMostTried = 4;
+constexpr std::size_t kMaxTried = 4;
 constexpr double kOnEdge = 1e-5;  // metres
 
 std::vector<Segment2> linesOf(std::span<const Segment2> others, std::span<const SdfMeshCut> cuts) {
@@ -136,11 +136,10 @@ std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfCylinder& cylind
 }
 
 bool isWall(const SdfBlock& block, std::optional<double> cut) {
-    const bool reaches =
-        cut ? block.bottom <= *cut && *cut <= block.top : block.bottom <= kHighestFoot;
+    const bool reaches = cut ? block.bottom <= *cut && *cut <= block.top : block.bottom <= kMaxFoot;
     return !block.is_round && reaches && block.width <= kThickestWall &&
-           block.length >= kLeastLength * block.width &&
-           block.top - block.bottom >= kLeastHeight * block.width;
+           block.length >= kMinLength * block.width &&
+           block.top - block.bottom >= kMinHeight * block.width;
 }
 
 SdfWall wallOf(const SdfBlock& block) {
@@ -257,7 +256,7 @@ std::vector<SdfMeshCut> wallsAmong(
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return areaOf(boxOf(cuts[a])) > areaOf(boxOf(cuts[b]));
     });
-    order.resize(std::min(order.size(), kMostTried));
+    order.resize(std::min(order.size(), kMaxTried));
     for (const std::size_t i : order)
         if (choose(linesOf(others, {&cuts[i], 1})).area() >= kShareOfWorld * areaOf(world))
             return {std::move(cuts[i])};

@@ -44,7 +44,7 @@ class WorldWriter {
         addSurroundings();
         addFloor();
         for (const Element& element : scene_.environment.elements()) addElement(element);
-        for (const Placed& placed : scene_.placed) addPlaced(placed);
+        for (const PlacedRecord& placed : scene_.placed) addPlaced(placed);
         ExportedFiles files{xmlText(file_), ""};
         if (!mesh_nodes_.empty()) files.beside = objOf(mesh_nodes_);
         if (!left_out_.empty())
@@ -120,7 +120,7 @@ class WorldWriter {
         addSdfParts(addModel(element.id, pose), parts, mesh_file_, names);
     }
 
-    void addPlaced(const Placed& placed) {
+    void addPlaced(const PlacedRecord& placed) {
         const Record& record = scene_.records[placed.record];
         XmlNames names;
         if (sensorKind(record.keyword()) != nullptr) {
@@ -137,7 +137,7 @@ class WorldWriter {
         }
     }
 
-    void addRobot(const Placed& placed, XmlNames& names) {
+    void addRobot(const PlacedRecord& placed, XmlNames& names) {
         const RobotModel& robot = scene_.robots[placed.index].model;
         SdfPart body;
         body.place = {robot.center, 0, robot.height / 2};
@@ -152,13 +152,13 @@ class WorldWriter {
         }
         const pugi::xml_node link = addModel(idOf(placed), placed.pose);
         addSdfParts(link, {body}, mesh_file_, names);
-        for (const Placed& other : scene_.placed)
+        for (const PlacedRecord& other : scene_.placed)
             if (other.mount && other.mount->robot == placed.index)
                 addSensor(link, other, other.mount->robot_from_sensor, names);
     }
 
     /// The sensor, and its body as a box that no camera sees.
-    void addSensor(pugi::xml_node link, const Placed& placed, const Pose3& link_from_sensor,
+    void addSensor(pugi::xml_node link, const PlacedRecord& placed, const Pose3& link_from_sensor,
                    XmlNames& names) {
         const std::string id = names.take(idOf(placed));
         if (!addSdfSensor(link, id, scene_.sensors[placed.index].model, link_from_sensor))
@@ -175,7 +175,7 @@ class WorldWriter {
         addSdfMaterial(visual, Material::Sensor);
     }
 
-    [[nodiscard]] const std::string& idOf(const Placed& placed) const {
+    [[nodiscard]] const std::string& idOf(const PlacedRecord& placed) const {
         return scene_.ids[placed.record];
     }
 

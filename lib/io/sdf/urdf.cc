@@ -95,20 +95,20 @@ class UrdfWriter {
 
     std::string write() {
         // Carriers first: joints name their links.
-        for (const Placed& placed : scene_.placed)
+        for (const PlacedRecord& placed : scene_.placed)
             if (const std::string& keyword = keywordOf(placed);
                 keyword == "robot" || keyword == "human")
                 addCarrier(placed);
-        for (const Placed& placed : scene_.placed)
+        for (const PlacedRecord& placed : scene_.placed)
             if (sensorKind(keywordOf(placed)) != nullptr) addSensor(placed);
         return xmlText(file_);
     }
 
   private:
-    [[nodiscard]] const std::string& keywordOf(const Placed& placed) const {
+    [[nodiscard]] const std::string& keywordOf(const PlacedRecord& placed) const {
         return scene_.records[placed.record].keyword();
     }
-    [[nodiscard]] const std::string& idOf(const Placed& placed) const {
+    [[nodiscard]] const std::string& idOf(const PlacedRecord& placed) const {
         return scene_.ids[placed.record];
     }
 
@@ -162,7 +162,7 @@ class UrdfWriter {
     }
 
     /// A robot or a person: somebody else tells where it is once it moves.
-    void addCarrier(const Placed& placed) {
+    void addCarrier(const PlacedRecord& placed) {
         const std::string name = names_.take(idOf(placed));
         carriers_[{keywordOf(placed), placed.index}] = name;
         const pugi::xml_node link = addLink(name);
@@ -191,7 +191,7 @@ class UrdfWriter {
         addJoint("floating", "world", name, placed.pose.position, anglesText(placed.pose));
     }
 
-    void addSensor(const Placed& placed) {
+    void addSensor(const PlacedRecord& placed) {
         const Sensor& sensor = scene_.sensors[placed.index];
         std::string parent = "world";
         Pose3 pose = placed.pose;

@@ -50,22 +50,22 @@ class YamlReader {
     };
 
     void readTop(const YamlNode& top, Items& items);
-    void readItems(const YamlNode& node, Spot at, Items& items);
+    void readItems(const YamlNode& node, LineColumn at, Items& items);
     void readListItem(const YamlNode& item, Items& items);
-    bool readDirective(const YamlNode& key, const YamlNode& value, Spot at, Items& items);
-    void readRecords(const YamlNode& keyword, const YamlNode& value, Spot at, Items& items);
-    void readRecord(const YamlNode& keyword, Spot at, const YamlNode& keys, Spot keys_at,
-                    Items& items);
+    bool readDirective(const YamlNode& key, const YamlNode& value, LineColumn at, Items& items);
+    void readRecords(const YamlNode& keyword, const YamlNode& value, LineColumn at, Items& items);
+    void readRecord(const YamlNode& keyword, LineColumn at, const YamlNode& keys,
+                    LineColumn keys_at, Items& items);
     const Schema* schemaOf(const YamlNode& keyword);
 
-    void readIncludes(const YamlNode& value, Spot at, Items& items);
-    void include(const std::string& name, Spot at, Items& items);
+    void readIncludes(const YamlNode& value, LineColumn at, Items& items);
+    void include(const std::string& name, LineColumn at, Items& items);
     void readIncluded(std::string_view bytes, Items& items);
     void addRecords(std::vector<Record> records, Items& items);
     void rebaseFiles(Record& record) const;
 
-    void readParts(const YamlNode& value, Spot at);
-    void readPart(const YamlNode& name, const YamlNode& value, Spot at);
+    void readParts(const YamlNode& value, LineColumn at);
+    void readPart(const YamlNode& name, const YamlNode& value, LineColumn at);
     void addPart(const YamlPart& part, const Place& at);
     void resolveParts();
 
@@ -110,7 +110,7 @@ std::unique_ptr<const YamlTree> parse(std::string_view bytes, const std::string&
 YamlScene YamlReader::read(std::string_view bytes) {
     file_.place = collector_->file();
     values_.grant(bytes.size());
-    const auto tree = parse(withoutMark(bytes), *file_.place.file);
+    const auto tree = parse(withoutBom(bytes), *file_.place.file);
     readTop(tree->top(), scene_.items);
     return std::move(scene_);
 }
@@ -121,12 +121,12 @@ void YamlReader::readTop(const YamlNode& top, Items& items) {
     resolveParts();
 }
 
-void YamlReader::readItems(const YamlNode& node, Spot at, Items& items) {
+void YamlReader::readItems(const YamlNode& node, LineColumn at, Items& items) {
     if (node.kind == Kind::List) {
         for (const YamlNode* item : node.items) readListItem(*item, items);
     } else if (node.kind == Kind::Map) {
         values_.forEachPair(node, "a keyword",
-                            [&](const YamlNode& key, const YamlNode& value, Spot spot) {
+                            [&](const YamlNode& key, const YamlNode& value, LineColumn spot) {
                                 if (key.scalar == kRecords && value.kind != Kind::List)
                                     values_.unexpected(value, spot, "a list of records");
                                 else if (key.scalar == kRecords)
@@ -145,14 +145,15 @@ void YamlReader::readListItem(const YamlNode& item, Items& items) {
     if (item.kind != Kind::Map || item.items.size() != 2)
         return values_.unexpected(item, spotOf(item), "a record such as `desk: {at: [2, 3]}`");
     values_.forEachPair(item, "a keyword",
-                        [&](const YamlNode& key, const YamlNode& value, Spot at) {
+                        [&](const YamlNode& key, const YamlNode& value, LineColumn at) {
                             if (!readDirective(key, value, at, items))
                                 readRecord(key, spotOf(key), value, at, items);
                         });
 }
 
 /// \return false if it is a keyword
-bool YamlReader::readDirective(const YamlNode& key, const YamlNode& value, Spot at, Items& items) {
+bool YamlReader::readDirective(const YamlNode& key, const YamlNode& value, LineColumn at,
+                               Items& items) {
     const std::string& name = key.scalar;
     if (name == kInclude) {
         readIncludes(value, at, items);
@@ -171,7 +172,7 @@ bool YamlReader::readDirective(const YamlNode& key, const YamlNode& value, Spot 
 }
 
 /// `desk: {…}` or `desk: [{…}, …]`.
-void YamlReader::readRecords(const YamlNode& keyword, const YamlNode& value, Spot at,
+void YamlReader::readRecords(const YamlNode& keyword, const YamlNode& value, LineColumn at,
                              Items& items) {
     const bool known =
         keyword.scalar == kPlace || collector_->schemas().find(keyword.scalar) != nullptr;
@@ -183,8 +184,8 @@ void YamlReader::readRecords(const YamlNode& keyword, const YamlNode& value, Spo
     }
 }
 
-void YamlReader::readRecord(const YamlNode& keyword, Spot at, const YamlNode& keys, Spot keys_at,
-                            Items& items) {
+void YamlReader::readRecord(const YamlNode& keyword, LineColumn at, const YamlNode& keys,
+                            LineColumn keys_at, Items& items) {
     const Schema* const schema = schemaOf(keyword);
     if (schema == nullptr) return;
     auto item = item_reader_.read(*schema, at, keys, keys_at);
@@ -206,14 +207,14 @@ const Schema* YamlReader::schemaOf(const YamlNode& keyword) {
             return "unknown keyword " + excerpt(name) +
                    (file_.parts.contains(name)
                         ? ", write `place: {part: " + name + "}` to place the part"
-                        : knownWords(name, collector_->schemas().keywords()));
+                        : spellingHint(name, collector_->schemas().keywords()));
         });
     return schema;
 }
 
 // Includes
 
-void YamlReader::readIncludes(const YamlNode& value, Spot at, Items& items) {
+void YamlReader::readIncludes(const YamlNode& value, LineColumn at, Items& items) {
     if (value.kind == Kind::Scalar) return include(value.scalar, at, items);
     if (value.kind != Kind::List)
         return values_.unexpected(value, at, "the name of a file or a list of them");
@@ -226,7 +227,7 @@ void YamlReader::readIncludes(const YamlNode& value, Spot at, Items& items) {
     }
 }
 
-void YamlReader::include(const std::string& name, Spot at, Items& items) {
+void YamlReader::include(const std::string& name, LineColumn at, Items& items) {
     const Place place = file_.place.at(at);
     std::string bytes;
     try {
@@ -259,7 +260,7 @@ void YamlReader::readIncluded(std::string_view bytes, Items& items) {
     try {
         if (isRecordText(bytes))
             return addRecords(readRecordText(bytes, name, collector_->schemas()).records, items);
-        tree = parse(withoutMark(bytes), name);
+        tree = parse(withoutBom(bytes), name);
     } catch (const FormatError& error) {
         std::vector<Diagnostic> findings = error.diagnostics();
         for (Diagnostic& finding : findings) finding.message += file_.place.inclusion();
@@ -288,16 +289,16 @@ void YamlReader::rebaseFiles(Record& record) const {
 
 // Parts
 
-void YamlReader::readParts(const YamlNode& value, Spot at) {
+void YamlReader::readParts(const YamlNode& value, LineColumn at) {
     if (value.kind != Kind::Map)
         return values_.unexpected(value, at, "a map such as {workplace: [desk: {}, chair: {}]}");
     values_.forEachPair(value, "the name of a part",
-                        [&](const YamlNode& name, const YamlNode& items, Spot spot) {
+                        [&](const YamlNode& name, const YamlNode& items, LineColumn spot) {
                             readPart(name, items, spot);
                         });
 }
 
-void YamlReader::readPart(const YamlNode& name, const YamlNode& value, Spot at) {
+void YamlReader::readPart(const YamlNode& name, const YamlNode& value, LineColumn at) {
     const auto refuse = [&](const char* what) {
         collector_->finding(spotOf(name), [&] { return excerpt(name.scalar) + what; });
     };
@@ -340,7 +341,7 @@ void YamlReader::resolveParts() {
             known.reserve(file_.parts.size());
             for (const auto& part : file_.parts) known.push_back(part.first);
             return "unknown part " + excerpt(name) +
-                   (known.empty() ? ", `parts` has none" : knownWords(name, known));
+                   (known.empty() ? ", `parts` has none" : spellingHint(name, known));
         });
     }
     file_.pending.clear();
@@ -349,7 +350,7 @@ void YamlReader::resolveParts() {
 /// Kind and history behind a magic first line, if there is one.
 Document readHead(std::string_view bytes, const std::string& name) {
     Document document;
-    LineReader lines(withoutMark(bytes));
+    LineReader lines(withoutBom(bytes));
     const auto first = lines.next();
     if (!first || !first->starts_with(kYamlMagic)) return document;
     const std::string_view version = first->substr(kYamlMagic.size());

@@ -169,7 +169,7 @@ constexpr std::string_view kYamlMagic = "# ispace yaml ", kYamlVersion = "1",
 /// Memory a value takes beside its own size, about.
 std::size_t heapSizeOf(const Value& value);
 
-inline Spot spotOf(const YamlNode& node) { return {node.line, node.column}; }
+inline LineColumn spotOf(const YamlNode& node) { return {node.line, node.column}; }
 
 /// Walks the nodes of YAML files and reads values. What is wrong becomes a finding of the
 /// collector, in the file it is set to.
@@ -188,17 +188,17 @@ class YamlValues {
     /// kMaxBytes, in all files together
     void visit(const YamlNode& node);
     /// Counts the copy of a default. \throws as visit
-    void visit(const Value& value, Spot at);
+    void visit(const Value& value, LineColumn at);
 
     /// "a list is given, `wanted` is wanted".
-    void unexpected(const YamlNode& node, Spot at, const char* wanted);
+    void unexpected(const YamlNode& node, LineColumn at, const char* wanted);
 
     /// Calls read(key, value, spot) for the pairs of a map: `spot` is where the value is, or its
     /// key if it is null, which stands where the next line begins. Keys are scalars; others and
     /// doubled ones are findings.
     template <typename Read>
     void forEachPair(const YamlNode& map, const char* wanted_key, Read read) {
-        std::map<std::string_view, Spot> seen;
+        std::map<std::string_view, LineColumn> seen;
         for (std::size_t i = 0; i + 1 < map.items.size(); i += 2) {
             const YamlNode &key = *map.items[i], &value = *map.items[i + 1];
             visit(key);
@@ -216,12 +216,12 @@ class YamlValues {
     }
 
     /// The value of a key; nothing, and a finding, if it is not what the key wants.
-    std::optional<Value> read(const KeySpec& key, const YamlNode& node, Spot at);
+    std::optional<Value> read(const KeySpec& key, const YamlNode& node, LineColumn at);
 
   private:
-    void spend(std::size_t nodes, std::size_t bytes, Spot at);
-    void doubledKey(const YamlNode& key, Spot first);
-    void refuseForm(const KeySpec& key, const YamlNode& node, Spot at);
+    void spend(std::size_t nodes, std::size_t bytes, LineColumn at);
+    void doubledKey(const YamlNode& key, LineColumn first);
+    void refuseForm(const KeySpec& key, const YamlNode& node, LineColumn at);
     std::optional<Tuple> readTuple(const KeySpec& key, const YamlNode& node);
     std::optional<TupleList> readTupleList(const KeySpec& key, const YamlNode& node);
 
@@ -258,7 +258,7 @@ const Schema& yamlPlaceSchema();
 const Schema& yamlRepeatSchema();
 
 /// Values for the keys of records that follow in a file.
-using YamlDefaults = std::map<const KeySpec*, std::pair<Value, Spot>>;
+using YamlDefaults = std::map<const KeySpec*, std::pair<Value, LineColumn>>;
 
 /// Reads single records, placements and defaults. What is wrong becomes a finding of the
 /// collector.
@@ -272,16 +272,17 @@ class YamlItemReader {
 
     /// The record or placement of the schema that stands at `at` and has these keys; nothing if
     /// that is no map. It may lack what is wrong with it.
-    std::optional<YamlItem> read(const Schema& schema, Spot at, const YamlNode& keys, Spot keys_at);
+    std::optional<YamlItem> read(const Schema& schema, LineColumn at, const YamlNode& keys,
+                                 LineColumn keys_at);
     /// `defaults: {desk: {height: 0.72}, …}`: adds to those there are.
-    void readDefaults(const YamlNode& value, Spot at);
+    void readDefaults(const YamlNode& value, LineColumn at);
 
   private:
     /// \return false if something is wrong with it
-    bool readKey(const YamlNode& name, const YamlNode& value, Spot at);
+    bool readKey(const YamlNode& name, const YamlNode& value, LineColumn at);
     void addDefaults(const Schema& schema);
     /// Null if something is wrong with it.
-    std::unique_ptr<Record> readRepeat(const YamlNode& keys, Spot at, const Record& what);
+    std::unique_ptr<Record> readRepeat(const YamlNode& keys, LineColumn at, const Record& what);
     bool checkRepeat(const Record& repeat, const Record& what);
     void readDefaultKeys(const Schema& schema, const YamlNode& keys);
 

@@ -72,7 +72,7 @@ void YamlValues::grant(std::size_t bytes) {
     max_bytes_ += 2 * bytes;  // the escape \L is two bytes for three
 }
 
-void YamlValues::spend(std::size_t nodes, std::size_t bytes, Spot at) {
+void YamlValues::spend(std::size_t nodes, std::size_t bytes, LineColumn at) {
     nodes_ += nodes;
     bytes_ += bytes;
     const auto refuse = [&](const std::string& what) {
@@ -90,14 +90,14 @@ void YamlValues::visit(const YamlNode& node) {
         collector_->finding(spotOf(node), [&] { return "unknown tag " + excerpt(node.tag); });
 }
 
-void YamlValues::visit(const Value& value, Spot at) { spend(0, heapSizeOf(value), at); }
+void YamlValues::visit(const Value& value, LineColumn at) { spend(0, heapSizeOf(value), at); }
 
-void YamlValues::unexpected(const YamlNode& node, Spot at, const char* wanted) {
+void YamlValues::unexpected(const YamlNode& node, LineColumn at, const char* wanted) {
     collector_->finding(at,
                         [&] { return foundForm(node) + " is given, " + wanted + " is wanted"; });
 }
 
-void YamlValues::doubledKey(const YamlNode& key, Spot first) {
+void YamlValues::doubledKey(const YamlNode& key, LineColumn first) {
     collector_->finding(spotOf(key), [&] {
         return "doubled key " + excerpt(key.scalar) + ", first in " +
                (first.line == key.line ? "column " + std::to_string(first.column)
@@ -105,7 +105,7 @@ void YamlValues::doubledKey(const YamlNode& key, Spot first) {
     });
 }
 
-std::optional<Value> YamlValues::read(const KeySpec& key, const YamlNode& node, Spot at) {
+std::optional<Value> YamlValues::read(const KeySpec& key, const YamlNode& node, LineColumn at) {
     const auto checked = [&](auto make) -> std::optional<Value> {
         try {
             return make();
@@ -129,7 +129,7 @@ std::optional<Value> YamlValues::read(const KeySpec& key, const YamlNode& node, 
     });
 }
 
-void YamlValues::refuseForm(const KeySpec& key, const YamlNode& node, Spot at) {
+void YamlValues::refuseForm(const KeySpec& key, const YamlNode& node, LineColumn at) {
     collector_->finding(at, [&] {
         return '`' + key.name + "`: " + foundForm(node) + " is given, " + wantedForm(key) +
                " is wanted";
@@ -175,7 +175,7 @@ namespace {
 using Kind = YamlNode::Kind;
 
 constexpr const char* kRepeat = "repeat";
-constexpr double kFarthest = 1e6;  // metres and degrees, as in the records
+constexpr double kMaxDistance = 1e6;  // metres and degrees, as in the records
 constexpr double kMaxCopies = 1e6;
 
 KeySpec numberKey(std::string name, Unit unit, std::string help) {
@@ -183,8 +183,8 @@ KeySpec numberKey(std::string name, Unit unit, std::string help) {
             .type = KeyType::Number,
             .unit = unit,
             .help = std::move(help),
-            .lower = -kFarthest,
-            .upper = kFarthest};
+            .lower = -kMaxDistance,
+            .upper = kMaxDistance};
 }
 
 KeySpec countKey(std::string name, std::string help) {
@@ -251,17 +251,17 @@ const Schema& yamlRepeatSchema() {
     return schema;
 }
 
-std::optional<YamlItem> YamlItemReader::read(const Schema& schema, Spot at, const YamlNode& keys,
-                                             Spot keys_at) {
+std::optional<YamlItem> YamlItemReader::read(const Schema& schema, LineColumn at,
+                                             const YamlNode& keys, LineColumn keys_at) {
     if (keys.kind != Kind::Map) {
         values_->unexpected(keys, keys_at, "a map of keys such as {at: [2, 3]}");
         return std::nullopt;
     }
     collector_->begin(schema, at);
     const YamlNode* repeat = nullptr;
-    Spot repeat_at;
+    LineColumn repeat_at;
     values_->forEachPair(keys, "a key",
-                         [&](const YamlNode& name, const YamlNode& value, Spot spot) {
+                         [&](const YamlNode& name, const YamlNode& value, LineColumn spot) {
                              if (name.scalar == kRepeat) {
                                  repeat = &value;
                                  repeat_at = spot;
@@ -275,7 +275,7 @@ std::optional<YamlItem> YamlItemReader::read(const Schema& schema, Spot at, cons
     return item;
 }
 
-bool YamlItemReader::readKey(const YamlNode& name, const YamlNode& value, Spot at) {
+bool YamlItemReader::readKey(const YamlNode& name, const YamlNode& value, LineColumn at) {
     const KeySpec* const key = collector_->key(name.scalar, spotOf(name));
     if (key == nullptr) return false;
     auto read = values_->read(*key, value, at);
@@ -295,7 +295,7 @@ void YamlItemReader::addDefaults(const Schema& schema) {
     }
 }
 
-std::unique_ptr<Record> YamlItemReader::readRepeat(const YamlNode& keys, Spot at,
+std::unique_ptr<Record> YamlItemReader::readRepeat(const YamlNode& keys, LineColumn at,
                                                    const Record& what) {
     if (keys.kind != Kind::Map) {
         values_->unexpected(keys, at, "a map such as {count: 5, step: [1.2, 0]}");
@@ -304,7 +304,7 @@ std::unique_ptr<Record> YamlItemReader::readRepeat(const YamlNode& keys, Spot at
     collector_->begin(yamlRepeatSchema(), at);
     bool is_sound = true;
     values_->forEachPair(keys, "a key",
-                         [&](const YamlNode& name, const YamlNode& value, Spot spot) {
+                         [&](const YamlNode& name, const YamlNode& value, LineColumn spot) {
                              is_sound = readKey(name, value, spot) && is_sound;
                          });
     auto repeat = std::make_unique<Record>(collector_->finish());
@@ -331,11 +331,11 @@ bool YamlItemReader::checkRepeat(const Record& repeat, const Record& what) {
     return true;
 }
 
-void YamlItemReader::readDefaults(const YamlNode& value, Spot at) {
+void YamlItemReader::readDefaults(const YamlNode& value, LineColumn at) {
     if (value.kind != Kind::Map)
         return values_->unexpected(value, at, "a map such as {desk: {height: 0.72}}");
     values_->forEachPair(
-        value, "a keyword", [&](const YamlNode& keyword, const YamlNode& keys, Spot spot) {
+        value, "a keyword", [&](const YamlNode& keyword, const YamlNode& keys, LineColumn spot) {
             if (!collector_->begin(keyword.scalar, spotOf(keyword))) return;
             if (keys.kind != Kind::Map)
                 return values_->unexpected(keys, spot, "a map of keys such as {height: 0.72}");
@@ -344,15 +344,17 @@ void YamlItemReader::readDefaults(const YamlNode& value, Spot at) {
 }
 
 void YamlItemReader::readDefaultKeys(const Schema& schema, const YamlNode& keys) {
-    values_->forEachPair(keys, "a key", [&](const YamlNode& name, const YamlNode& value, Spot at) {
-        const KeySpec* const key = collector_->key(name.scalar, spotOf(name));
-        if (key == nullptr) return;
-        if (key == schema.keys.data())
-            return collector_->finding(
-                spotOf(name), [] { return std::string("an id is of one record, not a default"); });
-        if (auto read = values_->read(*key, value, at))
-            defaults_.insert_or_assign(key, std::pair(*std::move(read), at));
-    });
+    values_->forEachPair(keys, "a key",
+                         [&](const YamlNode& name, const YamlNode& value, LineColumn at) {
+                             const KeySpec* const key = collector_->key(name.scalar, spotOf(name));
+                             if (key == nullptr) return;
+                             if (key == schema.keys.data())
+                                 return collector_->finding(spotOf(name), [] {
+                                     return std::string("an id is of one record, not a default");
+                                 });
+                             if (auto read = values_->read(*key, value, at))
+                                 defaults_.insert_or_assign(key, std::pair(*std::move(read), at));
+                         });
 }
 
 }  // namespace ispace

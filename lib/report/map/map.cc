@@ -256,7 +256,7 @@ void drawSign(Picture& picture, const LegendItem& item, double left, double y, d
             if (item.color.alpha > 0) drawPatch(picture, item, left, y, em);
             drawSensorMark(picture, {left + 0.45 * em, y}, item.mark, 0.3 * em);
             break;
-        case Sign::Spot:
+        case Sign::LineColumn:
             drawSpotSign(picture, {left + kSignWidth / 2 * em, y}, item.number, em);
             break;
         case Sign::Scale:
@@ -296,7 +296,7 @@ void drawItem(Picture& picture, const LegendItem& item, const ColumnWidths& colu
     const TextStyle style{em, false, Align::Left, palette::kInk, {}};
     TextStyle value_style = style;
     value_style.align = Align::Right;
-    if (item.sign == Sign::Sensor || item.sign == Sign::Spot)
+    if (item.sign == Sign::Sensor || item.sign == Sign::LineColumn)
         value_style.color = palette::kFaintInk;
     const double right = corner.x + width;
     double room = width - indent;

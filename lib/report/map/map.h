@@ -35,7 +35,7 @@ struct MapOptions {
     std::vector<TriedPose> trace = {};
     /// What the layout saw of a run: ways in colours by the number of sensors that saw them, and
     /// rings where sight was lost; null for none. It outlives the options.
-    const RunSight* run = nullptr;
+    const RunCoverage* run = nullptr;
 };
 
 /// The plan as a picture for a paper: covered floor, walls, objects, each sensor with its id,

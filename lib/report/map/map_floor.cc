@@ -104,7 +104,7 @@ Curves seenCurves(const MapPicture& map, std::uint32_t least) {
     return curvesOfCells(map, cells);
 }
 
-Curves curvesOfSet(const MapPicture& map, const SeenSet& set) {
+Curves curvesOfSet(const MapPicture& map, const CoveredSet& set) {
     // Both kinds are never mixed: stripes would show steps where they meet.
     if (map.coverage.overlay && set.region) return drawable(map, *set.region);
     return curvesOfCells(map, set.cells);
@@ -137,7 +137,7 @@ void drawShared(Picture& picture, const MapPicture& map, const std::vector<Curve
 void drawBySensor(Picture& picture, const MapPicture& map) {
     std::vector<Curves> sets;
     sets.reserve(map.coverage.sets.size());
-    for (const SeenSet& set : map.coverage.sets) sets.push_back(curvesOfSet(map, set));
+    for (const CoveredSet& set : map.coverage.sets) sets.push_back(curvesOfSet(map, set));
     for (std::size_t i = 0; i < sets.size(); ++i) picture.area(sets[i], {floorColor(map, i)});
     if (sets.size() > 1) drawShared(picture, map, sets);
 }

@@ -240,8 +240,8 @@ LegendBlock spotsBlock(const MapPicture& map) {
     const double extent = std::max(report.limits.width(), report.limits.depth());
     const int decimals = extent < 2 ? 2 : extent < 200 ? 1 : 0;
     for (std::size_t i = 0; i < markedSpots(map); ++i) {
-        const UnseenSpot& spot = report.unseen[i];
-        LegendItem item{Sign::Spot, {}, {}, area(spot.area), "at "};
+        const UncoveredSpot& spot = report.unseen[i];
+        LegendItem item{Sign::LineColumn, {}, {}, area(spot.area), "at "};
         item.value.append(formatFixed(spot.place.x, decimals)).append(", ");
         item.value.append(formatFixed(spot.place.y, decimals));
         item.number = std::to_string(i + 1);

@@ -147,9 +147,9 @@ struct LegendItem {
         Hatched,  ///< a patch with lines of the edge's colour
         Line,
         Dashes,
-        Sensor,  ///< `mark`; on a patch of `color` unless that is transparent
-        Spot,    ///< a numbered sign; the number is `number`
-        Scale,   ///< the colours of triedColor(), worst to best
+        Sensor,      ///< `mark`; on a patch of `color` unless that is transparent
+        LineColumn,  ///< a numbered sign; the number is `number`
+        Scale,       ///< the colours of triedColor(), worst to best
         Ring,
     };
     Sign sign = Sign::None;
@@ -170,7 +170,7 @@ struct LegendBlock {
 
 /// On top of the plan, below sensors' marks.
 void drawRun(Picture& picture, const MapPicture& map);
-LegendBlock runBlock(const RunSight& run);
+LegendBlock runBlock(const RunCoverage& run);
 
 std::vector<LegendBlock> legendBlocks(const MapPicture& map);
 /// The main metrics, the most important first, for a line below the title.

@@ -27,11 +27,11 @@ namespace ispace {
 ContactSheet::ContactSheet(const std::vector<PictureSize>& shapes)
     : page_(shapes.front()), em_(std::max(9.0, shapes.front().columns / 80.0)) {
     places_.push_back({{0, 0}, shapes.front()});
-    constexpr std::size_t kMostARow = 4;
+    constexpr std::size_t kMaxARow = 4;
     const std::size_t others = shapes.size() - 1;
     if (others == 0) return;
     // Rows alike: five are three and two.
-    const std::size_t rows = (others + kMostARow - 1) / kMostARow;
+    const std::size_t rows = (others + kMaxARow - 1) / kMaxARow;
     const auto a_row = static_cast<int>((others + rows - 1) / rows);
     const int gap = std::max(2, page_.columns / 100);
     const int width = std::max(1, (page_.columns - (a_row - 1) * gap) / a_row);
@@ -119,8 +119,8 @@ void EncodeAhead::finish() {
 
 namespace {
 
-constexpr std::size_t kMostColors = 256;
-constexpr int kLargest = 65535;
+constexpr std::size_t kMaxColors = 256;
+constexpr int kMaxSize = 65535;
 
 /// Part of a picture: columns and rows from a first one to before a last.
 struct Part {
@@ -171,7 +171,7 @@ class Palette {
         std::sort(shades.begin(), shades.end(), [](const Shade& a, const Shade& b) {
             return a.count != b.count ? a.count > b.count : a.color < b.color;
         });
-        while (colors_.size() < std::min(kMostColors, shades.size())) choose(shades);
+        while (colors_.size() < std::min(kMaxColors, shades.size())) choose(shades);
         for (const Shade& shade : shades) index_.emplace(shade.color, shade.nearest);
     }
     [[nodiscard]] GifPixelType of(std::uint32_t color) const { return index_.at(color); }
@@ -198,7 +198,7 @@ class Palette {
     void choose(std::vector<Shade>& shades) {
         const std::size_t index = colors_.size();
         const std::uint32_t color =
-            index < kMostColors / 2
+            index < kMaxColors / 2
                 ? shades[index].color
                 : std::max_element(shades.begin(), shades.end(), [](const auto& a, const auto& b) {
                       return a.distance < b.distance;
@@ -243,7 +243,7 @@ struct GifFilm::Data {
 };
 
 void GifFilm::Data::begin(const Image& image) {
-    if (image.width > kLargest || image.height > kLargest)
+    if (image.width > kMaxSize || image.height > kMaxSize)
         throw FormatError({"", 0, 0,
                            "a GIF has at most 65535 x 65535 pixels, this film " +
                                std::to_string(image.width) + " x " + std::to_string(image.height)});

@@ -188,16 +188,16 @@ std::vector<std::string> viewForms() {
 
 namespace {
 
-class CameraEye final : public Eye {
+class CameraEye final : public Projector {
   public:
     CameraEye(const Camera& camera, const Pose3& pose)
         : view_(camera, pose), frame_(pose), by_axis_(camera.lens == Lens::Pinhole) {}
     [[nodiscard]] const Viewpoint& viewpoint() const override { return view_; }
-    [[nodiscard]] std::optional<Sighting> find(Point3 place) const override {
+    [[nodiscard]] std::optional<ProjectedPoint> find(Point3 place) const override {
         const auto pixel = view_.project(place);
         if (!pixel) return std::nullopt;
         const Vec3 local = frame_.toLocal(place);
-        return Sighting{*pixel, by_axis_ ? local.x : length(local)};
+        return ProjectedPoint{*pixel, by_axis_ ? local.x : length(local)};
     }
 
   private:
@@ -206,13 +206,13 @@ class CameraEye final : public Eye {
     bool by_axis_;
 };
 
-class ParallelEye final : public Eye {
+class ParallelEye final : public Projector {
   public:
     ParallelEye(const Pose3& pose, double width, int columns, int rows)
         : view_(pose, width, columns, rows), frame_(pose) {}
     [[nodiscard]] const Viewpoint& viewpoint() const override { return view_; }
-    [[nodiscard]] std::optional<Sighting> find(Point3 place) const override {
-        return Sighting{view_.project(place), frame_.toLocal(place).x};
+    [[nodiscard]] std::optional<ProjectedPoint> find(Point3 place) const override {
+        return ProjectedPoint{view_.project(place), frame_.toLocal(place).x};
     }
 
   private:
@@ -220,7 +220,7 @@ class ParallelEye final : public Eye {
     Frame3 frame_;
 };
 
-class Panorama final : public Viewpoint, public Eye {
+class Panorama final : public Viewpoint, public Projector {
   public:
     Panorama(const Pose3& pose, int columns, int rows)
         : Viewpoint(columns, rows),
@@ -228,20 +228,20 @@ class Panorama final : public Viewpoint, public Eye {
           step_across_(2 * std::numbers::pi / columns),
           step_down_(std::numbers::pi / rows) {}
     [[nodiscard]] const Viewpoint& viewpoint() const override { return *this; }
-    [[nodiscard]] std::optional<SightLine> sightLine(PixelPoint place) const override {
+    [[nodiscard]] std::optional<PixelRay> sightLine(PixelPoint place) const override {
         const double bearing = std::numbers::pi - (place.column + 0.5) * step_across_;
         const double elevation = std::numbers::pi / 2 - (place.row + 0.5) * step_down_;
         const double level = std::cos(elevation);
         const Vec3 local{level * std::cos(bearing), level * std::sin(bearing), std::sin(elevation)};
-        return SightLine{frame_.origin, frame_ * local};
+        return PixelRay{frame_.origin, frame_ * local};
     }
-    [[nodiscard]] std::optional<Sighting> find(Point3 place) const override {
+    [[nodiscard]] std::optional<ProjectedPoint> find(Point3 place) const override {
         const Vec3 local = frame_.toLocal(place);
         const double bearing = std::atan2(local.y, local.x);
         const double elevation = std::atan2(local.z, std::hypot(local.x, local.y));
-        return Sighting{{(std::numbers::pi - bearing) / step_across_ - 0.5,
-                         (std::numbers::pi / 2 - elevation) / step_down_ - 0.5},
-                        length(local)};
+        return ProjectedPoint{{(std::numbers::pi - bearing) / step_across_ - 0.5,
+                               (std::numbers::pi / 2 - elevation) / step_down_ - 0.5},
+                              length(local)};
     }
 
   private:
@@ -251,15 +251,15 @@ class Panorama final : public Viewpoint, public Eye {
 
 }  // namespace
 
-std::unique_ptr<Eye> cameraEye(const Camera& camera, const Pose3& pose) {
+std::unique_ptr<Projector> cameraEye(const Camera& camera, const Pose3& pose) {
     return std::make_unique<CameraEye>(camera, pose);
 }
 
-std::unique_ptr<Eye> parallelEye(const Pose3& pose, double width, int columns, int rows) {
+std::unique_ptr<Projector> parallelEye(const Pose3& pose, double width, int columns, int rows) {
     return std::make_unique<ParallelEye>(pose, width, columns, rows);
 }
 
-std::unique_ptr<Eye> panoramaEye(const Pose3& pose, int columns, int rows) {
+std::unique_ptr<Projector> panoramaEye(const Pose3& pose, int columns, int rows) {
     return std::make_unique<Panorama>(pose, columns, rows);
 }
 

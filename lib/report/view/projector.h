@@ -46,32 +46,32 @@ ViewSpec parseView(const std::string& text);
 std::vector<std::string> viewForms();
 
 /// Where a place of the world is in a picture, and its depth there as Rendering has it.
-struct Sighting {
+struct ProjectedPoint {
     PixelPoint pixel;
     double depth = 0;
 };
 
 /// A viewpoint that can be asked where something is.
-class Eye {
+class Projector {
   public:
-    virtual ~Eye() = default;
+    virtual ~Projector() = default;
     [[nodiscard]] virtual const Viewpoint& viewpoint() const = 0;
     /// Nothing for what is behind it, or not shown by its lens; else a place on the picture or
     /// beside it.
-    [[nodiscard]] virtual std::optional<Sighting> find(Point3 place) const = 0;
+    [[nodiscard]] virtual std::optional<ProjectedPoint> find(Point3 place) const = 0;
 
   protected:
-    Eye() = default;
-    Eye(const Eye&) = default;
-    Eye& operator=(const Eye&) = default;
+    Projector() = default;
+    Projector(const Projector&) = default;
+    Projector& operator=(const Projector&) = default;
 };
 
-std::unique_ptr<Eye> cameraEye(const Camera& camera, const Pose3& pose);
+std::unique_ptr<Projector> cameraEye(const Camera& camera, const Pose3& pose);
 /// See OrthographicView.
-std::unique_ptr<Eye> parallelEye(const Pose3& pose, double width, int columns, int rows);
+std::unique_ptr<Projector> parallelEye(const Pose3& pose, double width, int columns, int rows);
 /// All around: columns are equal steps of bearing, the heading in the middle and its left on the
 /// left; rows of elevation, straight up at the top. Depth is distance.
-std::unique_ptr<Eye> panoramaEye(const Pose3& pose, int columns, int rows);
+std::unique_ptr<Projector> panoramaEye(const Pose3& pose, int columns, int rows);
 
 /// Columns and rows of a picture.
 struct PictureSize {
@@ -85,7 +85,7 @@ PictureSize sizeOf(const ViewSpec& spec, const Scene& scene, std::optional<Pictu
 
 /// From where a picture of a scene is taken.
 struct Standpoint {
-    std::unique_ptr<Eye> eye;
+    std::unique_ptr<Projector> eye;
     /// One looks into the room from outside: ceilings, and walls in between, are left out, and
     /// there is nothing around.
     bool looks_in = false;

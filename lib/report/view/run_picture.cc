@@ -27,7 +27,7 @@ constexpr double kLegendColumn = 14;  // sizes of text
 /// The scene without those who move, and what rides on them.
 Scene standing(const Scene& scene) {
     Scene rest = scene;
-    std::erase_if(rest.placed, [&scene](const Placed& placed) {
+    std::erase_if(rest.placed, [&scene](const PlacedRecord& placed) {
         const std::string& keyword = scene.records[placed.record].keyword();
         const bool rides = placed.mount || ((sensorKind(keyword) != nullptr) &&
                                             scene.sensors[placed.index].person.has_value());
@@ -233,7 +233,7 @@ bool has(const Scene& scene, const std::string& id) {
 /// With the sensors that she carries.
 void movePerson(Scene& scene, std::size_t person, const Pose2& pose) {
     const Pose2 before = std::exchange(scene.people[person].pose, pose);
-    for (Placed& placed : scene.placed) {
+    for (PlacedRecord& placed : scene.placed) {
         const std::string& keyword = scene.records[placed.record].keyword();
         if (keyword == "human" && placed.index == person) {
             placed.pose = {

@@ -165,7 +165,8 @@ Mesh cubeOf(Point3 apex, const std::vector<Point3>& rim) {
     return mesh;
 }
 
-void addCube(SightMarks& marks, const Sightlines& sightlines, const Sensor& sensor, Color color) {
+void addCube(SensorOverlay& marks, const Sightlines& sightlines, const Sensor& sensor,
+             Color color) {
     const std::optional<FieldOfView> view = fieldOfView(sensor);
     if (!view) return;
     const bool is_camera = sensor.is<Camera>();
@@ -188,7 +189,7 @@ bool isWithin(std::optional<Point3> place, const Sensor& sensor) {
     return place && view && (*place == sensor.pose.position || view->holds(*place));
 }
 
-void addBeams(SightMarks& marks, Sightlines& sightlines, const Sensor& sensor, Color color) {
+void addBeams(SensorOverlay& marks, Sightlines& sightlines, const Sensor& sensor, Color color) {
     const auto& laser = sensor.as<Laser>();
     const std::vector<float> ranges = sightlines.ranges(sensor);
     const int step = 1 + (laser.beams - 1) / kMostBeams;
@@ -215,9 +216,9 @@ Rgb linearOf(const Color& color) {
     return {linear(color.red), linear(color.green), linear(color.blue)};
 }
 
-SightMarks sightMarks(const Scene& scene, bool beams, std::optional<Point3> viewer,
-                      std::span<const Angle> swings) {
-    SightMarks marks;
+SensorOverlay sightMarks(const Scene& scene, bool beams, std::optional<Point3> viewer,
+                         std::span<const Angle> swings) {
+    SensorOverlay marks;
     Sightlines sightlines(scene, swings);
     for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
         const Sensor& sensor = scene.sensors[i];
@@ -257,7 +258,7 @@ FloorColors::FloorColors(const Scene& scene) : limits_(scene.environment.limits(
     rows_ = std::max(1, static_cast<int>(std::ceil(scale_ * limits_.depth())));
     sums_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     Worlds worlds(scene.environment);
-    const Sight sight(scene.environment, 0, &worlds);
+    const VisibleArea sight(scene.environment, 0, &worlds);
     constexpr int kCells = 400;
     const double cell = std::max(limits_.width(), limits_.depth()) / kCells;
     const Grid grid{limits_, std::max(1, static_cast<int>(limits_.width() / cell)),

@@ -20,7 +20,7 @@ Color sensorColor(std::size_t index);
 Rgb linearOf(const Color& color);
 
 /// What sensors look at, as drawn in space.
-struct SightMarks {
+struct SensorOverlay {
     struct Line {
         std::vector<Point3> places;
         Color color;
@@ -34,8 +34,8 @@ struct SightMarks {
 /// of the plan, and with `beams` those of lasers, thinned where they would run together.
 /// \param viewer where one looks from: the view cubes about it are left out
 /// \param swings of the limbs of Scene::people, see humanParts(); none: they stand
-SightMarks sightMarks(const Scene& scene, bool beams, std::optional<Point3> viewer,
-                      std::span<const Angle> swings = {});
+SensorOverlay sightMarks(const Scene& scene, bool beams, std::optional<Point3> viewer,
+                         std::span<const Angle> swings = {});
 
 /// What sensors cover, as colours on the floor.
 class FloorColors {

@@ -12,11 +12,11 @@ namespace {
 
 using testing::scene;
 
-TEST(SightMarks, ViewCubesEndOnTheEdgesOfThePicture) {
+TEST(SensorOverlay, ViewCubesEndOnTheEdgesOfThePicture) {
     for (const char* lens : {"fov=60,45", "projection=fisheye fov=120", "coefficients=-0.2,0.05"}) {
         const Scene room = scene("ispace size=6,4 height=2.5\n",
                                  std::string("camera id=c at=-2.9,0,2 tilt=-30 ") + lens + "\n");
-        const SightMarks marks = sightMarks(room, false, std::nullopt);
+        const SensorOverlay marks = sightMarks(room, false, std::nullopt);
         ASSERT_EQ(marks.paint.size(), 1U) << lens;
         ASSERT_EQ(marks.lines.size(), 5U) << lens;  // four edges and the rim
         const Sensor& sensor = room.sensors.front();
@@ -33,24 +33,24 @@ TEST(SightMarks, ViewCubesEndOnTheEdgesOfThePicture) {
     }
 }
 
-TEST(SightMarks, ViewCubesAboutTheViewerAreLeftOut) {
+TEST(SensorOverlay, ViewCubesAboutTheViewerAreLeftOut) {
     const Scene room = scene("ispace size=6,4 height=2.5\n", "camera at=-2.9,0,1 fov=60\n");
     EXPECT_TRUE(sightMarks(room, false, Point3{0, 0, 1}).paint.empty());
     EXPECT_FALSE(sightMarks(room, false, Point3{0, 1.9, 1}).paint.empty());
 }
 
-TEST(SightMarks, BeamsEndWhereTheLaserReads) {
+TEST(SensorOverlay, BeamsEndWhereTheLaserReads) {
     const Scene room =
         scene("ispace size=6,4 height=2.5\n", "laser at=0,0 range=8 fov=180 step=90\n");
     EXPECT_TRUE(sightMarks(room, false, std::nullopt).lines.empty());
-    const SightMarks marks = sightMarks(room, true, std::nullopt);
+    const SensorOverlay marks = sightMarks(room, true, std::nullopt);
     ASSERT_EQ(marks.lines.size(), 3U);
     EXPECT_NEAR(marks.lines[0].places[1].y, -2, 1e-6);
     EXPECT_NEAR(marks.lines[1].places[1].x, 3, 1e-6);
     EXPECT_NEAR(marks.lines[2].places[1].y, 2, 1e-6);
 }
 
-TEST(SightMarks, BeamsMeetLegsThatSwing) {
+TEST(SensorOverlay, BeamsMeetLegsThatSwing) {
     // Ahead of the left leg.
     const Scene room = scene("ispace size=6,4\n",
                              "human at=0,0\nlaser at=-2,0.0935,0.15 range=8 fov=180 step=90\n");

@@ -85,7 +85,7 @@ Focus focusOf(const std::vector<Mesh>& meshes) {
 
 Focus focusOn(const std::string& id, const Scene& scene) {
     const std::size_t record = indexOfId(id, scene.ids, "nothing has the id");
-    for (const Placed& placed : scene.placed)
+    for (const PlacedRecord& placed : scene.placed)
         if (placed.record == record) {
             const Point3 p = placed.pose.position;
             // What stands on the floor is looked at a little above it.
@@ -164,7 +164,7 @@ Standpoint onRobot(const ViewSpec& spec, const Scene& scene, PictureSize size) {
     Standpoint out{.eye = cameraEye(pinhole(size, Angle::degrees(80)),
                                     {place, robot.pose.heading, Angle::degrees(-8), {}}),
                    .place = place};
-    for (const Placed& placed : scene.placed) {
+    for (const PlacedRecord& placed : scene.placed) {
         const bool is_carried = placed.mount && placed.mount->robot == index;
         if (is_carried || scene.ids[placed.record] == spec.id) out.hidden.push_back(placed.record);
     }

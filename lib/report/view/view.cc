@@ -30,7 +30,7 @@ int finenessFor(PictureSize size, int samples) {
 
 /// Nothing is drawn into what a camera takes.
 ViewOptions asTaken(ViewOptions options) {
-    options.show = ShownSight::None;
+    options.show = OverlayLayers::None;
     options.labels = false;
     options.ways.clear();
     return options;
@@ -51,16 +51,16 @@ class ViewDrawer {
     }
 
     Image draw() {
-        if (options_.show != ShownSight::None)
-            marks_ = sightMarks(scene_, options_.show == ShownSight::Beams,
+        if (options_.show != OverlayLayers::None)
+            marks_ = sightMarks(scene_, options_.show == OverlayLayers::Beams,
                                 standpoint_.looks_in ? std::nullopt : standpoint_.place,
                                 options_.swings);
         for (const std::vector<Point2>& way : options_.ways) addWay(way);
         render();
-        if (options_.show == ShownSight::Area) colorFloor();
+        if (options_.show == OverlayLayers::Area) colorFloor();
         Picture page(size_.columns, size_.rows);
         page.image({0, 0}, finished(), 1, 1);
-        for (const SightMarks::Line& line : marks_.lines) addLine(page, line);
+        for (const SensorOverlay::Line& line : marks_.lines) addLine(page, line);
         if (options_.labels) addLabels(page);
         if (standpoint_.is_to_scale) addScale(page);
         return rasterOf(page);
@@ -108,7 +108,7 @@ class ViewDrawer {
     /// With people whose limbs swing.
     [[nodiscard]] RenderScene walking(const RenderScene& still) const {
         std::vector<Pose3> poses;
-        for (const Placed& placed : scene_.placed) poses.push_back(placed.pose);
+        for (const PlacedRecord& placed : scene_.placed) poses.push_back(placed.pose);
         return still.at(poses, options_.swings);
     }
 
@@ -132,7 +132,7 @@ class ViewDrawer {
 
     /// A line just above the floor.
     void addWay(const std::vector<Point2>& way) {
-        SightMarks::Line line{{}, palette::kRobot.faded(0.8), 2.5};
+        SensorOverlay::Line line{{}, palette::kRobot.faded(0.8), 2.5};
         for (const Point2& p : way) line.places.push_back({p.x, p.y, 0.01});
         marks_.lines.push_back(std::move(line));
     }
@@ -203,7 +203,7 @@ class ViewDrawer {
     }
 
     /// True unless something stands before it, more than `slack` metres nearer.
-    [[nodiscard]] bool isSeen(const Sighting& sighting, double slack) const {
+    [[nodiscard]] bool isSeen(const ProjectedPoint& sighting, double slack) const {
         const double column = std::round(sighting.pixel.column);
         const double row = std::round(sighting.pixel.row);
         if (!(column >= 0 && row >= 0 && column < static_cast<double>(columns()) &&
@@ -215,7 +215,7 @@ class ViewDrawer {
         return sighting.depth <= kRounding * static_cast<double>(picture_.depths[i]) + slack;
     }
 
-    void addLine(Picture& page, const SightMarks::Line& line) const {
+    void addLine(Picture& page, const SensorOverlay::Line& line) const {
         std::vector<std::vector<Point2>> chains(1);
         const auto end = [&chains] {
             if (!chains.back().empty()) chains.emplace_back();
@@ -333,7 +333,7 @@ class ViewDrawer {
     int fine_;
     Standpoint standpoint_;
     std::vector<std::size_t> highlighted_;
-    SightMarks marks_;
+    SensorOverlay marks_;
     Rendering picture_;
     std::vector<Box2> labels_;  // places of ids on the page
 };
@@ -349,7 +349,7 @@ std::string standpointWarning(const ViewSpec& spec, const Scene& scene) {
     if (spec.mode != ViewMode::FirstPerson && spec.mode != ViewMode::Omni) return "";
     const Point3 place{spec.at->x, spec.at->y, spec.z.value_or(kEyeHeight)};
     if (place.z < 0) return spec.name + ": the viewer is below the floor";
-    if (BurialTest(scene.environment).isBuried(place))
+    if (BurialTest(scene.environment).isInsideSolid(place))
         return spec.name + ": the viewer stands inside something solid";
     const Side side = scene.environment.indoor().locate(*spec.at);
     if (side == Side::Outside) return spec.name + ": the viewer stands outside the room";
@@ -359,7 +359,7 @@ std::string standpointWarning(const ViewSpec& spec, const Scene& scene) {
 
 void moveRobot(Scene& scene, std::size_t robot, const Pose2& pose) {
     scene.robots[robot].pose = pose;
-    for (Placed& placed : scene.placed) {
+    for (PlacedRecord& placed : scene.placed) {
         const std::string& keyword = scene.records[placed.record].keyword();
         if (keyword == "robot" && placed.index == robot)
             placed.pose = {

@@ -12,14 +12,14 @@
 namespace ispace {
 
 /// What is drawn of what sensors see.
-enum class ShownSight {
+enum class OverlayLayers {
     None,
     Beams,  ///< beams of lasers, and view cubes of all sensors with an axis
     Area,   ///< the floor that each sensor covers in its colour, and view cubes
 };
 
 struct ViewOptions {
-    ShownSight show = ShownSight::None;
+    OverlayLayers show = OverlayLayers::None;
     std::vector<std::string> highlight = {};  ///< ids of records that stand out
     bool labels = true;                       ///< ids beside sensors and robots, dots for cameras
     int samples = 16;                         ///< of each pixel, see RenderOptions

@@ -26,7 +26,7 @@ Scene room() {
 
 constexpr PictureSize kSmall{160, 120};
 
-TEST(Eye, FindsWhatItsLinesOfSightMeet) {
+TEST(Projector, FindsWhatItsLinesOfSightMeet) {
     const Scene scene = room();
     for (const char* text : {"bird", "first-person:-2,0,20,-10", "omni:0.5,-1,1.2", "orbit",
                              "orbit:30,20,9", "central:1,1", "robot:r1", "camera:c1"}) {
@@ -43,7 +43,7 @@ TEST(Eye, FindsWhatItsLinesOfSightMeet) {
     }
 }
 
-TEST(Eye, OrbitFillsThePictureWithTheRoom) {
+TEST(Projector, OrbitFillsThePictureWithTheRoom) {
     const Scene scene = room();
     for (const char* text : {"orbit", "orbit:10,15", "orbit:170,89"}) {
         const Standpoint standpoint = standpointOf(parseView(text), scene, kSmall);
@@ -64,7 +64,7 @@ TEST(Eye, OrbitFillsThePictureWithTheRoom) {
     }
 }
 
-TEST(Eye, SizesFollowTheView) {
+TEST(Projector, SizesFollowTheView) {
     const Scene scene = room();
     const auto size = [&](const char* text, std::optional<PictureSize> wanted) {
         return sizeOf(parseView(text), scene, wanted);
@@ -90,7 +90,7 @@ TEST(View, WallsInBetweenAreLeftOut) {
 TEST(View, IsTheSameForAnyNumberOfThreads) {
     const Scene scene = room();
     ViewOptions options;
-    options.show = ShownSight::Area;
+    options.show = OverlayLayers::Area;
     std::vector<Image> pictures;
     for (const std::size_t threads : {1U, 2U}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -105,7 +105,7 @@ TEST(View, CoveredFloorHasTheSensorsColour) {
     options.labels = false;
     const ViewSpec spec = parseView("bird");
     const Image plain = viewPicture(scene, spec, kSmall, options);
-    options.show = ShownSight::Area;
+    options.show = OverlayLayers::Area;
     const Image painted = viewPicture(scene, spec, kSmall, options);
     const Standpoint standpoint = standpointOf(spec, scene, kSmall);
     const auto at = [&](const Image& image, Point3 place) {

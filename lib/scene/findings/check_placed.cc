@@ -43,7 +43,7 @@ void checkUnplaced(CheckContext& context, std::size_t record, std::vector<Findin
 }
 
 void checkOutside(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
-    const Placed* const placed = context.placed_of[record];
+    const PlacedRecord* const placed = context.placed_of[record];
     if (placed == nullptr || placed->mount) return;
     const Point3 p = placed->pose.position;
     const bool is_out = context.isOut(p.onFloor());
@@ -52,11 +52,11 @@ void checkOutside(CheckContext& context, std::size_t record, std::vector<Finding
         context.finding(record, Severity::Error, p.onFloor(),
                         (is_out ? " stands outside the room at " : " stands below the floor at ") +
                             placeText(p.onFloor()),
-                        is_out ? "move it in" : "raise it by " + wayText(-p.z)));
+                        is_out ? "move it in" : "raise it by " + distanceText(-p.z)));
 }
 
 void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
-    const Placed* const placed = context.placed_of[record];
+    const PlacedRecord* const placed = context.placed_of[record];
     if (placed == nullptr || context.scene.records[record].schema().find("on") == nullptr) return;
     const Point3 p = placed->pose.position;
     const Point2 at = p.onFloor();
@@ -83,7 +83,7 @@ void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>
 }
 
 void checkPath(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
-    const Placed* const placed = context.placed_of[record];
+    const PlacedRecord* const placed = context.placed_of[record];
     if (placed == nullptr) return;
     const Scene& scene = context.scene;
     const std::string& keyword = scene.records[record].keyword();
@@ -102,7 +102,7 @@ void checkPath(CheckContext& context, std::size_t record, std::vector<Finding>& 
 CircleCheck::CircleCheck(CheckContext& context) : context_(&context) {
     const Scene& scene = context.scene;
     std::vector<Box2> boxes;
-    for (const Placed& placed : scene.placed) {
+    for (const PlacedRecord& placed : scene.placed) {
         const Record& record = scene.records[placed.record];
         const Point2 center = placed.pose.position.onFloor();
         if (record.keyword() == "robot") {
@@ -177,7 +177,7 @@ void CircleCheck::check(std::size_t record, std::vector<Finding>& findings) {
         findings.push_back(context_->finding(
             record, Severity::Error, met.place,
             " stands in " + context_->elementName(element) + " near " + placeText(met.place),
-            "move it, e.g. by " + wayText(met.way)));
+            "move it, e.g. by " + distanceText(met.way)));
     }
     std::vector<const Circle*> others;
     tree_.search(boxAbout(circle.center, circle.radius), [&](std::size_t i) {
@@ -195,7 +195,7 @@ void CircleCheck::check(std::size_t record, std::vector<Finding>& findings) {
         findings.push_back(context_->finding(
             record, Severity::Error, middle,
             " overlaps " + context_->name(other->record) + " near " + placeText(middle),
-            "move one, e.g. by " + wayText(circle.radius + other->radius - away)));
+            "move one, e.g. by " + distanceText(circle.radius + other->radius - away)));
     }
 }
 

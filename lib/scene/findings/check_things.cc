@@ -36,7 +36,7 @@ double wayApart(const std::vector<PartPair>& pairs, const PartPair& deepest) {
     for (const Vec2 direction : directions) {
         double way = 0;
         for (const auto& [a, b] : pairs)
-            way = std::max(way, wayBeyond(a->footprint, b->footprint, direction));
+            way = std::max(way, penetrationDepth(a->footprint, b->footprint, direction));
         best = std::min(best, way);
     }
     return best;
@@ -54,7 +54,7 @@ CheckContext::CheckContext(const Scene& from)
         element_of[i] = records.size();
         records.push_back(i);
     }
-    for (const Placed& placed : scene.placed) placed_of[placed.record] = &placed;
+    for (const PlacedRecord& placed : scene.placed) placed_of[placed.record] = &placed;
 }
 
 const Parts& CheckContext::parts() {
@@ -109,7 +109,9 @@ Finding CheckContext::warning(std::size_t element, Point2 at, const std::string&
     return finding(records[element], Severity::Warning, at, message, std::move(hint));
 }
 
-std::string wayText(double way) { return formatFixed(std::ceil(100 * way - 1e-6) / 100, 2) + " m"; }
+std::string distanceText(double way) {
+    return formatFixed(std::ceil(100 * way - 1e-6) / 100, 2) + " m";
+}
 
 void ThingCheck::checkObject(std::size_t element, std::vector<Finding>& findings) {
     bool in_wall = isPartOfBuilding(element);
@@ -121,7 +123,7 @@ void ThingCheck::checkObject(std::size_t element, std::vector<Finding>& findings
         const bool is_wall = !context_->isObject(other);
         in_wall = in_wall || is_wall;
         std::string hint = is_wall ? "move it" : "move one";
-        if (place->way > 0) hint += ", e.g. by " + wayText(place->way);
+        if (place->way > 0) hint += ", e.g. by " + distanceText(place->way);
         findings.push_back(context_->warning(
             element, place->place,
             " overlaps " + context_->elementName(other) + " near " + placeText(place->place),

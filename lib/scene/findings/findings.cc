@@ -46,7 +46,7 @@ std::optional<Behind> wallBehind(const WallPlan& plan, Point2 from, Vec2 directi
         const Vec2 to_line = plan.lines[i].a - from;
         const double distance = cross(to_line, along) / denominator;
         const double share = cross(to_line, direction) / denominator;
-        if (share < 0 || share > 1 || distance <= least || distance > kFarthestFace) continue;
+        if (share < 0 || share > 1 || distance <= least || distance > kMaxFace) continue;
         if (!nearest || distance < nearest->distance) nearest = {i, distance};
     }
     return nearest;

@@ -169,7 +169,7 @@ struct CheckContext {
     const RegionIndex& indoor;
     std::vector<std::size_t> records;                    ///< by element
     std::vector<std::optional<std::size_t>> element_of;  ///< by record
-    std::vector<const Placed*> placed_of;                ///< by record, or null
+    std::vector<const PlacedRecord*> placed_of;          ///< by record, or null
 
   private:
     std::optional<Parts> parts_;
@@ -179,7 +179,7 @@ struct CheckContext {
 };
 
 /// "0.12 m", rounded up.
-std::string wayText(double way);
+std::string distanceText(double way);
 
 /// Findings of walls that cross and of open doors that lead into a wall.
 std::multimap<std::size_t, Finding> wallFindings(const CheckContext& context);

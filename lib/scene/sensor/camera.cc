@@ -14,7 +14,7 @@ namespace ispace {
 namespace {
 
 /// A pinhole's picture plane ends here.
-constexpr double kWidestPinhole = 89.9 * std::numbers::pi / 180;
+constexpr double kMaxPinhole = 89.9 * std::numbers::pi / 180;
 
 /// Distance from the centre of the picture plane, over the focal length, of what lies `angle`
 /// radians off the axis; radial distortion alone.
@@ -38,7 +38,7 @@ double radiusOf(const Camera& camera, double angle) {
 /// Beyond this angle, in radians, the picture of a ray moves back towards the centre.
 double turningAngle(const Camera& camera) {
     double end = std::numbers::pi;
-    if (camera.lens == Lens::Pinhole) end = kWidestPinhole;
+    if (camera.lens == Lens::Pinhole) end = kMaxPinhole;
     if (camera.lens == Lens::Mirror)
         // Where the sphere's ray leaves the plane, or touches the sphere.
         end = std::acos(-std::min(camera.mirror, 1 / std::max(camera.mirror, 1e-9))) - 1e-6;
@@ -123,7 +123,7 @@ std::optional<Vec2> unbent(const std::array<double, 5>& d, Vec2 to, double most)
 Camera::Camera() {
     fx = fy = focalFor(columns, Angle::degrees(45));
     center();
-    widest = Angle::radians(kWidestPinhole);
+    widest = Angle::radians(kMaxPinhole);
 }
 
 void Camera::center() {
@@ -211,7 +211,7 @@ bool Camera::fillsPicture() const {
     return true;
 }
 
-bool Camera::looksAround(const Pose3& mount) const {
+bool Camera::isOmnidirectional(const Pose3& mount) const {
     if (lens == Lens::Pinhole || fx != fy) return false;
     const double radius = fx * radiusOf(*this, widest.radians()) * (1 - 1e-9);
     const bool whole = holds({cx - radius, cy}) && holds({cx + radius, cy}) &&

@@ -45,13 +45,13 @@ struct Camera {
     /// apart, or where the record's `fov` ends the circle.
     Angle widest = Angle::degrees(90);
     /// Seen from, and to, this depth along the axis (pinhole) or distance (others), metres.
-    double min_range = 0, max_range = kFarthestSeen;
+    double min_range = 0, max_range = kMaxSeen;
     double rate = 30;           ///< pictures a second
     double full_well = 10'000;  ///< electrons of a white pixel: shot noise is their square root
     double read_noise = 4;      ///< electrons, standard deviation
 
     /// What a camera without `range` sees: metres; say `range` in larger halls.
-    static constexpr double kFarthestSeen = 100;
+    static constexpr double kMaxSeen = 100;
 
     Camera();
     /// Puts the optical centre in the middle of the picture.
@@ -94,7 +94,7 @@ struct Camera {
         return lens == Lens::Pinhole && (distortion[2] != 0 || distortion[3] != 0);
     }
     /// True if its whole circle is in the picture and it faces straight up or down.
-    [[nodiscard]] bool looksAround(const Pose3& mount) const;
+    [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const;
     friend bool operator==(const Camera&, const Camera&) = default;
 };
 

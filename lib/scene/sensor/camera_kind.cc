@@ -184,8 +184,8 @@ class OpticsReader {
             return;
         }
         const auto size = imageSensorSize(record_.text("sensor"), camera_.columns, camera_.rows);
-        constexpr double kLargest = 0.3;  // metres: someone forgot the unit
-        if (!size || size->x > kLargest || size->y > kLargest) {
+        constexpr double kMaxSize = 0.3;  // metres: someone forgot the unit
+        if (!size || size->x > kMaxSize || size->y > kMaxSize) {
             findings_.add(
                 record_.finding("sensor", excerpt(record_.text("sensor")) +
                                               " is no size of an image sensor: wanted a format "

@@ -90,8 +90,8 @@ TEST(Camera, MirrorsGoThereAndBack) {
         EXPECT_FALSE(camera.ray({-0.5, -0.5})) << "beyond the circle";
     }
     const Camera around = cameraFrom("projection=omni fov=360 pixels=500,500");
-    EXPECT_TRUE(around.looksAround({{}, {}, Angle::degrees(-90), {}}));
-    EXPECT_FALSE(around.looksAround({}));
+    EXPECT_TRUE(around.isOmnidirectional({{}, {}, Angle::degrees(-90), {}}));
+    EXPECT_FALSE(around.isOmnidirectional({}));
 }
 
 TEST(Camera, OfAnyMirrorGoesThereAndBackUpToItsEnd) {
@@ -158,9 +158,9 @@ TEST(Camera, SeesAsFarAsThereArePixelsAMetre) {
         EXPECT_EQ(pixelDensityOf(wrong), std::nullopt) << wrong;
     Camera camera;
     camera.fx = camera.fy = 500;
-    EXPECT_EQ(withDensity(camera, 0).max_range, Camera::kFarthestSeen);
+    EXPECT_EQ(withDensity(camera, 0).max_range, Camera::kMaxSeen);
     EXPECT_EQ(withDensity(camera, 125).max_range, 4);
-    EXPECT_EQ(withDensity(camera, 1).max_range, Camera::kFarthestSeen);
+    EXPECT_EQ(withDensity(camera, 1).max_range, Camera::kMaxSeen);
     // A pixel at the end of that range is a 125th of a metre wide there.
     const auto a = camera.project({4, 0, 0}), b = camera.project({4, 1, 0});
     EXPECT_NEAR(std::fabs(a->column - b->column), 125, 1e-9);
@@ -198,7 +198,7 @@ TEST(Camera, SaysWhatIsWrong) {
 TEST(Camera, OfAFullCircleSeesHalfOfAllDirections) {
     const Camera camera = cameraFrom("projection=omni pixels=600,400");
     EXPECT_NEAR(camera.widest.degrees(), 90, 1e-9);
-    EXPECT_TRUE(camera.looksAround({{}, {}, Angle::degrees(-90), {}}));
+    EXPECT_TRUE(camera.isOmnidirectional({{}, {}, Angle::degrees(-90), {}}));
     EXPECT_NEAR(cameraFrom("projection=omni mirror=1").widest.degrees(), 90, 1e-9);
 }
 

@@ -118,9 +118,9 @@ double Laser::timeOf(int beam) const {
 double Laser::duration() const { return timeOf(spin > 0 ? beams - 1 : 0); }
 
 Angle Laser::span() const {
-    constexpr double kWidestGap = 1.01;  // in steps
+    constexpr double kMaxGap = 1.01;  // in steps
     const Angle beside = last() - first;
-    const bool is_closed = beams > 2 && kTurn - beside <= kWidestGap * step;
+    const bool is_closed = beams > 2 && kTurn - beside <= kMaxGap * step;
     return is_closed ? kTurn : beside;
 }
 

@@ -65,7 +65,7 @@ struct Laser {
     [[nodiscard]] std::size_t rays() const {
         return static_cast<std::size_t>(beams) * static_cast<std::size_t>(scans());
     }
-    [[nodiscard]] bool looksAround(const Pose3& mount) const {
+    [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const {
         return mount.isLevel() && seesAround();
     }
     friend bool operator==(const Laser&, const Laser&) = default;

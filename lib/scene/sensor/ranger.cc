@@ -107,7 +107,7 @@ void addRangerKeys(std::vector<KeySpec>& keys) {
                     .unit = Unit::Length,
                     .help = "distances are measured modulo this, at any range; 0: in full",
                     .lower = 0,
-                    .upper = kFarthest});
+                    .upper = kMaxDistance});
     addNoiseKeys(keys);
 }
 

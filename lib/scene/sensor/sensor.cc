@@ -25,12 +25,12 @@ double readingTime(const SensorModel& model) {
     return std::visit([](const auto& one) { return one.readingTime(); }, model);
 }
 
-std::size_t raysOf(const SensorModel& model) {
+std::size_t rayCount(const SensorModel& model) {
     return std::visit([](const auto& one) { return one.rays(); }, model);
 }
 
-bool looksAround(const SensorModel& model, const Pose3& mount) {
-    return std::visit([&](const auto& one) { return one.looksAround(mount); }, model);
+bool isOmnidirectional(const SensorModel& model, const Pose3& mount) {
+    return std::visit([&](const auto& one) { return one.isOmnidirectional(mount); }, model);
 }
 
 std::optional<FieldOfView> fieldOfView(const Sensor& sensor) {

@@ -64,9 +64,9 @@ double readingRate(const SensorModel& model);
 /// Duration of one reading in seconds; 0 if everything is measured at once.
 double readingTime(const SensorModel& model);
 /// Rays of one reading, roughly: what it costs to simulate.
-std::size_t raysOf(const SensorModel& model);
+std::size_t rayCount(const SensorModel& model);
 /// True if, mounted with this tilt and roll, it sees the same whatever its heading.
-bool looksAround(const SensorModel& model, const Pose3& mount);
+bool isOmnidirectional(const SensorModel& model, const Pose3& mount);
 
 /// What it perceives if nothing is in the way; nothing for lasers, which scan a plane, and for
 /// tags.

@@ -24,7 +24,7 @@ KeySpec angleKey(std::string name, std::string help, double lower, double upper,
 }
 
 KeySpec headingKey(std::string help) {
-    return angleKey("heading", std::move(help), -kFarthest, kFarthest, Role::Heading);
+    return angleKey("heading", std::move(help), -kMaxDistance, kMaxDistance, Role::Heading);
 }
 
 KeySpec positiveKey(std::string name, Unit unit, std::string help, double upper) {
@@ -51,7 +51,7 @@ KeySpec rangeKey(std::string help) {
             .min_count = 1,
             .max_count = 2,
             .lower = 0,
-            .upper = kFarthest};
+            .upper = kMaxDistance};
 }
 
 void addSensorPose(std::vector<KeySpec>& keys, std::string heading_help) {
@@ -62,8 +62,8 @@ void addSensorPose(std::vector<KeySpec>& keys, std::string heading_help) {
                             "pose, or with `on` 0,0",
                     .min_count = 2,
                     .max_count = 3,
-                    .lower = -kFarthest,
-                    .upper = kFarthest,
+                    .lower = -kMaxDistance,
+                    .upper = kMaxDistance,
                     .role = Role::Place,
                     .standard_z = kScanHeight});
     keys.push_back(headingKey(std::move(heading_help)));
@@ -82,8 +82,8 @@ KeySpec onKey() {
 }
 
 KeySpec costKey() {
-    KeySpec key =
-        positiveKey("cost", Unit::None, "of one, in any currency; for arrange --budget", kFarthest);
+    KeySpec key = positiveKey("cost", Unit::None, "of one, in any currency; for arrange --budget",
+                              kMaxDistance);
     key.default_value = 1.0;
     return key;
 }

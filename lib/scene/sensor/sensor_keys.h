@@ -13,7 +13,7 @@
 namespace ispace {
 
 /// Plans lie within this distance of the origin, in metres, as in the environment.
-constexpr double kFarthest = 1e6;
+constexpr double kMaxDistance = 1e6;
 
 // Keys that several records have.
 KeySpec idKey();

@@ -32,7 +32,7 @@ Tag withParameters(Tag base, const Record& record) {
 
 Tag tagOf(const Record& record, const Record* device) { return parametersOf<Tag>(record, device); }
 
-bool Receiver::looksAround(const Pose3& mount) {
+bool Receiver::isOmnidirectional(const Pose3& mount) {
     const Frame3 frame(mount);
     return frame.forward.x == 0 && frame.forward.y == 0;
 }

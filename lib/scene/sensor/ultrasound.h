@@ -26,7 +26,7 @@ struct Receiver {
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
     [[nodiscard]] static std::size_t rays() { return 1; }
-    [[nodiscard]] static bool looksAround(const Pose3& mount);
+    [[nodiscard]] static bool isOmnidirectional(const Pose3& mount);
     friend bool operator==(const Receiver&, const Receiver&) = default;
 };
 
@@ -46,7 +46,7 @@ struct Tag {
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
     [[nodiscard]] static std::size_t rays() { return 64; }  ///< one for each of some receivers
-    [[nodiscard]] static bool looksAround(const Pose3& /*mount*/) { return false; }
+    [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return false; }
     friend bool operator==(const Tag&, const Tag&) = default;
 };
 

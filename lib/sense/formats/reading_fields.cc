@@ -253,7 +253,7 @@ FieldValue coordinate(const View& reading) {
     return Measured{positionOf(burstOf(reading))[kAxis]};
 }
 
-template <double Fix::*kPart>
+template <double PositionFix::*kPart>
 FieldValue ofFix(const View& reading) {
     const Burst& burst = burstOf(reading);
     return burst.fix ? Measured{(*burst.fix).*kPart} : Measured{};
@@ -322,10 +322,10 @@ constexpr ReadingField kTagFields[] = {
     {"x", kInColumn, coordinate<0>},
     {"y", kInColumn, coordinate<1>},
     {"z", kInColumn, coordinate<2>},
-    {"residual", kInJson | kInColumn, ofFix<&Fix::residual>},
-    {"pdop", kInJson | kInColumn, ofFix<&Fix::pdop>},
-    {"hdop", kInJson | kInColumn, ofFix<&Fix::hdop>},
-    {"vdop", kInJson | kInColumn, ofFix<&Fix::vdop>},
+    {"residual", kInJson | kInColumn, ofFix<&PositionFix::residual>},
+    {"pdop", kInJson | kInColumn, ofFix<&PositionFix::pdop>},
+    {"hdop", kInJson | kInColumn, ofFix<&PositionFix::hdop>},
+    {"vdop", kInJson | kInColumn, ofFix<&PositionFix::vdop>},
     {"heard", kInColumn, heardCount},
     {"times", kInColumn, timesOfFlight},
     {"ranges", kInArray, rangesOfReceivers, kFloat64,

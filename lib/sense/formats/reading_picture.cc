@@ -228,8 +228,8 @@ struct Layout {
         // A scan of a desk by a sensor that reaches far shows the desk.
         const double limit = std::max(laser.max_range, 0.001);
         if (farthest == 0) farthest = limit;
-        constexpr double kFewestRings = 4;
-        ring = roundStep(farthest / kFewestRings / 1.3);
+        constexpr double kMinRings = 4;
+        ring = roundStep(farthest / kMinRings / 1.3);
         extent = std::min(std::ceil(farthest / ring - 1e-6) * ring, limit);
         const double head = 3.6 * em, rim = 2.1 * em;
         disc = std::max(1.0, (size - head - 2 * rim) / 2);

@@ -113,7 +113,7 @@ TEST(BurstJsonl, WithAndWithoutAPlace) {
                                     "],\"position\":[1.25,2],\"residual\":null,\"pdop\":null,"
                                     "\"hdop\":null,\"vdop\":null}\n");
     burst.simple.reset();
-    burst.fix = Fix{{1, 2, 0.75}, 0.001, 1.5, 1.25, 0.75};
+    burst.fix = PositionFix{{1, 2, 0.75}, 0.001, 1.5, 1.25, 0.75};
     EXPECT_EQ(burstLine(burst), begin + heard +
                                     "],\"position\":[1,2,0.75],\"residual\":0.001,\"pdop\":1.5,"
                                     "\"hdop\":1.25,\"vdop\":0.75}\n");
@@ -230,7 +230,7 @@ TEST(ReadingCsv, BurstRows) {
     burst.simple = Point2{1.5, -2};
     EXPECT_EQ(rowOf(burst), "t1,1,0.1,1.5,-2,,,,,,2,u1=0.0125 u4=0.01\n");
     burst.simple.reset();
-    burst.fix = Fix{{1, 2, 0.5}, 0.001, 1.5, 1.25, 0.75};
+    burst.fix = PositionFix{{1, 2, 0.5}, 0.001, 1.5, 1.25, 0.75};
     EXPECT_EQ(rowOf(burst), "t1,1,0.1,1,2,0.5,0.001,1.5,1.25,0.75,2,u1=0.0125 u4=0.01\n");
 }
 

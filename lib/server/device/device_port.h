@@ -87,9 +87,9 @@ class DeviceHost : public WireHost {
     [[nodiscard]] bool holds(std::string_view robot, std::int64_t hold) override;
     void release(std::string_view robot, std::int64_t hold) override;
     [[nodiscard]] std::chrono::nanoseconds clock() const override;
-    void doAside(std::function<void()> work,
-                 std::function<void(const std::exception_ptr& failure)> deliver) override {
-        state_->doAside({std::move(work), std::move(deliver)});
+    void runInBackground(std::function<void()> work,
+                         std::function<void(const std::exception_ptr& failure)> deliver) override {
+        state_->runInBackground({std::move(work), std::move(deliver)});
     }
 
   private:

@@ -188,7 +188,8 @@ void MjpegSession::show() {
     if (!coming_)
         coming_ = host_->pictures().newest(world, *sensor, std::chrono::steady_clock::now(),
                                            host_->isPaused(), [this](auto work, auto deliver) {
-                                               host_->doAside(std::move(work), std::move(deliver));
+                                               host_->runInBackground(std::move(work),
+                                                                      std::move(deliver));
                                            });
     if (!coming_ || !(coming_->file || coming_->failure)) return;
     const auto asked = std::exchange(coming_, nullptr);

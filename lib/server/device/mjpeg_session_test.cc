@@ -211,7 +211,7 @@ TEST(PictureFiles, AreTakenOnceForAllAndHalfOfTheTime) {
     auto now = std::chrono::steady_clock::now();
     const auto newest = [&](std::size_t sensor, bool at_once) {
         return files.newest(world, sensor, now, at_once, [&](auto work, auto deliver) {
-            host.doAside(std::move(work), std::move(deliver));
+            host.runInBackground(std::move(work), std::move(deliver));
         });
     };
     const auto first = newest(depth, false);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr char kFirst = '\xFA', kSecond = '\xFB';
 /// FA, FB and the length; then id and checksum at least.
-constexpr std::size_t kHead = 3, kLeast = 3, kChecksum = 2;
+constexpr std::size_t kHead = 3, kMinValue = 3, kChecksum = 2;
 /// What a length may say at most.
 constexpr std::size_t kMost = 200;
 constexpr std::uint8_t kNegative = 0x1B;
@@ -59,7 +59,7 @@ std::optional<P2osPacket> P2osParser::take() {
         }
         if (rest.size() < kHead) break;
         const std::size_t length = byteAt(rest, 2);
-        if (length < kLeast || length > kMost) {
+        if (length < kMinValue || length > kMost) {
             ++at;
             continue;
         }
@@ -136,7 +136,7 @@ const P2osType& p2osTypeOf(const Scene& scene, std::string_view robot) {
 namespace {
 
 constexpr double kMillimetres = 1000;
-constexpr double kMost16 = 65535;
+constexpr double kMax16 = 65535;
 /// 12.5 V, a charged battery.
 constexpr int kBattery = 125;
 /// No echo within the sonars' range.
@@ -148,7 +148,7 @@ constexpr std::uint8_t kStatus = 0x32, kConfig = 0x20, kSim = 0x62, kScan = 0x60
 std::int64_t rounded(double value) { return std::llround(value); }
 
 /// Millimetres as 16 bits, what is more as the most.
-std::int64_t range16(double millimetres) { return rounded(std::clamp(millimetres, 0.0, kMost16)); }
+std::int64_t range16(double millimetres) { return rounded(std::clamp(millimetres, 0.0, kMax16)); }
 
 /// Units of heading, in (-2048, 2048].
 std::int64_t headingUnits(Angle heading) {
@@ -181,14 +181,14 @@ bool isFront(const Bumper& bumper) { return cos(0.5 * (bumper.from + bumper.to))
 }  // namespace
 
 std::uint16_t p2osBumpers(const RobotModel& model, const std::vector<bool>& pressed) {
-    constexpr int kMostOfASide = 7;
+    constexpr int kMaxOfASide = 7;
     unsigned bits = 0;
     // They are counter-clockwise in the model, so the last one of each side comes first.
     int front = 0, rear = 0;
     for (std::size_t k = pressed.size(); k-- > 0;) {
         const bool is_front = isFront(model.bumpers[k]);
         const int bit = is_front ? ++front : ++rear;
-        if (pressed[k] && bit <= kMostOfASide) bits |= 1U << (is_front ? bit + 8 : bit);
+        if (pressed[k] && bit <= kMaxOfASide) bits |= 1U << (is_front ? bit + 8 : bit);
     }
     return static_cast<std::uint16_t>(bits);
 }

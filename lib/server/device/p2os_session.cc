@@ -163,7 +163,7 @@ namespace {
 
 constexpr std::uint8_t kLastSync = 2;
 /// Of names that are sent.
-constexpr std::size_t kLongestName = 24;
+constexpr std::size_t kMaxName = 24;
 
 Pose2 product(const Pose2& a, const Pose2& b) {
     return {a * b.position, wrapped(a.heading + b.heading)};
@@ -211,7 +211,7 @@ const RobotModel& P2osSession::model() const { return host_->world().robots()[ro
 
 bool P2osSession::isLost() { return !hold_ || !host_->holds(id_, *hold_); }
 
-std::string P2osSession::name() const { return id_.substr(0, kLongestName); }
+std::string P2osSession::name() const { return id_.substr(0, kMaxName); }
 
 Pose2 P2osSession::pose() {
     const World& world = host_->world();
@@ -295,8 +295,8 @@ void P2osSession::stepped(std::size_t unsent) {
     if (!opened_ || world.time() < next_) return;
     while (next_ <= world.time()) next_ += kCycle;
     // What nobody reads now is old news when it is read.
-    constexpr std::size_t kMostUnsent = 16384;
-    if (unsent > kMostUnsent) return;
+    constexpr std::size_t kMaxUnsent = 16384;
+    if (unsent > kMaxUnsent) return;
     if (tells_sim_) sendSim();
     sendStatus();
     sendScan();

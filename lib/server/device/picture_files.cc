@@ -10,7 +10,7 @@ namespace ispace {
 
 namespace {
 
-constexpr std::chrono::milliseconds kLeastGap{10};
+constexpr std::chrono::milliseconds kMinGap{10};
 constexpr double kPerMetre = 1000;
 
 std::shared_ptr<const PictureFile> fileOf(const RunSensor& sensor, const SensorReading& reading) {
@@ -40,7 +40,7 @@ std::shared_ptr<const PictureFiles::Asked> PictureFiles::newest(World& world, st
     const bool is_newest = entry.asked && entry.changes == changes && entry.seq == seq;
     if (is_newest || (entry.asked && !is_made && entry.changes == changes)) return entry.asked;
     if (!at_once && (now < next_ || now < entry.next)) return nullptr;
-    entry = {std::make_shared<Asked>(), seq, changes, now + kLeastGap};
+    entry = {std::make_shared<Asked>(), seq, changes, now + kMinGap};
     // Of `entry` no more: another thread may be done before this one goes on.
     const auto asked = entry.asked;
     make(world, sensor, entry, does);
@@ -58,7 +58,7 @@ void PictureFiles::make(World& world, std::size_t sensor, const Entry& entry, co
     const auto making = std::make_shared<Making>(Making{world.sensors()[sensor], {}, {}, {}});
     const bool takes = !world.isTaken(sensor);
     if (takes)
-        making->take = world.takeLater(sensor);
+        making->take = world.captureLater(sensor);
     else
         making->reading = world.reading(sensor);
     does(

@@ -12,7 +12,7 @@ namespace ispace {
 namespace {
 
 /// Steps have four digits, distances 18 bits.
-constexpr int kMostSteps = 9999, kMaxScipDistance = (1 << 18) - 1;
+constexpr int kMaxSteps = 9999, kMaxScipDistance = (1 << 18) - 1;
 constexpr double kMillimetres = 1000;
 
 struct Row {
@@ -68,10 +68,10 @@ std::string ScipModel::refusal(const Laser& laser) {
     constexpr const char* kTooMany = "it has more steps than SCIP can number";
     const double turn = 360 / laser.step.degrees();
     const double first = laser.first.degrees() / laser.step.degrees();
-    if (turn > kMostSteps) return kTooMany;
+    if (turn > kMaxSteps) return kTooMany;
     if (!isWhole(turn)) return "a turn is no whole number of its steps, as SCIP wants it";
     if (!isWhole(first)) return "no step of it looks straight ahead, as SCIP wants it";
-    if (frontOf(laser) + offsetOf(laser) + laser.beams - 1 > kMostSteps) return kTooMany;
+    if (frontOf(laser) + offsetOf(laser) + laser.beams - 1 > kMaxSteps) return kTooMany;
     return "";
 }
 
@@ -134,7 +134,7 @@ namespace {
 
 constexpr unsigned kSix = 0x3F, kZero = 0x30;
 constexpr std::size_t kColumns = 64;
-constexpr std::size_t kLongestText = 16;
+constexpr std::size_t kMaxText = 16;
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
@@ -200,7 +200,7 @@ ScipRequest ScipRequest::of(std::string_view line) {
     request.parameters = body.substr(request.command.size());
     if (line.size() > ScipLines::kLongest) {
         request.fault = "0F";
-    } else if (request.text.size() > kLongestText + 1) {
+    } else if (request.text.size() > kMaxText + 1) {
         request.fault = "0G";
     } else if (!request.text.empty() &&
                !std::all_of(request.text.begin() + 1, request.text.end(), isOfText)) {

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kRoom = std::size_t{1} << 16;
 constexpr std::uint32_t kTimeMask = 0xFFFFFF;
 constexpr int kIntensity = 1000;
-constexpr int kMostOfTwo = 4095;
+constexpr int kMaxOfTwo = 4095;
 constexpr std::string_view kUnknown = "0E";  // status: no such command
 
 std::uint32_t milliseconds(std::chrono::nanoseconds time) {
@@ -276,7 +276,7 @@ std::string ScipSession::scan(std::string_view command, const ScipSweep& sweep) 
     std::string values;
     for (int value : model_.numbers(reading.scan().ranges, sweep.start, sweep.end, sweep.cluster)) {
         const bool is_distance = model_.isDistance(value);
-        if (characters == 2) value = std::min(value, kMostOfTwo);
+        if (characters == 2) value = std::min(value, kMaxOfTwo);
         appendScipNumber(values, static_cast<std::uint32_t>(value), characters);
         if (command[1] == 'E') appendScipNumber(values, is_distance ? kIntensity : 0, characters);
     }

@@ -36,8 +36,8 @@ std::string unknown(std::string_view kind, std::string_view id,
 
 }  // namespace
 
-void WireHost::doAside(std::function<void()> work,
-                       std::function<void(const std::exception_ptr& failure)> deliver) {
+void WireHost::runInBackground(std::function<void()> work,
+                               std::function<void(const std::exception_ptr& failure)> deliver) {
     std::exception_ptr failure;
     try {
         std::exchange(work, nullptr)();

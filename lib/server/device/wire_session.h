@@ -56,8 +56,8 @@ class WireHost {
     /// Does what takes long: now, or where there is another thread, in that while others are
     /// served. `deliver` is then called between steps, with what was thrown or null, and stepped()
     /// of all sessions after it.
-    virtual void doAside(std::function<void()> work,
-                         std::function<void(const std::exception_ptr& failure)> deliver);
+    virtual void runInBackground(std::function<void()> work,
+                                 std::function<void(const std::exception_ptr& failure)> deliver);
     /// Of all sessions together.
     [[nodiscard]] PictureFiles& pictures() { return pictures_; }
 

@@ -56,12 +56,12 @@ void ZpsSession::follow() {
 void ZpsSession::stepped(std::size_t unsent) {
     const World& world = host_->world();
     if (changes_ != world.changes()) follow();
-    constexpr std::size_t kMostUnsent = 4096;
+    constexpr std::size_t kMaxUnsent = 4096;
     for (Followed& tag : tags_) {
         const SensorReading& reading = world.reading(tag.sensor);
         if (reading.seq == tag.seq) continue;
         tag.seq = reading.seq;
-        if (unsent <= kMostUnsent) send(lineOf(world.sensors()[tag.sensor].id, reading));
+        if (unsent <= kMaxUnsent) send(lineOf(world.sensors()[tag.sensor].id, reading));
     }
 }
 

@@ -47,7 +47,7 @@ void addMovers(JsonWriter& json, const Scene& scene) {
 /// Also mats, gates and tags, in the order of the scene.
 void addSensors(JsonWriter& json, const Scene& scene) {
     json.key("sensors").beginArray();
-    for (const Placed& placed : scene.placed) {
+    for (const PlacedRecord& placed : scene.placed) {
         const Record& record = scene.records[placed.record];
         const std::string& keyword = record.keyword();
         if (keyword == "human" || keyword == "robot") continue;
@@ -106,7 +106,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr auto kLeastInterval = std::chrono::milliseconds(33);
+constexpr auto kMinInterval = std::chrono::milliseconds(33);
 /// While no step is taken, requests may still change what there is to see.
 constexpr auto kIdleInterval = std::chrono::milliseconds(100);
 /// Frames take at most such a share of the time.
@@ -191,7 +191,7 @@ void WebFrames::look(WallTime now) {
         changes_.reset();
         whole_.reset();
     }
-    next_look_ = now + std::max<std::chrono::nanoseconds>(stepped ? kLeastInterval : kIdleInterval,
+    next_look_ = now + std::max<std::chrono::nanoseconds>(stepped ? kMinInterval : kIdleInterval,
                                                           kShare * (steady_clock::now() - start));
 }
 

@@ -17,8 +17,8 @@ namespace ispace {
 namespace {
 
 /// Distance between lamps, of the height; and the most of them, and of places looked at for them.
-constexpr double kSpacing = 1.1, kLeastSpacing = 1.8;
-constexpr double kMostLamps = 4000, kMostPlaces = 200'000;
+constexpr double kSpacing = 1.1, kMinSpacing = 1.8;
+constexpr double kMaxLamps = 4000, kMaxPlaces = 200'000;
 /// What a white floor shines with below many lamps, without what surfaces throw back.
 constexpr double kBrightness = 0.72;
 
@@ -28,8 +28,8 @@ Lamps::Lamps(const Environment& environment, Vec3 shift) {
     const double area = std::max(1.0, environment.indoor().area());
     const Box2 plan = bounds(environment.indoor());
     const double spacing =
-        std::max({kLeastSpacing, kSpacing * environment.height(), std::sqrt(area / kMostLamps),
-                  std::sqrt(plan.width() * plan.depth() / kMostPlaces)});
+        std::max({kMinSpacing, kSpacing * environment.height(), std::sqrt(area / kMaxLamps),
+                  std::sqrt(plan.width() * plan.depth() / kMaxPlaces)});
     height_ = static_cast<float>(std::max(1.0, environment.height() - 0.02));
     reach_ = static_cast<float>(4 * spacing);
     for (const Region& part : environment.indoor().parts) {

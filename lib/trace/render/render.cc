@@ -134,13 +134,13 @@ class TileWorker {
                                    1.0 * std::min(row + i / kTile, last_row)};
             const auto line = sightLineNear(place, at);
             tile_.is_black[lane] = !line;
-            tile_.set(lane, line.value_or(SightLine{{}, {1, 0, 0}}), shift);
+            tile_.set(lane, line.value_or(PixelRay{{}, {1, 0, 0}}), shift);
         }
     }
 
     /// The line of sight a part of a pixel beside a pixel's centre, taken as even between the
     /// centres about it where all have one: those are known.
-    [[nodiscard]] std::optional<SightLine> sightLineNear(PixelPoint place, PixelPoint at) const {
+    [[nodiscard]] std::optional<PixelRay> sightLineNear(PixelPoint place, PixelPoint at) const {
         const Viewpoint& from = job_.viewpoint;
         const bool is_inner = place.column > 0 && place.column + 1 < job_.out.columns &&
                               place.row > 0 && place.row + 1 < job_.out.rows;
@@ -159,12 +159,12 @@ class TileWorker {
             return a + u * (b - a) + v * (c - a);
         };
         const auto& [o, d] = *middle;
-        return SightLine{{between(o.x, aside->origin.x, below->origin.x),
-                          between(o.y, aside->origin.y, below->origin.y),
-                          between(o.z, aside->origin.z, below->origin.z)},
-                         {between(d.x, aside->direction.x, below->direction.x),
-                          between(d.y, aside->direction.y, below->direction.y),
-                          between(d.z, aside->direction.z, below->direction.z)}};
+        return PixelRay{{between(o.x, aside->origin.x, below->origin.x),
+                         between(o.y, aside->origin.y, below->origin.y),
+                         between(o.z, aside->origin.z, below->origin.z)},
+                        {between(d.x, aside->direction.x, below->direction.x),
+                         between(d.y, aside->direction.y, below->direction.y),
+                         between(d.z, aside->direction.z, below->direction.z)}};
     }
 
     template <typename Visit>
@@ -211,7 +211,7 @@ class TileWorker {
         const SurfaceSet& set = kind == SurfaceKind::Solid ? solid_ : job_.scene.set(kind);
         const std::uint16_t label = set.labels()[tile_.triangle[lane]];
         if (label != 0 || !has_coverings_) return label;
-        const Finish& finish = set.finish(tile_.triangle[lane]);
+        const SurfaceFinish& finish = set.finish(tile_.triangle[lane]);
         return static_cast<std::uint16_t>(
             std::min(job_.scene.finishAt(finish, tile_.place(lane)).label, 65535U));
     }
@@ -284,10 +284,10 @@ class TileWorker {
     }
 
     Job& job_;
-    SightTracer tracer_;
+    TileTracer tracer_;
     ClearTracer clear_;
     LightTracer lights_;
-    SightTile tile_;
+    RayTile tile_;
     LitPlaces places_;
     std::vector<float> draws_;
     std::array<std::uint16_t, kLanes> labels_{};
@@ -335,13 +335,13 @@ class Band final : public Viewpoint {
   public:
     Band(const Viewpoint& whole, int first, int rows)
         : Viewpoint(whole.columns(), rows), whole_(whole), first_(first) {}
-    [[nodiscard]] std::optional<SightLine> sightLine(PixelPoint place) const override {
+    [[nodiscard]] std::optional<PixelRay> sightLine(PixelPoint place) const override {
         return whole_.sightLine({place.column, place.row + first_});
     }
     [[nodiscard]] std::optional<EvenSightLines> evenSightLines() const override {
         auto lines = whole_.evenSightLines();
         if (!lines) return std::nullopt;
-        const SightLine corner = lines->at({0, 1.0 * first_});
+        const PixelRay corner = lines->at({0, 1.0 * first_});
         lines->origin = corner.origin;
         lines->direction = corner.direction;
         return lines;

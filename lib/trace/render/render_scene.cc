@@ -16,7 +16,7 @@
 
 namespace ispace {
 
-void FinishedSoup::add(const Mesh& mesh, Finish finish, Vec3 shift) {
+void FinishedSoup::add(const Mesh& mesh, SurfaceFinish finish, Vec3 shift) {
     const auto first = static_cast<std::uint32_t>(triangles.vertices.size());
     for (const Point3& vertex : mesh.vertices) triangles.add(vertex + shift);
     for (const auto& [a, b, c] : mesh.triangles)
@@ -42,7 +42,7 @@ SurfaceSet::SurfaceSet(RTCDeviceTy* device, FinishedBodies bodies, unsigned geom
 
 void SurfaceSet::addLabels() {
     labels_.reserve(finishes_.size());
-    for (const Finish& finish : finishes_)
+    for (const SurfaceFinish& finish : finishes_)
         labels_.push_back(static_cast<std::uint16_t>(std::min(finish.label, std::uint32_t{65535})));
 }
 
@@ -56,7 +56,7 @@ std::vector<Paint> paintsOfMaterials() {
     std::vector<Paint> paints;
     for (std::size_t i = 0; i < kMaterials; ++i) {
         const auto material = static_cast<Material>(i);
-        const Look& look = lookOf(material);
+        const Appearance& look = lookOf(material);
         Paint paint;
         for (std::size_t k = 0; k < 3; ++k) paint.color[k] = static_cast<float>(look.color[k]);
         paint.opacity = static_cast<float>(look.opacity);
@@ -284,13 +284,13 @@ class StillBuilder {
                   index);
     }
 
-    [[nodiscard]] bool isShown(const Placed& placed) const {
+    [[nodiscard]] bool isShown(const PlacedRecord& placed) const {
         const std::string& keyword = scene_.records[placed.record].keyword();
         return options_.devices || keyword == "robot";
     }
 
     void addFigures() {
-        for (const Placed& placed : scene_.placed) {
+        for (const PlacedRecord& placed : scene_.placed) {
             StillSurfaces::Figure figure;
             figure.finish.label = static_cast<std::uint32_t>(placed.record + 1);
             const Record& record = scene_.records[placed.record];
@@ -382,7 +382,7 @@ RenderScene::Data::Data(std::shared_ptr<const StillSurfaces> surfaces, std::span
       people(still->device.get(), peopleAt(*still, poses, swings), unsigned(SurfaceKind::Person)),
       views(still->device.get(), viewsAt(*still, poses), unsigned(SurfaceKind::View)) {}
 
-Finish RenderScene::Data::finishAt(const Finish& finish, Point3 place) const {
+SurfaceFinish RenderScene::Data::finishAt(const SurfaceFinish& finish, Point3 place) const {
     if (finish.label != 0 || still->coverings.empty() || !still->paints[finish.paint].is_floor)
         return finish;
     for (std::size_t i = still->coverings.size(); i-- > 0;)
@@ -394,7 +394,7 @@ Finish RenderScene::Data::finishAt(const Finish& finish, Point3 place) const {
 RenderScene::RenderScene(const Scene& scene, const RenderSceneOptions& options) {
     auto still = std::make_shared<const StillSurfaces>(StillBuilder(scene, options).build());
     std::vector<Pose3> poses;
-    for (const Placed& placed : scene.placed) poses.push_back(placed.pose);
+    for (const PlacedRecord& placed : scene.placed) poses.push_back(placed.pose);
     data_ = std::make_shared<const Data>(std::move(still), poses);
 }
 
@@ -405,7 +405,7 @@ RenderScene RenderScene::at(std::span<const Pose3> poses, std::span<const Angle>
 std::vector<std::size_t> ownRecords(const Scene& scene, const Sensor& sensor) {
     std::vector<std::size_t> own;
     std::size_t people = 0;
-    for (const Placed& placed : scene.placed) {
+    for (const PlacedRecord& placed : scene.placed) {
         const std::string& keyword = scene.records[placed.record].keyword();
         const bool carries =
             (sensor.mount && keyword == "robot" && placed.index == sensor.mount->robot) ||

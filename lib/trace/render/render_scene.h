@@ -20,7 +20,7 @@
 namespace ispace {
 
 /// What a triangle belongs to, and how it looks.
-struct Finish {
+struct SurfaceFinish {
     static constexpr std::uint32_t kNoFace = ~0U;
 
     std::uint32_t label = 0;       ///< index of its record, plus 1
@@ -31,15 +31,15 @@ struct Finish {
 /// Triangles with their finish, in coordinates relative to the middle of the plan.
 struct FinishedSoup {
     TriangleSoup triangles;
-    std::vector<Finish> finishes;
+    std::vector<SurfaceFinish> finishes;
 
-    void add(const Mesh& mesh, Finish finish, Vec3 shift);
+    void add(const Mesh& mesh, SurfaceFinish finish, Vec3 shift);
 };
 
 /// Bodies of people, one finish each, in the same coordinates. Labels are the bodies' owners.
 struct FinishedBodies {
     std::vector<TracedBody> bodies;
-    std::vector<Finish> finishes;
+    std::vector<SurfaceFinish> finishes;
 };
 
 /// Triangles, or bodies, ready to be traced. Hits of it have this geometry id. Bodies are traced by
@@ -54,7 +54,7 @@ class SurfaceSet {
     [[nodiscard]] const TriangleSet& triangles() const { return triangles_; }
     [[nodiscard]] const TracedBody& body(std::size_t index) const { return bodies_[index]; }
     /// Of a triangle, or of a body.
-    [[nodiscard]] const Finish& finish(std::size_t index) const { return finishes_[index]; }
+    [[nodiscard]] const SurfaceFinish& finish(std::size_t index) const { return finishes_[index]; }
     /// Labels of the triangles or bodies as pictures hold them: 65535 stands for all from there on.
     /// Kept apart, since pictures of labels read nothing else of a finish.
     [[nodiscard]] std::span<const std::uint16_t> labels() const { return labels_; }
@@ -65,7 +65,7 @@ class SurfaceSet {
 
     TriangleSet triangles_;
     std::vector<TracedBody> bodies_;
-    std::vector<Finish> finishes_;  // of the set's triangles, or of its bodies
+    std::vector<SurfaceFinish> finishes_;  // of the set's triangles, or of its bodies
     std::vector<std::uint16_t> labels_;
     EmbreeSceneHandle scene_;
 };
@@ -85,7 +85,7 @@ struct Covering {
     Vec2 along, across;  ///< whole extents, at right angles
     std::size_t columns = 1;
     std::vector<std::uint32_t> paints;  ///< of the squares, row by row
-    std::uint32_t face = Finish::kNoFace;
+    std::uint32_t face = SurfaceFinish::kNoFace;
 
     /// The paint at a place; nothing beside it.
     [[nodiscard]] std::optional<std::uint32_t> paintAt(Point2 place) const;
@@ -97,7 +97,7 @@ struct StillSurfaces {
     struct Figure {
         std::vector<Mesh> body;
         std::optional<Mesh> view;
-        Finish finish;
+        SurfaceFinish finish;
         std::optional<std::uint32_t> paint;  ///< of the body, if it is not that of its materials
         std::optional<double> person_height = {};  ///< of a person, who is humanParts()
     };
@@ -128,7 +128,7 @@ struct RenderScene::Data {
     Data(std::shared_ptr<const StillSurfaces> surfaces, std::span<const Pose3> poses,
          std::span<const Angle> swings = {});
     /// The finish of a triangle at a place: coverings lie on the floor.
-    [[nodiscard]] Finish finishAt(const Finish& finish, Point3 place) const;
+    [[nodiscard]] SurfaceFinish finishAt(const SurfaceFinish& finish, Point3 place) const;
     [[nodiscard]] const SurfaceSet& set(SurfaceKind kind) const {
         switch (kind) {
             case SurfaceKind::Solid:

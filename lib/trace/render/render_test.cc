@@ -143,7 +143,7 @@ TEST(Render, HiddenBodiesAreNotSeen) {
     EXPECT_GT(count(prepared, far), hidden_before);
     // The far one walks out of the picture.
     std::vector<Pose3> poses;
-    for (const Placed& placed : room.placed) poses.push_back(placed.pose);
+    for (const PlacedRecord& placed : room.placed) poses.push_back(placed.pose);
     for (std::size_t i = 0; i < poses.size(); ++i)
         if (room.placed[i].record == far) poses[i].position.x = -2.9;
     EXPECT_EQ(count(prepared.at(poses), far), 0);

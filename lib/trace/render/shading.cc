@@ -19,14 +19,14 @@ constexpr Rgb kPanel{3, 3, 2.9F};
 /// Light that clear glass throws back, and lets pass.
 constexpr Rgb kGlassShine{0.05F, 0.06F, 0.07F}, kGlassPasses{0.80F, 0.89F, 0.90F};
 /// A clear pane, or a cone of vision, that is seen so often through itself is thick enough.
-constexpr std::size_t kMostLayers = 32;
+constexpr std::size_t kMaxLayers = 32;
 
 }  // namespace
 
 Shading::Shading(const RenderScene::Data& scene, Illumination light, const RenderOptions& options)
     : scene_(scene), light_(light), options_(options), far_(25 * scene.still->extent) {}
 
-bool Shading::meetsSurface(const SightTile& tile, std::size_t lane) const {
+bool Shading::meetsSurface(const RayTile& tile, std::size_t lane) const {
     if (tile.is_black[lane]) return false;
     if (tile.meets(lane)) return true;
     // The ground ends in the haze.
@@ -36,7 +36,7 @@ bool Shading::meetsSurface(const SightTile& tile, std::size_t lane) const {
            height * length(tile.direction(lane)) < kEnd * far_ * fall;
 }
 
-SurfacePoint Shading::ground(const SightTile& tile, std::size_t lane) const {
+SurfacePoint Shading::ground(const RayTile& tile, std::size_t lane) const {
     const double depth = -tile.origin_z[lane] / tile.z[lane];
     SurfacePoint point;
     point.place = tile.origin(lane) + depth * tile.direction(lane);
@@ -47,7 +47,7 @@ SurfacePoint Shading::ground(const SightTile& tile, std::size_t lane) const {
     return point;
 }
 
-Vec3 Shading::normalAt(const SightTile& tile, std::size_t lane, Point3 place) const {
+Vec3 Shading::normalAt(const RayTile& tile, std::size_t lane, Point3 place) const {
     const std::uint32_t triangle = tile.triangle[lane];
     const auto seen = [&](Vec3 normal) {
         return dot(normal, tile.direction(lane)) > 0 ? -1 * normal : normal;
@@ -65,21 +65,21 @@ Vec3 Shading::normalAt(const SightTile& tile, std::size_t lane, Point3 place) co
     return seen(normal);
 }
 
-SurfacePoint Shading::surface(const SightTile& tile, std::size_t lane) const {
+SurfacePoint Shading::surface(const RayTile& tile, std::size_t lane) const {
     return tile.meets(lane) ? met(tile, lane) : ground(tile, lane);
 }
 
-SurfacePoint Shading::met(const SightTile& tile, std::size_t lane) const {
+SurfacePoint Shading::met(const RayTile& tile, std::size_t lane) const {
     const SurfaceSet& set = scene_.set(tile.kind[lane]);
     SurfacePoint point;
     point.place = tile.place(lane);
-    const Finish finish = scene_.finishAt(set.finish(tile.triangle[lane]), point.place);
+    const SurfaceFinish finish = scene_.finishAt(set.finish(tile.triangle[lane]), point.place);
     point.normal = normalAt(tile, lane, point.place);
     const bool is_person = tile.kind[lane] == SurfaceKind::Person;
     if (!is_person && set.triangles().isRound(tile.triangle[lane])) point.lift = 3e-4;
     const Paint& look = scene_.still->paints[finish.paint];
     point.color = look.color;
-    if (finish.face != Finish::kNoFace)
+    if (finish.face != SurfaceFinish::kNoFace)
         point.color = scene_.still->faces[finish.face].colorAt(point.place, tile.direction(lane),
                                                                scene_.still->textures, look.color);
     if (look.is_ceiling && point.normal.z < 0 && light_ == Illumination::Lamps &&
@@ -89,7 +89,7 @@ SurfacePoint Shading::met(const SightTile& tile, std::size_t lane) const {
     return point;
 }
 
-Rgb Shading::background(const SightTile& tile, std::size_t lane) const {
+Rgb Shading::background(const RayTile& tile, std::size_t lane) const {
     if (tile.is_black[lane]) return {};
     if (options_.background) return *options_.background;
     return Sky::seen(static_cast<float>(tile.z[lane] / length(tile.direction(lane))));
@@ -138,7 +138,7 @@ ClearTracer::ClearTracer(const RenderScene::Data& scene, double min_depth) : sce
     }
 }
 
-const std::array<std::vector<ClearLayer>, kLanes>& ClearTracer::trace(const SightTile& tile) {
+const std::array<std::vector<ClearLayer>, kLanes>& ClearTracer::trace(const RayTile& tile) {
     alignas(64) std::array<int, kLanes> valid;
     valid.fill(-1);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -166,7 +166,7 @@ const std::array<std::vector<ClearLayer>, kLanes>& ClearTracer::trace(const Sigh
 }
 
 void ClearTracer::add(SurfaceKind kind, std::size_t lane, std::uint32_t triangle, float depth) {
-    if (layers_[lane].size() >= kMostLayers) return;
+    if (layers_[lane].size() >= kMaxLayers) return;
     if (kind == SurfaceKind::Glass) {
         layers_[lane].push_back({depth, kGlassShine, kGlassPasses, false});
         return;
@@ -206,7 +206,7 @@ struct PassingHidden : EmbreeQuery {
 
 }  // namespace
 
-void SightTile::set(std::size_t lane, const SightLine& line, Vec3 shift) {
+void RayTile::set(std::size_t lane, const PixelRay& line, Vec3 shift) {
     has_new_origins = true;
     x[lane] = line.direction.x;
     y[lane] = line.direction.y;
@@ -216,8 +216,8 @@ void SightTile::set(std::size_t lane, const SightLine& line, Vec3 shift) {
     origin_z[lane] = line.origin.z + shift.z;
 }
 
-SightTracer::SightTracer(const RenderScene::Data& scene, const std::vector<bool>& hidden,
-                         double min_depth)
+TileTracer::TileTracer(const RenderScene::Data& scene, const std::vector<bool>& hidden,
+                       double min_depth)
     : scene_(scene),
       hidden_(hidden),
       width_(scene.still->packet_width),
@@ -242,7 +242,7 @@ alignas(64) constexpr std::array<double, kLanes> kBelow{0, 0, 0, 0, 1, 1, 1, 1,
 static_assert(kTile == 4);
 
 ISPACE_SIMD_CLONES void fillDirections(const EvenSightLines& lines, PixelPoint first,
-                                       SightTile& tile) {
+                                       RayTile& tile) {
     const Vec3 d = lines.direction, right = lines.right, down = lines.down;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const double u = first.column + kAside[lane], v = first.row + kBelow[lane];
@@ -253,7 +253,7 @@ ISPACE_SIMD_CLONES void fillDirections(const EvenSightLines& lines, PixelPoint f
 }
 
 ISPACE_SIMD_CLONES void fillOrigins(const EvenSightLines& lines, Vec3 shift, PixelPoint first,
-                                    SightTile& tile) {
+                                    RayTile& tile) {
     const Point3 o = lines.origin + shift;
     const Vec3 right = lines.origin_right, down = lines.origin_down;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -264,7 +264,7 @@ ISPACE_SIMD_CLONES void fillOrigins(const EvenSightLines& lines, Vec3 shift, Pix
     }
 }
 
-ISPACE_SIMD_CLONES void readHits(const RTCRayHit16& hits, SightTile& tile) {
+ISPACE_SIMD_CLONES void readHits(const RTCRayHit16& hits, RayTile& tile) {
     const std::uint32_t triangle = hits.hit.primID[0], kind = hits.hit.geomID[0];
     std::uint32_t other = 0;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -275,14 +275,14 @@ ISPACE_SIMD_CLONES void readHits(const RTCRayHit16& hits, SightTile& tile) {
     tile.is_one_triangle = other == 0 && kind != RTC_INVALID_GEOMETRY_ID;
 }
 
-ISPACE_SIMD_CLONES void blacken(SightTile& tile) {
+ISPACE_SIMD_CLONES void blacken(RayTile& tile) {
     for (std::size_t lane = 0; lane < kLanes; ++lane)
         tile.multiples[lane] = simd::choose(tile.is_black[lane], kNoReturn, tile.multiples[lane]);
 }
 
 }  // namespace
 
-void SightTile::set(const EvenSightLines& lines, PixelPoint first, Vec3 shift) {
+void RayTile::set(const EvenSightLines& lines, PixelPoint first, Vec3 shift) {
     fillDirections(lines, first, *this);
     const Point3 kept = lines.origin + shift;
     const bool is_one = lines.origin_right == Vec3() && lines.origin_down == Vec3();
@@ -291,7 +291,7 @@ void SightTile::set(const EvenSightLines& lines, PixelPoint first, Vec3 shift) {
     has_new_origins = true;
 }
 
-void SightTracer::trace(SightTile& tile) {
+void TileTracer::trace(RayTile& tile) {
     if (tile.has_new_origins) roundOrigins(tile, hits_);
     tile.has_new_origins = false;
     roundRays(tile, far_, hits_);
@@ -321,7 +321,7 @@ void SightTracer::trace(SightTile& tile) {
     blacken(tile);
 }
 
-double SightTracer::resolve(const SightTile& tile, std::size_t lane) const {
+double TileTracer::resolve(const RayTile& tile, std::size_t lane) const {
     if (hits_.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return kInfinity;
     const std::uint32_t triangle = tile.triangle[lane];
     const double found = static_cast<double>(hits_.ray.tfar[lane]);

@@ -13,18 +13,18 @@ namespace ispace {
 
 /// A square tile of a picture's lines of sight, relative to the middle of the plan, and what they
 /// meet: `multiples` are depths.
-struct SightTile : RayPacket {
+struct RayTile : RayPacket {
     std::array<bool, kLanes> is_black{};
     std::array<std::uint32_t, kLanes> triangle{};
     std::array<SurfaceKind, kLanes> kind{};
     bool has_new_origins = true;   ///< since it was traced last
     bool is_one_triangle = false;  ///< that all lanes meet, but for black ones
 
-    SightTile() {
+    RayTile() {
         reach.fill(kMaxRayReach);
         origin_x.fill(std::numeric_limits<double>::quiet_NaN());
     }
-    void set(std::size_t lane, const SightLine& line, Vec3 shift);
+    void set(std::size_t lane, const PixelRay& line, Vec3 shift);
     /// Those of the places from `first` on, also beyond the picture.
     void set(const EvenSightLines& lines, PixelPoint first, Vec3 shift);
     [[nodiscard]] Vec3 direction(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
@@ -47,16 +47,16 @@ struct SightTile : RayPacket {
 std::vector<PixelPoint> placesInPixel(int count);
 
 /// Finds what a picture's lines of sight meet; one for each thread.
-class SightTracer {
+class TileTracer {
   public:
     /// `hidden`: for each label, whether its bodies are not seen; may be shorter.
-    SightTracer(const RenderScene::Data& scene, const std::vector<bool>& hidden, double min_depth);
+    TileTracer(const RenderScene::Data& scene, const std::vector<bool>& hidden, double min_depth);
 
-    void trace(SightTile& tile);
+    void trace(RayTile& tile);
 
   private:
     /// The depth of what a lane's ray has hit, with care.
-    [[nodiscard]] double resolve(const SightTile& tile, std::size_t lane) const;
+    [[nodiscard]] double resolve(const RayTile& tile, std::size_t lane) const;
 
     const RenderScene::Data& scene_;
     const std::vector<bool>& hidden_;
@@ -87,18 +87,18 @@ class Shading {
 
     /// What the lane shows behind everything clear: a surface, or nothing but background. Lanes
     /// that look down at nothing see the ground about the building.
-    [[nodiscard]] bool meetsSurface(const SightTile& tile, std::size_t lane) const;
+    [[nodiscard]] bool meetsSurface(const RayTile& tile, std::size_t lane) const;
     /// \pre meetsSurface
-    [[nodiscard]] SurfacePoint surface(const SightTile& tile, std::size_t lane) const;
+    [[nodiscard]] SurfacePoint surface(const RayTile& tile, std::size_t lane) const;
     /// What a lane shows that meets no surface.
-    [[nodiscard]] Rgb background(const SightTile& tile, std::size_t lane) const;
+    [[nodiscard]] Rgb background(const RayTile& tile, std::size_t lane) const;
     /// What a surface in this light looks like.
     [[nodiscard]] Rgb lit(const SurfacePoint& point, const Rgb& light) const;
 
   private:
-    [[nodiscard]] SurfacePoint met(const SightTile& tile, std::size_t lane) const;
-    [[nodiscard]] SurfacePoint ground(const SightTile& tile, std::size_t lane) const;
-    [[nodiscard]] Vec3 normalAt(const SightTile& tile, std::size_t lane, Point3 place) const;
+    [[nodiscard]] SurfacePoint met(const RayTile& tile, std::size_t lane) const;
+    [[nodiscard]] SurfacePoint ground(const RayTile& tile, std::size_t lane) const;
+    [[nodiscard]] Vec3 normalAt(const RayTile& tile, std::size_t lane, Point3 place) const;
 
     const RenderScene::Data& scene_;
     Illumination light_;
@@ -122,7 +122,7 @@ class ClearTracer {
     /// True if nothing in the scene is clear.
     [[nodiscard]] bool isIdle() const { return sets_.empty(); }
     /// Layers of each lane, nearest first.
-    const std::array<std::vector<ClearLayer>, kLanes>& trace(const SightTile& tile);
+    const std::array<std::vector<ClearLayer>, kLanes>& trace(const RayTile& tile);
 
   private:
     void add(SurfaceKind kind, std::size_t lane, std::uint32_t triangle, float depth);

@@ -15,7 +15,7 @@ Vec3 byDepth(const Camera& camera, Vec3 ray) {
     return camera.lens == Lens::Pinhole ? (1 / ray.x) * ray : ray;
 }
 
-std::vector<Vec3> raysOf(const Camera& camera) {
+std::vector<Vec3> rayCount(const Camera& camera) {
     std::vector<Vec3> rays(camera.pixels());
     tbb::parallel_for(0, camera.rows, [&](int row) {
         for (int column = 0; column < camera.columns; ++column) {
@@ -32,7 +32,7 @@ std::vector<Vec3> raysOf(const Camera& camera) {
 
 CameraView::CameraView(const Camera& camera, const Pose3& pose)
     : Viewpoint(camera.columns, camera.rows), camera_(camera), world_from_camera_(pose) {
-    if (!camera.isStraight()) rays_ = std::make_shared<const std::vector<Vec3>>(raysOf(camera));
+    if (!camera.isStraight()) rays_ = std::make_shared<const std::vector<Vec3>>(rayCount(camera));
 }
 
 CameraView CameraView::at(const Pose3& pose) const {
@@ -54,10 +54,10 @@ std::optional<Vec3> CameraView::localRay(PixelPoint place) const {
     return ray ? std::optional(byDepth(camera_, *ray)) : std::nullopt;
 }
 
-std::optional<SightLine> CameraView::sightLine(PixelPoint place) const {
+std::optional<PixelRay> CameraView::sightLine(PixelPoint place) const {
     const auto ray = localRay(place);
     if (!ray) return std::nullopt;
-    return SightLine{world_from_camera_.origin, world_from_camera_ * *ray};
+    return PixelRay{world_from_camera_.origin, world_from_camera_ * *ray};
 }
 
 std::optional<EvenSightLines> CameraView::evenSightLines() const {
@@ -82,7 +82,7 @@ OrthographicView::OrthographicView(const Pose3& pose, double width, int columns,
     lines_ = {corner, right, down, frame_.forward, {}, {}};
 }
 
-std::optional<SightLine> OrthographicView::sightLine(PixelPoint place) const {
+std::optional<PixelRay> OrthographicView::sightLine(PixelPoint place) const {
     return lines_.at(place);
 }
 

@@ -12,7 +12,7 @@ namespace ispace {
 
 /// What a place in a picture shows: the first surface on this ray, in the world. Depths are
 /// multiples of `direction`, which need not be of unit length.
-struct SightLine {
+struct PixelRay {
     Point3 origin;
     Vec3 direction;
 };
@@ -24,7 +24,7 @@ struct EvenSightLines {
     Vec3 origin_right, origin_down;
     Vec3 direction, right, down;
 
-    [[nodiscard]] SightLine at(PixelPoint place) const {
+    [[nodiscard]] PixelRay at(PixelPoint place) const {
         return {origin + place.column * origin_right + place.row * origin_down,
                 {direction.x + place.column * right.x + place.row * down.x,
                  direction.y + place.column * right.y + place.row * down.y,
@@ -43,7 +43,7 @@ class Viewpoint {
     [[nodiscard]] int rows() const { return rows_; }
     /// The line of sight of a place; nothing where the picture is black. Smooth in the place but at
     /// the rim of what is black: within a pixel it is taken as even.
-    [[nodiscard]] virtual std::optional<SightLine> sightLine(PixelPoint place) const = 0;
+    [[nodiscard]] virtual std::optional<PixelRay> sightLine(PixelPoint place) const = 0;
     /// All of them at once, where they are even: much faster.
     [[nodiscard]] virtual std::optional<EvenSightLines> evenSightLines() const {
         return std::nullopt;
@@ -65,7 +65,7 @@ class CameraView : public Viewpoint {
 
     /// The same camera at another pose.
     [[nodiscard]] CameraView at(const Pose3& pose) const;
-    [[nodiscard]] std::optional<SightLine> sightLine(PixelPoint place) const override;
+    [[nodiscard]] std::optional<PixelRay> sightLine(PixelPoint place) const override;
     [[nodiscard]] std::optional<EvenSightLines> evenSightLines() const override;
     /// Where a place in the world is in the picture, or beside it.
     [[nodiscard]] std::optional<PixelPoint> project(Point3 place) const;
@@ -87,7 +87,7 @@ class OrthographicView : public Viewpoint {
   public:
     OrthographicView(const Pose3& pose, double width, int columns, int rows);
 
-    [[nodiscard]] std::optional<SightLine> sightLine(PixelPoint place) const override;
+    [[nodiscard]] std::optional<PixelRay> sightLine(PixelPoint place) const override;
     [[nodiscard]] std::optional<EvenSightLines> evenSightLines() const override { return lines_; }
     /// Where a place in the world is in the picture, or beside it.
     [[nodiscard]] PixelPoint project(Point3 place) const;

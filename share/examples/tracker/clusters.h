@@ -67,7 +67,7 @@ class ClusterFinder {
     std::vector<Cluster> find(const ispace::client::Scan& scan) {
         const std::vector<bool> before = background_.foreground(scan.ranges, farthest_);
         std::vector<Cluster> clusters;
-        Places points;
+        MoverPoses points;
         for (std::size_t k = 0; k <= before.size(); ++k) {
             const bool is_before = k < before.size() && before[k];
             Vector2d point = Vector2d::Zero();
@@ -78,7 +78,7 @@ class ClusterFinder {
             const bool goes_on =
                 is_before && (points.empty() || (point - points.back()).norm() < gap(scan, k));
             if (!goes_on) {
-                if (points.size() >= kFewest) clusters.push_back(clusterOf(points));
+                if (points.size() >= kMinCount) clusters.push_back(clusterOf(points));
                 points.clear();
             }
             if (is_before) points.push_back(point);
@@ -87,7 +87,7 @@ class ClusterFinder {
     }
 
   private:
-    static constexpr std::size_t kFewest = 2;
+    static constexpr std::size_t kMinCount = 2;
     static constexpr double kRobotWidth = 0.3;                      // m: legs are narrower
     static constexpr double kLegRadius = 0.06, kRobotRadius = 0.2;  // m
     static constexpr double kMiddle =
@@ -98,7 +98,7 @@ class ClusterFinder {
         return 0.08 + 2 * scan.ranges[k] * scan.step * M_PI / 180;
     }
 
-    Cluster clusterOf(const Places& points) const {
+    Cluster clusterOf(const MoverPoses& points) const {
         Cluster cluster;
         for (const Vector2d& point : points) cluster.surface += point;
         cluster.surface /= static_cast<double>(points.size());

@@ -17,7 +17,7 @@ namespace tracker {
 
 using Eigen::Vector2d;
 /// Before C++17 vectors of Eigen's types require their allocator.
-using Places = std::vector<Vector2d, Eigen::aligned_allocator<Vector2d>>;
+using MoverPoses = std::vector<Vector2d, Eigen::aligned_allocator<Vector2d>>;
 
 /// A laser of the room: where it stands, m, and where it looks, rad.
 struct Mount {

@@ -39,7 +39,7 @@ class JointTracker {
     static constexpr double kBothSigma = 0.05;  // m: the middle of both
     static constexpr double kRobotSigma = 0.06;
     static constexpr double kGate = 9;        // standard deviations, squared
-    static constexpr double kNobody = 30;     // more than any within the gate
+    static constexpr double kNoOwner = 30;    // more than any within the gate
     static constexpr double kApart = 0.45;    // m: least distance of two people
     static constexpr double kSame = 0.2;      // m: two tracks so near are of the same person
     static constexpr double kPatience = 1.5;  // s
@@ -54,7 +54,7 @@ class JointTracker {
         const auto rows = static_cast<Eigen::Index>(clusters.size());
         const auto places = static_cast<Eigen::Index>(kLegs * tracks_.size());
         if (rows == 0) return;
-        Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(rows, places + rows, kNobody);
+        Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(rows, places + rows, kNoOwner);
         for (Eigen::Index row = 0; row < rows; ++row) {
             const Cluster& cluster = clusters[static_cast<std::size_t>(row)];
             for (Eigen::Index place = 0; place < places; ++place) {
@@ -62,7 +62,7 @@ class JointTracker {
                 const double sigma = sigmaOf(cluster.kind);
                 const double far = track.distance(cluster.centre, sigma);
                 // A cluster beyond the gate must never be cheaper.
-                cost(row, place) = far < kGate ? far + track.vagueness(sigma) : 1000 * kNobody;
+                cost(row, place) = far < kGate ? far + track.vagueness(sigma) : 1000 * kNoOwner;
             }
         }
         const std::vector<int> chosen = assign(cost);

@@ -22,7 +22,7 @@ namespace ispace {
 namespace {
 
 /// Nothing that a format knows is nested so deep.
-constexpr std::size_t kDeepestJson = 500;
+constexpr std::size_t kMaxJson = 500;
 
 [[noreturn]] void fail(const std::string& message) {
     throw std::runtime_error("bad mesh file: " + message);
@@ -164,8 +164,8 @@ class GltfNodes : public nlohmann::json_sax<nlohmann::json> {
 
   private:
     void deeper() {
-        if (++depth_ > kDeepestJson)
-            fail("JSON nested more than " + std::to_string(kDeepestJson) + " deep");
+        if (++depth_ > kMaxJson)
+            fail("JSON nested more than " + std::to_string(kMaxJson) + " deep");
     }
 
     std::size_t depth_ = 0;

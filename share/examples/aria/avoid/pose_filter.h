@@ -71,7 +71,7 @@ class PoseFilter {
     /// \return false if it contradicts the plan: an unknown obstacle, or a wrong echo
     bool correct(const SonarMount& sonar, double range) {
         const double expected = echo(pose_, sonar);
-        if (expected >= kFarthest || range >= kFarthest) return false;
+        if (expected >= kMaxDistance || range >= kMaxDistance) return false;
         Eigen::RowVector3d by_pose;
         for (int axis = 0; axis < 3; ++axis) {
             // As wide as the cells of the map, which would make narrower differences rough.
@@ -99,14 +99,14 @@ class PoseFilter {
   private:
     /// Variances of a metre of way and a radian of turn.
     static constexpr double kWay = 0.004, kTurn = 0.01, kTurnOfWay = 0.004;
-    static constexpr double kFarthest = 3.5;  // m; echoes from beyond tell little
-    static constexpr double kDelta = 0.04;    // m and rad
+    static constexpr double kMaxDistance = 3.5;  // m; echoes from beyond tell little
+    static constexpr double kDelta = 0.04;       // m and rad
 
     /// Computes the sonar's expected range: the nearest obstacle in its cone.
     double echo(const Pose& pose, const SonarMount& sonar) const {
         constexpr int kRays = 7;
         const Pose from = compose(pose, sonar.place);
-        double nearest = kFarthest;
+        double nearest = kMaxDistance;
         for (int ray = 0; ray < kRays; ++ray) {
             const double off = sonar.fov * (static_cast<double>(ray) / (kRays - 1) - 0.5);
             nearest = std::min(nearest, map_.rayLength(from.head<2>(), from.z() + off, nearest));
