@@ -50,10 +50,12 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     // The suffix of a part says nothing about what is in it.
     const bool is_part = o.batch.shard && suffixOf(o.common.output) == "part";
     const std::string output = is_part ? "-" : o.common.output;
-    o.format = o.view.views.empty()
-                   ? outputFormat(to_, output, readingFormats(),
-                                  {{"log", "carmen"}, {"jpg", "jpeg"}, {"rgb", "rgb24"}})
-                   : outputFormat(to_, o.common.output, {"png", "jpeg"}, {{"jpg", "jpeg"}});
+    if (o.view.views.empty()) {
+        o.format = outputFormat(to_, output, readingFormats(),
+                                {{"log", "carmen"}, {"jpg", "jpeg"}, {"rgb", "rgb24"}});
+    } else {
+        o.format = outputFormat(to_, o.common.output, {"png", "jpeg"}, {{"jpg", "jpeg"}});
+    }
     if (!o.view.views.empty() && !line_.given("--samples")) o.photo.samples = ViewOptions().samples;
     o.noise = noise_.value_or(false);
     o.color = color_.value_or(true);
