@@ -143,10 +143,10 @@ std::string partHeadText(const PartHead& head) {
     return text.append("\nunits ").append(unitsText(job)).append("\n\n");
 }
 
-std::string partRecordText(std::string_view name, std::string_view bytes) {
+std::string partRecordText(std::string_view key, std::string_view bytes) {
     std::string text = "=";
     text.reserve(bytes.size() + kMaxRecordLine);
-    text.append(name).append(" ").append(std::to_string(bytes.size())).append(" ");
+    text.append(key).append(" ").append(std::to_string(bytes.size())).append(" ");
     return text.append(hexText(hashOf(bytes))).append("\n").append(bytes).append("\n");
 }
 
@@ -273,7 +273,7 @@ std::string JobResults::keptFile(const std::string& output, const Shard& shard) 
     std::error_code ignored;
     if (!output.ends_with('/') && !std::filesystem::is_directory(output, ignored))
         return output + ".resume";
-    const std::string name = (std::filesystem::path(output) / ".resume").string();
+    std::string name = (std::filesystem::path(output) / ".resume").string();
     if (shard.count == 1) return name;
     return name + '-' + std::to_string(shard.index) + "of" + std::to_string(shard.count);
 }

@@ -31,17 +31,17 @@ class PartFileTest : public ::testing::Test {
         head.shard = {index, count};
         return head;
     }
-    std::string part(int index, int count, const PartHead& like = head()) const {
+    [[nodiscard]] std::string part(int index, int count, const PartHead& like = head()) const {
         PartHead own = like;
         own.shard = {index, count};
-        const std::string file = path("s" + std::to_string(index) + "of" + std::to_string(count));
+        std::string file = path("s" + std::to_string(index) + "of" + std::to_string(count));
         JobResults results(file, own.job, own.shard, false);
         results.store("from", std::to_string(index));
         results.writePart(file);
         return file;
     }
     /// What merging parts of scan says, without the folder.
-    std::string merging(std::vector<std::string> files) const {
+    [[nodiscard]] std::string merging(std::vector<std::string> files) const {
         std::string errors = errorsOf([&] { (void)mergeParts(files, "scan"); });
         const std::string folder = folder_.path().string() + "/";
         for (std::size_t at = 0; (at = errors.find(folder)) != std::string::npos;)
@@ -79,9 +79,10 @@ TEST_F(PartFileTest, HoldsWhatWasStored) {
 }
 
 TEST_F(PartFileTest, APartHasTheSameBytesInWhateverOrderItIsStored) {
-    const auto bytes_of = [&](std::vector<std::string> keys, bool is_kept) {
+    const auto bytes_of = [&](const std::vector<std::string>& keys, bool is_kept) {
         JobResults results(path("a"), head().job, {}, is_kept);
         std::vector<std::thread> threads;
+        threads.reserve(keys.size());
         for (const std::string& key : keys)
             threads.emplace_back([&results, &key] { results.store(key, "of " + key); });
         for (std::thread& thread : threads) thread.join();
