@@ -19,7 +19,7 @@ namespace ispace {
 
 namespace {
 
-/// A row for each cell that a candidate sees: some 30 bytes each.
+/// The model has a row for each cell that a candidate sees: some 30 bytes each.
 void mustFitInModel(const Problem& problem) {
     constexpr double kMaxEntries = 1e8;
     double entries = 0;
@@ -62,14 +62,15 @@ SearchResult find(const MeasuredScene& model, Arrangement& result, Progress& pro
     return cover.result;
 }
 
-/// With fewer candidates than sensors a search chooses some twice, which adds nothing; two sensors
-/// cannot stand in one place.
+/// With fewer candidates than sensors a search chooses some twice, without gain; two sensors cannot
+/// stand at one point.
 void takeEachOnce(std::vector<Choice>& chosen) {
     std::set<Choice> taken;
     std::erase_if(chosen, [&taken](const Choice& choice) { return !taken.insert(choice).second; });
 }
 
-/// Bound over all places: for any sensors a budget buys, else for the number of each kind found.
+/// Computes a bound over all poses: for any sensors that a budget buys, else for the number of each
+/// kind found.
 double boundOfAnyPlace(const MeasuredScene& model, const std::vector<Placement>& placements) {
     const bool buys = model.options().budget.has_value();
     std::vector<int> most(model.kinds().size());
@@ -80,7 +81,7 @@ double boundOfAnyPlace(const MeasuredScene& model, const std::vector<Placement>&
     return model.share(model.maxFromAnyPlace(most));
 }
 
-/// If some candidates were not made, nothing bounds the value.
+/// If some candidates are missing, the search's bound does not hold.
 double boundOf(const SearchResult& result, const MeasuredScene& model) {
     return model.isComplete() ? model.share(result.bound) : 1;
 }
@@ -116,8 +117,8 @@ void measure(Arrangement& result, MeasuredScene& model) {
         result.idle.push_back(result.sensors[i].sensor);
 }
 
-/// [n]: value of the best n of these sensors, chosen greedily. If coverage must be connected, a
-/// subset may not be: then only all of them count. O(n^2 * runs)
+/// Returns in [n] the value of the best n of these sensors, chosen greedily. If coverage must be
+/// connected, a subset may not be: then only the full set counts. O(n^2 * runs)
 std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Choice> chosen) {
     const std::vector<std::uint32_t> partial_weights = partialWeights(problem);
     CoverageState state(problem, partial_weights);
@@ -150,7 +151,7 @@ std::size_t quickPoints(const MeasuredScene& model) {
     return kMaxBytes / (model.bytes() + kBytesPerCell * model.problem().cells() + 1);
 }
 
-/// True if the search had only the number of sensors as its limit.
+/// Returns true if the number of sensors was the only limit of the search.
 bool isByNumber(const MeasuredScene& model) {
     if (!model.options().budget && !model.options().target) return true;
     const std::vector<Kind>& kinds = model.problem().kinds;
@@ -158,8 +159,8 @@ bool isByNumber(const MeasuredScene& model) {
                        [&](const Kind& kind) { return kind.cost == kinds[0].cost; });
 }
 
-/// Value of 1, 2, ... sensors of these kinds, whatever they cost, with bounds. Where no time is
-/// left to search: the value of that many of the sensors found, without a bound.
+/// Computes the value of 1, 2, ... sensors of these kinds, at any cost, with bounds. Once the time
+/// is used up: the value of that many of the sensors found, without a bound.
 std::vector<SearchResult> searchByNumber(const SearchResult& found, const MeasuredScene& model,
                                          Progress& progress) {
     const std::vector<std::uint64_t> part = valuesOfFirst(model.problem(), found.best.chosen);
@@ -186,7 +187,7 @@ std::vector<SearchResult> searchByNumber(const SearchResult& found, const Measur
 std::vector<CurvePoint> curveTo(const SearchResult& found, const MeasuredScene& model,
                                 Progress& progress) {
     std::vector<SearchResult> results = searchByNumber(found, model, progress);
-    // One more sensor never covers less; what more sensors cannot cover, fewer cannot.
+    // One more sensor never covers less; a bound for n sensors holds for fewer.
     for (std::size_t i = 1; i < results.size(); ++i)
         results[i].best.value = std::max(results[i].best.value, results[i - 1].best.value);
     for (std::size_t i = results.size(); i-- > 1;)
@@ -242,7 +243,7 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
 
 Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
                     const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
-    // Candidates, bounds and all measures are those of sensors that cover no more.
+    // Candidates, bounds and all results are computed for sensors with limited coverage.
     Scene limited = scene;
     for (Sensor& sensor : limited.sensors) limitCovered(sensor.model, options);
     std::vector<SensorGroup> limited_groups = groups;

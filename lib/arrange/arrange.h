@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/arrange: candidates and arranging. Uses cover, solve and below; TBB and CGAL inside.
+// lib/arrange: generates candidates and searches for arrangements. Uses coverage, trace and below;
+// TBB and CGAL inside.
 #pragma once
 
 #include <cstddef>
@@ -21,21 +22,21 @@
 
 namespace ispace {
 
-/// How places are proposed; each strategy is a row in arrange/strategy.h.
+/// How candidate sites are proposed; each strategy is a row in arrange/strategy.cc.
 enum class Strategy {
     Grid,    ///< the thesis' Ordinary Grid
     Random,  ///< its Hierarchical Random
     Wall,    ///< its Along Wall
     Medial,  ///< the medial axis of the free floor
-    List,    ///< the places of a list
-    All,     ///< a lattice, and along everything that stands on the floor
+    List,    ///< the sites of a list
+    All,     ///< a lattice, and along all walls and objects on the floor
 };
-/// The words of the command line and of results.
+/// Returns the word of the command line and of results.
 std::string_view nameOf(Strategy strategy);
-/// True for Ordinary Grid, Hierarchical Random and Along Wall.
+/// Returns true for Ordinary Grid, Hierarchical Random and Along Wall.
 bool isOfThesis(Strategy strategy);
 
-/// What a sensor is mounted on.
+/// Surface or structure that carries a sensor.
 enum class MountOn { Floor, Wall, Frame, Ceiling };
 constexpr MountOn kMounts[] = {MountOn::Floor, MountOn::Wall, MountOn::Frame, MountOn::Ceiling};
 std::string_view nameOf(MountOn mount);
@@ -50,15 +51,14 @@ struct CandidateDensity {
 constexpr double kOffWall = 0.02;
 /// Distance of a ceiling mount from the ceiling, metres.
 constexpr double kBelowCeiling = 0.05;
-/// Where kinds that hang overhead hang on walls, metres; less in lower rooms.
+/// Height at which overhead kinds hang on walls, metres; less in lower rooms.
 constexpr double kOnWall = 2.4, kBelowWallTop = 0.1;
 
 struct MountRules {
-    /// Nothing: the ceiling for kinds that hang overhead (with Strategy::Wall walls), the floor for
-    /// all others.
+    /// Empty: the ceiling for overhead kinds (walls with Strategy::Wall), the floor for all others.
     std::optional<MountOn> on = {};
-    std::vector<double> heights = {};  ///< to choose from; empty: those of the mount
-    /// To choose from, for sensors without a tilt of their own; empty: those of the mount.
+    std::vector<double> heights = {};  ///< to choose from; empty: the defaults of the mount
+    /// Choices for sensors without a given tilt; empty: the defaults of the mount.
     std::vector<Angle> tilts = {};
     double clearance = 0;
     std::vector<NamedZone> keep_out = {}, keep_in = {};
@@ -67,11 +67,11 @@ struct MountRules {
 struct ArrangeOptions {
     Strategy strategy = Strategy::All;
     std::optional<int> x, y;      ///< Grid: interior lines; default by eq. (4.1) and (4.2)
-    std::optional<int> headings;  ///< directions a place; 8, or those of `density`
+    std::optional<int> headings;  ///< directions per site; 8, or those of `density`
     int first_places = 20, more_places = 5;  ///< Random: R1 and R2
     std::optional<double> scope;             ///< Random: of R2; default max range / seg
     double dist = 0.05;                      ///< Wall: from the wall
-    int times = 21;                          ///< Wall: places a wall
+    int times = 21;                          ///< Wall: sites per wall
     CandidateDensity density;
     std::vector<Site> list;  ///< List
     MountRules mount;
@@ -85,43 +85,44 @@ struct ArrangeOptions {
     std::optional<double> budget;
     bool wants_curve = false, wants_trace = false;
 
-    double plane = 0;          ///< height of what rangers, cameras and receivers cover
-    double pixel_density = 0;  ///< cameras cover where they have so many pixels a metre; 0: all
-    std::optional<CellChoice> cells;                ///< while searching, see searchCells()
+    double plane = 0;                 ///< height at which rangers, cameras and receivers cover
+    double pixel_density = 0;         ///< least pixels per metre where a camera covers; 0: no limit
+    std::optional<CellChoice> cells;  ///< during the search, see searchCells()
     std::size_t max_bytes = std::size_t{8} << 30U;  ///< of candidates and of the tree of Exact
-    /// While searching, a laser in a slice sees what lies within the contour of beams so far apart,
-    /// the thesis' "reso"; 0: its own. None: all that is in its view.
+    /// During the search, a laser in a slice covers the contour of beams with this step, the
+    /// thesis' "reso"; 0: the laser's step. Empty: its whole visible area.
     std::optional<Angle> beam_step;
-    /// The thesis' Insider Judge: sensors stand indoors, and indoor floor counts. Without it the
-    /// whole rectangle about the room is open to sensors and counts (fig. 4.8).
+    /// The thesis' Insider Judge: sensors stand indoors, and only the indoor floor counts. Without
+    /// it, sensors may stand anywhere in the rectangle around the room, all of which counts (fig.
+    /// 4.8).
     bool judges_inside = true;
     std::uint64_t seed = 0;
 };
 
-/// True if each sensor has candidates of its own: Hierarchical Random draws anew for each, unless
-/// the search finds their number. Each sensor is then a kind of its own.
+/// Returns true if each sensor has separate candidates, and so forms a separate kind: Hierarchical
+/// Random draws candidates per sensor, unless the search finds the number of sensors.
 bool drawsForEach(const ArrangeOptions& options);
 
-/// Cells while searching: options.cells if set; with the thesis' strategies its 100 x 100; else
-/// those of the room, but in a large room fewer than a report has, to keep the search quick.
+/// Returns the cells of the search: options.cells if set; 100 x 100 with the thesis' strategies;
+/// else those of a report, but fewer in a large room to keep the search fast.
 CellChoice searchCells(const ArrangeOptions& options);
 
 /// The coverage of a number of sensors.
 struct CurvePoint {
     int sensors = 0;
     double value = 0;  ///< share covered by the best layout found
-    double bound = 1;  ///< no layout of these candidates covers more
+    double bound = 1;  ///< upper bound for layouts of these candidates
 };
 
-/// The sensors at their places, and what they cover.
+/// Poses of the sensors and their coverage.
 struct Arrangement {
     std::vector<Placement> sensors;  ///< by group
     double coverage = 0;             ///< as `coverage` reports coverage.grid for the whole layout
     double area = 0;                 ///< total effective area by cells, m2, eq. (4.6)
-    /// Share of the total weight; not set where it equals the coverage.
+    /// Share of the total weight; empty if it equals the coverage.
     std::optional<double> value;
-    /// Upper bound of `value` (or coverage) over all that the search could choose or, if refining
-    /// moved sensors off their candidates, over these sensors at any places.
+    /// Upper bound of `value` (or coverage) over all choices of the search or, if refining moved
+    /// sensors off their candidates, over these sensors at any poses.
     double bound = 1;
     double candidate_value = 0, candidate_bound = 1;  ///< before refining
     bool is_refined = false;                          ///< refining was asked for
@@ -129,45 +130,47 @@ struct Arrangement {
     Grid grid;                                        ///< the cells while searching
     bool is_complete = true;                          ///< false: cut by time or a signal
 
-    /// Sensors left unplaced, for lack of candidates or of candidates that keep coverage connected.
+    /// Number of sensors left unplaced, for lack of candidates or of candidates that keep coverage
+    /// connected.
     std::size_t unplaced = 0;
-    double cost = 0;         ///< of the sensors placed
-    bool has_costs = false;  ///< they differ from 1
+    double cost = 0;         ///< of the placed sensors
+    bool has_costs = false;  ///< costs differ from 1
     /// With a target: whether it is reached, and a lower bound of the cost of reaching it.
     bool is_reached = true;
     std::optional<double> least;
-    bool is_exhausted = false;  ///< not reached, not even by all candidates together
+    bool is_exhausted = false;  ///< even all candidates together do not reach the target
 
-    /// Ids of sensors that, all together, add nothing to the others' value.
+    /// Ids of sensors whose joint removal leaves the value unchanged.
     std::vector<std::string> idle;
 
     std::vector<CurvePoint> curve;
     std::vector<TriedPose> tried;
-    /// Exact weighted area, m2; equal if refining found nothing better: then all stand on
+    /// Exact weighted area, m2. Equal if refining found no improvement: all sensors then stand on
     /// candidates.
     double refined_before = 0, refined_after = 0;
 };
 
-/// Places the groups' sensors beside those that the scene has placed already.
+/// Adds the groups' sensors to those that the scene has placed already.
 ///
-/// Makes candidates by options.strategy for each kind of sensor, weighs the target's cells by
+/// Builds candidates by options.strategy for each kind of sensor, weighs the target's cells by
 /// options.weights, then runs search() or minimumCostCover(), and refine() if asked. `mps`:
-/// receives the model before the search. A shard (options.search.share) stores its steps and
-/// returns an arrangement without sensors. \throws UnmetError if a kind has no valid
-/// place or nothing may be bought, UsageError if the candidates do not fit in memory
+/// receives the model before the search. A shard (options.search.share) stores its steps in the
+/// ledger and returns an arrangement without sensors.
+/// \throws UnmetError if a kind has no valid site or the budget buys no sensor, UsageError if the
+///         candidates do not fit in memory
 Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
                     const ArrangeOptions& options, Progress& progress, std::ostream* mps = nullptr);
 
-/// What goes into a layout besides the arrangement.
+/// Contents of a layout besides the arrangement.
 struct LayoutParts {
     History history;
-    std::string environment_file;  ///< "" if there is none to name
+    std::string environment_file;  ///< "" if unnamed
     std::string environment_digest;
     std::string strategy, optimize;
 };
 
-/// A `.3dm`: the `environment` record, the records of `before` (if any) with its pending sensors
-/// placed, the new sensors, the `result`.
+/// Builds a `.3dm`: the `environment` record, the records of `before` (if any) with its pending
+/// sensors placed, the new sensors, the `result`.
 Document layoutDocument(const LayoutParts& parts, const Document* before,
                         const std::vector<SensorGroup>& groups, const Arrangement& arrangement);
 

@@ -27,10 +27,10 @@ namespace ispace {
 
 namespace {
 
-/// The sectors of a level laser at one place, by their limits.
+/// The sectors of a level laser at one site, by their limits.
 struct Sectors {
     std::vector<Angle> headings;
-    std::vector<Angle> limits;                    // none: it sees all around
+    std::vector<Angle> limits;                    // empty: it sees all around
     std::vector<CandidateSet::PartRange> ranges;  // by heading
 
     Sectors(const Laser& laser, std::span<const Angle> of) : headings(of.begin(), of.end()) {
@@ -57,7 +57,7 @@ struct Sectors {
     }
 };
 
-/// Leaves out runs of cells that are not counted.
+/// Removes runs of cells without weight.
 class Counted {
   public:
     explicit Counted(const CellSet& cells) : next_(cells.size() + 1), end_(cells.size() + 1) {
@@ -67,7 +67,7 @@ class Counted {
         end_[0] = 0;
         for (std::uint32_t i = 0; i < size; ++i) end_[i + 1] = cells.test(i) ? i + 1 : end_[i];
     }
-    /// Afterwards all runs begin and end with counted cells.
+    /// Clips all runs so that they begin and end with counted cells.
     void keepIn(CellParts& parts) const {
         std::uint32_t count = 0, begin = 0;
         for (std::size_t part = 0; part < parts.size(); ++part) {
@@ -97,7 +97,7 @@ struct CandidateViews::Data {
     Pose3 mount;
     bool is_round, looks_in_slice;
     std::optional<Counted> counted = {};
-    const RayWorld* beam_world = nullptr;  // of lasers that see by beams
+    const RayWorld* beam_world = nullptr;  // of lasers that see by beams; null: none do
 
     [[nodiscard]] std::size_t headingsOf(const Site& site) const {
         return is_round ? 1 : site.headings.size();
@@ -108,7 +108,7 @@ struct CandidateViews::Data {
         sensor.pose.heading = site.headings[heading];
         return sensor;
     }
-    /// The cells of each heading, a part each, and an empty one that all see.
+    /// Computes the cells of each heading, one part each, and an empty part shared by all.
     void lookAtPlane(const Site& site, CellParts& parts) const {
         const std::size_t headings = headingsOf(site);
         parts.runs.clear();
@@ -155,7 +155,7 @@ bool CandidateViews::isRound() const { return data_->is_round; }
 
 namespace {
 
-/// Position of a place along a Morton curve through the box.
+/// Computes the position of a point along a Morton curve through the box.
 std::uint64_t alongCurve(Point2 place, const Box2& box) {
     const double scale = 0xffff / std::max({box.width(), box.depth(), kRayEpsilon});
     const auto x = static_cast<std::uint32_t>((place.x - box.low.x) * scale);
@@ -163,8 +163,8 @@ std::uint64_t alongCurve(Point2 place, const Box2& box) {
     return mortonCode(x & 0xffffU, y & 0xffffU);
 }
 
-/// `count` of the sites from `first` on, spread over the plan however they are listed, ascending:
-/// the middle of each of `count` equal stretches of a Morton curve. O(n log n)
+/// Returns `count` of the sites from `first` on, spread over the plan in any order of the list,
+/// ascending: the middle of each of `count` equal stretches of a Morton curve. O(n log n)
 /// \pre count <= sites.size() - first
 std::vector<std::size_t> sitesSpreadOver(std::span<const Site> sites, std::size_t first,
                                          std::size_t count) {
@@ -183,9 +183,8 @@ std::vector<std::size_t> sitesSpreadOver(std::span<const Site> sites, std::size_
     return sample;
 }
 
-/// Scans some sites at a time and adds what is seen to the set, in the order of the list. Once
-/// progress says stop, only a sample of the other sites follows, so that there are candidates
-/// everywhere.
+/// Scans some sites at a time and adds their views to the set, in the order of the list. Once
+/// progress says stop, scans only a sample of the other sites, so that candidates exist everywhere.
 class Scanner {
   public:
     Scanner(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
@@ -198,7 +197,7 @@ class Scanner {
           least_(std::min(least, sites.size())),
           at_once_(data_.looks_in_slice ? 512 : 32) {}
 
-    /// True if all sites were scanned.
+    /// Returns true if all sites were scanned.
     bool run(std::size_t max_bytes) {
         std::size_t next = 0;
         while (next < sites_.size() && !progress_.stopped()) {
@@ -228,15 +227,14 @@ class Scanner {
                ": use fewer places, headings or cells, or --max-memory";
     }
 
-    /// Makes room for what is seen from the sites at hand.
+    /// Allocates the views of the current batch of sites.
     void prepare() {
         if (parts_.size() < turns_.size()) parts_.resize(turns_.size());
         is_done_.assign(turns_.size(), 1);
         if (data_.looks_in_slice) findSectors(turns_.size());
     }
 
-    /// Fills parts_ of the sites at hand. What is seen of a plane takes a while: it may stop in
-    /// between.
+    /// Computes parts_ for the current batch. A view of a plane takes a while: may stop in between.
     void look(bool may_stop) {
         std::atomic<std::int64_t> looks = 0;
         tbb::parallel_for(std::size_t{0}, turns_.size(), [&](std::size_t i) {
@@ -246,7 +244,7 @@ class Scanner {
                 is_done_[i] = 0;
                 return;
             } else {
-                // A thread that waits for rows of cells here does not begin with another site.
+                // A thread that waits for rows of cells here must not begin with another site.
                 tbb::this_task_arena::isolate([&] { lookFrom(i); });
             }
             ++looks;
@@ -263,7 +261,7 @@ class Scanner {
         }
     }
 
-    /// Takes what an earlier run or another shard saw in this step.
+    /// Reads the views that an earlier run or another shard stored for this step.
     bool recall(const std::string& name) {
         const auto bytes = share_.results != nullptr ? share_.results->find(name) : std::nullopt;
         if (!bytes) return false;
@@ -285,7 +283,7 @@ class Scanner {
         }
         share_.results->store(name, to.bytes());
     }
-    /// A step of another shard: nothing is seen.
+    /// Skips a step of another shard with empty views.
     bool leaveToOthers(int step) {
         if (!share_.isOwn(Shared::Candidates) ||
             (step - 1) % share_.own->count == share_.own->index - 1)
@@ -296,12 +294,12 @@ class Scanner {
         }
         return true;
     }
-    /// Directed parts of what is seen from a site.
+    /// Returns the number of directed parts in a site's view.
     [[nodiscard]] std::size_t directedOf(std::size_t i) const {
         return data_.looks_in_slice ? sectors_[sectors_of_[i]].limits.size() : headingsOf(i).size();
     }
 
-    /// Neighbours mostly have the same headings.
+    /// Adjacent sites mostly have the same headings.
     void findSectors(std::size_t count) {
         if (sectors_.size() > 1) sectors_.erase(sectors_.begin(), sectors_.end() - 1);
         sectors_of_.clear();
@@ -353,7 +351,7 @@ class Scanner {
     const SearchShare& share_;
     std::size_t least_, at_once_;
     std::size_t added_ = 0;
-    // Of the sites at hand:
+    // Of the current batch:
     std::vector<std::size_t> turns_;
     std::vector<char> is_done_;
     std::vector<CellParts> parts_;

@@ -20,13 +20,14 @@
 
 namespace ispace {
 
-/// Candidates with their poses; those of one site differ only in heading.
+/// Candidates with their poses; the candidates of one site differ only in heading.
 class PosedCandidates : public CandidateSet {
   public:
     using CandidateSet::CandidateSet;
 
-    /// As CandidateSet::addSite(); candidate k has headings[k]. \pre as many headings as ranges
-    /// \param mount its heading is not used
+    /// As CandidateSet::addSite(); candidate k has headings[k].
+    /// \pre as many headings as ranges
+    /// \param mount its heading is ignored
     void addSite(const Pose3& mount, std::span<const Angle> headings,
                  std::span<const PartRange> ranges, const CellParts& parts) {
         CandidateSet::addSite(ranges, parts);
@@ -38,7 +39,7 @@ class PosedCandidates : public CandidateSet {
         pose.heading = headings_[candidate];
         return pose;
     }
-    /// Memory, that of the poses included.
+    /// Returns the memory in use, including the poses.
     [[nodiscard]] std::size_t bytes() const {
         return CandidateSet::bytes() + mounts_.size() * sizeof(Pose3) +
                headings_.size() * sizeof(Angle);
@@ -49,21 +50,21 @@ class PosedCandidates : public CandidateSet {
     std::vector<Angle> headings_;  // by candidate
 };
 
-/// What a kind of sensor sees of the cells of a grid from anywhere, mounted at one height with one
-/// tilt and roll: the same cells as Sight::cellsOf() for a sensor there, unless by beams.
-/// Thread-safe.
+/// Computes the cells of a grid that a kind of sensor sees from any site, mounted at one height
+/// with one tilt and roll: the cells that VisibleArea::cellsOf() returns for a sensor there, unless
+/// by beams. Thread-safe.
 class CandidateViews {
   public:
-    /// What lasers that scan a slice see by beams, see withBeamStep() and cellsByBeams().
+    /// Views of slice lasers by single beams, see withBeamStep() and cellsByBeams().
     struct ByBeams {
-        const Worlds& worlds;  ///< that of the mount is prepared
-        Angle step;            ///< 0: their own
+        const Worlds& worlds;  ///< the world of the mount is prepared
+        Angle step;            ///< 0: the step of each laser
     };
-    /// Keeps references.
+    /// Stores references.
     /// \param mount only height, tilt and roll are used
-    /// \param counted the cells with weight; null: all. What candidates see of other cells is then
-    ///        arbitrary, which saves memory
-    /// \param by_beams none: lasers in a slice see all that is in their view
+    /// \param counted the cells with weight; null: all. Views contain arbitrary subsets of the
+    ///        other cells, which saves memory
+    /// \param by_beams empty: lasers in a slice see their whole visible area
     CandidateViews(const VisibleArea& sight, const Grid& grid, const SensorModel& device,
                    const Pose3& mount, const CellSet* counted = nullptr,
                    const std::optional<ByBeams>& by_beams = {});
@@ -71,7 +72,7 @@ class CandidateViews {
     CandidateViews(const CandidateViews&) = delete;
     CandidateViews& operator=(const CandidateViews&) = delete;
 
-    /// True if the view does not depend on the heading: a laser with a field of view of 360
+    /// Returns true if the view does not depend on the heading: a laser with a field of view of 360
     /// degrees, a cone that points straight down. A site then has one candidate, with its first
     /// heading.
     [[nodiscard]] bool isRound() const;
@@ -83,31 +84,33 @@ class CandidateViews {
     std::unique_ptr<Data> data_;
 };
 
-/// Candidates are made from at least this many places, however early the search is stopped, so that
-/// there is something to choose from. Takes milliseconds.
+/// Minimum number of sites that yield candidates, however early the search is stopped, so that it
+/// has some choice. Takes milliseconds.
 constexpr std::size_t kMinPlaces = 64;
 
 /// Appends the candidates of all sites, in order: each site becomes one site of the set, with a
-/// candidate for each heading (only the first if views.isRound()). Works in parallel on a few sites
-/// at a time, so that memory stays close to that of the set; the result does not depend on the
-/// number of threads. False if progress said stop: then the set has the sites scanned so far and
-/// `least` of the others, or all, spread over the plan; in order. \throws UsageError once
-/// set.bytes() is more than max_bytes
+/// candidate per heading (only the first if views.isRound()). Scans a few sites at a time in
+/// parallel, so that memory stays close to that of the set; the result does not depend on the
+/// number of threads. Returns false if progress said stop: the set then holds the sites scanned so
+/// far and `least` of the others, or all, spread over the plan; in order.
+/// \throws UsageError once set.bytes() exceeds max_bytes
 ///
-/// With results of steps, views stored there are taken, and others stored. A shard of the
-/// candidates looks from its own sites alone: its candidates elsewhere see nothing.
+/// With a ledger, reads the views that it holds and stores the others. A shard of the candidates
+/// scans only its share of the sites: its candidates at all others have empty views.
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
                    std::size_t max_bytes, Progress& progress, std::size_t least = kMinPlaces,
                    const SearchShare& share = SearchShare());
 
-/// The laser as a search scans with it at the thesis' "reso" (section 4.2): one scan of all it
-/// sweeps, with beams `step` apart from its first one on; 0: its own step. Where it sees all around
-/// the nearest step that divides a turn. \pre 0 <= step <= 90 degrees
+/// Returns the laser as a search scans with it at the thesis' "reso" (section 4.2): one scan of its
+/// whole sweep, with beams `step` apart from its first beam on; 0: the laser's step. A laser that
+/// sees all around gets the nearest step that divides a turn.
+/// \pre 0 <= step <= 90 degrees
 Laser withBeamStep(Laser laser, Angle step);
 
-/// The cells within the contour of a scan: centres strictly inside the polygon of the place and the
-/// ends of all beams, at the first surface or else at max_range (section 4.5.2). If the beams close
-/// the circle, of the ends alone. \pre the sensor is a laser
+/// Returns the cells within the contour of a scan: centres strictly inside the polygon of the
+/// sensor's position and the ends of all beams, at the first surface or else at max_range (section
+/// 4.5.2). If the beams close the circle, the polygon has the beam ends only.
+/// \pre the sensor is a laser
 CellSet cellsByBeams(const Grid& grid, const RayWorld& world, const Sensor& sensor);
 
 }  // namespace ispace

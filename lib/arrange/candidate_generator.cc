@@ -15,7 +15,7 @@ namespace ispace {
 
 namespace {
 
-/// Places are whole nanometres: people read layouts, and rounding residues are noise.
+/// Sites are rounded to whole nanometres: people read layouts, and rounding residues are noise.
 double onNanometres(double metres) {
     constexpr double kPerMetre = 1e9;
     return std::round(metres * kPerMetre) / kPerMetre;
@@ -37,8 +37,8 @@ std::vector<Angle> degrees(std::initializer_list<double> angles) {
     return all;
 }
 
-/// What scans a plane stays level. What has an axis looks down from above; one that is aimed has
-/// some tilts to choose from, unless it sees all around from there.
+/// Sensors that scan a plane stay level. Sensors with an axis look down from above; an aimed sensor
+/// has some tilts to choose from, unless it sees all around from there.
 std::vector<Angle> usualTilts(const SensorModel& model, MountOn mount) {
     const bool is_aimed = kindOf(model).is_overhead;
     if (mount == MountOn::Wall && is_aimed) return degrees({-30, -15, -45});
@@ -65,7 +65,7 @@ struct CandidatePool::Data {
     Progress& progress;
     VisibleArea sight;
     std::map<double, std::unique_ptr<SiteValidity>> validities = {};
-    std::size_t bytes = 0;  // of the sets made so far
+    std::size_t bytes = 0;  // of the sets built so far
 
     const SiteValidity& validityAt(double height) {
         std::unique_ptr<SiteValidity>& validity = validities[height];
@@ -104,8 +104,8 @@ struct CandidatePool::Data {
         return usualTilts(kind.model, mountOf(kind));
     }
 
-    /// By which strategies space their places: the maximum range, but of what hangs overhead no
-    /// more than it looks over.
+    /// Returns the length by which strategies space their sites: the maximum range, but for
+    /// overhead sensors no more than the width of their view.
     [[nodiscard]] double reachOf(const SensorClass& kind, double height) const {
         constexpr double kOverHeight = 3;
         const double range = maxRange(kind.model);
@@ -113,7 +113,7 @@ struct CandidatePool::Data {
         return hangs ? std::min(range, kOverHeight * height) : range;
     }
 
-    /// What the strategy proposes at one height; Random comes by itself.
+    /// Returns the strategy's proposals at one height; Random is handled separately.
     [[nodiscard]] std::vector<Site> proposals(const SensorClass& kind, double height) const {
         return onNanometres(
             rowOf(options.strategy).propose({environment, height, reachOf(kind, height), options}));
@@ -130,7 +130,7 @@ struct CandidatePool::Data {
         return levels;
     }
 
-    /// The valid sites at all heights.
+    /// Returns the valid sites at all heights.
     std::vector<SitesAtHeight> levelsFor(const SensorClass& kind) {
         std::vector<SitesAtHeight> levels;
         if (options.mount.on == MountOn::Frame)
@@ -176,8 +176,8 @@ struct CandidatePool::Data {
         return text;
     }
 
-    /// Candidates at these sites for each tilt; false if progress says stop: then of about `least`
-    /// places, shared out over all levels and tilts.
+    /// Adds candidates at these sites for each tilt. Returns false if progress says stop: then adds
+    /// about `least` sites, shared out over all levels and tilts.
     bool addLevels(PosedCandidates& set, const SensorClass& kind,
                    const std::vector<SitesAtHeight>& levels, std::size_t least) {
         const std::vector<Angle> tilts = tiltsOf(kind);
@@ -203,18 +203,18 @@ struct CandidatePool::Data {
         return is_complete;
     }
 
-    /// Places drawn at all heights.
+    /// Random sites at all heights.
     struct Drawn {
         std::vector<SitesAtHeight> levels;
         std::size_t places = 0;
         bool is_complete = true;  ///< false: progress said to stop before
     };
 
-    /// Valid random places; fewer if they are hard to find or progress says stop. `needs_one`: even
-    /// then tries for one place as long as a single place allows.
+    /// Finds valid random sites; fewer if they are rare or progress says stop. `needs_one`: even
+    /// then draws for one site as often as a single site allows.
     template <typename Draw>
     Drawn randomLevels(const SensorClass& kind, int count, bool needs_one, Draw draw) {
-        constexpr std::uint64_t kTries = 1000;  // a place
+        constexpr std::uint64_t kTries = 1000;  // per site
         const std::uint64_t max_tries = kTries * static_cast<std::uint64_t>(count);
         Drawn drawn;
         std::uint64_t k = 0;
@@ -243,7 +243,7 @@ struct CandidatePool::Data {
         return drawn;
     }
 
-    /// The candidate from `first` on that adds most to what is covered so far, and how much.
+    /// The candidate from `first` on with the largest gain over the current coverage, and its gain.
     struct Best {
         std::size_t candidate = 0;
         std::uint32_t value = 0;
@@ -256,9 +256,9 @@ struct CandidatePool::Data {
         return {static_cast<std::size_t>(best - values.begin()), *best};
     }
 
-    /// Hierarchical Random, for each sensor anew: R1 places, then R2 more about the best of them.
-    /// What the best of these sees is covered for those that come after. False if progress says
-    /// stop.
+    /// Hierarchical Random, for each sensor anew: R1 sites, then R2 more around the best of them.
+    /// The view of the best candidate counts as covered for later sensors. Returns false if
+    /// progress says stop.
     bool addRandom(PosedCandidates& set, const SensorClass& kind) {
         for (int sensor = 0; sensor < kind.most; ++sensor) {
             const bool is_first = sensor == 0;
@@ -266,7 +266,7 @@ struct CandidatePool::Data {
             const RandomSequence sequence{options.seed, kind.id,
                                           static_cast<std::uint64_t>(sensor)};
             const std::size_t own = set.size();
-            // One that adds nothing needs but a place to stand.
+            // A sensor without gain requires just one valid site.
             const int count = isAnythingLeft() ? options.first_places : 1;
             const Drawn first = randomLevels(kind, count, is_first, [&](std::uint64_t k) {
                 return randomPlace(environment.limits(), sequence, k);

@@ -13,31 +13,32 @@
 
 namespace ispace {
 
-/// Weights of the cells, as candidate generation sees them.
+/// Cell weights that guide candidate generation.
 struct CandidateWeights {
-    CellSet counted;                  ///< cells that count at all
-    std::vector<std::uint32_t> left;  ///< weights of those not covered yet, else 0
+    CellSet counted;                  ///< cells with weight
+    std::vector<std::uint32_t> left;  ///< weights of the cells not covered yet, else 0
 };
 
-/// Makes candidates by the strategy and the mount rules of the options.
+/// Builds candidates by the strategy and the mount rules of the options.
 class CandidatePool {
   public:
-    /// Keeps references.
+    /// Stores references.
     CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
                   CandidateWeights weights, const ArrangeOptions& options, Progress& progress);
     ~CandidatePool();
     CandidatePool(const CandidatePool&) = delete;
     CandidatePool& operator=(const CandidatePool&) = delete;
 
-    /// All candidates of a kind. If progress said stop, `is_complete` is false and the set has
-    /// those made so far, spread over all places: at least some, unless no random place was found.
-    /// \throws UnmetError if there is no valid place, UsageError for more memory than is allowed
+    /// Returns all candidates of a kind. If progress said stop, `is_complete` is false and the set
+    /// holds the candidates built so far, spread over all sites: at least some, unless no valid
+    /// random site was found.
+    /// \throws UnmetError if no site is valid, UsageError if the candidates exceed the memory limit
     struct Made {
         std::unique_ptr<PosedCandidates> set;
         bool is_complete = true;
     };
     Made make(const SensorClass& kind);
-    /// The validity test for places at this height.
+    /// Returns the validity test for sites at this height.
     const SiteValidity& validityAt(double height);
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Candidates on a lattice, along all walls, under frames and along the medial axis.
+// Finds candidate sites on a lattice, along all walls, under frames and along the medial axis.
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
@@ -22,7 +22,7 @@ namespace ispace {
 
 namespace {
 
-/// `number` of --candidates is the step.
+/// `number` is the step in --candidates.
 void mustBeFew(double places, double step, const char* where, const char* number) {
     if (places <= kMaxSites) return;
     throw UsageError("a step of " + formatDouble(step) + " m makes " + formatFixed(places, 0) +
@@ -30,7 +30,7 @@ void mustBeFew(double places, double step, const char* where, const char* number
                      number + " in --candidates GRID,WALL,HEADINGS");
 }
 
-/// Lattice lines below `extent`, the first at half a step.
+/// Returns the number of lattice lines below `extent`, the first at half a step.
 double linesBelow(double extent, double step) {
     return std::max(0.0, std::ceil(extent / step - 0.5));
 }
@@ -53,20 +53,20 @@ std::vector<Point2> latticePlaces(const Box2& limits, double step) {
 
 namespace {
 
-/// Number of places over a length, the same for a moved plan in spite of rounding.
+/// Returns the number of sites over a length, the same for a moved plan in spite of rounding.
 double placesOver(double length, double step) {
     return std::max(1.0, std::round((length + kWeldDistance) / step));
 }
 
-/// Consecutive edges of a curve over which places are spread evenly.
+/// Consecutive edges of a curve over which sites are spread evenly.
 struct Stretch {
     std::size_t first = 0, count = 0;
     double length = 0;
 };
 
-/// A long edge is a stretch of its own; the edges between two long ones are one stretch, so that
-/// the many small edges of round and ragged objects do not get a place each. Edges count from a
-/// long one on, if there is any.
+/// Splits a curve into stretches: a long edge is one stretch; the edges between two long ones are
+/// one stretch, so that the many small edges of round and ragged objects do not get a site each.
+/// Edges count from a long one on, if there is any.
 std::vector<Stretch> stretchesOf(const Polygon& curve, double step) {
     const std::size_t n = curve.size();
     std::vector<double> lengths;
@@ -132,7 +132,8 @@ namespace {
 
 Point2 middleOf(Point2 a, Point2 b) { return a + 0.5 * (b - a); }
 
-/// The mid-line of a bar along its length. \pre the footprint is a rectangle
+/// Returns the mid-line of a bar along its length.
+/// \pre the footprint is a rectangle
 Segment2 midLine(const Polygon& bar) {
     const bool is_along = distance(bar[0], bar[1]) >= distance(bar[1], bar[2]);
     return is_along ? Segment2{middleOf(bar[3], bar[0]), middleOf(bar[1], bar[2])}
@@ -167,14 +168,14 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Delaunay = CGAL::Delaunay_triangulation_2<Kernel>;
 
-/// Computed relative to a corner of the floor in whole steps of about a micrometre, so that a moved
-/// plan gets the same places: samples of straight walls lie on common circles by the dozen, and
-/// rounding would decide between them.
+/// Coordinates are relative to a corner of the floor and in whole steps of about a micrometre, so
+/// that a moved plan gets the same sites: samples of straight walls lie on common circles by the
+/// dozen, and rounding would decide between them.
 constexpr double kStep = 0x1p-20;
 double snapped(double value) { return std::round(value / kStep) * kStep; }
 Vec2 snapped(Vec2 v) { return {snapped(v.x), snapped(v.y)}; }
 
-/// Least distance between two samples, as a share of the step between places.
+/// Minimum distance between two samples, as a share of the step between sites.
 constexpr double kSampleShare = 1.0 / 3;
 
 std::vector<Kernel::Point_2> samplesOf(const std::vector<Polygon>& curves, Point2 origin,
@@ -201,15 +202,15 @@ std::vector<Kernel::Point_2> samplesOf(const std::vector<Polygon>& curves, Point
     return samples;
 }
 
-/// A place of the medial axis, relative to the origin, and how far the nearest walls are.
+/// A point of the medial axis, relative to the origin, with its distance to the nearest walls.
 struct AxisPlace {
     Vec2 place;
     double clearance = 0;
 };
 
-/// True if two of the samples on the circle are seen from its centre at least nearly a right angle
-/// apart: samples lie beside the points where walls touch, and in a square corner the walls are
-/// seen at exactly a right angle.
+/// Returns true if two of the samples on the circle are seen from its centre at nearly a right
+/// angle or more: samples lie beside the points where walls touch, and in a square corner the walls
+/// are seen at exactly a right angle.
 bool isBetweenWalls(const Delaunay::Face& face, Kernel::Point_2 center, double squared_radius) {
     constexpr double kCosine = 0.1;
     for (int i = 0; i < 3; ++i) {
@@ -220,7 +221,7 @@ bool isBetweenWalls(const Delaunay::Face& face, Kernel::Point_2 center, double s
     return false;
 }
 
-/// Keeps one place of each square of a lattice: that farthest from all walls, then the nearest to
+/// Keeps one point in each square of a lattice: the farthest from all walls, then the nearest to
 /// the middle of the square.
 std::vector<AxisPlace> thinned(std::vector<AxisPlace> places, double step) {
     const auto cell = [step](double x) { return std::floor(x / step); };

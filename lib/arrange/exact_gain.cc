@@ -18,7 +18,7 @@ namespace ispace {
 
 namespace {
 
-/// What a counted layer adds to LayerLabel::numbers: lasers and rangers count in the low digits,
+/// Increments of LayerLabel::numbers per counted layer: lasers and rangers count in the low digits,
 /// receivers in the high ones.
 constexpr std::int64_t kOneSet = 1, kOneReceiver = std::int64_t{1} << 32;
 constexpr std::uint64_t kNearMark = std::uint64_t{1} << 63;
@@ -36,7 +36,7 @@ bool meet(const Box2& a, const Box2& b) {
 
 bool isVoid(const Box2& box) { return box.low.x > box.high.x || box.low.y > box.high.y; }
 
-/// An empty box is in every one.
+/// An empty box lies in every box.
 bool holds(const Box2& outer, const Box2& inner) {
     return isVoid(inner) || (outer.low.x <= inner.low.x && inner.high.x <= outer.high.x &&
                              outer.low.y <= inner.low.y && inner.high.y <= outer.high.y);
@@ -54,7 +54,7 @@ Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
     return {.curves = std::move(curves), .counts = false, .marks = marks};
 }
 
-/// The indoor floor that counts, parted by its weight; what weighs nothing is left out.
+/// Splits the indoor floor that counts by its weight; skips floor of weight 0.
 std::vector<Floor> floorsOf(const Environment& environment, const FloorWeights& floor) {
     std::vector<Floor> floors;
     if (floor.isUniform()) {
@@ -105,20 +105,20 @@ struct View {
 }  // namespace
 
 struct ExactGain::Data {
-    std::span<const Sensor> sensors;  // that move
+    std::span<const Sensor> sensors;  // the moving sensors
     int multiplicity;
     const VisibleArea& sight;
     std::vector<Floor> floors = {};
     Box2 floor_box = {};
     std::vector<View> standing = {}, moving = {};
     std::vector<std::shared_ptr<const Level>> levels =
-        {};  // of these sensors, held while they move
+        {};  // of these sensors, fixed while they move
 
-    /// The sensor in hand: the floor where it is the one that is still missing, within `near`.
+    /// The selected sensor: the floor that lacks exactly one more sensor, within `near`.
     std::size_t in_hand = 0;
     Box2 near = {};
     std::vector<Layer> missing = {};  // marks 1 << i: of floors[i]
-    /// The floors within a wider box about each sensor; made when they are wanted.
+    /// The floors within a wider box around each sensor; computed on demand.
     struct Surroundings {
         Box2 box;
         std::vector<Floor> floors;
@@ -139,7 +139,7 @@ struct ExactGain::Data {
         const bool heard = label.numbers / kOneReceiver >= static_cast<std::int64_t>(kMinReceivers);
         return label.numbers % kOneReceiver + (heard ? 1 : 0);
     }
-    /// True where one more sensor of this kind makes the floor count.
+    /// Returns true where one more sensor of this kind covers the floor.
     [[nodiscard]] bool lacksOne(const LayerLabel& label, bool is_receiver) const {
         if (setsAt(label) != multiplicity - 1) return false;
         return !is_receiver ||
@@ -152,9 +152,9 @@ struct ExactGain::Data {
                 layers.push_back(markLayer(floors[i].curves, std::uint64_t{1} << i));
     }
 
-    /// The floors in a box about the sensor in hand that holds `near`.
+    /// Returns the floors in a box around the selected sensor that contains `near`.
     const std::vector<Floor>& floorsNear() {
-        constexpr double kReach = 3;  // metres that a sensor is let go before they are made anew
+        constexpr double kReach = 3;  // metres that a sensor may move before they are computed anew
         Surroundings& own = around[in_hand];
         if (!own.floors.empty() && holds(own.box, near)) return own.floors;
         own.box = grown(near, kReach);
@@ -174,9 +174,9 @@ struct ExactGain::Data {
         return own.floors;
     }
 
-    /// Makes `missing` for a sensor in hand whose region lies in this box, which may hold nothing.
+    /// Computes `missing` for a selected sensor whose region lies in this box, which may be empty.
     void look(const Box2& region) {
-        constexpr double kReach = 0.6;  // metres; steps reach farther at times
+        constexpr double kReach = 0.6;  // metres; longer steps occur
         missing.clear();
         near = {};
         if (isVoid(region)) return;
@@ -273,7 +273,7 @@ std::vector<double> ExactGain::gains(std::span<const Pose3> poses) {
         all.add(box.high);
     }
     if (!all.empty()) {
-        // What was found before stays comparable: gains are of whole regions.
+        // Earlier gains stay comparable: gains are of whole regions.
         if (!data_->near.empty()) {
             all.add(data_->near.low);
             all.add(data_->near.high);

@@ -27,8 +27,8 @@ bool isNeeded(const Problem& problem, const CountedView& view, const Multiplicit
     return is_needed;
 }
 
-/// The views without which the value stays the same, ascending. `allows(left)`: whether the views
-/// still in `left` may remain alone.
+/// Finds views whose removal leaves the value unchanged, ascending. `allows(left)` returns true if
+/// the views still in `left` may remain alone.
 std::vector<std::size_t> idleAmong(const Problem& problem, std::span<const CountedView> views,
                                    const std::function<bool(const std::vector<bool>&)>& allows) {
     Multiplicities achieved(problem.achieved.begin(), problem.achieved.end());
@@ -55,7 +55,7 @@ CountedView viewOf(const Problem& problem, const Choice& choice) {
     return {kind.candidates->cellsOf(choice.candidate), kind.multiplicity};
 }
 
-/// The sites of a kind, as places for idle sensors.
+/// The sites of a kind, as targets of idle sensors.
 class SpareSites {
   public:
     SpareSites(const Problem& problem, std::size_t kind,
@@ -71,13 +71,14 @@ class SpareSites {
             positions_.push_back(position_of({kind, candidates_.firstOf(site)}));
     }
 
-    /// A sensor stands there.
+    /// Marks a site as taken.
     void occupy(Point3 place) {
         for (std::size_t site = 0; site < distances_.size(); ++site)
             distances_[site] = std::min(distances_[site], length(positions_[site] - place));
     }
 
-    /// The site farthest from all sensors, the first among equals; nothing if each has one.
+    /// Finds the site farthest from all sensors, the first among equals; empty if each has a
+    /// sensor.
     [[nodiscard]] std::optional<std::size_t> farthest() const {
         std::optional<std::size_t> best;
         for (std::size_t site = 0; site < distances_.size(); ++site)
@@ -85,7 +86,7 @@ class SpareSites {
         return best;
     }
 
-    /// The candidate of a site that sees most by these weights.
+    /// Finds the candidate of a site that sees most by these weights.
     [[nodiscard]] std::size_t bestAt(std::size_t site, const WeightSums& weights) const {
         const std::size_t first = candidates_.firstOf(site);
         std::vector<std::uint32_t> values(candidates_.firstOf(site + 1) - first);
@@ -105,7 +106,7 @@ class SpareSites {
     std::vector<bool> sees_;
 };
 
-/// Weights of the cells with less than twice the required multiplicity.
+/// Returns the weights of the cells with less than twice the required multiplicity.
 std::vector<std::uint32_t> weightsOfFew(const Problem& problem, const Multiplicities& achieved) {
     std::vector<std::uint32_t> weights = problem.weights;
     for (std::size_t i = 0; i < weights.size(); ++i)
@@ -113,7 +114,7 @@ std::vector<std::uint32_t> weightsOfFew(const Problem& problem, const Multiplici
     return weights;
 }
 
-/// Where sensors stand, and what they see together.
+/// Positions of the sensors and their common coverage.
 class IdleSpread {
   public:
     IdleSpread(const Problem& problem, std::span<const Point3> standing,
@@ -135,7 +136,7 @@ class IdleSpread {
         occupy(position_of_(choice));
     }
 
-    /// A place for one more of this kind.
+    /// Finds a candidate for one more sensor of this kind.
     [[nodiscard]] std::optional<Choice> next(std::size_t kind) const {
         const auto site = sites_[kind].farthest();
         if (!site) return std::nullopt;

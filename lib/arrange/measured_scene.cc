@@ -45,7 +45,8 @@ CellSet countedCells(const Problem& problem) {
     return counted;
 }
 
-/// Why nothing counts. \pre all cells weigh 0
+/// Explains why no floor counts.
+/// \pre all cells weigh 0
 std::string nothingText(const Target& target, FloorWeights weights) {
     weights.weights.clear();
     const std::vector<double> unweighted = weightsOfCells(target, weights);
@@ -91,7 +92,7 @@ void MeasuredScene::mustBeAffordable() const {
                          " buys nothing: the cheapest sensor costs " + formatDouble(least));
 }
 
-/// Four receivers count as one sensor; where there are receivers, others have multiplicity 4.
+/// Four receivers count as one sensor; in the presence of receivers, others have multiplicity 4.
 void MeasuredScene::setMultiplicities(const Coverage& standing) {
     const auto is_partial = [](const auto& sensor) { return isPartial(sensor.model); };
     const bool listens = std::any_of(scene_.sensors.begin(), scene_.sensors.end(), is_partial) ||
@@ -171,7 +172,7 @@ std::vector<CountedView> MeasuredScene::viewsOf(std::span<const Sensor> sensors)
     std::vector<CountedView> views(sensors.size());
     for (const Sensor& sensor : sensors) sight_.prepare(sensor);
     tbb::parallel_for(std::size_t{0}, sensors.size(), [&](std::size_t i) {
-        // A thread that waits for a level in here does not begin with another sensor.
+        // A thread that waits for a level in here must not begin with another sensor.
         tbb::this_task_arena::isolate([&] {
             views[i] = {sight_.cellsOf(target_.grid, sensors[i]),
                         isPartial(sensors[i].model) ? 1 : unit_};
@@ -203,7 +204,7 @@ bool MeasuredScene::isConnected(std::span<const CountedView> views) const {
         reached = waiting.back();
         waiting.pop_back();
     }
-    // Joins what shares a cell with what is joined already until nothing does.
+    // Merges views that share a cell with the merged ones until the set stops growing.
     for (bool grows = true; grows;) {
         grows = false;
         for (std::size_t i = 0; i < waiting.size(); ++i) {
@@ -267,7 +268,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Upper bounds of what a sensor sees of a plane, each on its own.
+/// Upper bounds of the view of a plane, each on its own.
 struct Extent {
     double reach;          ///< distance from the sensor, metres
     double area, outline;  ///< square metres, metres
@@ -286,7 +287,7 @@ Extent extentOf(const Laser& laser) {
 Extent extentOf(const FieldOfView& view) {
     const Extent disc = discOf(view.farthest());
     if (view.shape != FieldOfView::Shape::Pyramid) return disc;
-    // For sensors that measure distances this bounds the depth too.
+    // Bounds the depth of sensors that measure distances, too.
     const double depth = view.max_range;
     const double x = std::max(std::fabs(view.sides.left), std::fabs(view.sides.right));
     const double y = std::max(std::fabs(view.sides.up), std::fabs(view.sides.down));
@@ -313,7 +314,7 @@ std::uint64_t maxCellsInView(const SensorModel& device, const Grid& grid) {
 
 namespace {
 
-/// Multiplicity that sensors at any places can add to all cells together.
+/// Computes the multiplicity that sensors at any poses can add to all cells together.
 std::uint64_t maxParts(const Problem& problem, const Grid& grid,
                        std::span<const SensorModel> devices, std::span<const int> most) {
     struct Offer {
@@ -344,13 +345,13 @@ std::uint64_t maxParts(const Problem& problem, const Grid& grid,
 std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
                               std::span<const SensorModel> devices, std::span<const int> most) {
     std::uint64_t value = 0, parts = maxParts(problem, grid, devices, most);
-    /// What a cell lacks to be covered.
+    /// Multiplicity that a cell lacks.
     struct Missing {
         std::uint32_t weight;
         std::uint64_t parts;
     };
     std::vector<Missing> missing;
-    int together = 0;  // what all of them give a cell
+    int together = 0;  // from all sensors per cell
     for (std::size_t k = 0; k < devices.size(); ++k)
         together += most[k] * problem.kinds[k].multiplicity;
     for (std::size_t i = 0; i < problem.cells(); ++i) {
@@ -361,14 +362,14 @@ std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
             missing.push_back(
                 {problem.weights[i], static_cast<std::uint64_t>(problem.required - achieved)});
     }
-    // Most weight per missing multiplicity first.
+    // Sorts by weight per missing multiplicity, highest first.
     std::sort(missing.begin(), missing.end(), [](const Missing& a, const Missing& b) {
         return a.weight * b.parts > b.weight * a.parts;
     });
     for (const Missing& cell : missing) {
         if (parts == 0) break;
         const std::uint64_t used = std::min(parts, cell.parts);
-        // The last one in part, as in a fractional knapsack.
+        // Adds the last cell in part, as in a fractional knapsack.
         value += (cell.weight * used + cell.parts - 1) / cell.parts;
         parts -= used;
     }

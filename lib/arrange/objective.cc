@@ -27,7 +27,7 @@ void limitCamera(SensorModel& model, const ArrangeOptions& options) {
         *camera = withDensity(*camera, options.pixel_density);
 }
 
-/// The share of the total weight that is covered as often as it has to be.
+/// Reports the share of the total weight that is covered at the required multiplicity.
 void reportShare(const MeasuredScene& model, std::span<const CountedView> views,
                  Arrangement& result) {
     result.value = model.share(model.valueOf(views));
@@ -35,7 +35,7 @@ void reportShare(const MeasuredScene& model, std::span<const CountedView> views,
 
 void reportCost(const MeasuredScene& model, std::span<const CountedView> /*views*/,
                 Arrangement& result) {
-    // Kind by kind there are few sums to round.
+    // Few sums, and few roundings, kind by kind.
     std::vector<int> counts(model.kinds().size());
     for (const Placement& placement : result.sensors) ++counts[placement.kind];
     double cost = 0;

@@ -37,7 +37,7 @@ class LineFinder {
   public:
     explicit LineFinder(std::vector<Segment2> lines) : lines_(std::move(lines)), tree_(lines_) {}
 
-    /// A line comes within `reach`.
+    /// Returns true if a line comes within `reach`.
     [[nodiscard]] bool anyWithin(Point2 p, double reach) const {
         bool any = false;
         tree_.search({p, p}, reach,
@@ -50,14 +50,14 @@ class LineFinder {
     SegmentTree tree_;
 };
 
-/// What stands at one height.
+/// Returns the lines of all bodies at one height.
 std::vector<Segment2> linesOf(const Slice& slice) {
     std::vector<Segment2> lines;
     slice.forEachLine([&lines](const Segment2& line) { lines.push_back(line); });
     return lines;
 }
 
-/// The boundary of the indoor region, whatever the height, and what stands at one.
+/// Returns the boundary of the indoor region, which has no height, and the lines of one slice.
 std::vector<Segment2> linesOf(const Regions& indoor, const Slice& slice) {
     std::vector<Segment2> lines = linesOf(slice);
     indoor.forEachEdge([&lines](const Segment2& edge) { lines.push_back(edge); });
@@ -94,7 +94,7 @@ bool SiteValidity::isValid(Point2 place) const {
                                                    !data.obstacles.anyWithin(place, kWeldDistance);
     if (!is_free || data.keep_out.holder(place)) return false;
     if (!data.keep_in.empty() && !data.keep_in.holder(place)) return false;
-    // Distances round: a place at exactly the required distance is valid.
+    // Distances round: a site at exactly the required distance is valid.
     if (rules.clearance > kWeldDistance &&
         data.obstacles.anyWithin(place, rules.clearance - kWeldDistance))
         return false;
@@ -103,7 +103,7 @@ bool SiteValidity::isValid(Point2 place) const {
 
 namespace {
 
-/// Each place once, where it comes first, with the headings of all.
+/// Merges sites at the same point: each occurs where it came first, with the headings of all.
 std::vector<Site> withoutDoubles(std::vector<Site> sites) {
     std::vector<std::size_t> order(sites.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -152,7 +152,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 constexpr std::array kNames = {"x", "y", "heading"};
-/// Plans lie within this of the origin, in metres; headings are no larger, in degrees.
+/// Maximum distance of plans from the origin, metres; also the maximum of headings, degrees.
 constexpr double kMaxDistance = 1e6;
 
 std::string_view trimmed(std::string_view text) {
@@ -161,7 +161,7 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-/// The fields of a line, without the blanks around them.
+/// Returns the fields of a line, without surrounding blanks.
 std::vector<std::string_view> fieldsOf(std::string_view line) {
     std::vector<std::string_view> fields;
     for (std::size_t begin = 0; begin <= line.size();) {
@@ -184,7 +184,8 @@ class SiteReader {
     void readLine(std::string_view line) {
         ++line_;
         const char* const begin = line.data();
-        constexpr std::string_view kMark = "\xef\xbb\xbf";  // as some editors begin a file
+        constexpr std::string_view kMark =
+            "\xef\xbb\xbf";  // byte order mark that some editors write
         if (line_ == 1 && line.starts_with(kMark)) line.remove_prefix(kMark.size());
         line = trimmed(line.substr(0, line.find('#')));
         if (line.empty()) return;
@@ -250,7 +251,7 @@ class SiteReader {
     bool is_first_ = true;  // no line with fields has come yet
     Diagnostics findings_;
     std::vector<Site> sites_;
-    std::map<Point2, std::size_t, LexLess> known_;  // their indices
+    std::map<Point2, std::size_t, LexLess> known_;  // indices of the sites
 };
 
 }  // namespace

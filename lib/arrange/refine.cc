@@ -21,7 +21,7 @@ constexpr double kMinStep = 0.001, kMinTurn = 0.05;  // metres, degrees
 constexpr double kPerMetre = 1e4, kPerDegree = 1e3;
 /// Share of the total: a smaller gain is rounding.
 constexpr double kMinGain = 1e-9;
-/// At one length of steps; a guard against endless gains by rounding.
+/// Limit for one length of steps, in case rounding keeps yielding gains.
 constexpr std::size_t kMaxRounds = 200;
 
 /// A step of one length along some of the axes.
@@ -31,7 +31,7 @@ struct Way {
     [[nodiscard]] int axes() const { return std::abs(x) + std::abs(y) + std::abs(turn); }
 };
 
-/// All ways, those along one axis first, then along two and three.
+/// Returns all ways, first those along one axis, then along two and three.
 std::vector<Way> waysFor(bool turns) {
     std::vector<Way> ways;
     ways.reserve(26);
@@ -98,21 +98,21 @@ class Search {
         progress_.end();
         const double after = gain_.value();
         ++evaluations_;
-        // Gains were those of single sensors; the value of all together decides.
+        // Gains were those of single sensors; the joint value decides.
         if (after < before) return {start, before, before, evaluations_};
         return {poses_, before, after, evaluations_};
     }
 
   private:
-    /// Steps of this length, sensor after sensor, until none helps any more.
+    /// Tries steps of this length, sensor after sensor, until no step gains.
     void settle(const Stride& stride) {
         const std::size_t count = poses_.size();
-        std::size_t idle = 0;  // sensors in a row that stay where they are
+        std::size_t idle = 0;  // sensors in a row that keep their pose
         for (std::size_t turn = 0; idle < count && turn < kMaxRounds * count; ++turn)
             idle = improve(turn % count, stride) ? 1 : idle + 1;
     }
 
-    /// Steps of one sensor as long as they help; false if none did.
+    /// Moves one sensor as long as steps gain; returns false if no step did.
     bool improve(std::size_t sensor, const Stride& stride) {
         if (progress_.stopped()) return false;
         gain_.take(sensor);
@@ -121,7 +121,7 @@ class Search {
         ++evaluations_;
         const double first = gain;
         while (const auto way = bestWay(sensor, ways, stride, gain)) {
-            // On along it as far as it helps.
+            // Goes on along it as long as that gains.
             while (bestWay(sensor, std::span(&*way, 1), stride, gain)) continue;
         }
         if (gain == first) return false;
@@ -132,7 +132,7 @@ class Search {
         return true;
     }
 
-    /// Takes the best step, of those along few axes if one helps; nothing if none does.
+    /// Finds the best step, along few axes if one of them gains; empty if no step gains.
     std::optional<Way> bestWay(std::size_t sensor, std::span<const Way> ways, const Stride& stride,
                                double& gain) {
         for (std::size_t begin = 0; begin < ways.size();) {

@@ -20,12 +20,13 @@ namespace ispace {
 class MeasuredScene;
 
 struct RefineOptions {
-    int multiplicity = 1;                ///< floor is covered if this many see it
+    int multiplicity = 1;                ///< a point is covered if this many sensors see it
     double step = 0.25;                  ///< first step, metres; steps are halved down to 1 mm
     Angle turn = Angle::degrees(11.25);  ///< first turn; likewise down to 0.05 degrees
-    /// Refuses places of a sensor, by its index; null: takes all.
+    /// Returns false for rejected positions of a sensor, given by its index; null: accepts all.
     std::function<bool(std::size_t, Point2)> is_valid = {};
-    /// Refuses steps, by the poses of all sensors after it; null: takes all.
+    /// Returns false for rejected steps, given the poses of all sensors after the step; null:
+    /// accepts all.
     std::function<bool(const std::vector<Pose3>&)> accepts = {};
 };
 
@@ -35,43 +36,43 @@ struct Refined {
     std::size_t evaluations = 0;
 };
 
-/// Checks before a search that refine() can follow it. \throws UsageError for sweeping lasers whose
-/// exact region is not known (among `devices` and the scene's) and for too many weights
+/// Validates before a search that refine() can follow it.
+/// \throws UsageError for sweeping lasers whose exact region is not known (among `devices` and the
+///         scene's) and for too many weights
 void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
                      const FloorWeights& weights);
 
 /// Improves a layout in continuous x, y and heading: sensor after sensor, by pattern search (Hooke
-/// and Jeeves 1961: steps along the axes and their pattern, halved where none helps). The objective
-/// is the exact weighted area that at least `multiplicity` sensors see, in closed form (Overlay),
-/// including all that stands in the scene. z, tilt and
-/// roll stay, and so does the heading of a sensor that sees the same at every heading. Steps lead
-/// to whole multiples of 0.1 mm and 0.001 degrees and count if they gain more than 1e-9 of the
-/// total; a sensor without such a step keeps its pose to the bit. Ends when no step of the smallest
-/// length helps.
+/// and Jeeves 1961: steps along the axes and their pattern, halved when no step gains). The
+/// objective is the exact weighted area that at least `multiplicity` sensors see, in closed form
+/// (Overlay), including the standing sensors of the scene. z, tilt and roll stay, and so does the
+/// heading of a sensor with the same view at every heading. Steps lead to whole multiples of 0.1 mm
+/// and 0.001 degrees and count if they gain more than 1e-9 of the total; a sensor without such a
+/// step keeps its pose to the bit. Ends when no step of the smallest length gains.
 ///
-/// The result does not depend on the number of threads; ends early, with the best so far, if
-/// progress says stop.
-/// \param sight of the scene's environment
-/// \throws UsageError for sensors, also standing ones, whose exact region is not known (lasers that
-///         nod or roll), and for more than 60 weighted zones
+/// The result does not depend on the number of threads. Returns early, with the best poses so far,
+/// if progress says stop.
+/// \param sight visible areas in the scene's environment
+/// \throws UsageError for sensors, standing ones included, whose exact region is not known (lasers
+///         that nod or roll), and for more than 60 weighted zones
 Refined refine(const Scene& scene, const VisibleArea& sight, std::span<const Sensor> sensors,
                const FloorWeights& weights, const RefineOptions& options, Progress& progress);
 
-/// refine() for sensors that a search arranged, by the rules of the search: places stay valid, the
-/// value on its grid ends no lower than `least`, and connected coverage stays connected. Sensors
-/// that were apart stay 5 cm apart: no two are built in one place.
+/// Runs refine() on sensors that a search arranged, by the rules of the search: sites stay valid,
+/// the value on its grid ends no lower than `least`, and connected coverage stays connected.
+/// Sensors that were apart stay 5 cm apart: two housings need their space.
 Refined refine(MeasuredScene& model, const std::vector<Placement>& placements, std::uint64_t least,
                Progress& progress);
 
-/// The exact gain of what at least `multiplicity` sensors see: its area in closed form (Overlay)
-/// times the weight that it has. Lasers and rangers count one by one, all ultrasonic receivers
+/// Computes the exact gain of poses: the area that at least `multiplicity` sensors see, in closed
+/// form (Overlay), times its weight. Lasers and rangers count one by one, all ultrasonic receivers
 /// together as one, where enough of them hear.
 ///
-/// What stands in the scene does not move: its regions, and the floor by its weights, are made
-/// once.
+/// Standing sensors of the scene do not move: their regions, and the floor by its weights, are
+/// computed once.
 class ExactGain {
   public:
-    /// All sensors stand at their poses. Keeps the references.
+    /// All sensors stand at their poses. Stores the references.
     /// \throws UsageError for sensors without an exact region and for more than kMaxZones weights
     ExactGain(const Scene& scene, const VisibleArea& sight, std::span<const Sensor> sensors,
               const FloorWeights& weights, int multiplicity);
@@ -81,21 +82,21 @@ class ExactGain {
 
     static constexpr std::size_t kMaxZones = 60;
 
-    /// Weight of all floor that counts, m2 times weight.
+    /// Returns the weight of all floor that counts, m2 times weight.
     [[nodiscard]] double total() const;
-    /// Weight of what is seen as all stand now. O(n log n) in all regions and walls.
+    /// Returns the weight covered at the current poses. O(n log n) in all regions and walls.
     [[nodiscard]] double value() const;
 
-    /// From here on this sensor moves and all others stay.
+    /// Selects the sensor that moves from here on; all others stay.
     void take(std::size_t sensor);
-    /// What the sensor in hand would add to the others at each of these poses, worked out on all
-    /// cores. Only what lies near it is looked at: O(n log n) in its region and those it meets.
+    /// Computes the gain of the selected sensor over the others at each of these poses, on all
+    /// cores. Reads only its neighbourhood: O(n log n) in its region and those it meets.
     /// \pre take() was called
     [[nodiscard]] std::vector<double> gains(std::span<const Pose3> poses);
-    /// Puts the sensor in hand there.
+    /// Moves the selected sensor to this pose.
     void put(const Pose3& pose);
 
-    /// False for a sensor that sees the same at every heading.
+    /// Returns false for a sensor with the same view at every heading.
     [[nodiscard]] bool turns(std::size_t sensor) const;
 
   private:

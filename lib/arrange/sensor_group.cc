@@ -22,11 +22,12 @@ SensorModel modelFor(const Record& record, const DeviceCatalogue& devices) {
     try {
         return sensorModelOf(record, devices);
     } catch (const FormatError& error) {
-        // An error in the parameters of --sensor is one of the command line.
+        // An error in the parameters of --sensor is a usage error.
         throw UsageError("--sensor: " + error.diagnostics().front().message);
     }
 }
 
+/// Finds the record with this id.
 /// \pre a record of the scene or an added one has the id
 const Record& holderOf(const std::string& id, const Scene& scene,
                        std::span<const SensorSpec> added) {
@@ -90,7 +91,7 @@ Document withoutPlaces(const Document& layout, std::span<const std::string> fixe
 
 namespace {
 
-/// Of the first sensor of a new kind. Kinds of the same name differ in parameters: a number tells
+/// Names a kind by its first sensor. Kinds of the same name differ in parameters: a number tells
 /// them apart.
 std::string kindName(const SensorGroup& group, const std::vector<SensorClass>& kinds) {
     if (!group.id.empty()) return group.id;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The candidates of the thesis: Ordinary Grid, Along Wall, Hierarchical Random.
+// The strategies of the thesis: Ordinary Grid, Along Wall, Hierarchical Random; the strategy table.
 #include "arrange/strategy.h"
 
 #include <algorithm>
@@ -204,27 +204,29 @@ std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search) {
 
 namespace {
 
-/// One in so many of a wall's places is at its one end, and as many at the other.
+/// One in so many of a wall's sites is at one end, and as many at the other.
 constexpr int kWallEnds = 3;
 
-/// Adds the headings at an end of a wall, for the sensor that shall see around the corner.
-/// `turn` leads from the wall's normal to the neighbour's, on the side of the room.
+/// Adds the headings at an end of a wall, for sensors that look around the corner. `turn` leads
+/// from the wall's normal to the neighbour's, on the side of the room.
 void addTurned(Site& site, Angle normal, Angle turn) {
     for (const Angle heading : {wrapped(normal + 0.5 * turn), wrapped(normal + turn)})
         if (std::find(site.headings.begin(), site.headings.end(), heading) == site.headings.end())
             site.headings.push_back(heading);
 }
 
-/// From one normal to the next of a curve; where a sheet ends, around that end.
+/// Computes the turn from one normal to the next of a curve; at the end of a sheet, around that
+/// end.
 Angle turnBetween(Angle normal, Angle next) {
-    // Degrees by which rounding and welding may turn a side of a sheet. To the left lies no floor
-    // to speak of between walls at such an angle.
+    // Degrees by which rounding and welding may turn a side of a sheet. Walls at such an angle have
+    // hardly any floor between them.
     constexpr double kSlack = 1e-3;
     const Angle turn = wrapped(next - normal);
     return turn >= Angle::degrees(180 - kSlack) ? turn - Angle::degrees(360) : turn;
 }
 
-/// Along the walls between the corners of a closed curve. \pre there are at least two corners
+/// Adds sites along the walls between the corners of a closed curve.
+/// \pre there are at least two corners
 void addWallSites(const Polygon& corners, double dist, int times, std::vector<Site>& sites) {
     const std::size_t n = corners.size();
     std::vector<Angle> normals;
@@ -266,7 +268,7 @@ std::vector<Site> wallSites(const Environment& environment, double height, doubl
     const Slice slice = wallSlice(environment, height);
     std::vector<Region> floor = environment.indoor().parts;
     if (!slice.solids.empty()) floor = difference(environment.indoor(), slice.solids);
-    // What lies on the left of each is free.
+    // The left side of each curve is free.
     std::vector<Polygon> curves = wallCurves(floor, slice.sheets);
     std::size_t walls = 0;
     for (Polygon& curve : curves) {
@@ -284,13 +286,12 @@ std::vector<Site> wallSites(const Environment& environment, double height, doubl
 
 namespace {
 
-/// Which places of a sensor are drawn.
+/// Purpose of a draw: a first site or one around the best.
 enum class Draws : std::uint64_t { Anywhere, AboutTheBest };
 
-/// Two numbers in [0, 1) of their own for each place of a sequence.
+/// Computes two numbers in [0, 1), unique to each draw of a sequence.
 std::array<double, 2> drawPair(const RandomSequence& sequence, Draws draws, std::uint64_t k) {
-    // A place takes four elements of 24 bits. What does not fit into their number goes on in
-    // further sequences.
+    // A draw takes four elements of 24 bits. Higher bits of its number select further sequences.
     constexpr unsigned kPlaceBits = 30, kSequenceBits = 32;
     const std::uint64_t number = 2 * sequence.sensor + static_cast<std::uint64_t>(draws);
     const RandomKey key{.seed = sequence.seed,

@@ -25,11 +25,11 @@ struct StrategyOption {
     double lowest = 0, highest = 0;  ///< of a density: of its steps
     const char* help;
     std::optional<MountOn> or_mount = {};    ///< also an option of this mount
-    bool is_needed = false;                  ///< by its strategy, which it implies
-    const char* refusal = "give that, too";  ///< what to do where the strategy takes it not
+    bool is_needed = false;                  ///< required by its strategy, which it implies
+    const char* refusal = "give that, too";  ///< advice after an option that the strategy rejects
 };
 
-/// What a strategy proposes places for.
+/// Input of a strategy's proposal.
 struct ProposalRequest {
     const Environment& environment;
     double height;     ///< of the sensor
@@ -37,29 +37,29 @@ struct ProposalRequest {
     const ArrangeOptions& options;
 };
 
-/// A strategy for proposing places. To add one, write its function and a row.
+/// A strategy that proposes sites. To add one, write its function and a row.
 struct StrategyRow {
     Strategy strategy;
     std::string_view name;  ///< on the command line and in results
     std::string_view help;
     bool is_of_thesis;                        ///< defaults: its grid of cells and greedy search
-    int headings;                             ///< default number per place; 0: of options.density
-    std::span<const StrategyOption> options;  ///< refused where a strategy does not list them
-    /// Proposes sites, valid or not. Strategy::Random proposes none: its places depend on the
-    /// candidates made before, see CandidatePool.
+    int headings;                             ///< default number per site; 0: of options.density
+    std::span<const StrategyOption> options;  ///< rejected by strategies that do not list them
+    /// Returns sites, valid or not. Strategy::Random returns an empty list: its sites depend on the
+    /// candidates built before, see CandidatePool.
     std::vector<Site> (*propose)(const ProposalRequest& request);
-    std::string_view hint = {};  ///< what may help if no proposed place is valid
+    std::string_view hint = {};  ///< advice if no proposed site is valid
 };
 
-/// All strategies, the default first.
+/// Returns all strategies, the default first.
 std::span<const StrategyRow> strategies();
 const StrategyRow& rowOf(Strategy strategy);
-/// The row with this name; null if there is none.
+/// Finds the row with this name; null if there is no such row.
 const StrategyRow* strategyNamed(std::string_view name);
-/// True if it is an option of this strategy or mount.
+/// Returns true if it is an option of this strategy or mount.
 bool takes(Strategy strategy, std::optional<MountOn> mount, const StrategyOption& option);
 
-/// The headings to try at each place, if the strategy does not choose them itself.
+/// Returns the headings to try at each site, if the strategy does not choose them itself.
 std::vector<Angle> headingsPerPlace(const ArrangeOptions& options);
 
 }  // namespace ispace

@@ -8,11 +8,11 @@
 
 namespace ispace {
 
-/// A pose that a search for an arrangement tried for a sensor, and what it would cover.
+/// A pose that a search tried for a sensor, and its coverage.
 struct TriedPose {
-    std::string sensor;  ///< id; of several that are alike the first
+    std::string sensor;  ///< id; the first of several equal sensors
     Pose3 pose;
-    double value = 0;  ///< share of what counts that it would add to what stands already
+    double value = 0;  ///< share of the total weight that it would add to the standing coverage
     bool is_chosen = false;
     std::optional<double> slice_area = {};  ///< of a laser, eq. (4.4), m2
 };

@@ -34,8 +34,8 @@ Slice wallSlice(const Environment& environment, double height) {
 
 namespace {
 
-/// Lines, each walked in both directions. At its end the walk takes the next line clockwise, so
-/// that the same face stays on the left.
+/// Lines, each walked in both directions. At the end of a line the walk takes the next line
+/// clockwise, so that the same face stays on the left.
 class Walk {
   public:
     /// An edge with the floor on its left.
@@ -43,8 +43,8 @@ class Walk {
     /// A line with the floor on both sides.
     void addSheet(const Segment2& line) { add(line, true); }
 
-    /// The curves with the floor on the left of every step; false if a curve has it on the left of
-    /// some steps only.
+    /// Builds the curves with the floor on the left of every step; returns false if a curve has it
+    /// on the left of some steps only.
     [[nodiscard]] bool trace(std::vector<Polygon>& curves) {
         sortByDirection();
         std::vector<char> is_done(steps_.size());
@@ -70,7 +70,7 @@ class Walk {
         std::size_t line = 0;
         bool is_back = false;    // from the end of the line to its beginning
         bool has_floor = false;  // on the left
-        std::size_t around = 0;  // its place in order_
+        std::size_t around = 0;  // its index in order_
     };
 
     void add(const Segment2& line, bool is_sheet) {
@@ -79,7 +79,7 @@ class Walk {
         steps_.push_back({line.b, line.a, number, true, is_sheet});
     }
 
-    /// By where they begin, then counter-clockwise from +x.
+    /// Sorts by start point, then counter-clockwise from +x.
     [[nodiscard]] static bool isBefore(const Step& a, const Step& b) {
         if (a.from != b.from) return lexLess(a.from, b.from);
         const auto is_low = [](const Step& step) {
@@ -100,7 +100,7 @@ class Walk {
         for (std::size_t i = 0; i < order_.size(); ++i) steps_[order_[i]].around = i;
     }
 
-    /// The step that follows: from the way back, the next one clockwise.
+    /// Returns the step that follows: from the way back, the next one clockwise.
     [[nodiscard]] std::size_t next(std::size_t at) const {
         const std::size_t back = at ^ 1U, around = steps_[back].around;
         const Point2 vertex = steps_[back].from;
@@ -110,11 +110,11 @@ class Walk {
         return order_[last];
     }
 
-    std::vector<Step> steps_;  // 2i and 2i + 1 are the two of a line
+    std::vector<Step> steps_;  // steps 2i and 2i + 1 belong to line i
     std::vector<std::size_t> order_;
 };
 
-/// The sheets that stand in the floor, not on its boundary, by their midpoints.
+/// Finds the sheets that stand in the floor, not on its boundary, by their midpoints.
 std::vector<Segment2> sheetsWithin(const std::vector<Region>& floor,
                                    std::span<const Segment2> edges,
                                    std::span<const Segment2> sheets) {
@@ -133,7 +133,7 @@ std::vector<Segment2> sheetsWithin(const std::vector<Region>& floor,
     return within;
 }
 
-/// Each line once, whichever way it runs.
+/// Removes duplicate lines, in either direction.
 void dropDoubles(std::vector<Segment2>& lines) {
     const auto key = [](const Segment2& line) {
         const bool is_turned = lexLess(line.b, line.a);
@@ -174,7 +174,7 @@ std::vector<Polygon> wallCurves(const std::vector<Region>& floor,
     for (const Segment2& sheet : within) walk.addSheet(sheet);
     std::vector<Polygon> curves;
     if (walk.trace(curves)) return curves;
-    // Sheets that run out through a boundary: each on its own.
+    // Sheets that cross a boundary become separate curves.
     for (const Segment2& sheet : within) boundaries.push_back({sheet.a, sheet.b});
     return boundaries;
 }
@@ -187,7 +187,8 @@ class Around {
     explicit Around(const Polygon& curve) : curve_(curve) {}
 
     [[nodiscard]] Point2 at(std::size_t i) const { return curve_[i % curve_.size()]; }
-    /// All vertices between the two lie near the line that joins them, and in order.
+    /// Returns true if all vertices between the two lie near the line that joins them, and in
+    /// order.
     [[nodiscard]] bool isStraight(std::size_t from, std::size_t to) const {
         const Segment2 line{at(from), at(to)};
         const Vec2 along = line.b - line.a;
