@@ -14,30 +14,32 @@
 
 namespace ispace {
 
-/// The open nodes of a search tree. The highest bound comes first (best first), or the newest while
-/// memory is short: depth first leaves few open. Memory that nodes share counts once.
+/// Stores the open nodes of a search tree. The highest bound comes first (best first), or the
+/// newest while memory is short: depth first leaves few open. Memory that nodes share counts once.
 class OpenNodes {
   public:
     /// \param max_bytes memory limit, approximate
     explicit OpenNodes(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
     [[nodiscard]] bool empty() const { return nodes_.empty(); }
-    /// The highest, fine. \pre not empty
+    /// Returns the highest bound, fine.
+    /// \pre not empty
     [[nodiscard]] std::uint64_t bound() const { return ~nodes_.begin()->first.first; }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
     void add(BranchNode node);
-    /// The next nodes to process: at most `most`, fewer where they are large, at least one.
+    /// Removes and returns the next nodes to process: at most `most`, fewer large ones, at least
+    /// one.
     std::vector<BranchNode> take(std::size_t most);
-    /// Undoes the last take(), of which these are the nodes.
+    /// Undoes the last take(), given its nodes.
     void putBack(std::vector<BranchNode> batch);
-    /// Drops nodes with a bound of at most `cut`; returns the highest of these bounds, else 0.
+    /// Removes nodes with a bound of at most `cut`; returns the highest of these bounds, else 0.
     std::uint64_t dropUpTo(std::uint64_t cut);
 
     [[nodiscard]] std::size_t size() const { return nodes_.size(); }
-    /// All of them, by age.
+    /// Returns all nodes, by age.
     [[nodiscard]] std::vector<const BranchNode*> byAge() const;
-    /// Drops all but those of one shard, dealt out in turn, the highest bound first.
+    /// Removes all nodes but those of one shard, dealt out in turn, the highest bound first.
     void keepOnly(const Shard& shard);
 
   private:
@@ -59,22 +61,21 @@ class OpenNodes {
     std::unordered_map<const void*, Shared> shared_;
 };
 
-/// Per kind, ascending, the candidates that reduced-cost fixing by the bound's multipliers leaves
-/// for solutions better than `value`.
+/// Returns, per kind and ascending, the candidates that reduced-cost fixing by the bound's
+/// multipliers leaves for solutions better than `value`.
 std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const Bound& bound,
                                                   std::uint64_t value);
 
 /// Branch and bound over the surviving candidates: improves `known` until its value and bound are
-/// within `gap`, its value reaches `enough`, or progress says stop. Each node has its own
-/// Lagrangian bound, warm-started from its parent's multipliers, and rules out more candidates.
-/// Best first, or depth first while open nodes take more than `max_bytes`. Deterministic unless
-/// stopped.
+/// within `gap`, its value reaches `enough`, or progress says stop. Each node has a Lagrangian
+/// bound, warm-started from its parent's multipliers, and excludes more candidates. Best first, or
+/// depth first while open nodes take more than `max_bytes`. Deterministic unless stopped.
 ///
-/// If a budget can be split in more ways than CountChoice lists (20'000) there is no tree: `known`
-/// is returned unchanged. known.best need not be a solution: only better values are searched.
+/// If a budget can be split in more ways than CountChoice lists (20'000), no tree is built: returns
+/// `known` unchanged. known.best need not be a solution: only better values are searched.
 ///
-/// With results of steps it goes on from a tree stored there, and stores its own now and then and
-/// at its end.
+/// With a ledger, reads the tree stored there and continues it; writes the tree now and then and at
+/// the end.
 SearchResult branchAndBound(const Problem& problem, const Bound& bound, SearchResult known,
                             double gap, Progress& progress,
                             std::uint64_t enough = std::numeric_limits<std::uint64_t>::max(),

@@ -18,23 +18,23 @@ namespace ispace {
 class WeightSums {
   public:
     WeightSums() = default;
-    /// One weight per cell. O(cells)
+    /// Stores the sums of one weight per cell. O(cells)
     explicit WeightSums(std::span<const std::uint32_t> weights) { assign(weights); }
     void assign(std::span<const std::uint32_t> weights);
     [[nodiscard]] std::uint32_t of(const CellRun& run) const {
         return sums_[run.end] - sums_[run.first];
     }
-    /// [i]: the weight of all cells before i; one entry more than there are cells.
+    /// Returns in [i] the weight of all cells before i; one entry more than there are cells.
     [[nodiscard]] std::span<const std::uint32_t> sums() const { return sums_; }
 
   private:
     std::vector<std::uint32_t> sums_;
 };
 
-/// True if parts follow each other, and all their runs lie within so many cells.
+/// Returns true if parts follow each other, and all their runs lie within so many cells.
 bool isWhole(const CellParts& parts, std::size_t cells);
 
-/// Candidates of one kind, each with the cells it sees.
+/// Stores candidates of one kind, each with the cells it sees.
 ///
 /// Candidates of one site share storage: the cells visible from the site are split into parts by
 /// direction, and each candidate is a range of parts. This takes 4 bytes per run and part and 12
@@ -65,12 +65,13 @@ class CandidateSet {
         return site == sites_.size() ? size() : sites_[site].first_candidate;
     }
     [[nodiscard]] std::size_t siteOf(std::size_t candidate) const { return site_of_[candidate]; }
-    /// Memory that grows with the number of sites.
+    /// Returns the memory that grows with the number of sites.
     [[nodiscard]] std::size_t bytes() const;
-    /// Stored runs; a run that is split between parts, or for its length, counts several times.
+    /// Returns the number of stored runs; a run that is split between parts, or for its length,
+    /// counts several times.
     [[nodiscard]] std::size_t runs() const { return runs_; }
 
-    /// Calls visit(const CellRun&) for the disjoint runs of a candidate, in no special order.
+    /// Calls visit(const CellRun&) for the disjoint runs of a candidate, in arbitrary order.
     template <typename Visit>
     void forEachRun(std::size_t candidate, Visit visit) const;
     [[nodiscard]] CellSet cellsOf(std::size_t candidate) const;
@@ -78,24 +79,25 @@ class CandidateSet {
     void addTo(CellSet& cells, std::size_t candidate) const;
 
     [[nodiscard]] PartRange rangeOf(std::size_t candidate) const { return ranges_[candidate]; }
-    /// Directed parts of a site.
+    /// Returns the number of directed parts of a site.
     [[nodiscard]] std::size_t directedParts(std::size_t site) const {
         return sites_[site].directed;
     }
-    /// The runs of a part of a site; part directedParts() is the undirected one.
+    /// Returns the runs of a part of a site; part directedParts() is the undirected one.
     [[nodiscard]] std::vector<CellRun> runsOf(std::size_t site, std::size_t part) const;
 
-    /// Weight of the cells that each candidate of a site sees: values[k] for firstOf(site) + k.
-    /// O(runs and parts of the site + candidates). \pre each sum is below 2^32
+    /// Computes the weight of the cells that each candidate of a site sees: values[k] for
+    /// firstOf(site) + k. O(runs and parts of the site + candidates).
+    /// \pre each sum is below 2^32
     void weighSite(std::size_t site, const WeightSums& weights,
                    std::span<std::uint32_t> values) const;
     [[nodiscard]] std::uint32_t weigh(std::size_t candidate, const WeightSums& weights) const;
-    /// The same for all candidates, in parallel.
+    /// Computes the same for all candidates, in parallel.
     void weighAll(const WeightSums& weights, std::span<std::uint32_t> values) const;
 
   private:
-    /// Runs are kept in 32 bits: the first cell above, the length (at least 1) below. All runs of a
-    /// site lie together, by parts, those of the undirected one last.
+    /// A run takes 32 bits: the first cell above, the length (at least 1) below. The runs of a site
+    /// are contiguous, by parts; the undirected part comes last.
     struct Site {
         std::size_t first_candidate = 0;
         std::size_t first_part = 0;           ///< in part_runs_
@@ -108,7 +110,7 @@ class CandidateSet {
     [[nodiscard]] const std::uint32_t* runsOf(const Site& site) const {
         return blocks_[site.block].data() + site.offset;
     }
-    /// [k]: the first run of part k, counted from the site's first.
+    /// Returns in [k] the first run of part k, counted from the site's first.
     [[nodiscard]] const std::uint32_t* partsOf(const Site& site) const {
         return part_runs_.data() + site.first_part;
     }
@@ -142,22 +144,22 @@ void CandidateSet::forEachRun(std::size_t candidate, Visit visit) const {
     visit_all(parts[site.directed], site.runs);
 }
 
-/// What candidates see: runs of cells, ascending, that do not touch each other.
+/// The view of a candidate: runs of cells, ascending, that do not touch each other.
 using CellRuns = std::vector<CellRun>;
 
-/// What a candidate sees. O(n log n) for n runs.
+/// Returns the view of a candidate. O(n log n) for n runs.
 CellRuns runsOf(const CandidateSet& set, std::uint32_t candidate);
-/// What is in both. O(n)
+/// Computes the intersection of two views. O(n)
 CellRuns commonOf(const CellRuns& a, const CellRuns& b);
 
-/// Weights of what one candidate sees, summed up, so that its share of what others see is quick to
-/// tell.
+/// Prefix sums of cell weights masked by one candidate's view: its overlap with another view takes
+/// two reads per run.
 class MaskedSums {
   public:
     explicit MaskedSums(std::size_t cells) : sums_(cells + 1) {}
     /// O(cells)
     void assign(const CellRuns& runs, const std::uint32_t* weights);
-    /// Weight of what is seen in these runs, too. O(n) for n runs.
+    /// Returns the weight of the cells of these runs that lie in the view. O(n) for n runs.
     [[nodiscard]] std::int64_t of(const CellRuns& runs) const {
         std::uint32_t sum = 0;
         for (const CellRun& run : runs) sum += sums_[run.end] - sums_[run.first];

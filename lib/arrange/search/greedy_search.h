@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/arrange/search: what greedy and local search share.
+// Private to lib/arrange/search: state and candidate finder of greedy and local search.
 #pragma once
 
 #include <cstddef>
@@ -14,21 +14,22 @@
 
 namespace ispace {
 
-/// How the marginal gain of a sensor is measured.
+/// Measure of the marginal gain of a sensor.
 enum class Measure {
     Full,    ///< weights of the cells that become covered
     Partial  ///< weight * (min(multiplicity, required) after - before) of each cell, scaled
 };
 
-/// Weights for Measure::Partial: those of the problem, halved until the partial value of a sensor
-/// stays below 2^32 (needed only for multiplicities above 1 and large weights). Positive weights
-/// stay positive unless there are too many cells.
+/// Computes the weights for Measure::Partial: those of the problem, halved until the partial value
+/// of a sensor stays below 2^32 (needed only for multiplicities above 1 and large weights).
+/// Positive weights stay positive unless there are too many cells.
 std::vector<std::uint32_t> partialWeights(const Problem& problem);
 
-/// True if some kind takes several sensors to cover a cell.
+/// Returns true if a kind takes several sensors to cover a cell.
 bool takesSteps(const Problem& problem);
 
-/// Chosen sensors and the multiplicity that each cell achieves. Repeated choices count once.
+/// Stores the chosen sensors and the multiplicity that each cell achieves. Repeated choices count
+/// once.
 class CoverageState {
   public:
     /// \param partial partialWeights(problem); it and problem must outlive this
@@ -43,23 +44,23 @@ class CoverageState {
     [[nodiscard]] const Problem& problem() const { return *problem_; }
     [[nodiscard]] const std::vector<Choice>& chosen() const { return chosen_; }
     [[nodiscard]] bool holds(const Choice& choice) const;
-    /// The same as valueOf(problem, chosen()).
+    /// Returns valueOf(problem, chosen()).
     [[nodiscard]] std::uint64_t value() const { return value_; }
-    /// Sum of partial weight * min(multiplicity, required).
+    /// Returns the sum of partial weight * min(multiplicity, required).
     [[nodiscard]] std::uint64_t partialValue() const { return partial_value_; }
     [[nodiscard]] double cost() const;
-    /// How many of a kind are chosen.
+    /// Returns the number of chosen sensors of a kind.
     [[nodiscard]] int count(std::size_t kind) const { return counts_[kind]; }
 
-    /// True if one more of this kind is within `limit` and the budget.
+    /// Returns true if one more of this kind is within `limit` and the budget.
     [[nodiscard]] bool canTake(std::size_t kind, int limit) const;
-    /// Gain of each cell if one more sensor of this kind sees it.
+    /// Computes the gain of each cell if one more sensor of this kind sees it.
     void marginalGains(std::size_t kind, Measure measure, std::vector<std::uint32_t>& gains) const;
-    /// Gain of each cell if one more sensor of this kind sees it and others with a multiplicity of
-    /// at most `to_come` together may follow: 0 if it is covered already or can no longer be, else
-    /// its weight divided by the number of sensors of this kind that it still lacks. The sensor
-    /// that completes a cell so gains all of it. Weights are scaled up as far as their sum stays
-    /// below 2^32.
+    /// Computes the gain of each cell if one more sensor of this kind sees it and others with a
+    /// multiplicity of at most `to_come` together may follow: 0 if it is covered already or can no
+    /// longer be, else its weight divided by the number of sensors of this kind that it still
+    /// lacks. The sensor that completes a cell so gains all of it. Weights are scaled up as far as
+    /// their sum stays below 2^32.
     void stepGains(std::size_t kind, std::uint64_t to_come,
                    std::vector<std::uint32_t>& gains) const;
 
@@ -77,8 +78,8 @@ class CoverageState {
     std::uint64_t value_ = 0, partial_value_ = 0;
 };
 
-/// How many sensors of each kind may be placed: Kind::most, at most as many as the order lists, and
-/// none of a kind without candidates.
+/// Returns the maximum number of sensors of each kind: Kind::most, at most as many as the order
+/// lists, and 0 for a kind without candidates.
 std::vector<int> limitsOf(const Problem& problem);
 
 /// Marginal gain of a candidate: the primary gain in the upper 32 bits, the tie breaker below.
@@ -102,10 +103,11 @@ struct CandidateGains {
 /// until no bound exceeds the best gain (Minoux 1978). Reuses its memory; not thread-safe.
 class CandidateFinder {
   public:
-    /// The best candidate that `allows` accepts (null: any), the first among equals; once progress
-    /// says stop, the first one found.
-    /// \param bounds per site, an upper bound of the primary gain; made exact for sites visited
-    /// \param known an allowed candidate to start from, or none; it speeds the search up
+    /// Finds the best candidate that `allows` accepts (null: any), the first among equals; once
+    /// progress says stop, the first one found.
+    /// \param bounds per site, an upper bound of the primary gain; updated to the exact gain for
+    ///        sites visited
+    /// \param known an allowed candidate to start from, if any; it speeds up the search
     BestCandidate find(const CandidateGains& gains, std::span<std::uint32_t> bounds,
                        const BestCandidate& known, const std::function<bool(std::size_t)>& allows,
                        const Progress& progress);
@@ -118,7 +120,7 @@ class CandidateFinder {
     std::vector<std::uint32_t> values_, more_;
 };
 
-/// Per site, the maximum of `values` over its candidates.
+/// Returns, per site, the maximum of `values` over its candidates.
 std::vector<std::uint32_t> maxOfSites(const CandidateSet& candidates,
                                       std::span<const std::uint32_t> values);
 
@@ -127,7 +129,7 @@ struct SearchBasis {
     /// Weighs all candidates: O(runs), in parallel.
     explicit SearchBasis(const Problem& of);
 
-    /// A state with nothing chosen.
+    /// Returns a state without choices.
     [[nodiscard]] CoverageState emptyState() const { return {problem, partial_weights}; }
 
     const Problem& problem;
@@ -136,13 +138,13 @@ struct SearchBasis {
     /// Per kind and candidate, its partial gain if placed first: an upper bound of any later gain.
     std::vector<std::vector<std::uint32_t>> alone;
     std::vector<std::vector<std::uint32_t>> site_partial;  ///< the maximum of these at each site
-    /// Per kind and site, an upper bound of the full gain of its candidates at any time. The same
-    /// as site_partial if 1 is required.
+    /// Per kind and site, an upper bound of the full gain of its candidates at any time. Equals
+    /// site_partial if 1 is required.
     std::vector<std::vector<std::uint32_t>> site_full;
 };
 
-/// Greedily places all remaining sensors by partial gain (per unit of cost with `per_cost`), in the
-/// order of the problem if there is one. Gives starting points for swap search.
+/// Greedily adds all remaining sensors by partial gain (per unit of cost with `per_cost`), in the
+/// order of the problem if there is one. Computes starting points for swap search.
 void placeRest(const SearchBasis& basis, bool per_cost, CoverageState& state, Progress& progress);
 
 }  // namespace ispace

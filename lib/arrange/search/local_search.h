@@ -22,9 +22,9 @@ struct Response {
     bool is_found = false;
 };
 
-/// Best responses by the set they extend, shared by concurrent searches: different starts reach the
-/// same sets. A response depends on its key alone, so results do not depend on timing. Keeps the
-/// first 100'000.
+/// Stores best responses by the set they extend, shared by concurrent searches: different starts
+/// reach the same sets. A response depends on its key alone, so results do not depend on timing.
+/// Holds the first 100'000.
 class ResponseCache {
   public:
     /// A 128-bit hash of a set, independent of order: collisions among millions are negligible.
@@ -45,7 +45,7 @@ class ResponseCache {
     std::unordered_map<Key, Response, Hash> responses_;
 };
 
-/// Moves sensors one at a time to their best candidates until no move helps: by value, then partial
+/// Moves sensors one at a time to their best candidates until no move gains: by value, then partial
 /// value, then lower cost.
 class LocalSearch {
   public:
@@ -55,8 +55,9 @@ class LocalSearch {
 
     /// Adds the best sensor while the problem allows another.
     void fill(CoverageState& state);
-    /// To a local optimum, or until progress says stop. With a budget also buys others for one
-    /// sensor. \pre the choices are feasible
+    /// Moves to a local optimum, or until progress says stop. With a budget also buys others for
+    /// one sensor.
+    /// \pre the choices are feasible
     void improve(CoverageState& state);
     /// Also exchanges pairs of the least useful sensors. Slow: for the best solutions only.
     void improveByPairs(CoverageState& state);
@@ -100,15 +101,16 @@ class LocalSearch {
 struct KickOptions {
     std::uint64_t seed = 0;
     int rounds = 40;   ///< at most
-    int patience = 4;  ///< it ends after so many rounds in a row that have gained nothing
+    int patience = 4;  ///< rounds in a row without gain after which the search ends
     /// It ends once it reaches this value.
     std::uint64_t enough = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Goes on from a good solution: takes out a few sensors that see much of the same, puts others in,
-/// and moves all to a local optimum, again and again (iterated local search; Lourenço, Martin &
-/// Stützle 2003). Chains run side by side for a round of a dozen kicks each, from the best so far.
-/// Never worse than `start`. The same for any number of threads unless progress says stop.
+/// Improves a good solution: removes a few sensors with similar views, inserts others, and moves
+/// all to a local optimum, again and again (iterated local search; Lourenço, Martin & Stützle
+/// 2003). Chains run side by side for a round of a dozen kicks each, from the best so far. Returns
+/// a solution never worse than `start`. Deterministic for any number of threads unless progress
+/// says stop.
 /// \pre start is feasible
 Solution iteratedLocalSearch(const Problem& problem, const Solution& start,
                              const KickOptions& options, Progress& progress);

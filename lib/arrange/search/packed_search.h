@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/arrange/search: what a search leaves to another process, as bytes.
+// Private to lib/arrange/search: writes and reads the ledger entries of a search.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,21 @@
 
 namespace ispace {
 
-/// Tells problems apart of which one search has several: a hash of weights, kinds and limits.
+/// Computes a hash of weights, kinds and limits, which tells the problems of one search apart.
 std::uint64_t fingerprintOf(const Problem& problem);
 
 void pack(Packer& to, const std::vector<Choice>& chosen);
 /// \throws FormatError for a choice that the problem does not have
 std::vector<Choice> unpackChoices(Unpacker& from, const Problem& problem);
 
-/// The solution with its value computed anew.
+/// Writes the solution; unpacking computes its value anew.
 void pack(Packer& to, const SearchResult& result);
 SearchResult unpackResult(Unpacker& from, const Problem& problem);
 
 void pack(Packer& to, const Bound& bound);
 Bound unpackBound(Unpacker& from, const Problem& problem);
 
-/// What nodes share is packed once, and shared again afterwards.
+/// Writes the nodes; data that nodes share is written once, and shared again after reading.
 void pack(Packer& to, const std::vector<const BranchNode*>& nodes);
 std::vector<BranchNode> unpackNodes(Unpacker& from, const Problem& problem);
 

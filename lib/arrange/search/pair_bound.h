@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/arrange/search only: what overlapBound() evaluates.
+// Private to lib/arrange/search: the relaxation of overlapBound().
 #pragma once
 
 #include <algorithm>
@@ -17,26 +17,27 @@
 namespace ispace {
 
 /// The relaxation of overlapBound(): areas of candidates in a tree, and their best choice for given
-/// multipliers. These are one of each cell and, last, that of the number of sensors.
+/// multipliers: one of each cell and, last, that of the number of sensors.
 class OverlapRelaxation {
   public:
     /// \param near a solution; areas lie about its sensors. \pre not empty
     OverlapRelaxation(const Problem& problem, const Bound& plain, const std::vector<Choice>& near);
 
     [[nodiscard]] const RelaxedCells& cells() const { return cells_; }
-    /// What multipliers are limited by.
+    /// Returns the upper limits of the multipliers.
     [[nodiscard]] const std::vector<std::uint32_t>& limits() const { return limits_; }
     [[nodiscard]] const std::vector<std::uint32_t>& start() const { return start_; }
 
-    /// The bound for these multipliers, fine. No limit if progress says stop meanwhile, or there
-    /// would be too much to keep. The members below refer to the last call.
+    /// Computes the bound for these multipliers, fine. Returns the maximum if progress says stop
+    /// meanwhile, or if memory would run out. The members below refer to the last call.
     std::uint64_t evaluate(const std::vector<std::uint32_t>& multipliers, const Progress& progress);
-    /// The same as if there were the working candidates alone: quick, and at most as high.
+    /// Computes the same from the working candidates alone: fast, and at most as high.
     std::uint64_t evaluateWorking(const std::vector<std::uint32_t>& multipliers,
                                   const Progress& progress);
-    /// By cell how often it counts; then what the number of sensors lacks, as that of a cell.
+    /// Returns by cell how often it counts; then the deficit of the number of sensors, as that of a
+    /// cell.
     [[nodiscard]] const std::vector<float>& cover() const { return cover_; }
-    /// After evaluate(): the most promising candidates join the working ones.
+    /// After evaluate(): adds the most promising candidates to the working ones.
     void widen();
 
   private:
@@ -48,19 +49,19 @@ class OverlapRelaxation {
     /// A candidate that is worth more than the multiplier of the number of sensors.
     struct Place {
         std::uint32_t candidate = 0;
-        std::int64_t worth = 0;  ///< by how much
-        // With what else is in its area and in those below, at best:
+        std::int64_t worth = 0;  ///< its surplus over that multiplier
+        // With the best other sensors of its area and of those below:
         std::int64_t value = 0;
         std::uint32_t second = kNone;  ///< another of the area: its rank there
         std::size_t count = 1;         ///< sensors in the area
-        bool is_crowd = false;         ///< they see all that any of the area sees
+        bool is_crowd = false;         ///< the sensors see the whole view of the area
     };
 
-    /// Places that see much the same, so that most are told from a best one together.
+    /// Candidates with similar views: comparing with one of them excludes most of the others.
     struct Bundle {
-        CellRuns common;                   ///< what all of them see
-        std::uint64_t founder = 0;         ///< weight of what the first of them sees
-        std::vector<std::uint32_t> ranks;  ///< of the places that are in it now, the best first
+        CellRuns common;                   ///< cells that all of them see
+        std::uint64_t founder = 0;         ///< weight of the first one's view
+        std::vector<std::uint32_t> ranks;  ///< of its current members, the best first
         std::int64_t best = 0;
     };
 
@@ -70,15 +71,15 @@ class OverlapRelaxation {
         std::vector<std::size_t> below;
         std::vector<std::uint32_t> working;  ///< candidates
         std::vector<Bundle> bundles;
-        std::vector<std::uint32_t> bundle_order;  ///< of those with places, the best first
+        std::vector<std::uint32_t> bundle_order;  ///< of the non-empty ones, the best first
         // Of the last call:
         std::vector<Place> places;         ///< the worthiest first
         std::vector<std::uint32_t> order;  ///< their ranks, the highest value first
         std::vector<std::vector<std::uint32_t>>
-            replies;               ///< of each area below, by rank here; or none
+            replies;               ///< of each area below, by rank here; may be empty
         std::int64_t empty = 0;    ///< value without a sensor here
-        std::int64_t crowded = 0;  ///< weight of what any place sees
-        std::vector<CellRun> all;  ///< that is
+        std::int64_t crowded = 0;  ///< weight of the cells that any member sees
+        std::vector<CellRun> all;  ///< those cells
         std::uint32_t best = kNone;
         [[nodiscard]] std::int64_t value() const {
             return order.empty() ? empty : std::max(empty, places[order[0]].value);
@@ -119,20 +120,20 @@ class OverlapRelaxation {
     std::vector<float> cover_;
 };
 
-/// An upper bound below that of the linear program, where one kind of sensors covers cells one by
-/// one: it knows that neighbours count what both see only once.
+/// Computes an upper bound below that of the linear program, for one kind of sensors that cover
+/// cells one by one: cells that neighbours both see count only once.
 ///
 /// Lagrangian relaxation of the cells' rows lets the multiplier of a cell count for every sensor
 /// that sees it, so fractions of neighbours combine as no whole sensors can. Here candidates are
-/// parted into areas, one about each sensor of a good solution, and a spanning tree joins the
-/// areas. What the first sensors of two joined areas both see is taken off: of c sensors that see a
-/// cell at most c - 1 pairs are edges, so it still counts at least once (Hunter 1976). Within an
-/// area two sensors are exact, and more of them at most see all that any candidate of worth there
-/// sees. The number of sensors has a multiplier of its own. The best choice for given multipliers
-/// is found exactly, from the leaves of the tree to its root.
+/// split into areas, one about each sensor of a good solution, and a spanning tree joins the areas.
+/// The common cells of the first sensors of two joined areas are subtracted: of c sensors that see
+/// a cell at most c - 1 pairs are edges, so it still counts at least once (Hunter 1976). Within an
+/// area two sensors are exact, and more of them at most see the union of its worthwhile views. The
+/// number of sensors has a separate multiplier. A pass from the leaves of the tree to its root
+/// finds the best choice for given multipliers exactly.
 ///
-/// Integer arithmetic: the bound is exact. The same for any number of threads.
-/// \param plain of the same problem; its multipliers are where the search begins
+/// Integer arithmetic: the bound is exact. Deterministic for any number of threads.
+/// \param plain of the same problem; its multipliers are the start of the search
 /// \param near a good solution
 /// \param limits as for lagrangianBound()
 /// \return the lower of the two bounds, in the problem's units
@@ -140,7 +141,7 @@ std::uint64_t overlapBound(const Problem& problem, const Bound& plain,
                            const std::vector<Choice>& near, const LagrangeLimits& limits,
                            Progress& progress);
 
-/// True if overlapBound() can do anything for such a problem.
+/// Returns true if overlapBound() supports such a problem.
 bool isBoundByOverlaps(const Problem& problem);
 
 }  // namespace ispace

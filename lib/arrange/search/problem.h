@@ -16,17 +16,18 @@ namespace ispace {
 /// Interchangeable sensors: they share one set of candidates.
 struct Kind {
     const CandidateSet* candidates = nullptr;
-    int most = 1;          ///< how many may be placed
-    double cost = 1;       ///< of each; above 0
-    int multiplicity = 1;  ///< what one sensor adds to the coverage multiplicity of a cell it sees
+    int most = 1;     ///< maximum number of sensors
+    double cost = 1;  ///< of each; above 0
+    int multiplicity =
+        1;  ///< increment of the coverage multiplicity of a cell that one sensor sees
 };
 
-/// A weighted coverage problem: choose sensors so that the covered cells weigh as much as possible.
+/// A weighted coverage problem: find sensors that maximise the weight of the covered cells.
 ///
-/// A cell is covered if the multiplicities of the sensors that see it, plus what is achieved
-/// already, reach `required`. With 1 and 1 that is the plain union; K-fold coverage requires K.
-/// Where ultrasound takes part, four receivers of multiplicity 1 equal a laser of multiplicity 4,
-/// and 4 K is required.
+/// A cell is covered if the multiplicities of the sensors that see it, plus its achieved
+/// multiplicity, reach `required`. With 1 and 1 that is the plain union; K-fold coverage requires
+/// K. With ultrasound, four receivers of multiplicity 1 equal a laser of multiplicity 4, and 4 K is
+/// required.
 ///
 /// A solution is a set: a candidate chosen twice (there may be fewer candidates than sensors)
 /// counts once, so a binary variable per candidate models it.
@@ -34,16 +35,16 @@ struct Problem {
     /// Integer weight of each cell, 0 if it does not count. The sum is below 2^32.
     std::vector<std::uint32_t> weights;
     int required = 1;
-    /// Multiplicity of each cell from sensors that stand already; empty: none.
+    /// Multiplicity of each cell from standing sensors; empty: all 0.
     std::vector<std::uint16_t> achieved;
     std::vector<Kind> kinds;  ///< all candidate sets are of weights.size() cells
     /// Upper limit of the total cost; without it only Kind::most limits the choice.
     std::optional<double> budget;
-    /// Kinds in the order in which greedy search places them; empty: the best first.
+    /// Kinds in the order in which greedy search adds them; empty: the best first.
     std::vector<std::size_t> order;
-    /// Require connected coverage: the graph whose nodes are sensors and whose edges join sensors
-    /// that share a cell of positive weight must be connected. Sensors that stand already are one
-    /// node, which sees `standing`, or none if no cell of that has positive weight.
+    /// Requires connected coverage: the graph whose nodes are sensors and whose edges join sensors
+    /// that share a cell of positive weight must be connected. Standing sensors are one node, which
+    /// sees `standing`; the node is absent if no cell of that has positive weight.
     bool is_connected = false;
     CellSet standing = CellSet();
 
@@ -58,31 +59,31 @@ struct Choice {
     friend auto operator<=>(const Choice&, const Choice&) = default;
 };
 
-/// Chosen sensors in the order of placement, and the value they reach together with those that
-/// stand already.
+/// Chosen sensors in the order of placement, and their value together with standing sensors.
 struct Solution {
     std::vector<Choice> chosen;
     std::uint64_t value = 0;
 };
 
-/// Weight of all covered cells. Repeated choices count once. O(cells + runs)
+/// Computes the weight of all covered cells. Repeated choices count once. O(cells + runs)
 std::uint64_t valueOf(const Problem& problem, const std::vector<Choice>& chosen);
-/// Total cost; repeated choices count each time. Independent of their order.
+/// Computes the total cost; repeated choices count each time. Independent of their order.
 double costOf(const Problem& problem, const std::vector<Choice>& chosen);
-/// True if `cost` is less than `than` beyond rounding. Every comparison of costs goes through this:
-/// costs within a relative 1e-13 (above the rounding errors of a sum over some hundred kinds) are
-/// equal, as 0.1 + 0.2 and 0.3 are; 1e9 and 1e9 + 0.001 are not.
+/// Returns true if `cost` is less than `than` beyond rounding. Every comparison of costs uses this
+/// function: costs within a relative 1e-13 (above the rounding errors of a sum over some hundred
+/// kinds) are equal, as 0.1 + 0.2 and 0.3 are; 1e9 and 1e9 + 0.001 are not.
 bool isCheaper(double cost, double than);
-/// True if this cost is within the budget, or there is none.
+/// Returns true if this cost is within the budget, or there is no budget.
 bool isAffordable(const Problem& problem, double cost);
-/// How many sensors of this cost the rest of a budget buys, at most `most`. O(log most)
+/// Computes the number of sensors of this cost that the rest of a budget buys, at most `most`.
+/// O(log most)
 std::size_t affordableCount(double budget, double spent, double cost, std::size_t most);
 /// Rounds a sum of decimal costs to 12 significant digits, or to as many as isCheaper() tells
 /// apart: 0.1 + 0.2 becomes 0.3.
 double normaliseCost(double cost);
-/// Within Kind::most and the budget and, where required, connected.
+/// Returns true for choices within Kind::most and the budget and, if required, connected.
 bool isFeasible(const Problem& problem, const std::vector<Choice>& chosen);
-/// True if the coverage is connected, see Problem::is_connected.
+/// Returns true if the coverage is connected, see Problem::is_connected.
 bool isConnected(const Problem& problem, const std::vector<Choice>& chosen);
 
 /// Connected components of the coverage, see Problem::is_connected.
@@ -91,28 +92,30 @@ class Connection {
     /// O(cells + cells that the chosen see)
     Connection(const Problem& problem, const std::vector<Choice>& chosen);
 
-    /// Number of components.
+    /// Returns the number of components.
     [[nodiscard]] std::size_t parts() const { return parts_; }
-    /// True if this sensor joins all components. O(parts * runs); the first call O(parts * cells)
+    /// Returns true if this sensor joins all components. O(parts * runs); the first call O(parts *
+    /// cells)
     [[nodiscard]] bool isJoinedBy(const Choice& choice) const;
 
   private:
     const Problem* problem_;
     std::size_t parts_ = 0;
-    std::vector<std::size_t> part_of_cell_;          // kNoOwner: of none
-    mutable std::vector<WeightSums> cells_of_part_;  // 1 for its cells; made when first asked for
+    std::vector<std::size_t> part_of_cell_;          // kNoOwner: of no part
+    mutable std::vector<WeightSums> cells_of_part_;  // 1 for its cells; built on demand
 };
 
 /// Scales weights to the integers of a Problem, with a sum below 2^32. The factor is the smallest
 /// power of ten that makes all of them integers to within 1e-9 of min(1, the largest weight), which
-/// absorbs decimals that binary cannot store. If there is none, the factor is the largest power the
-/// sum allows, up to six decimals and six digits of the largest weight; weights whose sum is too
-/// large are scaled down. The results are rounded, positive weights to at least 1. O(n) a power
+/// absorbs decimals that binary cannot store. If there is no such power, the factor is the largest
+/// that the sum allows, up to six decimals and six digits of the largest weight; weights whose sum
+/// is too large are scaled down. The results are rounded, positive weights to at least 1. O(n) per
+/// power
 /// \pre all are finite and not negative, and there are at most 2^28
 std::vector<std::uint32_t> integerWeights(const std::vector<double>& weights);
 
-/// The costs that sets of sensors can have, each sensor on a candidate of its own: ascending from
-/// level 0, which costs nothing, up to some cost. Sums equal up to rounding (isCheaper) are one
+/// Computes the costs that sets of sensors can have, each sensor on a different candidate:
+/// ascending from level 0, cost 0, up to some cost. Sums equal up to rounding (isCheaper) are one
 /// level. If there are more than 4000, the levels are even steps instead, rounded down to a few
 /// digits.
 class CostLevels {
@@ -122,11 +125,11 @@ class CostLevels {
 
     [[nodiscard]] std::size_t size() const { return levels_.size(); }
     [[nodiscard]] bool isEven() const { return is_even_; }
-    /// The budget that buys level i but not level i + 1.
+    /// Returns the budget that buys level i but not level i + 1.
     [[nodiscard]] double at(std::size_t i) const { return levels_[i].most; }
-    /// The highest level that is cheaper; 0 if none is.
+    /// Finds the highest level that is cheaper; 0 if all are dearer.
     [[nodiscard]] std::size_t below(double cost) const;
-    /// The lowest cost that at(i) does not buy; infinite if level i is the last.
+    /// Returns the lowest cost that at(i) does not buy; infinite if level i is the last.
     [[nodiscard]] double above(std::size_t i) const;
 
   private:
@@ -145,11 +148,12 @@ class CostLevels {
 /// Writes the problem as a maximum-coverage model in free MPS, for any solver of mixed-integer
 /// programs (glpsol, cbc, HiGHS, SCIP): maximise the weights of covered cells. Columns x_KIND_INDEX
 /// (binary, 1: a sensor of that kind stands on that candidate) and y_CELL (at most 1); rows
-/// cell_CELL (y <= what sees it; binary if more than 1 is required), most_KIND and budget. As MPS
-/// knows only minimising everywhere, the objective is minus the value gained; a comment says how to
-/// read it, and others describe each candidate. Cells that nothing sees or that are covered already
-/// are left out. \param kinds names of the kinds, without spaces
-/// \param legend what `describe` tells of a candidate, for a comment each
+/// cell_CELL (y <= sensors that see it; binary if more than 1 is required), most_KIND and budget.
+/// As all MPS readers minimise, the objective is minus the value gained; a comment explains this,
+/// and others describe each candidate. Skips cells that no candidate sees or that are covered
+/// already.
+/// \param kinds names of the kinds, without spaces
+/// \param legend writes the comment of each candidate
 void writeMps(const Problem& problem, const std::vector<std::string>& kinds,
               const std::string& legend, const std::function<std::string(const Choice&)>& describe,
               std::ostream& out);

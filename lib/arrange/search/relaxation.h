@@ -12,7 +12,7 @@
 
 namespace ispace {
 
-/// The cells of a problem for a Lagrangian relaxation: those that standing sensors cover are
+/// The cells of a problem for a Lagrangian relaxation: cells that standing sensors cover are
 /// settled, and weights are in finer units, as multipliers are fractions of them.
 ///
 /// Multiplicities and needs are divided by the greatest common divisor of the multiplicities, needs
@@ -27,52 +27,54 @@ struct RelaxedCells {
     std::vector<std::uint16_t> multiplicities;  ///< of a sensor, per kind
 
     explicit RelaxedCells(const Problem& problem);
-    /// In whole units of the problem. \param value an upper bound, fine
+    /// Converts to whole units of the problem, rounding down.
+    /// \param value an upper bound, fine
     [[nodiscard]] std::uint64_t whole(std::uint64_t value) const { return value / scale; }
-    /// The most fine units that are not more than `value`, in units of the problem.
+    /// Returns the most fine units that are not more than `value`, in units of the problem.
     [[nodiscard]] std::uint64_t most(std::uint64_t value) const {
         return value * scale + (scale - 1);
     }
 };
 
-/// Reduced cost of a cell with this multiplier for a sensor that meets `multiplicity` of its need:
-/// at most the multiplier, rounded up so that bounds hold.
+/// Computes the reduced cost of a cell with this multiplier for a sensor that meets `multiplicity`
+/// of its need: at most the multiplier, rounded up so that bounds hold.
 inline std::uint32_t reducedCost(std::uint32_t multiplier, std::uint32_t multiplicity,
                                  std::uint32_t need) {
     if (multiplicity >= need) return multiplier;
     return static_cast<std::uint32_t>((std::uint64_t{multiplier} * multiplicity + need - 1) / need);
 }
 
-/// The fraction of a need that a sensor meets.
+/// Returns the fraction of a need that a sensor meets.
 inline float partOf(std::uint32_t multiplicity, std::uint32_t need) {
     return multiplicity >= need ? 1.0F
                                 : static_cast<float>(multiplicity) / static_cast<float>(need);
 }
 
-/// How many sensors of each kind may be placed, each on a candidate of its own: all ways within
+/// The admissible counts of sensors of each kind, each on a different candidate: all ways within
 /// `most` and the budget that leave no room for one more of the last kind.
 class CountChoice {
   public:
     explicit CountChoice(const Problem& problem);
 
-    /// The most that may be placed of a kind, whatever is of the others.
+    /// Returns the maximum count of a kind, over all counts of the others.
     [[nodiscard]] std::size_t most(std::size_t kind) const { return most_[kind]; }
-    /// The most sensors together.
+    /// Returns the maximum total count.
     [[nodiscard]] std::size_t total() const { return total_; }
-    /// False if there are too many ways to list: then bounds let one sensor be a fraction.
+    /// Returns false if there are too many ways to list: then bounds allow fractions of one sensor.
     [[nodiscard]] bool isListed() const { return is_listed_; }
-    /// The ways, each a count per kind.
+    /// Returns the ways, each a count per kind.
     [[nodiscard]] const std::vector<std::vector<std::size_t>>& ways() const { return ways_; }
 
     /// The best counts for given reduced costs.
     struct Best {
-        std::uint64_t value = 0;          ///< no allowed counts give more
+        std::uint64_t value = 0;          ///< upper bound over all allowed counts
         std::vector<std::size_t> counts;  ///< of each kind, for about that value
         std::vector<std::uint64_t> with;  ///< with[k] + the reduced cost of a candidate of kind k
                                           ///< bounds solutions with that candidate
         std::vector<char> may;            ///< may[k]: one of kind k fits at all
     };
-    /// \param sums sums[k][n]: the n best reduced costs of kind k together, n up to most(k)
+    /// Finds the best counts.
+    /// \param sums sums[k][n]: the sum of the n best reduced costs of kind k, n up to most(k)
     [[nodiscard]] Best best(std::span<const std::vector<std::uint64_t>> sums) const;
 
   private:
@@ -89,26 +91,25 @@ class CountChoice {
     std::vector<std::vector<std::size_t>> ways_;
 };
 
-/// How a MultiplierSearch goes about it.
+/// Step lengths and averaging of a MultiplierSearch.
 struct SearchPace {
-    /// Of the first step: 1 leads to the target if the bound were a plane.
+    /// Factor of the first step: 1 reaches the target if the bound is linear.
     double factor = 1;
-    /// The least part that a new subgradient has in the average, relative to the most it may have.
+    /// Minimum share of a new subgradient in the average, relative to its maximum.
     double least_part = 0.1;
-    /// After so many trials with next to no gain new subgradients have less part: the average
+    /// After so many trials almost without gain the share of new subgradients falls: the average
     /// settles. 0: never.
     int patience = 0;
 };
 /// For some hundreds of trials: comes nearer to the lowest bound.
 constexpr SearchPace kLongPace = {.factor = 1, .least_part = 0.4, .patience = 10};
-/// For some tens of trials from a start that is nearly as good as can be: a longer step only leads
-/// away.
+/// For some tens of trials from a nearly optimal start: longer steps only lead away.
 constexpr SearchPace kWarmPace = {.factor = 0.5, .least_part = 0.1, .patience = 0};
 
-/// Searches for the Lagrange multipliers with the lowest bound, trial by trial: the volume
-/// algorithm (Barahona & Anbil 2000), a subgradient method that steps from the best multipliers so
-/// far along an average of the subgradients, so that it neither swings between sensors that are
-/// nearly alike nor needs many steps.
+/// Finds the Lagrange multipliers with the lowest bound, trial by trial: the volume algorithm
+/// (Barahona & Anbil 2000), a subgradient method that steps from the best multipliers so far along
+/// an average of the subgradients, so that it neither swings between nearly equal sensors nor needs
+/// many steps.
 class MultiplierSearch {
   public:
     /// \param weights of the cells: the multipliers are from 0 to these
@@ -119,15 +120,15 @@ class MultiplierSearch {
 
     [[nodiscard]] const std::vector<std::uint32_t>& trial() const { return trial_; }
     [[nodiscard]] const std::vector<std::uint32_t>& best() const { return best_; }
-    /// The lowest bound reported; infinite before the first report.
+    /// Returns the lowest bound reported; infinite before the first report.
     [[nodiscard]] double bound() const { return bound_; }
-    /// What the trial gave, and the next trial.
+    /// Stores the result of the trial and computes the next one.
     /// \param cover fraction of each cell's need that the best sensors meet
     void report(double bound, std::span<const float> cover);
-    /// The best multipliers have another bound, and are to be gone on from: there are more sensors
-    /// to choose from than the last trials knew.
+    /// Continues from the best multipliers with another bound, since more sensors are available
+    /// than in the last trials.
     void restart(double bound, std::span<const float> cover);
-    /// The part that the last trial has in the average.
+    /// Returns the share of the last trial in the average.
     [[nodiscard]] double part() const { return part_; }
 
   private:
@@ -144,8 +145,8 @@ class MultiplierSearch {
     std::vector<float> average_;  // of cover
 };
 
-/// Lagrangian relaxation over all candidates: reduced costs, the best candidates by them, and those
-/// that are ruled out.
+/// Lagrangian relaxation over all candidates: computes reduced costs, finds the best candidates by
+/// them, and excludes candidates.
 class RootRelaxation {
   public:
     explicit RootRelaxation(const Problem& problem);
@@ -153,26 +154,28 @@ class RootRelaxation {
     [[nodiscard]] const RelaxedCells& cells() const { return cells_; }
     [[nodiscard]] const CountChoice& counts() const { return counts_; }
 
-    /// Initial multipliers from a good solution: the weight of a cell that at most one sensor sees,
-    /// 0 where more do.
+    /// Computes initial multipliers from a good solution: the weight of a cell that at most one
+    /// sensor sees, 0 for cells that more sensors see.
     [[nodiscard]] std::vector<std::uint32_t> startFrom(const std::vector<Choice>& chosen) const;
 
-    /// The bound for these multipliers over all remaining candidates, or over the working set, in
-    /// fine units. The members below refer to the last call.
+    /// Computes the bound for these multipliers over all remaining candidates, or over the working
+    /// set, in fine units. The members below refer to the last call.
     std::uint64_t evaluate(const std::vector<std::uint32_t>& multipliers, bool is_all);
-    /// Fraction of each cell's need that the best candidates meet.
+    /// Returns the fraction of each cell's need that the best candidates meet.
     [[nodiscard]] const std::vector<float>& cover() const { return cover_; }
 
-    /// After evaluate() of all: reduced-cost fixing, rules out candidates that are in no solution
-    /// better than `cut` (fine). \return an upper bound, at most cut, of solutions with any of them
+    /// After evaluate() of all: reduced-cost fixing, excludes candidates that are in no solution
+    /// better than `cut` (fine).
+    /// \return an upper bound, at most cut, of solutions with any of them
     std::uint64_t ruleOut(std::uint64_t cut);
     /// After evaluate() of all: adds the sites of the `count` best reduced costs of each kind to
     /// the working set.
     void widen(std::size_t count);
-    /// Rules out all others. \param kept per kind, ascending
+    /// Excludes all others.
+    /// \param kept per kind, ascending
     void keepOnly(const std::vector<std::vector<std::uint32_t>>& kept);
 
-    /// Per kind, those not ruled out.
+    /// Returns, per kind, the remaining candidates.
     [[nodiscard]] std::vector<std::vector<std::uint32_t>> survivors() const;
 
   private:
@@ -198,7 +201,7 @@ class RootRelaxation {
     std::vector<std::size_t> sums_of_;       // kind -> index in reduced_costs_
     std::vector<std::uint32_t> shared_;      // scratch: reduced costs for one multiplicity
     std::vector<std::vector<std::uint64_t>> sums_;
-    std::uint64_t free_ = 0;  // what the bound is without sensors
+    std::uint64_t free_ = 0;  // the bound without sensors
     CountChoice::Best best_;
     std::vector<Choice> chosen_;
     std::vector<float> cover_;
@@ -211,14 +214,14 @@ struct Bound {
     /// its cell's weight.
     std::vector<std::uint32_t> multipliers;
     std::uint32_t scale = 1;
-    /// Per kind, ascending, the candidates that may be part of a solution better than `cut`.
+    /// Returns, per kind and ascending, the candidates that may be part of a solution better than
+    /// `cut`.
     std::vector<std::vector<std::uint32_t>> survivors;
     std::uint64_t cut = 0;
 };
 
 struct LagrangeLimits {
-    /// Values up to this are of no interest: the bound need not be lower. No solution with this
-    /// value need exist.
+    /// A lower bound than this is not required. No solution with this value need exist.
     std::uint64_t cut = 0;
     double gap = 0;   ///< ends once (bound - cut) / bound is at most this
     int rounds = 24;  ///< maximum number of passes over all candidates
@@ -227,10 +230,11 @@ struct LagrangeLimits {
     SearchPace pace = SearchPace();
 };
 
-/// Upper bound of max sum w_i y_i subject to required y_i <= achieved_i + sum_j m_j a_ij x_j and
-/// 0 <= y <= 1, by Lagrangian relaxation of the cells' rows and a subgradient method that ends at
-/// the gap or when progress stalls. Integer arithmetic: the bound is exact. The same for any number
-/// of threads. \param near a solution from which initial multipliers are derived
+/// Computes an upper bound of max sum w_i y_i subject to required y_i <= achieved_i + sum_j m_j
+/// a_ij x_j and 0 <= y <= 1, by Lagrangian relaxation of the cells' rows and a subgradient method
+/// that ends at the gap or when progress stalls. Integer arithmetic: the bound is exact.
+/// Deterministic for any number of threads.
+/// \param near a solution from which initial multipliers are derived
 Bound lagrangianBound(const Problem& problem, const std::vector<Choice>& near,
                       const LagrangeLimits& limits, Progress& progress);
 

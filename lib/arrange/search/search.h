@@ -13,12 +13,12 @@
 
 namespace ispace {
 
-/// Greedy search (thesis section 4.6): places sensors one by one, each on the candidate with the
+/// Greedy search (thesis section 4.6): adds sensors one by one, each on the candidate with the
 /// largest marginal gain, the first among equals. problem.order sets the order of kinds; without it
 /// the best kind comes next, and with a budget the better of two runs counts, one by gain and one
-/// by gain per cost. Where covering a cell takes several sensors, its weight is divided among those
-/// it still lacks, and is 0 once too few are left; partial gains break ties. Places every sensor
-/// that fits, even if it gains nothing, and at least the first 32 if progress says stop.
+/// by gain per cost. If a cell requires several sensors, its weight is divided among those it still
+/// lacks, and is 0 once too few are left; partial gains break ties. Adds every sensor that fits,
+/// even without gain, and at least the first 32 if progress says stop.
 ///
 /// Lazy (Minoux 1978): a candidate is evaluated again only while its upper bound exceeds the best
 /// gain. Reaches at least 1 - 1/e of the optimum if one sensor covers a cell, there is one kind and
@@ -27,7 +27,7 @@ namespace ispace {
 /// With is_connected each sensor after the first shares a cell with those before it, if any
 /// candidate does; no guarantee holds then.
 Solution placeGreedily(const Problem& problem, Progress& progress);
-/// The same, or nothing where greed ends in something that is not feasible.
+/// The same; returns an empty solution if the greedy one is not feasible.
 Solution placeFeasibly(const Problem& problem, Progress& progress);
 
 struct SwapOptions {
@@ -35,15 +35,15 @@ struct SwapOptions {
     std::uint64_t seed = 0;
     /// The search ends once it reaches this value.
     std::uint64_t enough = std::numeric_limits<std::uint64_t>::max();
-    /// Null: all of the search. Of a share that is not all, `start` comes back.
+    /// Null: the whole search. A share other than Starts returns `start`.
     const SearchShare* share = nullptr;
 };
 
 /// Local search: moves one sensor at a time to its best candidate given the others, while that
-/// helps; with a budget it also swaps sensors for those of other kinds. Starts from `start`, from a
-/// greedy solution by partial gains where cells take several sensors, and from random solutions, in
+/// gains; with a budget it also swaps sensors for those of other kinds. Starts from `start`, from a
+/// greedy solution by partial gains if cells require several sensors, and from random solutions, in
 /// parallel. Returns the best result, of the first start among equals, or that of the first start
-/// to reach options.enough: the same for any number of threads. Never worse than `start`.
+/// to reach options.enough: deterministic for any number of threads. Never worse than `start`.
 /// \pre start is feasible
 Solution improveBySwaps(const Problem& problem, const Solution& start, const SwapOptions& options,
                         Progress& progress);
@@ -57,7 +57,7 @@ struct SearchResult {
 
 enum class Optimizer { Greedy, Swap, Exact };
 constexpr Optimizer kOptimizers[] = {Optimizer::Greedy, Optimizer::Swap, Optimizer::Exact};
-/// As on the command line and in results.
+/// Returns the name on the command line and in results.
 std::string_view nameOf(Optimizer optimizer);
 
 /// Default memory limit of the open nodes of a search tree.
@@ -71,30 +71,30 @@ struct SearchOptions {
     SearchShare share = SearchShare();
 };
 
-/// Greedy search; then, as the optimizer asks, swap search and branch and bound. Each comes with a
-/// Lagrangian bound: a quick one before the swaps, in case time runs out (the only one for Greedy),
-/// and a tight one after. Where that leaves more than 0.5 %, Exact kicks the best solution a
-/// little; with six sensors or more it then computes overlapBound() and kicks at length. It drops
-/// the candidates that the bound rules out by their reduced costs, merges cells that the same
-/// remaining candidates see, and branches until value and bound are within the gap.
-/// If a budget can be split among the kinds in more than 20'000 ways there is no tree, and a gap
-/// may remain. Ends early, with is_complete = false, if progress says stop. The same for any number
-/// of threads unless it is stopped. A shard of starts ends after the swaps, one of the tree with
-/// what is known of its subtrees, see SearchShare.
+/// Greedy search; then, depending on the optimizer, swap search and branch and bound. Computes
+/// Lagrangian bounds: a quick one before the swaps, in case time runs out (the only one for
+/// Greedy), and a tight one after. If more than 0.5 % remains, Exact kicks the best solution a
+/// little; with six sensors or more it then computes overlapBound() and kicks at length. It removes
+/// the candidates that the bound excludes by their reduced costs, merges cells that the same
+/// remaining candidates see, and branches until value and bound are within the gap. If a budget can
+/// be split among the kinds in more than 20'000 ways no tree is built, and a gap may remain.
+/// Returns early, with is_complete = false, if progress says stop. Deterministic for any number of
+/// threads unless it is stopped. A shard of starts ends after the swaps, one of the tree after its
+/// subtrees, see SearchShare.
 SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress);
 
 /// A cheapest solution that reaches a given value.
 struct MinimumCostCover {
-    /// A good one of the cheapest solutions found, with a bound for its cost; if the value is not
-    /// reached, the best solution found, without sensors that gain nothing.
+    /// One of the cheapest solutions found, with a bound for its cost; if the value is not reached,
+    /// the best solution found, without sensors that lack any gain.
     SearchResult result;
     bool is_reached = false;
-    bool is_all = false;    ///< not reached even by all candidates together
+    bool is_all = false;    ///< even all candidates together do not reach it
     double cost = 0;        ///< of result, normalised
     double cost_bound = 0;  ///< lower bound of the cost, normalised
 };
 
-/// Minimum-cost cover: the cheapest sensors (the fewest, where all cost the same) that reach the
+/// Minimum-cost cover: finds the cheapest sensors (the fewest, if all cost the same) that reach the
 /// value `wanted`. Greedy search finds a first solution and quick bounds a lower limit of the cost;
 /// the costs between them are searched with the optimizer of the options, in long steps with few
 /// starts first. Tighter bounds follow and, except for Greedy, a swap search for the best value at

@@ -8,35 +8,34 @@
 
 namespace ispace {
 
-/// What the shards of a search share out.
+/// Work of a search that shards divide among themselves.
 enum class Shared {
-    Candidates,  ///< what the candidates see, step by step in turn
+    Candidates,  ///< views of the candidates, step by step in turn
     Starts,      ///< the starts of swap search, in blocks
     Tree         ///< the subtrees of a proof
 };
 constexpr Shared kShared[] = {Shared::Candidates, Shared::Starts, Shared::Tree};
-/// As on the command line.
+/// Returns the name on the command line.
 std::string_view nameOf(Shared shared);
 
-/// How a search is shared out over processes that do not talk to each other, and goes on where
-/// another one ended.
+/// Divides a search among processes without communication, and continues an earlier run.
 ///
-/// Shards differ in nothing but the steps that they take, and these are stored by key; a merge
-/// is the same search over again, which finds the steps of all shards, and takes itself what it
-/// does not find. So candidates and starts merge to the bytes of a single run.
+/// Shards differ only in the steps that they compute, and store these in a ledger. A merge runs the
+/// same search again: it reads the steps of all shards from its ledger, and computes missing ones
+/// itself. So candidates and starts merge to the bytes of a single run.
 ///
-/// Of a proof all shards grow the same tree until it has enough open nodes, deal these out in turn
-/// by their bounds, and each goes on with its own. What a shard finds is the best of its subtrees,
-/// with a bound of them that holds even if it was cut short; the merge takes the best value and the
-/// highest bound. Proofs that end have the value and the gap of a single run; among equally good
-/// layouts the merge may have another one.
+/// For a proof, all shards grow the same tree until it has enough open nodes, deal these out in
+/// turn by their bounds, and each continues with its share. A shard returns the best solution of
+/// its subtrees, with a bound of them that holds even if it was cut short; the merge takes the best
+/// value and the highest bound. Complete proofs have the value and the gap of a single run; among
+/// equally good layouts the merge may have another one.
 struct SearchShare {
     Shared what = Shared::Tree;
-    std::optional<Shard> own;       ///< take these steps only, and end
-    int joined = 0;                 ///< of a merge: the number of shards
-    JobResults* results = nullptr;  ///< of steps; null: store none
+    std::optional<Shard> own;  ///< compute only these steps, and end
+    int joined = 0;            ///< of a merge: the shards in the ledger
+    Ledger* ledger = nullptr;  ///< null: do not store steps
 
-    /// True for a shard that shares out this.
+    /// Returns true for a shard that divides this work.
     [[nodiscard]] bool isOwn(Shared which) const { return own && what == which; }
 };
 
