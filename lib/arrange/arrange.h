@@ -140,7 +140,7 @@ struct Arrangement {
     std::optional<double> least;
     bool is_exhausted = false;  ///< even all candidates together do not reach the target
 
-    /// Ids of sensors whose joint removal leaves the value unchanged.
+    /// Ids of sensors that can all be removed without loss of value.
     std::vector<std::string> idle;
 
     std::vector<CurvePoint> curve;

@@ -97,7 +97,7 @@ struct CandidateViews::Data {
     Pose3 mount;
     bool is_round, looks_in_slice;
     std::optional<Counted> counted = {};
-    const RayWorld* beam_world = nullptr;  // of lasers that see by beams; null: none do
+    const RayWorld* beam_world = nullptr;  // of lasers that see by beams; else null
 
     [[nodiscard]] std::size_t headingsOf(const Site& site) const {
         return is_round ? 1 : site.headings.size();

@@ -27,8 +27,8 @@ bool isNeeded(const Problem& problem, const CountedView& view, const Multiplicit
     return is_needed;
 }
 
-/// Finds views whose removal leaves the value unchanged, ascending. `allows(left)` returns true if
-/// the views still in `left` may remain alone.
+/// Finds views that can all be removed without loss of value, ascending. `allows(left)` returns
+/// true if the views still in `left` may remain alone.
 std::vector<std::size_t> idleAmong(const Problem& problem, std::span<const CountedView> views,
                                    const std::function<bool(const std::vector<bool>&)>& allows) {
     Multiplicities achieved(problem.achieved.begin(), problem.achieved.end());

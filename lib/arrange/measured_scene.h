@@ -33,7 +33,7 @@ struct CountedView {
     int multiplicity = 1;
 };
 
-/// Maps a scene with sensors to place to a weighted coverage problem, and solutions back to poses.
+/// Maps a scene with unplaced sensors to a weighted coverage problem, and solutions back to poses.
 ///
 /// Equal sensors are one kind of the problem, with candidates by the options' strategy. The
 /// target's cells have the weights of options.weights; standing sensors add to the multiplicity.

@@ -37,7 +37,7 @@ struct Refined {
 };
 
 /// Validates before a search that refine() can follow it.
-/// \throws UsageError for sweeping lasers whose exact region is not known (among `devices` and the
+/// \throws UsageError for sweeping lasers without a known exact region (among `devices` and the
 ///         scene's) and for too many weights
 void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
                      const FloorWeights& weights);
@@ -53,7 +53,7 @@ void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
 /// The result does not depend on the number of threads. Returns early, with the best poses so far,
 /// if progress says stop.
 /// \param sight visible areas in the scene's environment
-/// \throws UsageError for sensors, standing ones included, whose exact region is not known (lasers
+/// \throws UsageError for sensors, standing ones included, without a known exact region (lasers
 ///         that nod or roll), and for more than 60 weighted zones
 Refined refine(const Scene& scene, const VisibleArea& sight, std::span<const Sensor> sensors,
                const FloorWeights& weights, const RefineOptions& options, Progress& progress);

@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-/// Maximum size of a group whose number of sensors the search finds.
+/// Maximum size of a group if the search finds its number of sensors.
 constexpr int kMaxOpen = 1000;
 
 /// Equal sensors to be placed: an unplaced sensor of the scene, or those of one --sensor.

@@ -19,7 +19,7 @@ namespace ispace {
 
 namespace {
 
-// A node of a map takes some more than what is in it.
+// A node of a map takes some more than its contents.
 constexpr std::size_t kOverhead = 160;
 // Children of the nodes processed together take at most about this part of the memory.
 constexpr std::size_t kBatchPart = 8;
@@ -127,14 +127,14 @@ namespace {
 // Nodes at once, whatever the number of threads, so that the tree does not depend on it.
 constexpr std::size_t kBatch = 8;
 
-/// The highest bound that is within `gap` of a value.
+/// Returns the highest bound that is within `gap` of a value.
 std::uint64_t goodBound(std::uint64_t value, double gap) {
     if (!(gap > 0)) return value;
     const double most = std::floor(static_cast<double>(value) / std::max(1 - gap, 1e-9));
     return std::max(value, static_cast<std::uint64_t>(std::min(most, 4294967295.0)));
 }
 
-/// What is left of all candidates, cut down.
+/// The remaining candidates, cut down.
 struct Root {
     std::vector<std::vector<std::size_t>> ways;  ///< counts per kind
     std::vector<std::size_t> most;               ///< of them, per kind
@@ -172,7 +172,7 @@ Root rootOf(const Problem& problem, const Bound& bound, std::uint64_t value) {
     return made;
 }
 
-/// [n]: the bound gains at most so much by n candidates of a kind.
+/// Returns in [n] an upper bound of the bound's gain by n candidates of a kind.
 std::vector<std::uint64_t> gainsOf(const Root& root, std::size_t kind) {
     const ReducedProblem::OfKind& own = root.problem->kinds[kind];
     std::vector<std::uint32_t> cells(root.problem->cells());
@@ -225,7 +225,7 @@ class Tree {
             if (share_.results != nullptr && share_.results->isDue()) keep();
             if (open_.empty()) break;
             std::vector<BranchNode> batch = open_.take(kBatch);
-            // Whoever goes on with this tree takes the same steps, so none is left half done.
+            // A run that continues this tree takes the same steps, so no step is left half done.
             std::vector<BranchNode> before;
             if (share_.results != nullptr) before = batch;
             std::vector<BranchResult> results(batch.size());
@@ -249,7 +249,7 @@ class Tree {
     }
 
   private:
-    /// Once there is enough to deal out, a shard goes on with its own.
+    /// Once there are enough open nodes, a shard continues with its share.
     void deal() {
         constexpr std::size_t kNodesPerShard = 8;
         if (is_dealt_ || !share_.isOwn(Shared::Tree)) return;
@@ -259,9 +259,9 @@ class Tree {
         lowerBound();
     }
 
-    /// Tells searches apart of which a run has several.
+    /// Computes a fingerprint that tells the searches of a run apart.
     [[nodiscard]] std::uint64_t markOf(const Bound& bound) const {
-        constexpr std::uint64_t kForm = 3;  // version of what keep() writes
+        constexpr std::uint64_t kForm = 3;  // version of the bytes that keep() writes
         std::uint64_t mark = mixedBits(fingerprintOf(problem_) ^ mixedBits(enough_) ^ kForm);
         for (const std::uint64_t number : {result_.best.value, result_.bound, bound.cut})
             mark = mixedBits(mark ^ number);
@@ -291,7 +291,7 @@ class Tree {
         return true;
     }
 
-    /// Only solutions above this matter, fine.
+    /// Returns the value that a useful solution exceeds, fine.
     [[nodiscard]] std::uint64_t cut() const {
         return relaxed_.most(goodBound(result_.best.value, gap_));
     }
@@ -317,12 +317,12 @@ class Tree {
     SearchResult result_;
     double gap_;
     std::uint64_t enough_;
-    std::uint64_t closed_ = 0;  // upper bound of what is neither open nor known, fine
+    std::uint64_t closed_ = 0;  // upper bound of solutions neither open nor known, fine
     OpenNodes open_;
     const SearchShare& share_;
     bool is_dealt_ = false;
-    std::string name_;        // of the stored tree
-    std::uint64_t mark_ = 0;  // of the search that it is of
+    std::string name_;        // of the tree in the ledger
+    std::uint64_t mark_ = 0;  // of its search
 };
 
 void Tree::addRoots(const Root& root) {

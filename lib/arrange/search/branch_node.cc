@@ -13,10 +13,10 @@ namespace {
 
 constexpr int kMaxTrials = 80;
 constexpr int kTrialsBetweenLooks = 40;
-constexpr std::uint64_t kFairPart = 5;  // of the distance to the cut that trials must gain
-constexpr double kFewSets = 64;         // so many are tried one by one
+constexpr std::uint64_t kFairPart = 5;  // of the distance to the cut: minimum gain of trials
+constexpr double kFewSets = 64;         // so many are enumerated one by one
 
-/// In how many ways the groups can choose, up to about kFewSets.
+/// Computes the number of ways in which the groups can choose, up to about kFewSets.
 double setsOf(const std::vector<OpenGroup>& groups, bool with_fewer) {
     double all = 1;
     for (const OpenGroup& group : groups) {
@@ -32,7 +32,7 @@ double setsOf(const std::vector<OpenGroup>& groups, bool with_fewer) {
     return all;
 }
 
-/// Tries all sets of choices of a node.
+/// Enumerates all sets of choices of a node.
 class SetSearch {
   public:
     SetSearch(const Problem& problem, const BranchNode& node, const NodeRelaxation& relaxed,
@@ -43,7 +43,7 @@ class SetSearch {
           cut_(cut),
           multiplicities_(reduced_.cells(), 0),
           chosen_(node.fixed) {}
-    /// The best solution above the cut.
+    /// Finds the best solution above the cut.
     BranchResult search() {
         if (groups_.empty())
             check();
@@ -89,7 +89,7 @@ class SetSearch {
         for (std::size_t i = 0; i < multiplicities_.size(); ++i)
             if (multiplicities_[i] >= reduced_.needs[i]) value += reduced_.weights[i];
         if (value <= cut_) {
-            // Once something is found, its value is above the others'.
+            // Once a solution is found, its value is above the others'.
             if (result_.found.empty()) result_.closed = std::max(result_.closed, value);
             return;
         }
@@ -107,7 +107,7 @@ class SetSearch {
     BranchResult result_;
 };
 
-/// The node with what has been fixed, cut down to what is left.
+/// Builds the node with its fixed choices, cut down to the remaining problem.
 BranchNode cutDown(const BranchNode& node, const NodeRelaxation& relaxed,
                    const std::vector<Choice>& forced, std::vector<std::uint32_t> multipliers) {
     BranchNode now;
@@ -123,8 +123,8 @@ BranchNode cutDown(const BranchNode& node, const NodeRelaxation& relaxed,
         kept[group.kind].insert(kept[group.kind].end(), group.list.begin(), group.list.end());
         left += group.list.size();
     }
-    // Cutting down costs as much as dozens of bounds, and what differs takes memory: much has to
-    // go.
+    // Cutting down costs as much as dozens of bounds, and a separate problem takes memory: many
+    // candidates have to go.
     const bool is_same = left * 5 > node.problem->candidates() * 3;
     if (is_same) {
         now.problem = node.problem;
@@ -152,8 +152,8 @@ BranchNode cutDown(const BranchNode& node, const NodeRelaxation& relaxed,
     return now;
 }
 
-/// The bound of a node after some trials; its candidates are ruled out on the way. A trial weighs
-/// all candidates only if it promises a lower bound by those of the working sites.
+/// Computes the bound of a node by some trials; excludes candidates on the way. A trial weighs all
+/// candidates only if it promises a lower bound by those of the working sites.
 std::uint64_t boundOf(NodeRelaxation& relaxed, MultiplierSearch& search, std::uint64_t bound,
                       std::uint64_t cut, const Progress& progress) {
     std::uint64_t last = bound;
@@ -171,14 +171,14 @@ std::uint64_t boundOf(NodeRelaxation& relaxed, MultiplierSearch& search, std::ui
         search.report(static_cast<double>(now), relaxed.cover());
         relaxed.count(static_cast<float>(search.part()));
         if (trial % kTrialsBetweenLooks != kTrialsBetweenLooks - 1) continue;
-        // As fast as this it would take too long.
+        // At this speed it takes too long.
         if (bound > cut && (last - bound) * kFairPart < bound - cut) break;
         last = bound;
     }
     return bound;
 }
 
-/// The solution of the relaxation, if it is feasible and above the cut.
+/// Returns the solution of the relaxation, if it is feasible and above the cut.
 std::vector<Choice> foundBy(const Problem& problem, const BranchNode& node,
                             const NodeRelaxation& relaxed, std::uint64_t cut) {
     std::uint64_t value = relaxed.problem().settled;
@@ -193,7 +193,7 @@ std::vector<Choice> foundBy(const Problem& problem, const BranchNode& node,
     return found;
 }
 
-/// A closed node with this bound.
+/// Returns a closed node with this bound.
 BranchResult closedAt(std::uint64_t bound) {
     BranchResult result;
     result.closed = bound;

@@ -57,8 +57,8 @@ namespace {
 
 /// Sets before[i] to the weight of all runs before run i, for i from 0 to `count`.
 ///
-/// Gathers do not pay here: a run is two reads from what mostly is in the nearest cache, and plain
-/// reads were half as fast again.
+/// Gathers do not pay here: a run is two reads, mostly from the nearest cache, and plain reads were
+/// half as fast again.
 void sumRuns(const std::uint32_t* runs, std::size_t count, std::uint32_t length_bits,
              const std::uint32_t* sums, std::uint32_t* before) {
     const std::uint32_t length_mask = (std::uint32_t{1} << length_bits) - 1;
@@ -107,7 +107,7 @@ void CandidateSet::addSite(std::span<const PartRange> ranges, const CellParts& p
     sites_.push_back(site);
 }
 
-/// Packs the runs, those that are too long in pieces, and notes where the parts begin.
+/// Packs the runs, long ones in pieces, and stores where the parts begin.
 void CandidateSet::addRuns(const CellParts& parts, Site& site) {
     constexpr std::size_t kBlock = std::size_t{1} << 18U;
     const std::uint32_t most = (std::uint32_t{1} << length_bits_) - 1;

@@ -15,18 +15,18 @@ namespace ispace {
 
 namespace {
 
-/// So many sensors are placed with care even if progress says stop: next to the candidates this
-/// takes little time.
+/// So many sensors are placed with care even if progress says stop: compared with building the
+/// candidates this takes little time.
 constexpr std::size_t kSureSensors = 32;
 
-/// How greedy placement goes on.
+/// Rules of a greedy placement.
 struct GreedyRule {
     bool by_parts = false;         ///< by partial gain
     bool per_cost = false;         ///< by gain for cost
-    std::size_t sure_sensors = 0;  ///< so many whatever progress says
+    std::size_t sure_sensors = 0;  ///< so many regardless of progress
 };
 
-/// From the first to the last cell that each site sees. O(runs), on all cores
+/// Computes the span from the first to the last cell that each site sees. O(runs), on all cores
 std::vector<CellRun> spansOf(const CandidateSet& candidates) {
     std::vector<CellRun> spans(candidates.sites());
     tbb::parallel_for(std::size_t{0}, spans.size(), [&](std::size_t site) {
@@ -57,14 +57,14 @@ class GreedyPlacement {
     }
 
   private:
-    /// What is known of the sites of a kind.
+    /// Cached gains of the sites of a kind.
     struct KnownSites {
-        std::vector<std::uint32_t> gains;   ///< last ones; of steps only
-        std::vector<std::uint32_t> bounds;  ///< empty: nothing is known
-        std::vector<CellRun> spans;         ///< of what each sees; of steps only
+        std::vector<std::uint32_t> gains;   ///< from the last evaluation; of steps only
+        std::vector<std::uint32_t> bounds;  ///< empty: unknown
+        std::vector<CellRun> spans;         ///< of each site's view; of steps only
     };
 
-    /// The kinds that may come next, best first where an order is asked for.
+    /// Returns the kinds that may come next, the best first if an order is given.
     [[nodiscard]] std::vector<std::size_t> nextKinds() const {
         std::vector<std::size_t> kinds = pending_;
         if (basis_.problem.order.empty()) {
@@ -110,7 +110,7 @@ class GreedyPlacement {
         return times(a.score, cost_b) > times(b.score, cost_a);
     }
 
-    /// Sensors that may be placed after one more of a kind, all the same in cost and share.
+    /// Sensors that may be placed after one more of a kind, all with equal cost and share.
     struct Offer {
         double cost = 0;
         std::uint64_t multiplicity = 0, count = 0;
@@ -132,7 +132,8 @@ class GreedyPlacement {
         return offers;
     }
 
-    /// The most that sensors after one more of a kind can add to the multiplicity of a cell.
+    /// Computes the maximum that sensors after one more of a kind can add to the multiplicity of a
+    /// cell.
     [[nodiscard]] std::uint64_t multiplicityAfter(std::size_t kind) const {
         std::vector<Offer> offers = offersAfter(kind);
         std::uint64_t multiplicities = 0;
@@ -141,7 +142,7 @@ class GreedyPlacement {
             for (const Offer& offer : offers) multiplicities += offer.multiplicity * offer.count;
             return multiplicities;
         }
-        // What meets most for its cost comes first, the last one in part: nothing meets more.
+        // Sorts by multiplicity per cost, the last offer taken in part: this is the maximum.
         std::sort(offers.begin(), offers.end(), [](const Offer& a, const Offer& b) {
             return static_cast<double>(a.multiplicity) * b.cost >
                    static_cast<double>(b.multiplicity) * a.cost;
@@ -158,9 +159,9 @@ class GreedyPlacement {
         return multiplicities;
     }
 
-    /// Upper bounds of the gains of this sensor. Where one sensor covers a cell, gains only fall
-    /// and earlier bounds hold (Minoux 1978). Step gains rise as sensors are placed: the bound of a
-    /// site then rises by that of all cells in its span.
+    /// Updates the upper bounds of the gains of this sensor. If one sensor covers a cell, gains
+    /// only fall and earlier bounds hold (Minoux 1978). Step gains rise as sensors are placed: the
+    /// bound of a site then rises by that of all cells in its span.
     void renew(KnownSites& known, std::size_t kind) {
         const CandidateSet& candidates = *basis_.problem.kinds[kind].candidates;
         if (!has_steps_) {
@@ -209,7 +210,7 @@ class GreedyPlacement {
         BestCandidate best = finder_.find(
             {problem.kinds[kind].candidates, &sums_, has_steps_ ? &part_sums_ : nullptr},
             known_[kind].bounds, {}, allows, progress);
-        // More sensors than candidates: each has a place all the same.
+        // With more sensors than candidates, a sensor repeats a candidate.
         if (!best.is_found && !connection) best.is_found = true;
         return best;
     }

@@ -116,7 +116,7 @@ void RootRelaxation::findTop(std::size_t kind, const std::vector<std::uint32_t>&
                    ? own.reduced_costs[a] > own.reduced_costs[b]
                    : a < b;
     };
-    // The best are gathered in a list that is cut when it is twice as long as wanted.
+    // Collects the best in a list that is cut at twice the requested length.
     std::vector<std::uint32_t>& top = own.top;
     top.clear();
     if (count == 0) return;
@@ -202,7 +202,7 @@ std::vector<std::vector<std::uint32_t>> RootRelaxation::survivors() const {
 namespace {
 
 constexpr int kTrials = 20;     // between two evaluations of all candidates
-constexpr int kRoundsBack = 4;  // by what these gain
+constexpr int kRoundsBack = 4;  // compared for progress
 
 bool isGood(const Bound& bound, const LagrangeLimits& limits) {
     return static_cast<double>(bound.value - std::min(bound.value, limits.cut)) <=
@@ -241,7 +241,7 @@ Bound lagrangianBound(const Problem& problem, const std::vector<Choice>& near,
         progress.advance(1);
         noteProgress(problem, limits.cut, bound.value, progress);
         if (isGood(bound, limits) || round == limits.rounds) break;
-        // Slower than this it leads nowhere.
+        // Slower progress leads to no useful bound.
         const std::size_t done = leasts.size();
         if (done > kRoundsBack && leasts.back() < cells.most(problem.totalWeight()) &&
             static_cast<double>(leasts[done - 1 - kRoundsBack] - leasts.back()) <

@@ -18,16 +18,16 @@ namespace ispace {
 
 namespace {
 
-/// Sensors whose bounds are kept apart, and the bytes that these may take on all threads together:
-/// 4 a cell and a site of each kind.
+/// Maximum number of sensors with separate bounds, and the bytes that these may take on all threads
+/// together: 4 a cell and a site of each kind.
 constexpr std::size_t kMaxSlots = 64;
 constexpr std::size_t kMaxSlotBytes = 256'000'000;
 constexpr std::size_t kMaxResponses = 100'000;
-/// Pairs are made of so many sensors, and so many pairs are tried.
+/// Number of sensors that form pairs, and number of pairs tried.
 constexpr std::size_t kPairSensors = 16;
 constexpr int kMaxPairs = 400;
 
-/// What a local search makes better: more value, then more parts, then less cost.
+/// Rank of a local search: more value, then more parts, then less cost.
 using Rank = std::tuple<std::uint64_t, std::uint64_t, double>;
 
 Rank rankOf(const CoverageState& state) {
@@ -50,7 +50,7 @@ bool haveCostsThatDiffer(const Problem& problem) {
 }  // namespace
 
 ResponseCache::Key::Key(const std::vector<Choice>& chosen) {
-    // Sums: in any order, and a choice that is there twice does not cancel out.
+    // A sum: independent of order, and duplicate choices do not cancel out.
     for (const Choice& choice : chosen) {
         const std::uint64_t bits = mixedBits(mixedBits(choice.kind) + choice.candidate);
         first += bits;
@@ -83,7 +83,7 @@ LocalSearch::Slot& LocalSearch::slotAt(std::size_t position) {
     const std::size_t index = std::min(position, max_slots_ - 1);
     while (slots_.size() <= index) {
         if (!slots_.empty()) {
-            // What is known of the sensors before holds in part for the next one, too.
+            // Bounds for the previous sensors hold in part for the next one, too.
             slots_.push_back(slots_.back());
             continue;
         }
@@ -99,7 +99,7 @@ void LocalSearch::renew(SiteBounds& known, std::size_t kind) const {
         known.gains = gains_;
         return;
     }
-    // A candidate adds more than before by no more than all cells add together.
+    // A candidate's gain rises by at most the sum over all cells.
     std::uint64_t more = 0;
     for (std::size_t i = 0; i < gains_.size(); ++i)
         more += gains_[i] > known.gains[i] ? gains_[i] - known.gains[i] : 0U;
@@ -181,7 +181,7 @@ bool LocalSearch::add(CoverageState& state) {
     while (kind < basis_.limits.size() && !state.canTake(kind, basis_.limits[kind])) ++kind;
     if (kind == basis_.limits.size()) return false;
     Response response = respond(state, slotAt(state.chosen().size()), std::nullopt);
-    // More sensors than candidates: each has a place all the same.
+    // With more sensors than candidates, a sensor repeats a candidate.
     if (!response.is_found && !basis_.problem.is_connected) response = {{kind, 0}, 0, true};
     if (response.is_found) state.add(response.choice);
     return response.is_found;
@@ -218,7 +218,7 @@ bool LocalSearch::rebuyOne(CoverageState& state) {
     return false;
 }
 
-/// Positions of the sensors without which least is lost for what they cost, ascending.
+/// Finds the positions of the sensors with the least loss per cost, ascending.
 std::vector<std::size_t> LocalSearch::leastUseful(const CoverageState& state) const {
     std::vector<std::pair<double, std::size_t>> losses;
     losses.reserve(state.chosen().size());
@@ -273,10 +273,10 @@ namespace {
 constexpr std::size_t kChains = 4;
 constexpr std::uint64_t kKicks = 12;             // of a chain in a round
 constexpr std::size_t kMinOut = 2, kMaxOut = 4;  // sensors taken out by a kick
-constexpr std::size_t kNeighbours = 5;           // of which the others are drawn
-constexpr float kSlack = 0.002F;                 // a chain may go on from what is so much worse,
-constexpr float kForgiving = 0.1F;               // one time in ten
-/// The sequence of a kick does not meet those of the starts' kicks.
+constexpr std::size_t kNeighbours = 5;           // from which the others are drawn
+constexpr float kSlack = 0.002F;    // a chain may continue from a solution worse by this,
+constexpr float kForgiving = 0.1F;  // one time in ten
+/// The sequence of a kick differs from those of the starts' kicks.
 constexpr std::uint64_t kFirstKey = 1ULL << 32U;
 
 /// One chain of kicks.
@@ -292,7 +292,7 @@ class Chain {
           enough_(enough),
           progress_(progress) {}
 
-    /// The best of a round of kicks from a solution, or that.
+    /// Returns the best of a round of kicks from a solution, or that solution.
     Solution run(const Solution& from) {
         Solution best = from, now = from;
         set(from.chosen);
@@ -302,7 +302,7 @@ class Chain {
                  {.uniform = draws});
             kick(draws);
             search_.fill(state_);
-            // What remains may fall into parts that no candidate joins.
+            // The remaining sensors may fall into parts that no candidate joins.
             const bool is_whole = isFeasible(problem_, state_.chosen());
             if (is_whole) search_.improve(state_);
             const bool is_near = static_cast<double>(state_.value()) >=
@@ -318,14 +318,14 @@ class Chain {
     }
 
   private:
-    /// What the random numbers of a kick decide.
+    /// Purposes of the random numbers of a kick.
     enum Draws : std::size_t {
         kForgive = 0,
         kPivot,
         kOut,
-        kWhich,  ///< one for each that goes with the pivot
+        kWhich,  ///< one for each removed with the pivot
         kPutIn = kWhich + kMaxOut - 1,
-        kPlaces  ///< tries of a place
+        kPlaces  ///< tries of an insertion
     };
     static constexpr std::size_t kTries = 24, kDraws = kPlaces + kTries;
 
@@ -339,7 +339,7 @@ class Chain {
     [[nodiscard]] std::uint32_t overlap(const Choice& choice, const WeightSums& seen) const {
         return problem_.kinds[choice.kind].candidates->weigh(choice.candidate, seen);
     }
-    /// Takes out a sensor and some that see most of the same; maybe puts one in thereabouts.
+    /// Removes a sensor and some with similar views; may insert one near them.
     void kick(const std::array<float, kDraws>& draws) {
         const Choice pivot = state_.chosen()[indexOf(draws[kPivot], state_.chosen().size())];
         std::vector<std::uint32_t> weights(problem_.cells(), 0);

@@ -68,12 +68,12 @@ class MinimumCostSearch {
     const SearchOptions& options_;
     Progress& progress_;
     std::vector<std::uint32_t> partial_weights_;
-    bool is_all_ = false;      // the greedy solution is the best possible
-    std::uint64_t bound_ = 0;  // of the value at the cost of the best
+    bool is_all_ = false;      // the greedy solution is optimal
+    std::uint64_t bound_ = 0;  // of the value at the cost of the best solution
     std::size_t proven_ = 0;   // no solution of this cost level reaches the value
 };
 
-/// The problem with no more to spend.
+/// Returns the problem with this budget.
 Problem MinimumCostSearch::within(double cost) const {
     Problem cheaper = problem_;
     if (cheaper.kinds.size() == 1) {
@@ -86,7 +86,7 @@ Problem MinimumCostSearch::within(double cost) const {
     return cheaper;
 }
 
-/// Places twice as many again and again, until it is enough or nothing more can be had.
+/// Adds twice as many sensors again and again, until the value is reached or no sensor gains.
 Solution MinimumCostSearch::reachGreedily() {
     std::vector<Choice> everything;
     double cost = 0, dearest = 0;
@@ -108,7 +108,7 @@ Solution MinimumCostSearch::reachGreedily() {
     }
 }
 
-/// The first sensors that reach this value, without those that turn out redundant.
+/// Returns the first sensors that reach this value, with redundant ones removed.
 Solution MinimumCostSearch::trimmed(const Solution& solution, std::uint64_t value) const {
     CoverageState state(problem_, partial_weights_);
     const auto& chosen = solution.chosen;
@@ -117,7 +117,7 @@ Solution MinimumCostSearch::trimmed(const Solution& solution, std::uint64_t valu
         state.clear();
         for (const Choice& choice : chosen) state.add(choice);
     }
-    // Dear ones go first, and among equals the last.
+    // Expensive sensors go first, and among equals the last.
     std::vector<Choice> order(state.chosen().rbegin(), state.chosen().rend());
     std::stable_sort(order.begin(), order.end(), [this](const Choice& a, const Choice& b) {
         return problem_.kinds[a.kind].cost > problem_.kinds[b.kind].cost;
@@ -134,12 +134,12 @@ Solution MinimumCostSearch::trimmed(const Solution& solution, std::uint64_t valu
     return {state.chosen(), state.value()};
 }
 
-/// Drops the sensors with the least loss per cost until the rest is cheap enough; empty if that is
-/// infeasible.
+/// Removes the sensors with the least loss per cost until the rest is cheap enough; returns an
+/// empty solution if that is infeasible.
 Solution MinimumCostSearch::reduced(const Problem& cheaper, const Solution& solution) const {
     CoverageState state(problem_, partial_weights_);
     for (const Choice& choice : solution.chosen) state.add(choice);
-    using Loss = std::tuple<double, double, Choice>;  // of value, of parts; for what it costs
+    using Loss = std::tuple<double, double, Choice>;  // of value, of parts; per cost
     const auto loss_of = [&](const Choice& choice) {
         const std::uint64_t value = state.value(), parts = state.partialValue();
         const std::size_t position = positionOf(choice, state);
@@ -187,18 +187,18 @@ MinimumCostCover MinimumCostSearch::unreached(const Solution& greedy) {
     }
     cover.result.best = trimmed(cover.result.best, cover.result.best.value);
     cover.cost = normaliseCost(costOf(problem_, cover.result.best.chosen));
-    // If it can be had at all, it costs more than nothing.
+    // A positive value requires at least one sensor.
     cover.cost_bound = problem_.kinds.empty() ? 0 : problem_.kinds[0].cost;
     for (const Kind& kind : problem_.kinds)
         cover.cost_bound = std::min(cover.cost_bound, kind.cost);
     return cover;
 }
 
-/// A cheaper solution that reaches the value, or the best one that does not.
+/// Finds a cheaper solution that reaches the value, or the best one that does not.
 Solution MinimumCostSearch::reach(const Problem& cheaper, const Solution& best, int starts) {
     Solution solution{{}, 0};
     if (options_.optimizer != Optimizer::Greedy) solution = reduced(cheaper, best);
-    // Of one kind greedy placement is what it was, but for fewer.
+    // With one kind, greedy search would repeat itself with fewer sensors.
     if (cheaper.kinds.size() > 1 || cheaper.is_connected || solution.chosen.empty()) {
         const Solution greedy = placeFeasibly(cheaper, progress_);
         if (greedy.value > solution.value || solution.chosen.empty()) solution = greedy;
@@ -211,7 +211,7 @@ Solution MinimumCostSearch::reach(const Problem& cheaper, const Solution& best, 
     return improveBySwaps(cheaper, solution, swap, progress_);
 }
 
-/// As reach(), for Exact by branch and bound if need be. \param is_proven there is nothing
+/// As reach(), for Exact by branch and bound if required. \param is_proven there is no
 Solution MinimumCostSearch::reachExactly(const Problem& cheaper, const Solution& best,
                                          bool& is_proven) {
     const bool is_greedy = options_.optimizer == Optimizer::Greedy;
@@ -232,7 +232,7 @@ Solution MinimumCostSearch::reachExactly(const Problem& cheaper, const Solution&
     return known.best.value >= wanted_ ? known.best : Solution();
 }
 
-/// True if what was found is better.
+/// Stores the found solution if it is better; returns true if so.
 bool MinimumCostSearch::take(const Solution& found, Solution& best) const {
     if (found.value < wanted_) return false;
     Solution trim = trimmed(found, wanted_);
@@ -241,7 +241,7 @@ bool MinimumCostSearch::take(const Solution& found, Solution& best) const {
     return true;
 }
 
-/// Bounds, by halves, between what is proven and the best.
+/// Computes bounds, by bisection, between the proven level and the best.
 void MinimumCostSearch::raiseProven(const CostLevels& levels, const Solution& best, int rounds) {
     std::size_t open = levels.below(costOf(problem_, best.chosen)) + 1;
     while (proven_ + 1 < open && !progress_.stopped()) {
@@ -253,11 +253,11 @@ void MinimumCostSearch::raiseProven(const CostLevels& levels, const Solution& be
     }
 }
 
-/// Searches with few starts: in longer and longer steps down from the best, and once nothing is
-/// found by halves.
+/// Searches with few starts: in longer and longer steps down from the best, and by bisection once a
+/// step fails.
 void MinimumCostSearch::descend(const CostLevels& levels, Solution& best) {
     std::size_t tried = proven_;
-    std::size_t step = 0;  // 0: by halves
+    std::size_t step = 0;  // 0: bisection
     for (bool is_first = true; !progress_.stopped(); is_first = false) {
         const std::size_t open = levels.below(costOf(problem_, best.chosen));
         if (open <= tried) return;
@@ -274,7 +274,7 @@ void MinimumCostSearch::descend(const CostLevels& levels, Solution& best) {
     }
 }
 
-/// Searches for the next cheaper, again and again, as well as the options say.
+/// Searches for the next cheaper solution, again and again, with the optimizer of the options.
 void MinimumCostSearch::stepDown(const CostLevels& levels, Solution& best) {
     while (!progress_.stopped()) {
         const std::size_t open = levels.below(costOf(problem_, best.chosen));
@@ -289,7 +289,7 @@ void MinimumCostSearch::stepDown(const CostLevels& levels, Solution& best) {
 MinimumCostCover MinimumCostSearch::cheapen(Solution best) {
     const double most = costOf(problem_, best.chosen);
     const CostLevels levels(problem_.kinds, most);
-    // Quick bounds first: if there is no time for more, there are these.
+    // Computes quick bounds first, in case time runs out.
     lowerValueBound(best, {.cut = best.value, .gap = 0.01, .rounds = 2}, progress_);
     raiseProven(levels, best, kQuickRounds);
     if (options_.optimizer != Optimizer::Greedy) {
@@ -301,7 +301,7 @@ MinimumCostCover MinimumCostSearch::cheapen(Solution best) {
     return reached(best, levels.above(proven_));
 }
 
-/// For what costs no more than the best.
+/// Lowers the bound of the value at the best solution's cost.
 void MinimumCostSearch::lowerValueBound(const Solution& best, const LagrangeLimits& limits,
                                         Progress& progress) {
     const double cost = costOf(problem_, best.chosen);
@@ -309,10 +309,10 @@ void MinimumCostSearch::lowerValueBound(const Solution& best, const LagrangeLimi
     bound_ = std::min(bound_, bound.value);
 }
 
-/// The most that can be had for what is known to be enough.
+/// Maximises the value at the cost that is known to suffice.
 Solution MinimumCostSearch::filled(const Solution& best) {
     SearchOptions options = options_;
-    options.optimizer = Optimizer::Swap;  // the tree is for the number
+    options.optimizer = Optimizer::Swap;  // the tree is reserved for the number of sensors
     const SearchResult found = search(within(costOf(problem_, best.chosen)), options, progress_);
     bound_ = std::min(bound_, found.bound);
     return found.best.value > best.value ? trimmed(found.best, found.best.value) : best;
@@ -323,7 +323,7 @@ MinimumCostCover MinimumCostSearch::reached(const Solution& best, double cost_bo
     cover.is_reached = true;
     cover.result.best = best;
     if (progress_.stopped()) {
-        SilentProgress silent;  // there shall be some bound
+        SilentProgress silent;  // a bound is always required
         lowerValueBound(best, {.cut = best.value, .gap = 0.01, .rounds = 2}, silent);
     } else if (options_.optimizer == Optimizer::Greedy) {
         lowerValueBound(best, {.cut = best.value, .gap = 0.01, .rounds = kQuickRounds}, progress_);

@@ -75,7 +75,7 @@ void NodeRelaxation::weigh(const std::vector<std::uint32_t>& multipliers, const 
             reduced_costs.assign(cell_costs_);
             last_multiplicity = kind.multiplicity;
         }
-        // The node's own work is shared out, too: there may be few nodes, but large ones.
+        // The node's work is split among threads, too: there may be few nodes, but large ones.
         constexpr std::size_t kGrain = 256;
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites[k].size(), kGrain),
                           [&](const tbb::blocked_range<std::size_t>& some) {
@@ -101,7 +101,7 @@ std::uint64_t NodeRelaxation::evaluateWorking(const std::vector<std::uint32_t>& 
     return findBest(multipliers, false);
 }
 
-/// The candidates of a group with the best reduced costs.
+/// Returns the candidates of a group with the best reduced costs.
 std::vector<std::uint32_t> NodeRelaxation::mostPromising(const OpenGroup& group,
                                                          std::size_t count) const {
     const std::vector<std::uint32_t>& reduced_costs = reduced_costs_[group.kind];
@@ -182,7 +182,7 @@ void NodeRelaxation::ruleOut(std::uint64_t cut) {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         OpenGroup& group = groups_[g];
         if (group.list.size() <= group.count) continue;
-        // With one that is not among the best, the last of those has to go.
+        // A candidate outside the best replaces the last of them.
         const std::vector<std::uint32_t>& reduced_costs = reduced_costs_[group.kind];
         const std::uint64_t without = bound_ - reduced_costs[top_[g][group.count - 1]];
         if (without > cut) continue;

@@ -10,10 +10,10 @@ namespace ispace {
 
 namespace {
 
-/// Numbers things in the order in which they are met.
+/// Numbers objects in the order of their first use.
 class Numbering {
   public:
-    /// Its number; `add` is called for one that is new.
+    /// Returns its number; calls `add` for a new object.
     template <typename Add>
     std::uint64_t of(const void* thing, Add add) {
         const auto [at, is_new] = numbers_.emplace(thing, numbers_.size());
@@ -96,7 +96,7 @@ std::shared_ptr<const ReducedProblem> unpackProblem(Unpacker& from, const Proble
 
 using List = std::vector<std::uint32_t>;
 
-/// What nodes share, in the order of its numbers.
+/// Data that nodes share, in the order of its numbers.
 struct SharedThings {
     std::vector<std::shared_ptr<const ReducedProblem>> problems;
     std::vector<std::shared_ptr<const List>> lists;

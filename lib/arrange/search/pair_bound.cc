@@ -12,7 +12,7 @@
 
 namespace ispace {
 
-/// Bundles and the places in each, by this value of places.
+/// Returns the bundles and the members of each, sorted by this value.
 template <typename Value>
 void OverlapRelaxation::sortBundles(Area& area, Value value) const {
     for (Bundle& bundle : area.bundles) bundle.ranks.clear();
@@ -57,7 +57,7 @@ std::uint64_t OverlapRelaxation::boundOf(const std::vector<std::uint32_t>& multi
     return bound + static_cast<std::uint64_t>(areas_[from_root_[0]].value());
 }
 
-/// All others are worth no sensor: without them no choice is worse.
+/// Finds the candidates worth a sensor: the others cannot improve a choice.
 void OverlapRelaxation::findPlaces(const std::vector<std::uint32_t>& multipliers, bool is_all) {
     const WeightSums sums(std::span(multipliers.data(), multipliers.size() - 1));
     for (Area& area : areas_) area.places.clear();
@@ -88,7 +88,7 @@ void OverlapRelaxation::findPlaces(const std::vector<std::uint32_t>& multipliers
     }
 }
 
-/// What any place of an area sees.
+/// Computes the union of the views of an area's candidates.
 void OverlapRelaxation::findCrowd(Area& area, const std::vector<std::uint32_t>& multipliers) const {
     std::vector<char> is_seen(cells_.weights.size(), 0);
     for (const Place& place : area.places)
@@ -106,7 +106,7 @@ void OverlapRelaxation::findCrowd(Area& area, const std::vector<std::uint32_t>& 
     }
 }
 
-/// What a place and others of its area are worth, at best. It is the worthiest of them.
+/// Computes the maximum worth of a candidate with others of its area. It is the worthiest of them.
 void OverlapRelaxation::fillArea(const Area& area, std::size_t rank, const MaskedSums& seen,
                                  Place& place) const {
     std::int64_t second = 0;
@@ -144,7 +144,7 @@ void OverlapRelaxation::fillArea(const Area& area, std::size_t rank, const Maske
     }
 }
 
-/// What an area below adds at best to a sensor that sees this, and its place.
+/// Computes the maximum that an area below adds to a sensor with this view, and its candidate.
 std::int64_t OverlapRelaxation::reply(const Area& from, const MaskedSums& seen,
                                       std::uint32_t& rank) const {
     std::int64_t best = from.empty;
@@ -164,7 +164,7 @@ std::int64_t OverlapRelaxation::reply(const Area& from, const MaskedSums& seen,
     return best;
 }
 
-/// The values of the places of an area, with the best replies of the areas below.
+/// Computes the values of the candidates of an area, with the best replies of the areas below.
 void OverlapRelaxation::gather(Area& area, const std::vector<std::uint32_t>& multipliers) {
     area.empty = 0;
     for (const std::size_t i : area.below) area.empty += areas_[i].value();
@@ -172,7 +172,7 @@ void OverlapRelaxation::gather(Area& area, const std::vector<std::uint32_t>& mul
     area.order.resize(area.places.size());
     std::iota(area.order.begin(), area.order.end(), 0U);
     sortBundles(area, [](const Place& place) { return place.worth; });
-    // Places do not depend on each other, but for their worth, which stays as it is.
+    // Iterations are independent, except for the candidates' worth, which is constant here.
     constexpr std::size_t kGrain = 32;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, area.places.size(), kGrain),
                       [&](const tbb::blocked_range<std::size_t>& some) {
@@ -246,7 +246,7 @@ namespace {
 
 constexpr std::size_t kMinSensors = 6, kMaxSensors = 64;
 constexpr int kTrials = 10;     // between two evaluations of all candidates
-constexpr int kRoundsBack = 4;  // by what these gain
+constexpr int kRoundsBack = 4;  // compared for progress
 
 }  // namespace
 
@@ -302,15 +302,15 @@ std::uint64_t overlapBound(const Problem& problem, const Bound& plain,
 
 namespace {
 
-/// The weight of the n-th best.
+/// Returns the weight of the n-th best.
 std::uint32_t nthOf(std::vector<std::uint32_t> weights, std::size_t n) {
     const auto at = weights.begin() + static_cast<std::ptrdiff_t>(n - 1);
     std::nth_element(weights.begin(), at, weights.end(), std::greater<>());
     return *at;
 }
 
-/// By candidate the sensor of a good solution that sees most of the same by these multipliers, the
-/// first among equals. O(sensors * runs)
+/// Finds by candidate the sensor of a good solution with the most similar view by these
+/// multipliers, the first among equals. O(sensors * runs)
 std::vector<std::uint32_t> areasAbout(const CandidateSet& set, const std::vector<Choice>& near,
                                       const std::vector<std::uint32_t>& multipliers) {
     std::vector<std::uint32_t> areas(set.size(), 0), most(set.size(), 0), weights(set.size());
@@ -347,7 +347,7 @@ OverlapRelaxation::OverlapRelaxation(const Problem& problem, const Bound& plain,
     set_.weighAll(WeightSums(start_), weights_);
     const std::uint32_t least = nthOf(weights_, sensors_);
     join(least);
-    // As many are worth it as there are sensors.
+    // As many candidates exceed it as there are sensors.
     start_.push_back(least / kNumberUnit);
     limits_.push_back(std::numeric_limits<std::uint32_t>::max() / kNumberUnit);
 }

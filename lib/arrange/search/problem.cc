@@ -17,7 +17,7 @@ namespace ispace {
 
 namespace {
 
-/// Each choice once.
+/// Removes duplicate choices.
 std::vector<Choice> distinct(std::vector<Choice> chosen) {
     std::sort(chosen.begin(), chosen.end());
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
@@ -31,7 +31,7 @@ std::uint64_t Problem::totalWeight() const {
 }
 
 std::uint64_t valueOf(const Problem& problem, const std::vector<Choice>& chosen) {
-    // Differences of the multiplicity from cell to cell, so that a run costs two writes.
+    // Stores differences of the multiplicity from cell to cell, so that a run costs two writes.
     std::vector<std::int64_t> steps(problem.cells() + 1, 0);
     for (const Choice& choice : distinct(chosen)) {
         const Kind& kind = problem.kinds[choice.kind];
@@ -51,7 +51,7 @@ std::uint64_t valueOf(const Problem& problem, const std::vector<Choice>& chosen)
 }
 
 double costOf(const Problem& problem, const std::vector<Choice>& chosen) {
-    // Kind by kind there are few sums to round.
+    // Few sums, and few roundings, kind by kind.
     double cost = 0;
     for (std::size_t k = 0; k < problem.kinds.size(); ++k) {
         const auto count = std::count_if(chosen.begin(), chosen.end(),
@@ -110,7 +110,7 @@ bool isConnected(const Problem& problem, const std::vector<Choice>& chosen) {
 
 namespace {
 
-/// Joins sets; the root of a set is its least member.
+/// Merges sets; the root of a set is its least member.
 class UnionFind {
   public:
     explicit UnionFind(std::size_t count) : parents_(count) {
@@ -135,7 +135,8 @@ constexpr std::size_t kNoOwner = static_cast<std::size_t>(-1);
 
 Connection::Connection(const Problem& problem, const std::vector<Choice>& chosen)
     : problem_(&problem), part_of_cell_(problem.cells(), kNoOwner) {
-    // Member 0 are those that stand, member 1 + i is choice i; at first a cell's is who sees it.
+    // Member 0 stands for the standing sensors, member 1 + i for choice i; a cell is first owned by
+    // a sensor that sees it.
     UnionFind members(chosen.size() + 1);
     bool has_standing = false;
     problem.standing.forEach([&](std::size_t cell) {
@@ -183,7 +184,7 @@ namespace {
 
 constexpr double kMaxUnits = 4e9;
 
-/// Each is a whole number of units, and more than none if it is more than 0.
+/// Returns true if each is a whole number of units, and more than 0 if it is positive.
 bool areWhole(const std::vector<double>& weights, double scale, double slack) {
     return std::all_of(weights.begin(), weights.end(), [scale, slack](double w) {
         const double units = std::round(w * scale);
@@ -193,7 +194,7 @@ bool areWhole(const std::vector<double>& weights, double scale, double slack) {
 
 double scaleOf(const std::vector<double>& weights) {
     constexpr double kDecimals = 1e6, kDigits = 1e5;
-    constexpr double kMaxScale = 1e300;  // of weights that are hardly numbers
+    constexpr double kMaxScale = 1e300;  // for weights close to 0
     double sum = 0, largest = 0;
     for (const double w : weights) {
         sum += w;
@@ -292,7 +293,7 @@ double CostLevels::above(std::size_t i) const {
 
 namespace {
 
-/// One problem on its way into a file. Lines are gathered in one string, as there are many.
+/// Writes one problem. Lines are collected in one string, as there are many.
 class MpsWriter {
   public:
     MpsWriter(const Problem& problem, const std::vector<std::string>& kinds, std::ostream& out)
@@ -356,7 +357,7 @@ class MpsWriter {
     const std::vector<std::string>& names_;
     std::ostream& out_;
     std::string text_;
-    std::vector<int> lacks_;  ///< multiplicity still required of each cell; 0: left out
+    std::vector<int> lacks_;  ///< multiplicity still required of each cell; 0: skipped
     std::uint64_t achieved_already_ = 0;
 };
 
@@ -385,7 +386,7 @@ void MpsWriter::writeRows() {
     if (problem_.budget) line({" L budget"});
 }
 
-/// Coefficients are capped at what the cell lacks: the same integer solutions, a tighter model.
+/// Coefficients are clipped to the need of the cell: the same integer solutions, a tighter model.
 void MpsWriter::writeSensor(std::size_t kind, std::size_t candidate) {
     const Kind& own = problem_.kinds[kind];
     const std::string name = nameOf(kind, candidate);

@@ -153,7 +153,7 @@ class CostLevels {
 /// and others describe each candidate. Skips cells that no candidate sees or that are covered
 /// already.
 /// \param kinds names of the kinds, without spaces
-/// \param legend writes the comment of each candidate
+/// \param legend names the figures that `describe` returns for the comment of a candidate
 void writeMps(const Problem& problem, const std::vector<std::string>& kinds,
               const std::string& legend, const std::function<std::string(const Choice&)>& describe,
               std::ostream& out);

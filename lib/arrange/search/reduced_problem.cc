@@ -10,7 +10,7 @@
 namespace ispace {
 namespace {
 
-/// Stands for a set of parts: the exclusive or of 128 random bits of each.
+/// Identifies a set of parts: the exclusive or of 128 random bits of each.
 struct Signature {
     std::uint64_t low = 0, high = 0;
 
@@ -22,14 +22,14 @@ struct Signature {
     friend auto operator<=>(const Signature&, const Signature&) = default;
 };
 
-/// A site with what its kept candidates see, in as few parts as tell them apart.
+/// A site with the views of its kept candidates, in the fewest parts that tell them apart.
 struct KeptSite {
     std::size_t kind = 0;
     std::vector<CandidateSet::PartRange> ranges;  // of the candidates
     std::vector<std::vector<CellRun>> parts;      // the last is seen by all
 };
 
-/// One candidate needs no parts, and its runs in order join better.
+/// One candidate requires no parts, and its runs in order merge better.
 KeptSite singleSite(const CandidateSet& set, std::size_t kind, std::uint32_t candidate) {
     KeptSite kept{kind, {CandidateSet::PartRange()}, {{}}};
     std::vector<CellRun>& runs = kept.parts[0];
@@ -45,7 +45,7 @@ KeptSite siteOf(const CandidateSet& set, std::size_t kind,
     KeptSite kept{kind, {}, {}};
     const std::size_t site = set.siteOf(candidates[0]);
     const auto directed = static_cast<std::uint32_t>(set.directedParts(site));
-    // Parts are joined between places where a candidate begins or ends to see.
+    // Merges parts between directions at which a candidate's view begins or ends.
     const auto within = [directed](std::uint32_t part) {
         return part > directed ? part - directed : part;
     };
@@ -99,7 +99,7 @@ std::vector<KeptSite> sitesOf(const ReducedProblem& from,
 }
 
 std::vector<Signature> signaturesOf(const std::vector<KeptSite>& sites, std::size_t cells) {
-    // What changes from each cell to the next, then summed up.
+    // Computes the change from each cell to the next, then sums up.
     std::vector<Signature> signatures(cells + 1);
     std::uint64_t number = 0;
     for (const KeptSite& site : sites)
@@ -116,10 +116,10 @@ std::vector<Signature> signaturesOf(const std::vector<KeptSite>& sites, std::siz
     return signatures;
 }
 
-/// Joined cells: each is named by the first of its members, and they are numbered in that order, so
-/// that a run of cells becomes a run of joined cells.
+/// Merged cells: each is named by the first of its members, and they are numbered in that order, so
+/// that a run of cells becomes a run of merged cells.
 struct Joined {
-    std::vector<std::uint32_t> before;  ///< [i]: joined cells whose first member is before cell i
+    std::vector<std::uint32_t> before;  ///< [i]: merged cells that begin before cell i
 };
 
 Joined joinCells(const ReducedProblem& from, const std::vector<Signature>& signatures,
@@ -137,7 +137,7 @@ Joined joinCells(const ReducedProblem& from, const std::vector<Signature>& signa
         if (signatures[a] != signatures[b]) return signatures[a] < signatures[b];
         return from.needs[a] != from.needs[b] ? from.needs[a] < from.needs[b] : a < b;
     });
-    // Of each joined cell the first member holds the sums.
+    // The first member of a merged cell holds the sums.
     std::vector<std::uint32_t> weights(cells, 0), sums(cells, 0);
     for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
         if (!same(order[first], order[i])) first = i;
@@ -158,7 +158,7 @@ Joined joinCells(const ReducedProblem& from, const std::vector<Signature>& signa
     return joined;
 }
 
-/// The runs of a part in joined cells; those that meet become one.
+/// Converts the runs of a part to merged cells; merges touching runs.
 void addPart(const std::vector<CellRun>& runs, const Joined& joined, CellParts& parts) {
     const std::size_t begin = parts.runs.size();
     for (const CellRun& run : runs) {
@@ -200,7 +200,7 @@ ReducedProblem wholeProblem(const Problem& problem, const RelaxedCells& cells) {
     whole.weights = cells.weights;
     whole.needs = cells.needs;
     for (std::size_t k = 0; k < problem.kinds.size(); ++k) {
-        // The problem outlives what is made of it.
+        // The problem outlives the sets derived from it.
         std::shared_ptr<const CandidateSet> set(std::shared_ptr<const CandidateSet>(),
                                                 problem.kinds[k].candidates);
         whole.kinds.push_back({std::move(set), {}, cells.multiplicities[k]});
@@ -224,7 +224,7 @@ ReducedProblem reduce(const ReducedProblem& from,
         std::vector<std::uint32_t> original;
         original.reserve(kept[k].size());
         for (const std::uint32_t i : kept[k]) original.push_back(names.empty() ? i : names[i]);
-        // A copy takes no more memory than it needs; a set that still grows does.
+        // A copy allocates exactly its size; a growing set reserves more.
         auto set = std::make_shared<const CandidateSet>(*sets[k]);
         sets[k].reset();
         to.kinds.push_back({std::move(set), std::move(original), from.kinds[k].multiplicity});

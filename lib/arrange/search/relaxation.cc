@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxWays = 20'000;
 
-/// The largest multiplicity that all sensors together can give a cell.
+/// Computes the largest multiplicity that all sensors together can give a cell.
 std::uint64_t maxMultiplicityOf(const Problem& problem) {
     std::uint64_t multiplicities = 0;
     for (const Kind& kind : problem.kinds) {
@@ -72,7 +72,7 @@ CountChoice::CountChoice(const Problem& problem) {
     }
     std::vector<std::size_t> counts(kinds, 0);
     list(counts, 0, 0);
-    // The cheapest first gives the most sensors.
+    // The cheapest first yields the most sensors.
     std::vector<std::size_t> order(kinds);
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](auto a, auto b) { return costs_[a] < costs_[b]; });
@@ -91,7 +91,7 @@ std::size_t CountChoice::fitting(std::size_t kind, double spent) const {
 
 void CountChoice::list(std::vector<std::size_t>& counts, std::size_t kind, double spent) {
     if (!is_listed_) return;
-    // Sums kind by kind, as costOf has them: what is feasible is among the ways.
+    // Sums kind by kind, as costOf does: feasible counts are among the ways.
     const std::size_t most = fitting(kind, spent);
     if (kind + 1 == counts.size()) {
         counts[kind] = most;
@@ -177,7 +177,7 @@ float total(const float (&lanes)[kLanes]) {
     return sum;
 }
 
-/// How far a direction may be followed: squares of what is lacking, cells at their limits left out.
+/// Limits of a step along a direction: squares of the deficits, without cells at their limits.
 struct Lack {
     float average = 0, fresh = 0, both = 0;
 };
@@ -245,7 +245,7 @@ void MultiplierSearch::report(double bound, std::span<const float> cover) {
         step();
         return;
     }
-    // The mixture of old average and new subgradient that lacks least.
+    // Finds the mixture of old average and new subgradient with the least deficit.
     const Lack lack =
         lackOf(weights_.data(), best_.data(), average_.data(), cover.data(), cover.size());
     const double along = static_cast<double>(lack.average) - static_cast<double>(lack.both);

@@ -15,15 +15,15 @@ namespace ispace {
 
 namespace {
 
-// A bound that is to be quick, and one that is to be good.
+// Limits of a quick bound and of a tight one.
 constexpr LagrangeLimits kQuick = {.gap = 0.01, .rounds = 8};
 constexpr double kSmallGap = 0.001;
-// A wider gap than this takes a tree too long.
+// A tree takes too long to close a wider gap than this.
 constexpr double kWideGap = 0.005;
-/// From so many sensors on the bound by overlaps and kicks close more of the gap than a tree does
-/// in the same time.
+/// With at least so many sensors, the overlap bound and kicks close more of the gap than a tree
+/// does in the same time.
 constexpr std::size_t kManySensors = 6;
-/// Before the bound by overlaps, which gains from a better solution, too.
+/// Before the overlap bound, which also gains from a better solution.
 constexpr KickOptions kFewKicks = {.rounds = 1};
 constexpr int kOverlapRounds = 60;
 constexpr double kOverlapStall = 0.04;
@@ -47,7 +47,7 @@ LagrangeLimits limitsOf(const SearchOptions& options) {
     return limits;
 }
 
-/// What need not be made better.
+/// Returns the value at which the search ends.
 std::uint64_t enoughOf(const Problem& problem, std::uint64_t bound, double gap) {
     // Swaps also look for cheaper solutions of the same value.
     if (problem.budget && gap <= 0) return std::numeric_limits<std::uint64_t>::max();
@@ -77,8 +77,8 @@ Solution placeFeasibly(const Problem& problem, Progress& progress) {
 
 namespace {
 
-/// The result stored under a key for this very problem, or what `compute` returns, which is kept
-/// unless it was cut short.
+/// Returns the ledger's entry under this name for this very problem, else the result of `compute`,
+/// which is stored unless it was cut short.
 template <typename T, typename Compute>
 T recalled(const SearchShare& share, const Problem& problem, const std::string& step,
            T (*unpack)(Unpacker&, const Problem&), const Progress& progress, Compute compute) {
@@ -100,7 +100,8 @@ T recalled(const SearchShare& share, const Problem& problem, const std::string& 
 
 std::string proofName(int shard) { return "proof/" + std::to_string(shard); }
 
-/// The best of the subtrees of all shards, and the highest of their bounds. \pre all are there
+/// Merges the shards' proofs: the best of their subtrees, and the highest of their bounds.
+/// \pre all are there
 SearchResult joinedProof(const Problem& problem, const SearchShare& share) {
     SearchResult all;
     for (int i = 1; i <= share.joined; ++i) {
@@ -134,7 +135,7 @@ class Search {
         if (share_.isOwn(Shared::Starts)) return std::move(result_);
         if (!progress_.stopped()) prove();
         if (result_.bound == problem_.totalWeight() && progress_.stopped()) {
-            SilentProgress silent;  // there shall be some bound
+            SilentProgress silent;  // a bound is always required
             const LagrangeLimits soon = {.cut = result_.best.value, .gap = kQuick.gap, .rounds = 2};
             result_.bound = lagrangianBound(problem_, result_.best.chosen, soon, silent).value;
         }
@@ -144,7 +145,7 @@ class Search {
 
   private:
     void swap() {
-        // Swaps may take long: if there is no time for more, this is the bound.
+        // Swaps may take long: if time runs out, this is the bound.
         LagrangeLimits quick = kQuick;
         quick.cut = result_.best.value;
         quick.gap = std::min(quick.gap, limitsOf(options_).gap);
@@ -178,12 +179,12 @@ class Search {
                                      std::numeric_limits<std::uint64_t>::max(), options_.max_bytes,
                                      share_);
     }
-    /// More than a tree closes in a while.
+    /// Returns true if a tree cannot close the gap in reasonable time.
     [[nodiscard]] bool isWide() const {
         const auto open = static_cast<double>(result_.bound - result_.best.value);
         return open > std::max(options_.gap, kWideGap) * static_cast<double>(result_.bound);
     }
-    /// Where a wide gap is left the best solution may be what lacks.
+    /// A wide gap may be due to the solution rather than to the bound.
     void kick(KickOptions options) {
         if (!isWide() || progress_.stopped()) return;
         options.seed = options_.swap.seed;

@@ -35,7 +35,7 @@ struct SwapOptions {
     std::uint64_t seed = 0;
     /// The search ends once it reaches this value.
     std::uint64_t enough = std::numeric_limits<std::uint64_t>::max();
-    /// Null: the whole search. A share other than Starts returns `start`.
+    /// Null: the whole search. A shard of starts stores its solutions and returns `start`.
     const SearchShare* share = nullptr;
 };
 
@@ -86,7 +86,7 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
 /// A cheapest solution that reaches a given value.
 struct MinimumCostCover {
     /// One of the cheapest solutions found, with a bound for its cost; if the value is not reached,
-    /// the best solution found, without sensors that lack any gain.
+    /// the best solution found, without sensors of gain 0.
     SearchResult result;
     bool is_reached = false;
     bool is_all = false;    ///< even all candidates together do not reach it

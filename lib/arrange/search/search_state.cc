@@ -8,8 +8,8 @@ namespace ispace {
 
 namespace {
 
-/// The most with which weights may be multiplied, if there is room for it such that their halves,
-/// thirds, ... eighths are whole: sums of these that are equal stay equal.
+/// Returns the largest factor of the weights, if they fit, for which their halves, thirds, ...
+/// eighths are whole: equal sums of these stay equal.
 std::uint32_t stepScaleOf(const Problem& problem) {
     constexpr std::uint32_t kWhole = 840;
     const std::uint64_t most = std::numeric_limits<std::uint32_t>::max() /
@@ -202,7 +202,7 @@ BestCandidate CandidateFinder::find(const CandidateGains& gains, std::span<std::
                                     const Progress& progress) {
     BestCandidate best = known;
     const std::uint64_t low = gains.second != nullptr ? kLow : 0U;
-    // Among equals only a site that comes before the best one matters.
+    // Among equals only a site before the best one matters.
     const auto may_help = [&](std::uint64_t bound, std::size_t site) {
         const Score most = bound << 32U | low;
         return !best.is_found || most > best.score ||
@@ -242,7 +242,7 @@ SearchBasis::SearchBasis(const Problem& of)
             site_full.push_back(site_partial.back());
             continue;
         }
-        // Whatever else is placed, an uncovered cell adds at most its weight.
+        // Regardless of later sensors, an uncovered cell adds at most its weight.
         for (std::size_t i = 0; i < gains.size(); ++i)
             if (gains[i] > 0 || problem.achieved.empty() || problem.achieved[i] < problem.required)
                 gains[i] = problem.weights[i];

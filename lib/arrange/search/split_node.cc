@@ -17,16 +17,17 @@ namespace {
 constexpr int kTrials = 10;            // of the bound of each child
 constexpr int kSplitsPerGroup = 3;     // tried
 constexpr std::size_t kCoreSize = 96;  // candidates with which splits are compared
-constexpr double kLevelsToClose = 10;  // a child that comes this part nearer halves its tree
+constexpr double kLevelsToClose =
+    10;  // a child that closes this share of the distance halves its tree
 
-/// Where a node may be split.
+/// A candidate split of a node.
 struct Split {
     std::size_t group = 0;
-    std::vector<std::uint32_t> near, far;  ///< the places in the list of the group, in two
+    std::vector<std::uint32_t> near, far;  ///< indices in the list of the group, in two parts
 };
 
-/// The candidates of a group, as places in its list: first the one that is chosen most often, then
-/// the others, those that see most of what it sees first.
+/// Returns the candidates of a group, as indices in its list: first the one that is chosen most
+/// often, then the others, sorted by the overlap of their views with it.
 std::vector<std::uint32_t> byLikeness(NodeRelaxation& relaxed, std::size_t group,
                                       const std::vector<std::uint32_t>& multipliers) {
     const std::vector<float>& frequencies = relaxed.frequencies()[group];
@@ -51,8 +52,8 @@ Split splitAt(std::size_t group, const std::vector<std::uint32_t>& order, std::s
     return split;
 }
 
-/// A group is split where by the relaxation half a sensor, or one and a half, ... are on the near
-/// side: no whole number of sensors does that.
+/// Splits a group if by the relaxation half a sensor, or one and a half, ... are on the near side:
+/// an integer solution excludes that.
 void addSplitsOf(NodeRelaxation& relaxed, std::size_t g,
                  const std::vector<std::uint32_t>& multipliers, std::vector<Split>& splits) {
     const OpenGroup& group = relaxed.groups()[g];
@@ -72,7 +73,7 @@ void addSplitsOf(NodeRelaxation& relaxed, std::size_t g,
     if (splits.size() == before) splits.push_back(splitAt(g, order, order.size() / 2));
 }
 
-/// The children of a split: so many of the group from one side and the rest from the other.
+/// Builds the children of a split: so many of the group from one side and the rest from the other.
 std::vector<BranchNode> childrenOf(const BranchNode& node, const Split& split) {
     std::vector<BranchNode> children;
     const BranchGroup& group = node.groups[split.group];
@@ -94,8 +95,8 @@ std::vector<BranchNode> childrenOf(const BranchNode& node, const Split& split) {
     return children;
 }
 
-/// The children of a node whose groups may choose all they have, where it is fewer that may be
-/// feasible: with one candidate and without it.
+/// Builds two children, with one candidate and without it, for a node whose groups may choose all
+/// their candidates, but of which only a subset may be feasible.
 std::vector<BranchNode> withAndWithout(const BranchNode& node) {
     const auto larger = std::max_element(
         node.groups.begin(), node.groups.end(),
@@ -118,11 +119,11 @@ std::vector<BranchNode> withAndWithout(const BranchNode& node) {
     return {std::move(with), std::move(without)};
 }
 
-/// An upper bound of a node by a few trials, which weigh all candidates only if the working ones
-/// promise a lower one.
+/// Computes an upper bound of a node by a few trials, which weigh all candidates only if the
+/// working ones promise a lower one.
 struct SoonBound {
     std::uint64_t value = 0;
-    std::vector<std::uint32_t> multipliers;  ///< the best of the trials; empty if there was none
+    std::vector<std::uint32_t> multipliers;  ///< the best of the trials; empty before the first
 };
 
 SoonBound soonBoundOf(const BranchNode& node, std::uint64_t cut, const Progress& progress) {
@@ -142,16 +143,16 @@ SoonBound soonBoundOf(const BranchNode& node, std::uint64_t cut, const Progress&
     return {bound, search.best()};
 }
 
-/// What the tree below a child is guessed to be, in parts of the one that it would be if the bound
-/// did not fall.
+/// Estimates the size of the tree below a child, relative to that of a tree without a fall of the
+/// bound.
 double sizeOfTree(std::uint64_t child, std::uint64_t parent, std::uint64_t cut) {
     const auto fallen = static_cast<double>(parent - child),
                open = static_cast<double>(parent - cut);
     return std::exp2(-kLevelsToClose * fallen / open);
 }
 
-/// Compares splits by what they would do to the core of the node, its most promising candidates
-/// (Caprara, Fischetti & Toth 1999): trials with these cost a fraction.
+/// Compares splits by their effect on the core of the node, its most promising candidates (Caprara,
+/// Fischetti & Toth 1999): trials with these cost a fraction.
 class SplitComparison {
   public:
     SplitComparison(const BranchNode& node, NodeCore is_core, std::uint64_t cut,
@@ -161,7 +162,7 @@ class SplitComparison {
           cut_(cut),
           progress_(progress) {}
 
-    /// The size of the trees of the children as guessed; more than `least` may be any such.
+    /// Estimates the size of the children's trees; above `least` the result is arbitrary.
     [[nodiscard]] double sizeBy(const Split& split, double least) const {
         double size = 0;
         for (const BranchNode& child : childrenOf(core_, coreOf(split))) {
@@ -184,10 +185,10 @@ class SplitComparison {
         }
         return core;
     }
-    /// The split of the core that this is.
+    /// Maps the split to the core.
     [[nodiscard]] Split coreOf(const Split& split) const {
         const std::vector<char>& is_own = is_core_[split.group];
-        std::vector<std::uint32_t> place_of;  // in the list of the core
+        std::vector<std::uint32_t> place_of;  // index in the list of the core
         place_of.reserve(is_own.size());
         std::uint32_t before = 0;
         for (const char is_here : is_own) {

@@ -45,7 +45,7 @@ class BestReporter {
     std::mutex mutex_;
 };
 
-/// Draws candidates with probabilities in proportion to what they add alone.
+/// Draws candidates with probabilities in proportion to their gain alone.
 class RandomCandidates {
   public:
     explicit RandomCandidates(const SearchBasis& basis) {
@@ -57,7 +57,7 @@ class RandomCandidates {
             for (const std::uint32_t parts : alone) sums.push_back(sum += parts);
         }
     }
-    /// By a number in [0, 1).
+    /// Finds the candidate for a number in [0, 1).
     [[nodiscard]] std::size_t candidate(std::size_t kind, float where) const {
         const std::vector<double>& sums = sums_[kind];
         const auto found = std::upper_bound(sums.begin(), sums.end(), sums.back() * double{where});
@@ -65,21 +65,21 @@ class RandomCandidates {
     }
 
   private:
-    std::vector<std::vector<double>> sums_;  // per kind: what candidates up to each add
+    std::vector<std::vector<double>> sums_;  // per kind: cumulative gains of the candidates
 };
 
 /// Sensors of a start that are random; greedy placement adds the others.
 constexpr std::size_t kRandomSensors = 8;
-/// The best end of each so many starts is searched about: so often two of its sensors are taken
-/// away, one is put elsewhere by chance and one where it is best. Measured with 3 to 12 sensors:
-/// this halves what 20 starts lose, for as much time again.
+/// The best result of each so many starts is kicked: so often two of its sensors are removed, one
+/// is inserted at random and one on its best candidate. Measured with 3 to 12 sensors: this halves
+/// the loss of 20 starts, for as much time again.
 constexpr std::size_t kStartsPerKicked = 5;
 constexpr std::uint64_t kKicks = 10;
-/// Ends about which others are bought for two sensors, where costs differ.
+/// Maximum number of results that exchange pairs of sensors, if costs differ.
 constexpr std::size_t kMaxBuyers = 6;
 constexpr std::size_t kStartsPerBuyer = 4;
 
-/// Where a start has come to.
+/// The result of a start.
 struct End {
     std::size_t start = 0;
     std::uint64_t value = 0, parts = 0;
@@ -115,7 +115,7 @@ class StartProgress final : public Progress {
     std::size_t start_;
 };
 
-/// Where starts have come to before, or in other shards.
+/// Stored results of starts, of earlier runs or other shards.
 class KeptEnds {
   public:
     KeptEnds(const SearchShare* share, const Problem& problem, std::uint64_t enough,
@@ -162,14 +162,14 @@ class SwapSearch {
           progress_(progress),
           reporter_(problem, progress) {}
 
-    /// From the given solution (start 0); if cells take several sensors, from a greedy solution by
-    /// partial gains (start 1); and from random sensors. The ends up to the first with a sufficient
-    /// value are the same for any number of threads; those after it are empty.
+    /// Searches from the given solution (start 0); if cells require several sensors, from a greedy
+    /// solution by partial gains (start 1); and from random sensors. The results up to the first
+    /// with a sufficient value are deterministic for any number of threads; later ones are empty.
     std::vector<End> searchFromAll(std::size_t starts, const std::vector<Choice>& given) {
         std::vector<End> ends(starts);
         const auto [begin, end] = ownOf(starts);
         KeptEnds kept(share_, basis_.problem, enough_, given);
-        // Starts in ascending order, whichever thread takes them.
+        // Threads take starts in ascending order.
         std::atomic<std::size_t> next = begin, first = starts;
         tbb::parallel_for(begin, end, [&](std::size_t) {
             const std::size_t i = next++;
@@ -194,7 +194,7 @@ class SwapSearch {
         return ends;
     }
 
-    /// Continues from an end by exchanging two sensors for others, where costs differ.
+    /// Continues from a result by exchanging two sensors for others, if costs differ.
     End searchByPairs(const End& end) {
         CoverageState state = stateOf(end);
         LocalSearch(basis_, cache_, enough_, progress_).improveByPairs(state);
@@ -202,7 +202,7 @@ class SwapSearch {
         End next(end.start, state);
         return end.isBetterThan(next) ? end : next;
     }
-    /// Continues from an end by random kicks.
+    /// Continues from a result by random kicks.
     End searchAbout(const End& end) {
         CoverageState state = stateOf(end);
         LocalSearch search(basis_, cache_, enough_, progress_);
@@ -211,7 +211,7 @@ class SwapSearch {
             const std::vector<Choice> before = state.chosen();
             kickOut(state, {seed_, Purpose::Placement, kick, end.start});
             search.fill(state);
-            // What remains may fall into parts that no candidate joins.
+            // The remaining sensors may fall into parts that no candidate joins.
             if (isFeasible(basis_.problem, state.chosen())) {
                 search.improve(state);
                 End next(end.start, state);
@@ -231,13 +231,13 @@ class SwapSearch {
         return end.value >= enough_ || progress_.stopped();
     }
 
-    /// True if others search from the rest of the starts.
+    /// Returns true if other shards search from the rest of the starts.
     [[nodiscard]] bool isShard() const {
         return share_ != nullptr && share_->isOwn(Shared::Starts);
     }
 
   private:
-    /// The starts of this shard.
+    /// Returns the starts of this shard.
     [[nodiscard]] std::pair<std::size_t, std::size_t> ownOf(std::size_t starts) const {
         if (!isShard()) return {0, starts};
         const Shard::Block block = share_->own->blockOf(static_cast<std::int64_t>(starts));
@@ -249,7 +249,7 @@ class SwapSearch {
         if (start == 0) {
             for (const Choice& choice : given) state.add(choice);
         } else {
-            // Greedy placement goes for complete cells; starting from partial gains reaches other
+            // Greedy search prefers complete cells; starting from partial gains reaches other
             // solutions.
             if (start > 1 || !takesSteps(basis_.problem)) addRandomSensors(state, start);
             if (basis_.problem.required == 1)
@@ -311,7 +311,7 @@ class SwapSearch {
     ResponseCache cache_;
 };
 
-/// The best ends, each set of choices once.
+/// Returns the best results, without duplicate sets of choices.
 std::vector<End> bestOf(std::vector<End> ends, std::size_t count) {
     std::stable_sort(ends.begin(), ends.end(),
                      [](const End& a, const End& b) { return a.isBetterThan(b); });
@@ -326,7 +326,7 @@ std::vector<End> bestOf(std::vector<End> ends, std::size_t count) {
     return best;
 }
 
-/// The choices in the order of kinds that the problem asks for.
+/// Sorts the choices by the order of kinds that the problem requires.
 std::vector<Choice> inOrder(const Problem& problem, std::vector<Choice> chosen) {
     std::vector<Choice> ordered;
     ordered.reserve(chosen.size());
@@ -359,7 +359,7 @@ Solution improveBySwaps(const Problem& problem, const Solution& start, const Swa
         return start;
     }
     End best = bestOf(ends, 1).front();
-    // From the best so far on.
+    // Continues from the best results so far.
     const auto go_on = [&](std::size_t count, End (SwapSearch::*how)(const End&)) {
         if (count > 0 && best.chosen.size() > 1 && !search.isOver(best)) {
             std::vector<End> more = bestOf(ends, count);
