@@ -37,7 +37,7 @@ Index rootOf(std::vector<Index>& root, Index i) {
     return i;
 }
 
-/// How many runs all rows have.
+/// Returns the number of runs in all rows.
 std::size_t countRuns(const MapCells& cells) {
     std::size_t runs = 0;
     for (int y = 0; y < cells.height(); ++y) {
@@ -72,7 +72,7 @@ void CellPieces::findRuns(const MapCells& cells) {
     row_begin_.push_back(runs_.size());
 }
 
-/// Unites runs of neighbouring rows that touch; of two roots the earlier one stays.
+/// Merges runs of neighbouring rows that touch; of two roots the earlier one stays.
 void CellPieces::joinRows(Joined joined, std::vector<Index>& root) const {
     const int reach = joined == Joined::ByCorners ? 1 : 0;
     for (std::size_t y = 1; y + 1 < row_begin_.size(); ++y) {

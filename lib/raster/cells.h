@@ -27,7 +27,7 @@ struct RowRun {
 /// The cells above, below and beside a cell.
 constexpr std::array<CellIndex, 4> kSides{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
-/// A set of cells, one byte each; column 0 is on the left, row 0 at the bottom.
+/// Stores a set of cells, one byte each; column 0 is on the left, row 0 at the bottom.
 class MapCells {
   public:
     MapCells(int width, int height)
@@ -41,28 +41,31 @@ class MapCells {
 
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
-    /// False outside of the grid.
+    /// Returns false outside of the grid.
     [[nodiscard]] bool contains(int x, int y) const {
         return x >= 0 && y >= 0 && x < width_ && y < height_ && cells_[index(x, y)] != 0;
     }
+    /// Inserts a cell.
+    /// Removes a cell.
     /// \pre the cell lies in the grid
     void insert(int x, int y) { cells_[index(x, y)] = 1; }
     /// \pre the cell lies in the grid
     void erase(int x, int y) { cells_[index(x, y)] = 0; }
-    /// The cells from `first` to `last` of a row. \pre they lie in the grid, first <= last
+    /// Inserts the cells from `first` to `last` of a row.
+    /// \pre they lie in the grid, first <= last
     void insertRun(int y, int first, int last) { fillRun(y, first, last, 1); }
     void eraseRun(int y, int first, int last) { fillRun(y, first, last, 0); }
     [[nodiscard]] std::size_t count() const;
-    /// One byte a cell, 1 for those in the set: the whole grid, and one row.
+    /// One byte per cell, 1 for cells in the set: the whole grid, and one row.
     [[nodiscard]] std::span<const std::uint8_t> data() const { return cells_; }
     [[nodiscard]] std::span<const std::uint8_t> row(int y) const {
         return std::span(cells_).subspan(index(0, y), static_cast<std::size_t>(width_));
     }
-    /// To be set to 0 or 1.
+    /// Returns a writable row of zeros and ones.
     [[nodiscard]] std::span<std::uint8_t> row(int y) {
         return std::span(cells_).subspan(index(0, y), static_cast<std::size_t>(width_));
     }
-    /// Index of cell (x, y) in data(): row by row from the bottom.
+    /// Returns the index of cell (x, y) in data(): row by row from the bottom.
     [[nodiscard]] std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                static_cast<std::size_t>(x);
@@ -93,7 +96,7 @@ void forEachRunOf(std::span<const std::uint8_t> row, Visit visit) {
     const std::uint8_t* const begin = row.data();
     const std::uint8_t* const end = begin + row.size();
     const auto find = [end](const std::uint8_t* at, int value) {
-        constexpr int kShort = 8;  // runs this short are found sooner without a call
+        constexpr int kShort = 8;  // runs this short are found faster without a call
         for (int i = 0; i < kShort; ++i, ++at)
             if (at == end || *at == value) return at;
         const void* const found = std::memchr(at, value, static_cast<std::size_t>(end - at));
@@ -106,9 +109,9 @@ void forEachRunOf(std::span<const std::uint8_t> row, Visit visit) {
     }
 }
 
-/// The cells of the first set that are not in the second, of the same size.
+/// Returns the cells of the first set that are not in the second, of the same size.
 MapCells difference(const MapCells& cells, const MapCells& others);
-/// The cells of the grid that are not in the set.
+/// Returns the cells of the grid that are not in the set.
 MapCells complement(const MapCells& cells);
 
 /// A connected piece of a set of cells.
@@ -122,7 +125,7 @@ struct CellPiece {
     }
 };
 
-/// The connected pieces of a set of cells, in the order of their first cells.
+/// Finds the connected pieces of a set of cells, in the order of their first cells.
 class CellPieces {
   public:
     enum class Joined { BySides, ByCorners };
@@ -133,11 +136,11 @@ class CellPieces {
     [[nodiscard]] const std::vector<CellPiece>& list() const { return pieces_; }
     [[nodiscard]] const CellPiece& operator[](std::size_t i) const { return pieces_[i]; }
     [[nodiscard]] std::size_t size() const { return pieces_.size(); }
-    /// The piece that holds a cell; O(log runs of the row).
+    /// Finds the piece that holds a cell; O(log runs of the row).
     [[nodiscard]] std::optional<std::size_t> at(CellIndex place) const;
-    /// Fraction of the grid's border that the piece occupies.
+    /// Returns the fraction of the grid's border that the piece occupies.
     [[nodiscard]] double borderShare(std::size_t piece) const;
-    /// The cells of one piece, in a grid of the same size.
+    /// Returns the cells of one piece, in a grid of the same size.
     [[nodiscard]] MapCells cellsOf(std::size_t piece) const;
 
     /// Calls visit(RowRun, piece), row by row.
@@ -159,13 +162,13 @@ class CellPieces {
     }
 
   private:
-    /// Of runs and pieces: a map can have half as many runs as cells.
+    /// Type of run and piece indices: a map can have half as many runs as cells.
     using Index = std::uint32_t;
 
     void findRuns(const MapCells& cells);
     void joinRows(Joined joined, std::vector<Index>& root) const;
     void addUp(std::vector<Index>& root);
-    /// Index of the first run of the row that does not end left of the place.
+    /// Returns the index of the first run of the row that does not end left of the cell.
     [[nodiscard]] std::size_t firstRun(CellIndex place) const;
 
     int width_, height_;

@@ -54,18 +54,18 @@ struct Writer {
     ~Writer() { png_destroy_write_struct(&png, &info); }
 };
 
-/// What makes a picture small quickly.
+/// Compression settings: small files, fast.
 struct Compression {
     int filter, level, strategy;
 };
 
-/// Noise has runs to find once neighbours are told from each other, but no repetitions: several
-/// times as fast as zlib's own way, and smaller.
+/// Noise has runs once neighbours are subtracted, but no repetitions: several times as fast as
+/// zlib's default strategy, and smaller.
 constexpr Compression kOfShades{PNG_FILTER_PAETH, 1, Z_RLE};
 /// Levels below 4 take the first repetition they find, which makes maps a quarter larger.
 constexpr Compression kOfDrawings{PNG_FILTER_NONE, 4, Z_DEFAULT_STRATEGY};
 
-/// What is written: rows as the file has them, or pixels of 4 bytes, blue first.
+/// Samples to write: rows as in the file, or pixels of 4 bytes, blue first.
 struct Samples {
     png_uint_32 columns = 0, rows = 0;
     int depth = 8, color = PNG_COLOR_TYPE_RGB;
@@ -75,7 +75,8 @@ struct Samples {
     const std::uint8_t* bytes = nullptr;
 };
 
-/// Nothing here has a destructor: libpng leaves by longjmp. False if something failed.
+/// Writes the rows; returns false on failure. No object here has a destructor: libpng leaves by
+/// longjmp.
 bool writeRows(png_structp png, png_infop info, const Samples& samples) {
     constexpr std::size_t kPiece = std::size_t{1} << 16U;
     if (setjmp(png_jmpbuf(png)) != 0) return false;
@@ -119,7 +120,7 @@ void appendChunk(std::string_view type, std::string_view content, std::string& f
     append_number(libdeflate_crc32(0, file.data() + begin, file.size() - begin));
 }
 
-/// The beginning of the file up to its header.
+/// Returns the beginning of the file up to its header.
 std::string pngBegin(int columns, int rows) {
     std::string header;
     for (const int extent : {columns, rows})
@@ -132,7 +133,7 @@ std::string pngBegin(int columns, int rows) {
     return file;
 }
 
-/// Rows as a PNG file has them, each after the number of its filter: none.
+/// Writes rows in PNG layout, each after its filter number: 0, no filter.
 void writeRows(std::size_t columns, std::size_t rows, std::span<const std::uint32_t> pixels,
                std::size_t stride, std::uint8_t* to) {
     for (std::size_t row = 0; row < rows; ++row) {
@@ -145,8 +146,8 @@ void writeRows(std::size_t columns, std::size_t rows, std::span<const std::uint3
     }
 }
 
-/// By libdeflate, which wants all bytes at once: smaller than zlib makes drawings at level 4, in
-/// two thirds of the time.
+/// Compresses by libdeflate, which requires all bytes at once: smaller than zlib at level 4 for
+/// drawings, in two thirds of the time.
 std::string encodeWhole(int columns, int rows, std::span<const std::uint32_t> pixels,
                         std::size_t stride) {
     constexpr int kLevel = 5;
@@ -197,7 +198,7 @@ std::string pngOfShades(int columns, int rows, std::span<const std::uint32_t> pi
 
 std::string pngOfDrawing(int columns, int rows, std::span<const std::uint32_t> pixels,
                          std::size_t stride) {
-    constexpr double kMostBytes = 64e6;  // of a picture that is held as a whole once more
+    constexpr double kMostBytes = 64e6;  // of a picture that is copied as a whole in memory
     if (columns > 0 && rows > 0 && 3.0 * columns * rows <= kMostBytes)
         return encodeWhole(columns, rows, pixels, stride);
     return encodePixels(columns, rows, pixels, stride, kOfDrawings);
@@ -234,7 +235,7 @@ constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
 constexpr std::size_t kChunkFrame = 12;  // length, type and check sum about a chunk's content
 constexpr std::size_t kHeaderLength = 13;
 
-/// Deflate makes at most 1032 bytes of one.
+/// Deflate expands a byte to at most 1032.
 constexpr std::int64_t kMaxInflation = 1040;
 
 [[noreturn]] void fail(const std::string& name, const std::string& message) {
@@ -247,14 +248,14 @@ std::int64_t bigEndian(std::string_view bytes) {
     return value;
 }
 
-/// A PNG file's chunks that say what its samples are.
+/// The chunks of a PNG file that describe its samples.
 struct Chunks {
     std::string bytes;      // signature and chunks
     std::string header;     // content of IHDR
     std::int64_t data = 0;  // bytes of IDAT
 };
 
-/// Leaves out what is said about colour spaces, and comments.
+/// Removes chunks of colour spaces and comments.
 Chunks plainChunks(std::string_view bytes, const std::string& name) {
     constexpr std::array<std::string_view, 4> kKept{"PLTE", "tRNS", "IDAT", "IEND"};
     Chunks chunks;
@@ -278,7 +279,7 @@ Chunks plainChunks(std::string_view bytes, const std::string& name) {
     return chunks;
 }
 
-/// Throws if the picture is too large, or so large that the file cannot hold it.
+/// Rejects a picture that is too large, or larger than the file can encode.
 void checkSize(const Chunks& chunks, const std::string& name, std::int64_t most) {
     const std::string_view header = chunks.header;
     const std::int64_t width = bigEndian(header), height = bigEndian(header.substr(4));
@@ -294,7 +295,7 @@ void checkSize(const Chunks& chunks, const std::string& name, std::int64_t most)
                        " bytes of data do not hold " + size);
 }
 
-/// Frees what libpng keeps beside a picture, also when something throws.
+/// Frees the memory that libpng holds beside a picture, also on an exception.
 class PngImage {
   public:
     PngImage() { image_.version = PNG_IMAGE_VERSION; }
@@ -325,7 +326,7 @@ DecodedPicture decodePng(std::string_view bytes, const std::string& name, std::i
         bad();
     const bool has_alpha = (image->format & PNG_FORMAT_FLAG_ALPHA) != 0;
     image->format = has_alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
-    // Without it libpng takes 16-bit samples as linear light and bends them.
+    // Without it libpng treats 16-bit samples as linear light and applies a gamma curve.
     image->flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
     DecodedPicture picture;
     picture.channels = has_alpha ? 4 : 3;

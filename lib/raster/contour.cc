@@ -16,14 +16,14 @@ namespace ispace {
 
 namespace {
 
-/// A run of this many cells is a wall of its own, not a tread of a slanted wall's stairs.
+/// A run of this many cells is a separate wall, not a tread of a slanted wall's stairs.
 constexpr double kLongRun = 12;
 
-/// The face of a bump keeps its corners from this many cells on; shorter ones are noise. Found on
-/// maps of robots: with it round pillars and rough walls keep their areas best.
+/// The face of a bump keeps its corners from this many cells on; shorter ones are noise. Measured
+/// on maps of robots: with it round pillars and rough walls keep their areas best.
 constexpr double kFace = 4;
 
-/// Half a cell is what withoutStairs takes of a tolerance.
+/// withoutStairs uses up half a cell of a tolerance.
 constexpr double kStairTolerance = 0.5;
 
 /// In the order of kSides.
@@ -43,7 +43,7 @@ bool isSetAhead(const MapCells& cells, CellIndex at, Direction direction) {
 }
 
 /// Follows the boundary with the set on the left from the lower edge of the cell at `start`;
-/// marks the cells whose lower edge it passes eastwards.
+/// marks the cells if it passes their lower edge eastwards.
 Polygon walk(const MapCells& cells, CellIndex start, MapCells& passed) {
     Polygon corners;
     CellIndex at = start;
@@ -52,7 +52,7 @@ Polygon walk(const MapCells& cells, CellIndex start, MapCells& passed) {
         if (direction == East) passed.insert(at.x, at.y);
         at = {at.x + kSides[direction].x, at.y + kSides[direction].y};
         int quarters = 0;
-        // Left first: at a corner where two cells touch the curve stays with its own.
+        // Left first: at a corner where two cells touch, the curve stays with its cell.
         if (!isSetAhead(cells, at, direction))
             quarters = 1;
         else if (isSetAhead(cells, at, turned(direction, -1)))
@@ -64,7 +64,7 @@ Polygon walk(const MapCells& cells, CellIndex start, MapCells& passed) {
     return corners;
 }
 
-/// Without vertices at which the curve does not turn.
+/// Removes vertices at which the curve does not turn.
 Polygon cornersOf(const Polygon& curve) {
     const std::size_t n = curve.size();
     Polygon corners;
@@ -74,7 +74,7 @@ Polygon cornersOf(const Polygon& curve) {
     return corners;
 }
 
-/// True for the corners of rigid cells.
+/// Returns true for the corners of rigid cells.
 bool isRigid(Point2 corner, const MapCells* rigid) {
     if (rigid == nullptr) return false;
     const int x = static_cast<int>(corner.x), y = static_cast<int>(corner.y);
@@ -82,7 +82,7 @@ bool isRigid(Point2 corner, const MapCells* rigid) {
            rigid->contains(x - 1, y - 1);
 }
 
-/// One curve of withoutStairs.
+/// Applies withoutStairs to one curve.
 Polygon withoutStairs(const Polygon& curve, const MapCells* rigid) {
     const std::size_t n = curve.size();
     std::vector<double> run(n);  // length of edge i, from vertex i to the next
@@ -172,7 +172,7 @@ std::vector<Region> cellRegions(const Grid& grid, const CellSet& cells) {
     }
     const BoxTree tree(boxes);
     for (Polygon& hole : holes) {
-        // Of the outlines about the cell on the left of its first edge the innermost.
+        // Finds the innermost of the outlines around the cell on the left of its first edge.
         const Vec2 way = hole[1] - hole[0], ahead = 1 / length(way) * way;
         const Vec2 left = perpendicular(ahead);
         const Point2 cell = hole[0] + Vec2{(ahead.x + left.x) * grid.limits.width() / grid.columns,

@@ -14,7 +14,7 @@ namespace ispace {
 
 namespace {
 
-/// First i in [begin, end) that is not `before`, else end; `guess` is mostly right.
+/// Finds the first i in [begin, end) that is not `before`, else end; `guess` is mostly right.
 template <typename Before>
 int firstNot(int begin, int end, double guess, Before before) {
     if (guess >= begin && guess <= end) {
@@ -31,16 +31,16 @@ int firstNot(int begin, int end, double guess, Before before) {
     return begin;
 }
 
-/// Bit i: parity of the bits from i on.
+/// Computes in bit i the parity of the bits from i on.
 std::uint64_t parityFrom(std::uint64_t bits) {
     for (const int shift : {1, 2, 4, 8, 16, 32}) bits ^= bits >> shift;
     return bits;
 }
 
-/// Within [low, high]; low for what is not a number.
+/// Clamps to [low, high]; returns low for NaN.
 double held(double value, double low, double high) { return std::max(low, std::min(value, high)); }
 
-/// To a whole number within [low, high], also from far beyond.
+/// Converts to a whole number within [low, high], also from far beyond.
 int clampedInt(double value, int low, int high) {
     return static_cast<int>(std::clamp(value, 1.0 * low, 1.0 * high));
 }
@@ -131,7 +131,7 @@ void Scanline::reset(const Grid& grid, const Box2& box) {
     edges_.assign(words, 0);
 }
 
-/// Counted from the first row of the window, as all rows and columns from here on.
+/// Relative to the first row of the window, as all rows and columns from here on.
 int Scanline::firstRowFrom(double y) const {
     const double guess = held(std::ceil(y_axis_.position(y)) - first_row_, 0, rows());
     return firstNot(0, rows(), guess,
@@ -151,7 +151,7 @@ void Scanline::add(const Segment2& edge) {
         addSloped(low, high, row);
 }
 
-/// \param column counted from the first of the window
+/// \param column relative to the first of the window
 void Scanline::mark(std::vector<std::uint64_t>& rows, int column, int row, bool toggle) {
     std::uint64_t& word =
         rows[static_cast<std::size_t>(row) * wordsPerRow() + static_cast<std::size_t>(column) / 64];
@@ -164,23 +164,24 @@ void Scanline::addLevel(const Segment2& edge, int row) {
     const double y = y_[static_cast<std::size_t>(row)];
     int column = std::min(x_axis_.firstNotBelow(left, first_column_), last_column_);
     const int end = std::min(x_axis_.firstAbove(right, column), last_column_);
-    // Rows may have one and the same middle where coordinates are too large for the cells.
+    // Several rows may have the same middle if coordinates are too large for the cells.
     for (; row < rows() && y_[static_cast<std::size_t>(row)] == y; ++row)
         for (int i = column; i < end; ++i) mark(edges_, i - first_column_, row, false);
 }
 
-/// An edge that climbs, from the first row on whose middle is not below it.
+/// Adds a rising edge, from the first row with a middle not below it.
 void Scanline::addSloped(Point2 low, Point2 high, int row) {
     const double slope = columns_per_metre_ * ((high.x - low.x) / (high.y - low.y));
     const double foot = x_axis_.position(low.x) - first_column_;
     double slack = slack_ + 32 * std::numeric_limits<double>::epsilon() * columns_per_metre_ *
                                 (std::abs(low.x) + std::abs(high.x));
-    if (!std::isfinite(slope)) slack = 1;  // nothing is sure
+    if (!std::isfinite(slope)) slack = 1;  // every column is uncertain
     const int count = rows(), columns = last_column_ - first_column_;
     const std::size_t words = wordsPerRow();
     for (; row < count && y_[static_cast<std::size_t>(row)] <= high.y; ++row) {
         const double y = y_[static_cast<std::size_t>(row)];
-        // The first column that is not to the left of the upward edge, and how far beyond it.
+        // Computes the first column that is not to the left of the upward edge, and its distance
+        // beyond.
         const double next = held(foot + slope * (y - low.y), -0.5, columns - 0.5) + 1;
         auto column = static_cast<int>(next);
         const double rest = next - column;
@@ -193,7 +194,7 @@ void Scanline::addSloped(Point2 low, Point2 high, int row) {
     }
 }
 
-/// The first column that is not to the left of the upward edge; marks those on it.
+/// Finds the first column that is not to the left of the upward edge; marks those on it.
 int Scanline::settle(Point2 low, Point2 high, int row, int guess) {
     const double y = y_[static_cast<std::size_t>(row)];
     const int columns = last_column_ - first_column_;
@@ -220,7 +221,7 @@ void Scanline::forEachWord(bool closed, Visit visit) const {
             if ((parity & 1U) != 0) beyond = ~beyond;
             inside = closed ? inside | edges_[begin + i] : inside & ~edges_[begin + i];
             // Bits beyond the window have no flips to their right: only `beyond` could set them,
-            // and the last word has none.
+            // and in the last word it is 0.
             visit(row, i, inside);
         }
     }
@@ -283,7 +284,7 @@ std::vector<RowRun> runsWithin(const Grid& grid, std::span<const Polygon> curves
     for (int row = 0; row < scan.rows(); ++row) {
         const auto bits = std::span(words).subspan(
             static_cast<std::size_t>(row) * scan.wordsPerRow(), scan.wordsPerRow());
-        // The first column at or after one whose bit differs from `flip`.
+        // Finds the first column at or after one with a bit other than `flip`.
         const auto next = [&](int column, std::uint64_t flip) {
             while (column < scan.columns()) {
                 const auto i = static_cast<std::size_t>(column);
@@ -315,7 +316,8 @@ CellSet cellsBlocked(const Grid& grid, std::span<const Polygon> solids) {
 
 void appendCrossings(const Segment2& segment, const Grid& grid, std::vector<CellPair>& pairs) {
     const Point2 a = grid.toCells(segment.a), b = grid.toCells(segment.b);
-    // Where the segment passes the lines through middles: the cells below and above it there.
+    // Finds where the segment crosses the lines through middles: the cells below and above it
+    // there.
     const auto split = [](double value) {
         const double below = std::floor(value);
         const auto low = static_cast<std::int64_t>(below);

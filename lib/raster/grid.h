@@ -15,8 +15,8 @@
 
 namespace ispace {
 
-/// P x Q cells over the limits; cell (column, row) has index row * columns + column, row 0 at the
-/// low y. A cell counts by its centre.
+/// A grid of P x Q cells over the limits; cell (column, row) has index row * columns + column, row
+/// 0 at the low y. A cell counts by its centre.
 struct Grid {
     Box2 limits;
     int columns = 100, rows = 100;
@@ -24,7 +24,7 @@ struct Grid {
     [[nodiscard]] std::size_t size() const {
         return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
     }
-    /// Centres of the columns and of the rows; neither ever decreases.
+    /// Returns the centre of a column or row; centres never decrease.
     [[nodiscard]] double columnCenter(int column) const;
     [[nodiscard]] double rowCenter(int row) const;
     [[nodiscard]] std::size_t cell(int column, int row) const {
@@ -32,26 +32,26 @@ struct Grid {
                static_cast<std::size_t>(column);
     }
     [[nodiscard]] Point2 center(std::size_t cell) const;
-    /// A place in cells: whole numbers are the centres of columns and rows.
+    /// Converts a point to cells: whole numbers are the centres of columns and rows.
     [[nodiscard]] Point2 toCells(Point2 p) const;
-    /// Area of one cell: the factor of eq. (4.6).
+    /// Returns the area of one cell: the factor of eq. (4.6).
     [[nodiscard]] double cellArea() const;
     friend bool operator==(const Grid&, const Grid&) = default;
 };
-/// Square cells of this size, in metres.
+/// Creates a grid of square cells of this size, in metres.
 Grid gridOf(Point2 low, double size, int columns, int rows);
-/// "57 x 50 cells of 0.1 m", "100 x 100 cells of 0.12 m x 0.1 m".
+/// Returns "57 x 50 cells of 0.1 m", "100 x 100 cells of 0.12 m x 0.1 m".
 std::string cellsText(const Grid& grid);
 
-/// Cells whose centre lies strictly inside one of the regions; exact, by scanline. O(cells + sum of
-/// the rows that each edge spans).
+/// Finds the cells with centres strictly inside one of the regions; exact, by scanline. O(cells +
+/// sum of the rows that each edge spans).
 CellSet cellsIn(const Grid& grid, const Regions& regions);
-/// The same for closed curves under the even-odd rule; they may touch and repeat edges.
+/// Finds the same for closed curves under the even-odd rule; they may touch and repeat edges.
 CellSet cellsWithin(const Grid& grid, std::span<const Polygon> curves);
-/// Cells whose centre lies in or on the edge of one of the solids, which may overlap.
+/// Finds the cells with centres in or on the edge of one of the solids, which may overlap.
 CellSet cellsBlocked(const Grid& grid, std::span<const Polygon> solids);
 
-/// The runs of cells whose centres lie strictly inside the curves by the even-odd rule, by
+/// Returns the runs of cells with centres strictly inside the curves by the even-odd rule, by
 /// ascending rows.
 std::vector<RowRun> runsWithin(const Grid& grid, std::span<const Polygon> curves);
 
@@ -62,9 +62,9 @@ struct CellPair {
     friend bool operator==(const CellPair&, const CellPair&) = default;
 };
 
-/// Appends the pairs of neighbours whose centres the closed segment separates, first the cell it
-/// passes through; a centre on the segment gives a pair of that cell with itself. Limited to the
-/// columns or rows of the grid. O(columns + rows along the segment).
+/// Appends the pairs of neighbours with centres on opposite sides of the closed segment, first the
+/// cell it passes through; a centre on the segment gives a pair of that cell with itself. Limited
+/// to the columns or rows of the grid. O(columns + rows along the segment).
 void appendCrossings(const Segment2& segment, const Grid& grid, std::vector<CellPair>& pairs);
 
 /// The centres of a grid's columns or rows, bit for bit those of Grid.
@@ -80,11 +80,11 @@ struct GridAxis {
     }
     [[nodiscard]] double center(int i) const { return low + extent * ((i + 0.5) / count); }
     [[nodiscard]] double perMetre() const { return count / extent; }
-    /// A coordinate in cells, centres being at about 0, 1, 2, ...: accurate to
-    /// slack(|value|). NaN where the axis has no extent.
+    /// Converts a coordinate to cells, centres being at about 0, 1, 2, ...: accurate to
+    /// slack(|value|). Returns NaN if the axis has no extent.
     [[nodiscard]] double position(double value) const { return (value - low) * perMetre() - 0.5; }
     [[nodiscard]] double slack(double size) const;
-    /// First i in [begin, count) whose centre is not below (is above) a value, else count.
+    /// Finds the first i in [begin, count) with a centre not below (above) a value, else count.
     /// \pre begin <= count
     [[nodiscard]] int firstNotBelow(double value, int begin = 0) const;
     [[nodiscard]] int firstAbove(double value, int begin = 0) const;
@@ -99,13 +99,13 @@ struct GridAxis {
 class Scanline {
   public:
     Scanline() = default;
-    /// The window: cells with centres in the box.
+    /// Stores the window: cells with centres in the box.
     Scanline(const Grid& grid, const Box2& box) { reset(grid, box); }
     /// Starts over, reusing the memory.
     void reset(const Grid& grid, const Box2& box);
 
     void add(const Segment2& edge);
-    /// Adds the cells inside to `cells`; those on an edge are left out, or included.
+    /// Inserts the cells inside into `cells`; those on an edge are left out, or included.
     void addInside(CellSet& cells) const { finish(cells, false); }
     void addClosed(CellSet& cells) const { finish(cells, true); }
 
@@ -120,7 +120,7 @@ class Scanline {
     /// Sets `words` to the cells inside: wordsPerRow() of each row, bit 0 the first column; bits
     /// beyond the window are 0.
     void takeInside(std::vector<std::uint64_t>& words) const;
-    /// Removes the cells inside or on an edge from words as takeInside() has them.
+    /// Removes the cells inside or on an edge from words in the layout of takeInside().
     void removeClosed(std::vector<std::uint64_t>& words) const;
 
   private:

@@ -7,16 +7,16 @@
 
 namespace ispace {
 
-// OpenCV has these, too, but linking it costs a third of each start of a program.
+// OpenCV has these functions, too, but linking it costs a third of each start of a program.
 
 namespace {
 
-/// The cells with all of a square of `side` cells to the right and above in the set.
+/// Returns the cells with all of a square of `side` cells to the right and above in the set.
 MapCells eroded(const MapCells& cells, int side) {
     MapCells result(cells.width(), cells.height());
     const auto width = static_cast<std::size_t>(cells.width());
     std::vector<std::uint8_t> across(width);
-    std::vector<int> up(width);  // how many rows on end are in `across`
+    std::vector<int> up(width);  // number of consecutive rows in `across`
     for (int y = cells.height() - 1; y >= 0; --y) {
         const std::span<const std::uint8_t> in = cells.row(y);
         int run = 0;
@@ -33,13 +33,14 @@ MapCells eroded(const MapCells& cells, int side) {
     return result;
 }
 
-/// The cells with any of the set in the square of `side` cells whose upper right one lies `shift`
-/// columns and rows further on.
+/// Returns the cells with any of the set in the square of `side` cells with its upper right cell
+/// `shift` columns and rows further on.
 MapCells dilated(const MapCells& cells, int side, int shift) {
     MapCells result(cells.width(), cells.height());
     const int width = cells.width(), height = cells.height();
     std::vector<std::uint8_t> across(static_cast<std::size_t>(width));
-    std::vector<int> left(across.size());  // for how many rows more a cell of `across` counts
+    std::vector<int> left(
+        across.size());  // number of further rows for which a cell of `across` counts
     for (int y = 0; y < height + shift; ++y) {
         if (y < height) {
             const std::uint8_t* const in = cells.row(y).data();
@@ -68,7 +69,7 @@ MapCells grown(const MapCells& cells, int reach) { return dilated(cells, 2 * rea
 
 std::vector<CellIndex> deepestPlaces(const MapCells& cells, const CellPieces& pieces) {
     const int width = cells.width(), height = cells.height();
-    // Steps to what is outside, with a column on each side, and a row below and above, of zeros.
+    // Steps to the outside, with a column on each side, and a row below and above, of zeros.
     const std::size_t n = static_cast<std::size_t>(width) + 2;
     std::vector<int> steps(n * (static_cast<std::size_t>(height) + 2));
     const auto row_of = [&](int y) { return &steps[n * (static_cast<std::size_t>(y) + 1) + 1]; };
@@ -102,7 +103,7 @@ namespace {
 /// Further than any distance in a grid, and its square still an int.
 constexpr int kFar = 40'000;
 
-/// Distances within columns, kFar where there is none.
+/// Computes distances within columns, kFar if the column lies in the set.
 std::vector<int> columnDistances(const MapCells& cells, BorderRule beyond) {
     const int width = cells.width();
     const int height = cells.height();
@@ -152,7 +153,7 @@ class RowEnvelope {
                 site_[0] = x;
                 continue;
             }
-            // The first column that is nearer to x than to the site before.
+            // Computes the first column that is nearer to x than to the site before.
             const std::int64_t s = site_[top];
             const std::int64_t a = away[static_cast<std::size_t>(s)];
             const std::int64_t b = away[static_cast<std::size_t>(x)];

@@ -7,30 +7,34 @@
 
 namespace ispace {
 
-// Morphology of sets of cells; nothing beyond the grid is in a set. All take O(cells).
+// Morphology of sets of cells; sets do not extend beyond the grid. All functions take O(cells).
 
-/// The union of all squares of `side` cells that lie in the set. \pre side >= 1
+/// Returns the union of all squares of `side` cells that lie in the set.
+/// \pre side >= 1
 MapCells opened(const MapCells& cells, int side);
 
-/// The cells with one of the set at most `reach` rows and columns away.
+/// Returns the cells with one of the set at most `reach` rows and columns away.
 MapCells grown(const MapCells& cells, int reach);
 
-/// For each piece its cell that is the most steps by sides from all cells outside the set; of equal
-/// ones the lowest, then leftmost. \pre the pieces are joined by sides
+/// Finds for each piece the cell with the most steps by sides to all cells outside the set; of
+/// equal ones the lowest, then leftmost.
+/// \pre the pieces are joined by sides
 std::vector<CellIndex> deepestPlaces(const MapCells& cells, const CellPieces& pieces);
 
-/// Whether cells beyond the grid count as if they were in the set.
+/// Rule that counts cells beyond the grid as inside or outside the set.
 enum class BorderRule { In, Out };
 
-/// The distance where no cell is outside the set.
+/// The distance if every cell is in the set.
 constexpr int kNoDistance = 2'000'000'000;
 
-/// The squared Euclidean distance, in cells, from the middle of each cell to that of the nearest
-/// cell outside the set; in the order of MapCells::index. Exact (Meijster et al. 2000), O(cells).
+/// Computes the squared Euclidean distance, in cells, from the middle of each cell to that of the
+/// nearest cell outside the set; in the order of MapCells::index. Exact (Meijster et al. 2000),
+/// O(cells).
 std::vector<int> squaredDistances(const MapCells& cells, BorderRule beyond);
 
-/// The cell furthest from all cells outside the set, in steps to any of eight neighbours; ties go
-/// to the lowest, then leftmost. O(cells). \pre not empty
+/// Finds the cell furthest from all cells outside the set, in steps to any of eight neighbours;
+/// ties go to the lowest, then leftmost. O(cells).
+/// \pre not empty
 CellIndex widestPlace(const MapCells& cells);
 
 }  // namespace ispace

@@ -42,18 +42,18 @@ class PgmParser {
         throw FormatError(Diagnostic{displayName(name_), 0, 0, message});
     }
 
-    /// True for P2.
+    /// Reads the magic; returns true for P2.
     bool readMagic() {
         if (bytes_.empty()) fail("empty file, wanted a PGM picture (P2 or P5)");
         const std::string_view word = nextWord();
-        // Only a word as long as a magic is quoted: a map may name a file that is no picture.
+        // Quotes only a word as long as a magic: a map may name a file that is no picture.
         if (word != "P2" && word != "P5")
             fail("wrong magic" + (word.size() == 2 ? ' ' + excerpt(word) : "") +
                  ", wanted a PGM picture (P2 or P5)");
         return word == "P2";
     }
 
-    /// The next run of other than blanks and comments; empty at the end.
+    /// Returns the next word between blanks and comments; empty at the end.
     std::string_view nextWord() {
         while (at_ < bytes_.size() && (isBlank(bytes_[at_]) || bytes_[at_] == '#')) {
             if (bytes_[at_] == '#') at_ = std::min(bytes_.find('\n', at_), bytes_.size() - 1);
@@ -75,7 +75,7 @@ class PgmParser {
     }
 
     void readPlain(GreyPicture& image, std::size_t count) {
-        // A sample takes a digit and a blank, so the file bounds what is allocated.
+        // A sample takes a digit and a blank, so the file size bounds the allocation.
         image.samples.reserve(std::min(count, (bytes_.size() - at_) / 2 + 1));
         for (std::size_t i = 0; i < count; ++i) {
             const std::string_view word = nextWord();

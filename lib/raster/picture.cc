@@ -21,10 +21,10 @@ namespace ispace {
 
 namespace {
 
-/// Width and height as a header has them.
+/// Width and height from a header.
 using Size = std::pair<std::int64_t, std::int64_t>;
 
-/// Numbers of a header; nothing beyond the end of the file.
+/// Reads the numbers of a header; empty beyond the end of the file.
 class Bytes {
   public:
     Bytes(std::string_view bytes, bool big_endian) : bytes_(bytes), big_endian_(big_endian) {}
@@ -58,7 +58,7 @@ std::optional<Size> sizeOfBmp(std::string_view bytes) {
     return size;
 }
 
-/// Walks over the segments to the one that begins a frame.
+/// Skips segments to the one that begins a frame.
 std::optional<Size> sizeOfJpeg(std::string_view bytes) {
     const Bytes header(bytes, true);
     for (std::size_t at = 2;;) {
@@ -76,14 +76,14 @@ std::optional<Size> sizeOfJpeg(std::string_view bytes) {
     }
 }
 
-/// libjpeg fills what is cut off with grey. The mark of the end cannot stand in the picture's data,
-/// and a small picture within the picture comes before them.
+/// Returns false for a truncated JPEG, which libjpeg would fill with grey. The mark of the end
+/// cannot occur in the picture's data, and an embedded small picture precedes them.
 bool isWholeJpeg(std::string_view bytes) {
     const std::size_t data = bytes.rfind("\xff\xda");
     return data != std::string_view::npos && bytes.find("\xff\xd9", data) != std::string_view::npos;
 }
 
-/// Of the first picture in the file.
+/// Returns the size of the first picture in the file.
 std::optional<Size> sizeOfTiff(std::string_view bytes) {
     const Bytes file(bytes, bytes.starts_with("MM"));
     const auto directory = file.number(4, 4);
@@ -119,7 +119,7 @@ std::optional<Size> sizeOfWebP(std::string_view bytes) {
     return size ? std::optional(Size(size->first & 0x3fff, size->second & 0x3fff)) : std::nullopt;
 }
 
-/// The first two numbers behind the magic, past comments.
+/// Reads the first two numbers behind the magic, past comments.
 std::optional<Size> sizeOfPnm(std::string_view bytes) {
     constexpr std::string_view kBlanks = " \t\r\n\v\f";
     std::array<std::int64_t, 2> numbers{};
@@ -139,7 +139,7 @@ std::optional<Size> sizeOfPnm(std::string_view bytes) {
 }
 
 bool isBmp(std::string_view bytes) {
-    // Text may begin with BM; a header goes on with zeros, and its length.
+    // Text may begin with BM; in a header, zeros and its length follow.
     constexpr std::array<std::int64_t, 7> kLengths{12, 40, 52, 56, 64, 108, 124};
     const Bytes header(bytes, false);
     return bytes.starts_with("BM") && header.number(6, 4) == 0 &&
@@ -181,7 +181,8 @@ const PictureFormat* formatOf(std::string_view bytes) {
     return found == std::end(kFormats) ? nullptr : found;
 }
 
-/// Decoded by lib/ispace/read-picture. \throws FormatError
+/// Decodes by lib/ispace/read-picture.
+/// \throws FormatError
 DecodedPicture decodedApart(std::string_view bytes, const std::string& name,
                             const std::string& format, std::size_t pixels, ConfinedReader& reader) {
     const OpenFile file = fileInMemory(bytes);
@@ -273,7 +274,7 @@ GreyPicture decodePicture(std::string_view bytes, const std::string& name) {
 std::string jpegOfRgb(int columns, int rows, std::span<const std::uint8_t> samples, int quality) {
     JpegPicture picture{columns, rows, quality, samples.data(), {}, {}};
     std::string error;
-    // Opened anew each time: the loader counts.
+    // Opened anew each time: the loader counts references.
     void* const encode = moduleSymbol("pictures.so", kJpegEncoder, error);
     if (encode == nullptr)
         throw FormatError(Diagnostic{
@@ -351,7 +352,7 @@ Cell classify(int sample, int max_value, const OccupancyRule& rule) {
     if (darkness > rule.occupied_thresh) return Cell::Occupied;
     if (darkness < rule.free_thresh) return Cell::Free;
     if (rule.mode == OccupancyRule::Mode::Scale) {
-        // Hundredths of the way between the thresholds, which may be its very ends.
+        // Hundredths of the distance between the thresholds, both ends possible.
         const double way = rule.occupied_thresh - rule.free_thresh;
         const double value = std::rint((darkness - rule.free_thresh) / way * 100);
         if (value == 0) return Cell::Free;
@@ -362,7 +363,7 @@ Cell classify(int sample, int max_value, const OccupancyRule& rule) {
 
 namespace {
 
-/// The sample that map_server writes for unknown; nothing where it has no such meaning.
+/// Returns the sample that map_server writes for unknown; empty in modes without this meaning.
 std::optional<int> unknownSample(const GreyPicture& image, const OccupancyRule& rule) {
     constexpr int kUnknown = 205;
     if (image.max_value % 255 != 0 || rule.negate || rule.mode == OccupancyRule::Mode::Raw)

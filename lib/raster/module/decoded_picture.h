@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between lib/raster and what links OpenCV: a program that decodes, and a module that encodes.
+// Data exchanged between lib/raster and the code that links OpenCV: a program that decodes, and a
+// module that encodes.
 #pragma once
 
 #include <array>
@@ -15,27 +16,26 @@ namespace ispace {
 /// A picture as OpenCV decodes it.
 struct DecodedPicture {
     int width = 0, height = 0;
-    int channels = 0;                   ///< 1 grey, 3 colours, 4 with opacity behind them
+    int channels = 0;                   ///< 1 grey, 3 colours, 4 colours and opacity
     std::vector<std::uint8_t> samples;  ///< row by row from the top
 };
 
-/// The answer of lib/ispace/read-picture begins with width, height and channels; the samples
-/// follow.
+/// Head of the answer of lib/ispace/read-picture: width, height and channels; the samples follow.
 using PackedHead = std::array<std::int32_t, 3>;
 
-/// Limits of that program for pictures of so many pixels, of 16 bits a sample at most: OpenCV and
-/// its libraries take some 600 MB of addresses.
+/// Returns the limits of that program for pictures of so many pixels, of 16 bits a sample at most:
+/// OpenCV and its libraries take some 600 MB of addresses.
 inline ConfinedLimits pictureLimits(std::size_t pixels) {
     constexpr std::size_t kBase = std::size_t{2} << 30U, kBytes = 40, kPixelsASecond = 2'000'000;
     return {kBase + kBytes * pixels, 20 + pixels / kPixelsASecond};
 }
 
-/// Three bytes a pixel as JPEG.
+/// Input and output of the JPEG encoder, three bytes per pixel.
 struct JpegPicture {
     int width = 0, height = 0, quality = 95;
     const std::uint8_t* samples = nullptr;  ///< red, green, blue, row by row
     std::vector<std::uint8_t> bytes;        ///< of the file
-    std::string error;                      ///< why there are none; "": there are
+    std::string error;                      ///< "" on success
 };
 
 /// The function of the module; never throws, never prints.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A module of its own: linked into the programs, OpenCV's imgcodecs would draw in 140 libraries and
-// cost 59 ms at each start.
+// The JPEG encoder, in a separate module: linked into the programs, OpenCV's imgcodecs would load
+// 140 libraries and cost 59 ms at each start.
 #include <exception>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -18,7 +18,7 @@ void encode(JpegPicture& picture) {
         return;
     }
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    // OpenCV has blue first.
+    // OpenCV stores blue first.
     cv::Mat image(picture.height, picture.width, CV_8UC3);
     const std::uint8_t* from = picture.samples;
     for (int y = 0; y < image.rows; ++y) {

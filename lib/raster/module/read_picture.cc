@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// read-picture PARENT SIZE MEMORY SECONDS: decodes the picture on standard input with OpenCV
-// and answers by the socket that is standard output, see base/confined.h and
+// read-picture PARENT SIZE MEMORY SECONDS: decodes the picture on standard input with OpenCV and
+// writes the answer to the socket on standard output, see base/confined.h and
 // raster/module/decoded_picture.h. Started by raster/picture.cc alone.
 #include <array>
 #include <cstdint>
@@ -23,7 +23,7 @@ using namespace ispace;
 cv::Mat decoded(std::size_t size) {
     const MappedInput input(size);
     if (size > std::numeric_limits<int>::max()) return {};
-    // OpenCV takes what it does not write to as an array that it could.
+    // OpenCV requires a mutable array, although it only reads it.
     const cv::Mat file(1, static_cast<int>(size), CV_8UC1, const_cast<char*>(input.bytes().data()));
     return cv::imdecode(file, cv::IMREAD_UNCHANGED);
 }
@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
     if (argc != 5) return 2;
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     cv::setNumThreads(1);
-    // Many pictures may follow each other.
+    // A file may contain many pictures, one after another.
     const ConfinedLimits most{pictureLimits(kMaxDecodedPixels).memory, SIZE_MAX};
     return runConfined(argc, argv, most, [](std::size_t size) { return packed(decoded(size)); });
 }
