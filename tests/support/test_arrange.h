@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Environments, rooms and sensors from text, for the tests of this folder.
+// For tests of lib/arrange: environments, rooms and sensors from text.
 #pragma once
 
 #include <initializer_list>
@@ -49,7 +49,7 @@ inline std::vector<SensorGroup> groupsOf(const Scene& scene,
     return groupsToPlace(scene, specs(texts), DeviceCatalogue(), open);
 }
 
-/// Few candidates: a lattice of a metre, every metre along walls, 8 headings.
+/// Returns options with few candidates: a lattice of a metre, every metre along walls, 8 headings.
 inline ArrangeOptions coarse(Optimizer optimizer = Optimizer::Swap) {
     ArrangeOptions options;
     options.density = {1, 1, 8};
@@ -67,7 +67,7 @@ inline LayoutParts partsOf(const Scene& scene) {
     return {{"arrange room.glb"}, "room.glb", scene.digest(), "all", "swap"};
 }
 
-/// What `coverage` reports of the arranged scene.
+/// Returns the report of `coverage` on the arranged scene.
 inline CoverageReport reportOf(const Scene& scene, const std::vector<SensorGroup>& groups,
                                const Arrangement& arrangement) {
     const Scene whole = withPlaced(scene, groups, arrangement.sensors);
@@ -75,14 +75,14 @@ inline CoverageReport reportOf(const Scene& scene, const std::vector<SensorGroup
     return measureCoverage(whole, worlds, {.exact = false}).report;
 }
 
-/// Of a whole file.
+/// Reads a whole file.
 inline Environment environmentOf(const std::string& text) {
     static const Schemas kSchemas(environmentSchemas());
     const Document document = readRecordText(text, "room.env", kSchemas);
     return {document.records, assignIds(document.records)};
 }
 
-/// Of lines without the magic one.
+/// Reads lines without the magic one.
 inline Environment roomOf(const std::string& lines) { return environmentOf("#env 1\n" + lines); }
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of maps of cells: drawings in metres, and what an import makes of them.
+// For tests of maps of cells: drawings in metres, and the results of their import.
 #pragma once
 
 #include <cmath>
@@ -12,13 +12,13 @@
 
 namespace ispace::testing {
 
-/// What an import of cells gave.
+/// The result of importing cells.
 struct Imported {
     std::vector<Polygon> fences;
     std::vector<Point2> inside;
     std::vector<std::string> notes, warnings;
 
-    /// Of all fences, holes taken away: they run clockwise.
+    /// Returns the area of all fences less their holes, which run clockwise.
     [[nodiscard]] double area() const {
         double sum = 0;
         for (const Polygon& fence : fences) sum += signedArea(fence);
@@ -64,7 +64,8 @@ inline std::string errorOf(const CellMap& map, const ImportOptions& options) {
     return "no error";
 }
 
-/// A picture of free cells of 0.05 m, origin in its lower left corner, to be drawn on in metres.
+/// A picture of free cells of 0.05 m, origin in its lower left corner, with drawing functions in
+/// metres.
 class Drawing {
   public:
     Drawing(double width, double height)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of maps made of cells: sets of cells as they look.
+// For tests of maps of cells: converts sets of cells from and to rows of text.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace ispace::testing {
 
-/// Rows from the top, '.' is in the set.
+/// Builds a set from rows, top row first; '.' is in the set.
 inline MapCells cellsOf(const std::vector<std::string>& rows) {
     MapCells cells(static_cast<int>(rows.front().size()), static_cast<int>(rows.size()));
     for (int y = 0; y < cells.height(); ++y)
@@ -22,7 +22,7 @@ inline MapCells cellsOf(const std::vector<std::string>& rows) {
     return cells;
 }
 
-/// As they look, from the top.
+/// Converts a set to rows, top row first.
 inline std::vector<std::string> rowsOf(const MapCells& cells) {
     std::vector<std::string> rows;
     for (int y = cells.height() - 1; y >= 0; --y) {
@@ -32,7 +32,8 @@ inline std::vector<std::string> rowsOf(const MapCells& cells) {
     return rows;
 }
 
-/// The largest piece, of equal ones the first. \pre not empty
+/// Returns the largest piece, the first among equals.
+/// \pre not empty
 inline MapCells largestPiece(const MapCells& cells) {
     const CellPieces pieces(cells, CellPieces::Joined::BySides);
     const auto& list = pieces.list();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What checkScene() finds, as text, for the tests of this folder.
+// For tests of scene checks: the findings of checkScene() as text.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ inline std::string check(const Scene& made) {
     return text;
 }
 
-/// What is wrong with things in a room of 8 by 6 with its corner at the origin.
+/// Returns the findings on these records in a room of 8 by 6 with its corner at the origin.
 inline std::string check(const std::string& room, const std::string& layout = "") {
     const std::string lines = "ispace id=room at=4,3 size=8,6\n" + room;
     return check(layout.empty() ? scene(lines) : scene(lines, layout));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For the tests of this folder: a server in a thread, and clients of it.
+// For tests of the server: a server in a thread, and clients of it.
 #pragma once
 
 #include <arpa/inet.h>
@@ -20,10 +20,10 @@
 
 namespace ispace::testing {
 
-/// Far more than anything here takes: a test that comes to it has failed.
+/// Far more than any test here takes: a test that reaches it has failed.
 constexpr int kPatience = 60;
 
-/// A blocking client that can be used by hand.
+/// A blocking client that is driven line by line.
 class Client {
   public:
     explicit Client(std::uint16_t port, int receive_buffer = 0)
@@ -48,7 +48,7 @@ class Client {
                   0);
         return *this;
     }
-    /// Connects and takes a role.
+    /// Connects and requests a role.
     Client& take(const std::string& role) {
         connect();
         EXPECT_EQ(line(), "ISPACE 1");
@@ -61,7 +61,7 @@ class Client {
         ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
         close();
     }
-    /// False if the other side has closed.
+    /// Returns false if the other side has closed.
     bool send(std::string_view text) {
         while (!text.empty()) {
             const auto sent = ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
@@ -70,7 +70,7 @@ class Client {
         }
         return true;
     }
-    /// Without its newline; what is there of it if the other side has closed.
+    /// Reads a line without its newline, or the remaining bytes if the other side has closed.
     std::string line() {
         std::string out;
         for (char c = 0; bytes(&c, 1) && c != '\n';) out += c;
@@ -80,13 +80,13 @@ class Client {
         EXPECT_TRUE(send(std::string(request) + "\n"));
         return line();
     }
-    /// All up to the end of the connection.
+    /// Reads all bytes up to the end of the connection.
     std::string rest() {
         std::string out;
         for (char c = 0; bytes(&c, 1);) out += c;
         return out;
     }
-    /// False at the end of the connection.
+    /// Reads `count` bytes; returns false at the end of the connection.
     bool bytes(char* to, std::size_t count) {
         while (count > 0) {
             if (begin_ == end_) {
@@ -104,7 +104,7 @@ class Client {
         }
         return true;
     }
-    /// Its own.
+    /// Returns the client's port.
     [[nodiscard]] std::uint16_t port() const {
         sockaddr_in address{};
         socklen_t size = sizeof address;
@@ -112,7 +112,7 @@ class Client {
         return ntohs(address.sin_port);
     }
     void finishSending() { ::shutdown(socket_, SHUT_WR); }
-    /// The other side gets a reset.
+    /// Disconnects with a reset.
     void vanish() {
         const linger none{1, 0};
         ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &none, sizeof none);
@@ -121,7 +121,7 @@ class Client {
     void close() {
         if (socket_ >= 0) ::close(std::exchange(socket_, -1));
     }
-    /// True if there is nothing to read now.
+    /// Returns true if no bytes are waiting.
     bool quiet() {
         pollfd state{socket_, POLLIN, 0};
         return begin_ == end_ && ::poll(&state, 1, 0) == 0;
@@ -134,7 +134,7 @@ class Client {
     std::size_t begin_ = 0, end_ = 0;
 };
 
-/// A server in a thread of its own.
+/// A server in a separate thread.
 class Running {
   public:
     explicit Running(Clock clock = {Clock::Kind::Step, 1}, const ServerLimits& limits = {},
@@ -151,7 +151,7 @@ class Running {
         server_.stop();
         thread_.join();
     }
-    /// Waits for its end without asking for it.
+    /// Waits for its end without requesting it.
     void join() { thread_.join(); }
     Server& server() { return server_; }
     std::uint16_t port() { return server_.port(); }
@@ -162,7 +162,7 @@ class Running {
     std::thread thread_;
 };
 
-/// Waits until it is so.
+/// Waits until the condition holds.
 template <typename Condition>
 bool soon(Condition is_so) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(kPatience);
@@ -171,7 +171,7 @@ bool soon(Condition is_so) {
     return false;
 }
 
-/// Asks until the answer is the one that is wanted.
+/// Repeats a request until the answer is the expected one.
 inline bool comes(Client& client, const std::string& request, std::string_view wanted) {
     return soon([&] { return client.ask(request).starts_with(wanted); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sensors at a pose, for the tests of planes.
+// For tests of coverage in planes: sensors at a pose.
 #pragma once
 
 #include "geom/pose.h"
@@ -28,7 +28,7 @@ inline Sensor receiverAt(const Pose3& pose, double fov, double range) {
     return {"u", receiver, pose};
 }
 
-/// Beams a degree apart.
+/// Creates a laser with beams a degree apart.
 inline Laser laserWith(double range, double first, double span) {
     Laser laser;
     laser.max_range = range;

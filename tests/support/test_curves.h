@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the unit tests of this folder share.
+// For tests of lib/geom and lib/raster: random curves, pixel maps and the exact reference.
 #pragma once
 
 #include <cmath>
@@ -32,7 +32,8 @@ inline Polygon circle(Point2 center, double radius, int corners) {
     return polygon;
 }
 
-/// A simple polygon with a ragged outline around (0, 0), which lies inside. Counter-clockwise.
+/// Creates a simple polygon with a ragged outline around (0, 0), which lies inside.
+/// Counter-clockwise.
 inline Polygon star(std::mt19937_64& random, int corners, double size) {
     std::uniform_real_distribution<double> radius(0.1 * size, size);
     Polygon polygon;
@@ -43,7 +44,7 @@ inline Polygon star(std::mt19937_64& random, int corners, double size) {
     return polygon;
 }
 
-/// A picture of free and occupied pixels as an occupancy map has it, free ones at random.
+/// A picture of free and occupied pixels like an occupancy map, with free pixels at random.
 struct PixelMap {
     int columns, rows;
     std::vector<bool> free;
@@ -58,7 +59,7 @@ struct PixelMap {
         return x >= 0 && y >= 0 && x < columns && y < rows &&
                free[static_cast<std::size_t>(y * columns + x)];
     }
-    /// Unit edges between free and occupied pixels, the free ones on the left.
+    /// Returns the unit edges between free and occupied pixels, the free ones on the left.
     [[nodiscard]] std::vector<Segment2> boundary() const {
         std::vector<Segment2> edges;
         for (int y = 0; y <= rows; ++y) {
@@ -77,7 +78,7 @@ struct PixelMap {
         for (const bool f : free) count += f ? 1 : 0;
         return count;
     }
-    /// Number of pieces of free pixels that share edges.
+    /// Counts the pieces of free pixels that share edges.
     [[nodiscard]] int pieces() const {
         std::vector<bool> seen(free.size());
         int count = 0;
@@ -105,12 +106,12 @@ struct PixelMap {
 // The reference for faces and differences: CGAL's arrangement in exact numbers, rounded to doubles
 // at the end. Defined in arrangement_cgal_test.cc.
 
-/// What boundedFaces() finds.
+/// Computes the result expected of boundedFaces().
 std::vector<Region> exactFaces(std::span<const Segment2> lines,
                                std::span<const Segment2> passages = {});
 
-/// The open connected pieces where the winding number of `added` is positive and that of `removed`
-/// is zero.
+/// Computes the open connected pieces where the winding number of `added` is positive and that of
+/// `removed` is zero.
 std::vector<Region> exactDifference(std::span<const Segment2> added,
                                     std::span<const Segment2> removed);
 

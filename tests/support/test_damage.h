@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of readers: what they say, and that damaged files do no harm.
+// For tests of readers: their error messages, and robustness against damaged files.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-/// The findings that `read` throws, a line each, or "no error".
+/// Returns the findings that `read` throws, one per line, or "no error".
 template <typename Read>
 std::string errorsOf(Read read) {
     try {
@@ -27,8 +27,8 @@ std::string errorsOf(Read read) {
     return "no error";
 }
 
-/// Reads every truncation of a small file, then many with bytes changed, lines dropped or doubled:
-/// each must be read or refused with a finding.
+/// Reads every truncation of a small file, then many copies with bytes changed, lines removed or
+/// doubled: each must be read or rejected with a finding.
 template <typename Read>
 void surviveDamage(const std::string& good, Read read, int rounds = 1500) {
     const auto try_read = [&read](const std::string& bytes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests: DXF drawings written by hand.
+// For tests of DXF import: builds drawings from entities.
 #pragma once
 
 #include <initializer_list>
@@ -45,7 +45,7 @@ inline std::string polyline(const std::string& layer, bool closed,
     return text;
 }
 
-/// Weights only where they are given.
+/// Writes weights only if they are given.
 inline std::string spline(const std::string& layer, int degree, std::initializer_list<double> knots,
                           std::initializer_list<DxfCorner> controls,
                           std::initializer_list<double> weights = {}) {
@@ -60,7 +60,7 @@ inline std::string spline(const std::string& layer, int degree, std::initializer
     return text;
 }
 
-/// The same as POLYLINE, VERTEX, SEQEND.
+/// Writes the same as POLYLINE, VERTEX, SEQEND.
 inline std::string oldPolyline(const std::string& layer, bool closed,
                                std::initializer_list<DxfCorner> corners) {
     std::string text = group(0, "POLYLINE") + group(8, layer) + group(66, "1") + group(10, 0.0) +
@@ -92,8 +92,8 @@ inline std::string layer(const std::string& name, int color, int flags) {
            group(62, std::to_string(color));
 }
 
-/// A file of these entities, in millimetres unless `units` ($INSUNITS) says otherwise. Without
-/// blocks and layers the first entity begins in line 16.
+/// Builds a file of these entities, in millimetres unless `units` ($INSUNITS) says otherwise.
+/// Without blocks and layers the first entity begins in line 16.
 inline std::string drawing(const std::string& entities, const std::string& blocks = "",
                            int units = 4, const std::string& layers = "") {
     const auto section = [](const std::string& name, const std::string& content) {

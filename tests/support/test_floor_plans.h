@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests and measurements: plans of any size, as lines of an .env file without the magic line.
+// For tests and benchmarks: creates plans of any size, as lines of an .env file without the magic
+// line.
 #pragma once
 
 #include <algorithm>
@@ -14,16 +15,17 @@ namespace ispace::testing {
 
 inline std::string pointText(Point2 p) { return formatDouble(p.x) + ',' + formatDouble(p.y); }
 
-/// What a plan is made of.
+/// Parameters of a plan.
 struct PlanStyle {
     double thickness = 0;
     int walls_per_door = 5;  ///< 0: no doors
     bool open_doors = false;
-    Angle heading = {};  ///< of the whole building about the origin
+    Angle heading = {};  ///< of the whole building, rotated about the origin
 };
 
-/// A building of about `walls` wall records: wings of a corridor with rooms on both sides, side by
-/// side; partitions end on the middle of longer walls. Its inside point lies in the first corridor.
+/// Creates a building of about `walls` wall records: wings of a corridor with rooms on both sides,
+/// side by side; partitions end on the middle of longer walls. Its inside point lies in the first
+/// corridor.
 inline std::string buildingPlan(int walls, const PlanStyle& style = {}) {
     constexpr double kRoom = 4, kDepth = 5, kCorridor = 2;
     const int columns = std::max(1, static_cast<int>(std::sqrt(walls / 6.0) * 1.5));
@@ -59,7 +61,7 @@ inline std::string buildingPlan(int walls, const PlanStyle& style = {}) {
     return out;
 }
 
-/// One closed fence of this many walls about the origin, with a ragged outline.
+/// Creates one closed fence of this many walls about the origin, with a ragged outline.
 inline std::string fencePlan(int walls) {
     std::string out = "fence id=f closed=yes path=";
     for (int i = 0; i < walls; ++i) {

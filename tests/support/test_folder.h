@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests.
+// For tests: creates temporary folders.
 #pragma once
 
 #include <unistd.h>
@@ -11,8 +11,8 @@
 
 namespace ispace::testing {
 
-/// A new folder among the temporary files, removed in the end with all that it holds.
-/// \throws std::system_error when it cannot be made
+/// Creates a folder among the temporary files and removes it in the end with its contents.
+/// \throws std::system_error if it cannot be created
 class TestFolder {
   public:
     TestFolder() : path_((std::filesystem::temp_directory_path() / "ispace_test_XXXXXX").string()) {
@@ -23,7 +23,7 @@ class TestFolder {
     }
     ~TestFolder() {
         std::error_code ignored;
-        // A test may have taken away what it takes to look into it.
+        // A test may have removed the permission to list it.
         std::filesystem::permissions(path_, std::filesystem::perms::owner_all, ignored);
         std::filesystem::remove_all(path_, ignored);
     }

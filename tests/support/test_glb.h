@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of compiled files: there and back, and what damaged ones say.
+// For tests of compiled files: round trips, and errors of damaged ones.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ inline Document readCompiled(std::string_view bytes) {
     return readGlb(bytes, "room.glb", sceneSchemas());
 }
 
-/// What reading throws, or "no error".
+/// Returns the message that reading throws, or "no error".
 inline std::string errorOf(std::string_view bytes) {
     try {
         readCompiled(bytes);
@@ -35,8 +35,8 @@ inline std::string errorOf(std::string_view bytes) {
     return "no error";
 }
 
-/// Flips bits in the first `front` bytes of a file, in many ways; none may crash. Some do not hurt
-/// (a mesh's name), so neither none nor all may be refused.
+/// Flips bits in the first `front` bytes of a file, in many ways; reading must never crash. Some
+/// flips are harmless (a mesh's name), so some copies must be read and some rejected.
 inline void surviveFlips(const std::string& glb, std::size_t front, std::uint64_t seed) {
     constexpr int kWays = 20000;
     std::mt19937_64 random(seed);

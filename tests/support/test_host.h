@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For the tests of this folder: a run, and devices in it without a network.
+// For tests of device protocols: a run, and devices in it without a network.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 
 namespace ispace::testing {
 
-/// A world with steps of 10 ms, or others.
+/// A world with steps of 10 ms by default.
 class TestHost : public WireHost {
   public:
     explicit TestHost(const std::string& layout, const std::string& room = "ispace size=8,6\n",
@@ -56,7 +56,7 @@ class TestHost : public WireHost {
     [[nodiscard]] std::chrono::nanoseconds clock() const override { return world_.time(); }
 
     [[nodiscard]] bool isHeld() const { return held_.has_value(); }
-    /// Lets time pass for a session.
+    /// Advances the time of a session.
     void run(WireSession& session, double seconds) {
         const SimTime end = world_.time() + std::chrono::milliseconds(std::lround(seconds * 1000));
         while (world_.time() < end) {
@@ -66,7 +66,7 @@ class TestHost : public WireHost {
     }
 
     bool is_replay = false;
-    int changes_later = 0;  ///< so often a change has to wait
+    int changes_later = 0;  ///< number of changes that have to wait
 
   private:
     Scene scene_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of buildings: small files written by hand.
+// For tests of IFC import: builds small files from instances.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ inline std::string ifcPath(const std::string& name) {
 }
 inline std::string ifcBytes(const std::string& name) { return readAll(ifcPath(name)); }
 
-/// A file with these instances, and a project in metres and radians (#1 to #4).
+/// Builds a file with these instances, and a project in metres and radians (#1 to #4).
 inline std::string ifcWith(const std::string& data) {
     return "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC4'));\nENDSEC;\nDATA;\n"
            "#1=IFCPROJECT('p',$,$,$,$,$,$,$,#2);\n#2=IFCUNITASSIGNMENT((#3,#4));\n"

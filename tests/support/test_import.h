@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of importers: what they say, and that damaged files do no harm.
+// For tests of importers: their notes and warnings, and robustness against damaged files.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +17,14 @@ inline Environment environmentOf(const Document& document) {
     return makeScene(document, nullptr, DeviceCatalogue()).environment;
 }
 
-/// All notes, a line each.
+/// Returns all notes, one per line.
 inline std::string notesOf(const Document& document) {
     std::string all;
     for (const std::string& note : document.notes) all += note + '\n';
     return all;
 }
 
-/// All warnings as tools print them, a line each.
+/// Returns all warnings in the form that tools print, one per line.
 inline std::string warningsOf(const Document& document) {
     std::string all;
     for (const Diagnostic& warning : document.warnings) all += warning.text() + '\n';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For the tests of this folder: a run without a server, and a session's dialogue with it.
+// For tests of laser protocols: a run without a server, and a session's dialogue with it.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@
 
 namespace ispace::testing {
 
-/// A world that is stepped by hand; clocks of devices show simulated time, `offset` later.
+/// A world that is stepped by the test; clocks of devices show simulated time, `offset` later.
 class LaserHost : public WireHost {
   public:
     LaserHost(const std::string& room, const std::string& layout, SimTime step)
@@ -49,7 +49,7 @@ class LaserHost : public WireHost {
     std::int64_t holds_ = 0;
 };
 
-/// What a session answers to these bytes, given in pieces of `piece` bytes.
+/// Returns the session's answer to these bytes, given in pieces of `piece` bytes.
 inline std::string answered(WireSession& session, std::string_view bytes,
                             std::size_t piece = std::string_view::npos) {
     std::string out;
@@ -62,7 +62,7 @@ inline std::string answered(WireSession& session, std::string_view bytes,
     return out;
 }
 
-/// What it sends in so many steps.
+/// Returns the bytes that the session sends during so many steps.
 inline std::string stepped(LaserHost& host, WireSession& session, int steps,
                            std::size_t unsent = 0) {
     std::string out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of this folder and of those above it: scenes from text.
+// For tests of lib/scene and the libraries above it: scenes from text.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace ispace::testing {
 
-/// The devices that come with the project.
+/// Returns the devices that come with the project.
 inline const DeviceCatalogue& devices() {
     static const DeviceCatalogue catalogue = loadDevices(sourcePath("share/devices"));
     return catalogue;

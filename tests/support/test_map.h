@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Maps as pixels, for the tests of this folder.
+// For tests of drawings: maps as pixels.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ inline std::uint32_t pixelOf(Color color) {
     return part(color.red) << 16 | part(color.green) << 8 | part(color.blue);
 }
 
-/// True if a pixel has a colour but for rounding, which mixing brings.
+/// Returns true if a pixel has a colour up to rounding, which mixing causes.
 inline bool isNear(std::uint32_t pixel, Color color) {
     for (const unsigned shift : {16U, 8U, 0U}) {
         const auto part = [shift](std::uint32_t rgb) {
@@ -47,24 +47,25 @@ inline std::string mapOf(const std::string& lines, const MapOptions& options = {
     return drawCoverageMap(scene, coverageOf(scene), options);
 }
 
-/// The decoded picture of a room that is square, with its middle at 0,0: without a title its plan
-/// lies beside the legend, the corner at the margin.
+/// The decoded picture of a square room with its middle at 0,0: without a title its plan lies
+/// beside the legend, the corner at the margin.
 struct PlanPixels : Image {
     double half, scale;
     int margin;
 
     PlanPixels(const std::string& png, double side) : Image(decodePng(png)), half(side / 2) {
         margin = static_cast<int>(std::max(width / 40.0, 1.4 * width / 1200.0 * 17));
-        int right = margin;  // found on the wall's own line
+        int right = margin;  // measured on the wall's line
         while (Image::at(right + 1, margin) == pixelOf(palette::kWall)) ++right;
         scale = (right - margin) / side;
     }
-    /// At a place of the room.
+    /// Returns the pixel at a point of the room.
     [[nodiscard]] std::uint32_t at(double x, double y) const {
         return Image::at(static_cast<int>(margin + (x + half) * scale),
                          static_cast<int>(margin + (half - y) * scale));
     }
-    /// Share of the pixels of this colour in a square about a place; `half_side` in pixels.
+    /// Computes the share of the pixels of this colour in a square about a point; `half_side` in
+    /// pixels.
     [[nodiscard]] double shareOf(Color color, double x, double y, int half_side) const {
         const int column = static_cast<int>(margin + (x + half) * scale);
         const int row = static_cast<int>(margin + (half - y) * scale);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of this folder and of those above it: meshes made by hand.
+// For tests of lib/env and the libraries above it: builds meshes.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace ispace::testing {
 
 using Corner = std::array<float, 3>;
 
-/// A closed box between two corners.
+/// Builds a closed box between two corners.
 inline TriangleMesh boxMesh(Corner low, Corner high) {
     TriangleMesh mesh;
     for (const float z : {low[2], high[2]})
@@ -32,7 +32,7 @@ inline TriangleMesh boxMesh(Corner low, Corner high) {
     return mesh;
 }
 
-/// Both side by side; the second seen from inside if `hollow`.
+/// Merges both, side by side; the second with its faces inward if `hollow`.
 inline TriangleMesh joined(TriangleMesh a, const TriangleMesh& b, bool hollow = false) {
     const auto first = static_cast<std::uint32_t>(a.vertices.size());
     a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
@@ -43,8 +43,8 @@ inline TriangleMesh joined(TriangleMesh a, const TriangleMesh& b, bool hollow = 
     return a;
 }
 
-/// A grid of `rows` by `columns` places bent to a closed surface that joins itself on both sides:
-/// a torus about the z axis, `radius` from it, its tube of radius `tube`.
+/// Builds a torus about the z axis from a grid of `rows` by `columns` vertices, `radius` from the
+/// axis, with a tube of radius `tube`; the grid closes on both sides.
 inline TriangleMesh torusMesh(double radius, double tube, std::uint32_t columns,
                               std::uint32_t rows) {
     TriangleMesh mesh;
@@ -75,7 +75,7 @@ inline Record withMesh(const std::string& line, TriangleMesh mesh) {
     return record;
 }
 
-/// The body of a mesh record with these contents.
+/// Returns the body of a mesh record with these contents.
 inline Body meshed(const TriangleMesh& mesh, const std::string& keys = "") {
     return bodyOf(withMesh("mesh file=a.stl " + keys, mesh));
 }
@@ -87,13 +87,13 @@ inline Slice cut(const Body& body, double height) {
     return slice;
 }
 
-/// Of the union of solids, within 100 m of the origin.
+/// Computes the area of the union of solids, within 100 m of the origin.
 inline double unionArea(const std::vector<Polygon>& solids) {
     const Polygon all = rectangle({0, 0}, 200, 200, {});
     return 40000 - totalArea(difference({all, {}}, solids));
 }
 
-/// By the divergence theorem: that of a closed mesh, positive if it is wound outward.
+/// Computes the volume of a closed mesh by the divergence theorem, positive if it is wound outward.
 inline double volume(const Mesh& mesh) {
     double sum = 0;
     for (const auto& [i, j, k] : mesh.triangles) {

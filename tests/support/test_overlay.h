@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Layers and what is asked of them, for tests.
+// For tests of overlays: layers and queries of their areas.
 #pragma once
 
 #include <cmath>
@@ -46,7 +46,7 @@ inline Polygon reversed(Polygon polygon) {
     return polygon;
 }
 
-/// In four quarters, from this direction.
+/// Builds a disc in four quarters, from this direction.
 inline Curve disc(Point2 center, double radius, double from = 0) {
     Curve curve;
     const auto at = [&](int i) {
@@ -64,7 +64,7 @@ inline Layer curveLayer(const Curve& curve, std::int64_t number = 0) {
     return layer;
 }
 
-/// Areas by label, without the outside.
+/// Returns areas by label, without the outside.
 inline std::map<std::tuple<int, std::int64_t, std::uint64_t>, double> areasOf(
     const Overlay& overlay) {
     std::map<std::tuple<int, std::int64_t, std::uint64_t>, double> areas;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests. Where the checkout and the build lie is compiled into one small library, so that
+// For tests: paths of the checkout and the build. They are compiled into one small library, so that
 // objects of all other tests are the same in every checkout and ccache can share them.
 #pragma once
 
@@ -8,9 +8,9 @@
 
 namespace ispace::testing {
 
-/// A file of the checkout: sourcePath("share/scenes/hall.env").
+/// Returns the path of a file in the checkout: sourcePath("share/scenes/hall.env").
 std::string sourcePath(std::string_view file);
-/// A path in the folder of the build, for what a test writes.
+/// Returns a path in the folder of the build, for files that a test writes.
 std::string buildPath(std::string_view file);
 
 }  // namespace ispace::testing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For the tests of this folder: a program that drives a Pioneer, without a network.
+// For tests of the Pioneer protocol: a program that drives a Pioneer, without a network.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,14 +15,14 @@
 
 namespace ispace::testing {
 
-/// A client that puts packets together by hand.
+/// A client that builds packets byte by byte.
 class Pioneer {
   public:
     explicit Pioneer(TestHost& host)
         : host_(&host), session_(host, "r1", [this] { return wall_; }) {}
 
     P2osSession& session() { return session_; }
-    /// Wall time goes on.
+    /// Advances the wall clock.
     void wait(std::chrono::milliseconds time) { wall_ += time; }
     void send(const std::string& bytes) {
         session_.receive(bytes);
@@ -50,7 +50,7 @@ class Pioneer {
         host_->run(session_, seconds);
         collect();
     }
-    /// The newest packet with this id.
+    /// Returns the newest packet with this id.
     std::string last(std::uint8_t id) const {
         for (auto packet = packets.rbegin(); packet != packets.rend(); ++packet)
             if (packet->id == id) return packet->data;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plans for tests and benchmarks of visibility.
+// For tests and benchmarks of visibility: random plans and the exact reference.
 #pragma once
 
 #include <cmath>
@@ -18,13 +18,14 @@ namespace ispace::test {
 
 struct PlanSize {
     int columns = 2, rows = 2;  ///< rooms of 4 m x 4 m
-    int furniture = 9;          ///< pieces in all; at most 9 a room
+    int furniture = 9;          ///< pieces in all; at most 9 per room
     int corners = 12;           ///< of a piece
-    int outline_corners = 40;   ///< on a ragged outline
+    int outline_corners = 40;   ///< number of corners of a ragged outline
 };
 
-/// A plan whose curves do not touch: an outline with notches, rooms between walls with portal gaps
-/// (walls are thin boxes, a centimetre apart at their ends), furniture of any shape; turned.
+/// Creates plans with disjoint curves: an outline with notches, rooms between walls with
+/// portal gaps (walls are thin boxes, a centimetre apart at their ends), furniture of any shape;
+/// rotated.
 class PlanMaker {
   public:
     PlanMaker(std::uint64_t seed, const PlanSize& size)
@@ -71,7 +72,7 @@ class PlanMaker {
         }
     }
 
-    /// Two boxes along a side of a room, with a portal between them.
+    /// Adds two boxes along a side of a room, with a portal between them.
     void addWall(Region& plan, Point2 from, Vec2 along) {
         const double portal = 0.5 + 2 * share(), end = kRoom - kWall - kGap;
         const double start = kWall + kGap;
@@ -129,7 +130,7 @@ inline Point2 randomIn(std::mt19937_64& random, const Box2& box) {
     return {px, y(random)};
 }
 
-/// Strictly inside, and clear of all lines.
+/// Returns a random point strictly inside, and clear of all lines.
 inline Point2 randomInside(std::mt19937_64& random, const Region& plan) {
     const Box2 box = bounds(plan.outline);
     for (;;) {
@@ -138,8 +139,9 @@ inline Point2 randomInside(std::mt19937_64& random, const Region& plan) {
     }
 }
 
-// What tests and benchmarks compare visibility with: CGAL's triangular expansion, in exact numbers.
-/// Of lines and a box around them, 10 m away. Its code is in visibility_oracle_cgal_test.cc.
+// The reference for visibility in tests and benchmarks: CGAL's triangular expansion, in exact
+// numbers.
+/// Holds lines and a box around them, 10 m away. Defined in visibility_oracle_cgal_test.cc.
 class VisibilityOracle {
   public:
     explicit VisibilityOracle(std::span<const Segment2> lines);
@@ -147,14 +149,16 @@ class VisibilityOracle {
     VisibilityOracle(const VisibilityOracle&) = delete;
     VisibilityOracle& operator=(const VisibilityOracle&) = delete;
 
-    /// Seen from a point, on both sides of all lines on which it lies.
+    /// Computes the area seen from a point, on both sides of all lines on which it lies.
     [[nodiscard]] double areaFrom(Point2 p) const;
-    /// The same from the place at `eighths` of a line, exactly on it; `rounded` is set to it.
+    /// Computes the same from the point at `eighths` of a line, exactly on it; sets `rounded` to
+    /// it.
     [[nodiscard]] double areaFrom(const Segment2& line, int eighths, Point2& rounded) const;
 
-    /// Number of the face that a point lies strictly in.
+    /// Finds the number of the face that a point lies strictly in.
     [[nodiscard]] std::optional<std::size_t> faceOf(Point2 p);
-    /// What is seen from a point in a face, its corners as doubles; their sum.
+    /// Computes the visibility polygon of a point in a face; returns the sum of its corners as
+    /// doubles.
     [[nodiscard]] Vec2 query(Point2 p, std::size_t face) const;
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests: PNG files of any kind, made by hand so that nothing of libpng is tested with itself.
+// For tests: builds PNG files of any kind without libpng, which would otherwise test itself.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ inline std::string bigEndian32(std::uint32_t value) {
     return bytes;
 }
 
-/// A chunk with its check sum (CRC-32).
+/// Returns a chunk with its check sum (CRC-32).
 inline std::string pngChunk(const std::string& type, const std::string& content) {
     std::uint32_t crc = 0xffffffff;
     for (const char c : type + content) {
@@ -27,7 +27,8 @@ inline std::string pngChunk(const std::string& type, const std::string& content)
            bigEndian32(~crc);
 }
 
-/// The bytes as a zlib stream, not compressed. \pre less than 64 KiB
+/// Returns the bytes as a zlib stream, not compressed.
+/// \pre less than 64 KiB
 inline std::string stored(const std::string& bytes) {
     std::uint32_t a = 1, b = 0;
     for (const char c : bytes) {
@@ -43,7 +44,8 @@ inline std::string stored(const std::string& bytes) {
     return out + bytes + bigEndian32(b << 16U | a);
 }
 
-/// A PNG of rows of samples as its format packs them. `extra`: chunks before the samples.
+/// Builds a PNG from rows of samples in the packing of its format. `extra`: chunks before the
+/// samples.
 inline std::string pngFile(std::uint32_t width, char depth, char color_type,
                            const std::vector<std::string>& rows, const std::string& extra = "") {
     std::string data;

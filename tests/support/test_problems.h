@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random problems for the tests of bounds and searches, and their solution by brute force.
+// For tests of bounds and searches: random problems, and their solution by brute force.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 
 namespace ispace {
 
-/// What a random problem is like. Ranges are closed.
+/// Parameters of a random problem. Ranges are closed.
 struct RandomProblemOptions {
     int columns = 12, rows = 10;  ///< of the grid
     int kinds = 1;
@@ -29,7 +29,7 @@ struct RandomProblemOptions {
     int most = 3;          ///< of each kind
     int max_range = 5;     ///< in cells; at least 2
     int max_weight = 1;    ///< weights are 0 (rarely) to this
-    int max_achieved = 0;  ///< multiplicity from sensors that stand
+    int max_achieved = 0;  ///< multiplicity from standing sensors
     int required = 1;
     std::vector<int> multiplicities;  ///< per kind; empty: all 1
     bool has_costs = false;  ///< 1, 1.5, 2, ... by kind, and a budget for about half of all
@@ -49,13 +49,13 @@ namespace test_problems {
 
 using Random = std::mt19937_64;
 
-/// Uniform in [low, high]. Not of the standard library, whose results differ between machines.
+/// Draws uniformly from [low, high]. The standard library's results differ between machines.
 inline int anyOf(Random& random, int low, int high) {
     return low + static_cast<int>(random() % static_cast<std::uint64_t>(high - low + 1));
 }
 
-/// A star: cells around a place, by the direction in which they lie, each direction with its own
-/// reach, as walls leave it.
+/// A star: cells around a centre, by direction, each direction with a separate reach, as walls
+/// leave it.
 class Star {
   public:
     Star(Random& random, const RandomProblemOptions& options, int directions)
@@ -64,7 +64,7 @@ class Star {
           row_(anyOf(random, 0, options.rows - 1)) {
         for (int k = 0; k < directions; ++k) reach_.push_back(anyOf(random, 1, options.max_range));
     }
-    /// One part a direction and, last, the place itself.
+    /// Returns one part per direction and, last, the centre.
     [[nodiscard]] CellParts parts() const {
         std::vector<CellSet> sets(reach_.size() + 1, CellSet(cells()));
         for (int row = 0; row < options_.rows; ++row)
@@ -95,7 +95,7 @@ class Star {
     [[nodiscard]] std::size_t index(int column, int row) const {
         return static_cast<std::size_t>(row * options_.columns + column);
     }
-    /// The part of a cell, more than all where it is out of reach.
+    /// Returns the part of a cell; beyond the last part if it is out of reach.
     [[nodiscard]] std::size_t partAt(int dx, int dy) const {
         if (dx == 0 && dy == 0) return reach_.size();
         constexpr double kTurn = 6.283185307179586;
@@ -161,7 +161,7 @@ inline void forEachSet(const Problem& problem, std::vector<Choice>& chosen, std:
 
 }  // namespace test_problems
 
-/// The same problem for the same seed, on every machine.
+/// Creates the same problem for the same seed, on every machine.
 inline RandomProblem randomProblem(std::uint64_t seed, const RandomProblemOptions& options = {}) {
     using test_problems::anyOf;
     test_problems::Random random(seed);
@@ -202,8 +202,8 @@ inline RandomProblem randomProblem(std::uint64_t seed, const RandomProblemOption
     return made;
 }
 
-/// The best feasible set of choices, the first in the order of enumeration among equals; each
-/// candidate of a kind at most once. Looks at every set: for some ten thousand sets at most.
+/// Finds the best feasible set of choices, the first in the order of enumeration among equals; each
+/// candidate of a kind at most once. Enumerates every set: for some ten thousand sets at most.
 inline Solution bestByBruteForce(const Problem& problem) {
     Solution best{{}, valueOf(problem, {})};
     if (problem.kinds.empty()) return best;
@@ -217,7 +217,7 @@ inline Solution bestByBruteForce(const Problem& problem) {
     return best;
 }
 
-/// Round 0, 1, 2, ... goes through what problems can have, in all sorts of combinations.
+/// Returns options that combine the features of problems differently in round 0, 1, 2, ...
 inline RandomProblemOptions variedOptions(std::uint64_t round) {
     RandomProblemOptions options;
     options.columns = 9;
@@ -244,7 +244,7 @@ inline RandomProblem variedProblem(std::uint64_t round) {
     return randomProblem(1000 + round, variedOptions(round));
 }
 
-/// Counts what it is told and asked, and says stop by a rule on that.
+/// Counts reports and queries, and says stop by a rule on these counts.
 class StopWhen final : public Progress {
   public:
     using Rule = std::function<bool(const StopWhen&)>;
@@ -264,7 +264,7 @@ class StopWhen final : public Progress {
     std::string phases;  ///< that have begun
     std::atomic<int> begun = 0, ended = 0;
     std::atomic<std::int64_t> done = 0;
-    mutable std::atomic<int> asked = 0;  ///< with this time
+    mutable std::atomic<int> asked = 0;  ///< including the current query
 
   private:
     Rule rule_;
@@ -277,7 +277,7 @@ inline StopWhen::Rule afterPhases(int count) {
     return [count](const StopWhen& told) { return told.begun > count; };
 }
 
-/// Says stop once it was asked more than so often.
+/// Says stop after more than so many queries.
 inline StopWhen::Rule afterAsking(int times) {
     return [times](const StopWhen& told) { return told.asked > times; };
 }

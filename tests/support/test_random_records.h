@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random documents of any schemas, for tests of what reads and writes them.
+// For tests of readers and writers: random documents of any schemas.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace ispace {
 
-/// Documents whose every value its schema allows: numbers of all magnitudes, texts with everything
-/// that languages take for something else. What records mean together is left to chance.
+/// Creates documents of valid values: numbers of all magnitudes, texts with all
+/// characters that are special in some language. The records need not make sense together.
 class RandomDocuments {
   public:
     RandomDocuments(const Schemas& schemas, std::uint64_t seed)
@@ -31,7 +31,7 @@ class RandomDocuments {
         return document;
     }
 
-    /// \param number makes a written id one of its own
+    /// \param number makes a written id unique
     Record record(std::size_t number) {
         const auto& all = schemas_->all();
         Record record(all[below(all.size())]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of this folder: readings of placed sensors, and made-up ones for the formats.
+// For tests of lib/sense: readings of placed sensors, and invented ones for the formats.
 #pragma once
 
 #include <limits>
@@ -16,7 +16,7 @@
 
 namespace ispace::testing {
 
-/// One reading of each sensor of a scene, in order, as frame `frame`.
+/// Returns one reading of each sensor of a scene, in order, as frame `frame`.
 inline std::vector<Reading> readings(const Scene& scene, const TakerOptions& options = {},
                                      int frame = 0) {
     const Sensors sensors = sensorsOf(scene, {});
@@ -32,7 +32,7 @@ inline std::vector<Reading> readings(const Scene& scene, const TakerOptions& opt
     return out;
 }
 
-/// The scans of the lasers of a scene, in order.
+/// Returns the scans of the lasers of a scene, in order.
 inline std::vector<Scan> scans(const Scene& scene, const TakerOptions& options = {}) {
     std::vector<Scan> out;
     for (Reading& reading : readings(scene, options))
@@ -41,7 +41,7 @@ inline std::vector<Scan> scans(const Scene& scene, const TakerOptions& options =
     return out;
 }
 
-/// What one sensor reads in a scene without anything in the way.
+/// Returns the reading of one sensor in an unobstructed scene.
 inline Scan scan(const Scene& scene, const Sensor& sensor) {
     Worlds worlds(scene.environment);
     worlds.prepare(sensor.pose);
@@ -58,7 +58,7 @@ namespace ispace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
-/// Three beams, at -90, 0 and 90 degrees.
+/// Creates a laser with three beams, at -90, 0 and 90 degrees.
 inline Sensor threeBeams() {
     Sensor sensor{"l1", Laser(), {}};
     sensor.as<Laser>().max_range = 4;
@@ -92,7 +92,7 @@ inline Pose3 randomPose(std::mt19937& random) {
     return pose;
 }
 
-/// Ranges of 1 to 5 m, every seventh without return.
+/// Returns ranges of 1 to 5 m, every seventh without return.
 inline std::vector<float> randomRanges(std::mt19937& random, std::size_t count) {
     std::uniform_real_distribution<float> range(1, 5);
     std::vector<float> ranges(count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of FlatWorld: scans, what they see, and plans.
+// For tests of FlatWorld: scans, their hits, and plans.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ inline Seen cast(const FlatWorld& world, Point2 origin, const Directions& direct
     return seen;
 }
 
-/// The same beams with an origin each.
+/// Casts the same beams, each from a separate origin.
 inline Seen castApart(const FlatWorld& world, Point2 origin, const Directions& directions,
                       double max_range = kInfinity) {
     Seen seen{std::vector<float>(directions.size(), -1), std::vector<float>(directions.size(), -1)};
@@ -71,8 +71,8 @@ inline void addPolygon(Lines& lines, Point2 middle, double radius, int corners, 
     forEachEdge(polygon, [&](const Segment2& edge) { lines.push_back(edge); });
 }
 
-/// Rooms of 4 m x 5 m along corridors, each with a gap for a door, a desk, a chair and a round
-/// table.
+/// Creates rooms of 4 m x 5 m along corridors, each with a gap for a door, a desk, a chair and a
+/// round table.
 inline Lines office(int columns, int rows) {
     Lines lines;
     const double right = 4 * columns, top = 7 * rows;
@@ -94,7 +94,7 @@ inline Lines office(int columns, int rows) {
     return lines;
 }
 
-/// Lines of all sizes and directions, some of them with common ends.
+/// Creates lines of all sizes and directions, some of them with common ends.
 inline Lines tangle(std::mt19937_64& random, int count, double size) {
     std::uniform_real_distribution<double> place(0, size), turn(0, 360), exponent(-4, 0);
     Lines lines;

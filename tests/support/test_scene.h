@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For the tests of this folder: environments from text.
+// For tests of lib/env: environments from text.
 #pragma once
 
 #include <string>
@@ -31,7 +31,7 @@ inline Environment environment(const std::string& lines) {
     return environment(document(lines).records);
 }
 
-/// All findings of reading or building, one a line; "" if there are none.
+/// Returns all findings of reading or building, one per line; "" if there are no findings.
 inline std::string findings(const std::string& lines) {
     try {
         static_cast<void>(environment(lines));

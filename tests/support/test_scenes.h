@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes from text, for the tests of this folder.
+// For tests: scenes from text.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace ispace {
 
-/// The scene of record lines, without magic line; only bare lasers.
+/// Builds the scene of record lines, without magic line; only bare lasers.
 inline Scene sceneOf(const std::string& lines) {
     return makeScene(readRecordText("#env 1\n" + lines, "test.env", sceneSchemas()), nullptr, {});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the tests of this folder share: the real keywords live above it.
+// For tests of lib/record: schemas, since the real keywords are defined in libraries above it.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ inline KeySpec testKey(std::string name, KeyType type, Unit unit = Unit::None) {
     return key;
 }
 
-/// An environment record with keys of all types, one with a key it must have, a placement, and a
+/// Returns an environment record with keys of all types, one of them required, a placement, and a
 /// meta record with shares.
 inline const Schemas& testSchemas() {
     static const Schemas schemas = [] {
@@ -89,8 +89,8 @@ inline KeySpec testWord(std::string name, Role role) {
     return key;
 }
 
-/// Records with roles, shaped as the real ones: furniture, walls by ends or centre, paths, robots
-/// that go somewhere, sensors that are placed or carried, doors by wall or place, files.
+/// Returns records with roles, shaped as the real ones: furniture, walls by ends or centre, paths,
+/// robots with a goal, sensors that are placed or carried, doors by wall or position, files.
 inline const Schemas& placedSchemas() {
     static const Schemas schemas = [] {
         const KeySpec id = testKey("id", KeyType::Word);
@@ -132,7 +132,7 @@ inline const Schemas& placedSchemas() {
     return schemas;
 }
 
-/// The texts of all findings of a FormatError that `action` throws, else nothing.
+/// Returns the texts of all findings of a FormatError that `action` throws, else an empty list.
 template <typename Action>
 std::vector<std::string> findingsOf(Action action) {
     std::vector<std::string> texts;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of this folder and of those above it: records and devices of sensors from text.
+// For tests of lib/scene and the libraries above it: records and devices of sensors from text.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ inline Record sensorRecord(const std::string& line) {
     return readRecord(line, "line", schemas);
 }
 
-/// Robots are not this folder's subject; their lines are left empty.
+/// Removes the lines of robots, which are not tested here; the lines stay as empty ones.
 inline std::string withoutRobots(const std::string& text) {
     std::istringstream lines(text);
     std::string kept;
@@ -29,8 +29,9 @@ inline std::string withoutRobots(const std::string& text) {
     return kept;
 }
 
-/// The sensor among the devices that come with the project that `model` of the record names, or
-/// null. \pre it is one
+/// Finds the sensor, among the devices that come with the project, that `model` of the record
+/// names; null without `model`.
+/// \pre the device is a sensor
 inline const Record* deviceFor(const Record& record) {
     static const Schemas schemas(sensorDeviceSchemas());
     static const std::vector<Record> devices = [] {
@@ -48,7 +49,7 @@ inline const Record* deviceFor(const Record& record) {
     throw UsageError("no device " + record.text("model"));
 }
 
-/// What `work` throws as FormatError, a finding a line; "" if it does not.
+/// Returns the findings that `work` throws as FormatError, one per line; "" if it does not throw.
 template <typename Work>
 std::string findings(Work work) {
     try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For the tests of this folder: sessions without a transport.
+// For tests of the server: sessions without a transport.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ struct Talk {
         client.request(request);
         return client.take();
     }
-    /// Takes the steps that are allowed.
+    /// Runs the steps that are allowed.
     void run() {
         room.simulation.run(WallTime{}, kLong);
         for (Session& client : clients)

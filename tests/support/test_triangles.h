@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of triangles: how they come about, and what rays meet of them.
+// For tests of triangles: builds them, and computes the hits of rays by brute force.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kTouching = 1e-4;
 inline constexpr int kWidths[] = {16, 8, 4, 1};
 
-/// A parallelogram of its own corners.
+/// Adds a parallelogram with separate corners.
 inline void addQuad(TriangleSoup& soup, Point3 corner, Vec3 right, Vec3 up) {
     const auto a = soup.add(corner), b = soup.add(corner + right);
     const auto c = soup.add(corner + right + up), d = soup.add(corner + up);
@@ -27,7 +27,7 @@ inline void addQuad(TriangleSoup& soup, Point3 corner, Vec3 right, Vec3 up) {
     soup.triangles.push_back({a, c, d});
 }
 
-/// Lines as walls from 1 m under the floor to 1 m over it.
+/// Converts lines to walls from 1 m under the floor to 1 m over it.
 inline TriangleSoup standing(const std::vector<Segment2>& lines) {
     TriangleSoup soup;
     for (const Segment2& line : lines) {
@@ -37,7 +37,7 @@ inline TriangleSoup standing(const std::vector<Segment2>& lines) {
     return soup;
 }
 
-/// A box of twelve triangles, turned about the vertical.
+/// Adds a box of twelve triangles, rotated about the vertical.
 inline void addBox(TriangleSoup& soup, Point3 middle, Vec3 half, double turn) {
     std::uint32_t corners[8];
     const double c = std::cos(turn), s = std::sin(turn);
@@ -65,8 +65,8 @@ struct Beams {
     }
 };
 
-/// Where the ray meets the closed triangle, within a nanometre aside, all in doubles; +infinity if
-/// it does not within its reach.
+/// Computes where the ray meets the closed triangle, within a nanometre aside, all in doubles;
+/// +infinity if it misses within its reach.
 inline double exactMeet(const TriangleSet& set, std::size_t triangle, const Ray& ray) {
     constexpr double kTouch = 1e-9;
     const double size = length(ray.direction);
@@ -82,7 +82,7 @@ inline double exactMeet(const TriangleSet& set, std::size_t triangle, const Ray&
     return left || right ? set.meet(triangle, ray, kTouching).multiple : kInfinity;
 }
 
-/// Over all triangles, in doubles.
+/// Computes the nearest hit over all triangles, in doubles.
 inline double bruteForce(const TriangleSet& set, const Ray& ray) {
     double nearest = kInfinity;
     for (std::size_t i = 0; i < set.size(); ++i)
@@ -90,8 +90,8 @@ inline double bruteForce(const TriangleSet& set, const Ray& ray) {
     return nearest;
 }
 
-/// True if the range lies between those of rays within some tolerances of this one, aside in any
-/// direction.
+/// Returns true if the range lies between those of rays within some tolerances of this one, aside
+/// in any direction.
 inline bool isWithinTolerance(const TriangleSet& set, const Ray& ray, double range,
                               double tolerance) {
     // Small rings for surfaces that the ray grazes.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tests of visibility regions have in common.
+// For tests of visibility regions: invariants and references.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,8 @@ inline double areaSeen(const std::vector<Segment2>& lines, Point2 viewpoint, dou
     return area(query(lines, viewpoint, range));
 }
 
-/// What the header says of every region; `slack` radians for directions that rounding moves.
+/// Checks the guarantees that the header gives for every region; `slack` radians for directions
+/// that rounding moves.
 inline void expectSound(const VisibleRegion& region, double slack = 1e-9) {
     const Point2 v = region.viewpoint;
     double turned = 0;
@@ -54,8 +55,8 @@ inline double nearest(const std::vector<Segment2>& lines, Point2 p) {
     return least;
 }
 
-/// The area by dense rays, in the middle of each piece of the turn; reach(ray) is how far each
-/// goes.
+/// Computes the area by dense rays, in the middle of each piece of the turn; reach(ray) returns the
+/// length of each.
 template <typename Reach>
 double areaByRays(int rays, Reach reach) {
     double sum = 0;
@@ -67,7 +68,7 @@ double areaByRays(int rays, Reach reach) {
     return sum;
 }
 
-/// How far a ray from p goes before it meets a line, each tried; at most `range`.
+/// Computes how far a ray from p goes before it meets a line, by trying each; at most `range`.
 inline double reachAlong(const std::vector<Segment2>& lines, Point2 p, Vec2 ray, double range) {
     double reach = range;
     for (const auto& [a, b] : lines) {

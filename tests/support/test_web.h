@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For the tests of this folder: a server with a page, and browsers of it.
+// For tests of the web server: a server with a page, and browsers of it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@
 
 namespace ispace::testing {
 
-/// A server with a page, in a thread of its own.
+/// A server with a page, in a separate thread.
 class WebRunning {
   public:
     explicit WebRunning(Clock clock = {Clock::Kind::Step, 1}, const ServerLimits& limits = {},
@@ -42,7 +42,7 @@ class WebRunning {
         thread_.join();
     }
     [[nodiscard]] const std::string& url() const { return url_; }
-    /// "127.0.0.1:40124"
+    /// Returns "127.0.0.1:40124"
     [[nodiscard]] std::string host() const { return url_.substr(7, url_.size() - 8); }
     [[nodiscard]] std::uint16_t webPort() const {
         return static_cast<std::uint16_t>(std::stoi(url_.substr(url_.rfind(':') + 1)));
@@ -56,7 +56,7 @@ class WebRunning {
     std::thread thread_;
 };
 
-/// Blocking, as tests like it.
+/// A blocking HTTP and WebSocket client.
 class Browser {
   public:
     using Fields = std::map<std::string, std::string>;
@@ -83,7 +83,7 @@ class Browser {
         boost::beast::http::read(socket_.next_layer(), buffer_, parser);
         return parser.release();
     }
-    /// Asks for a WebSocket by hand: 101, or why not.
+    /// Requests a WebSocket byte by byte; returns 101, or the status of the rejection.
     unsigned tryToOpen(Fields fields = {}, const std::string& path = "/ws") {
         fields.insert({{"Connection", "Upgrade"},
                        {"Upgrade", "websocket"},
@@ -92,7 +92,7 @@ class Browser {
         return get(path, fields).result_int();
     }
     void send(const std::string& text) { socket_.write(boost::asio::buffer(text)); }
-    /// The next message; "close CODE" at the end, or "reset".
+    /// Returns the next message; "close CODE" at the end, or "reset".
     std::string receive() {
         buffer_.clear();
         boost::system::error_code error;
@@ -106,7 +106,7 @@ class Browser {
         send(request);
         return receive();
     }
-    /// Opens a WebSocket and takes a role.
+    /// Opens a WebSocket and requests a role.
     Browser& take(const std::string& role) {
         socket_.read_message_max(std::size_t{1} << 24);
         socket_.handshake(host_, "/ws");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of this folder: a small world with a robot that has a laser, a bare one, and a laser
-// that stands.
+// For tests of lib/sim: a small world with a robot that carries a laser, a bare robot, and a
+// standing laser.
 #pragma once
 
 #include <chrono>
@@ -13,9 +13,8 @@
 
 namespace ispace::testing {
 
-/// Steps of 0.1 s, in each of which every laser is read. l1 looks at a wall 7 m away: the middle
-/// one of its three beams meets it at 7 m, the others beyond their range. `more` records may
-/// follow.
+/// Steps of 0.1 s, each of which reads every laser. l1 looks at a wall 7 m away: the middle one of
+/// its three beams meets it at 7 m, the others beyond their range. `more` records may follow.
 struct TestWorld {
     explicit TestWorld(Clock clock = {Clock::Kind::Step, 1}, std::optional<SimTime> until = {},
                        const std::string& script = "", const std::string& more = "")
