@@ -211,7 +211,8 @@ Solution MinimumCostSearch::reach(const Problem& cheaper, const Solution& best, 
     return improveBySwaps(cheaper, solution, swap, progress_);
 }
 
-/// As reach(), for Exact by branch and bound if required. \param is_proven there is no
+/// As reach(); Exact also runs branch and bound.
+/// \param is_proven set if no cheaper solution reaches the value
 Solution MinimumCostSearch::reachExactly(const Problem& cheaper, const Solution& best,
                                          bool& is_proven) {
     const bool is_greedy = options_.optimizer == Optimizer::Greedy;
