@@ -204,7 +204,7 @@ std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search) {
 
 namespace {
 
-/// One in so many of a wall's sites is at one end, and as many at the other.
+/// One in this many of a wall's sites is at one end, and as many at the other.
 constexpr int kWallEnds = 3;
 
 /// Adds the headings at an end of a wall, for sensors that look around the corner. `turn` leads

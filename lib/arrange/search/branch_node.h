@@ -85,8 +85,8 @@ struct SplitNode {
 
 /// Branches on a node: splits the list of one group into candidates with views similar to a pivot's
 /// and the rest, with one child for each number of sensors from the first part. Strong branching
-/// (Applegate, Bixby, Chvatal & Cook 1995) selects the split whose children promise the smallest
-/// tree after a few steps of the bounds of their core.
+/// (Applegate, Bixby, Chvatal & Cook 1995) selects the split with children that promise the
+/// smallest tree after a few steps of the bounds of their core.
 ///
 /// Deterministic, unless progress says stop: then returns an arbitrary split.
 /// \param relaxed of the node before it was cut down, the same groups and lists, with the

@@ -108,10 +108,9 @@ class Connection {
 /// Scales weights to the integers of a Problem, with a sum below 2^32. The factor is the smallest
 /// power of ten that makes all of them integers to within 1e-9 of min(1, the largest weight), which
 /// absorbs decimals that binary cannot store. If there is no such power, the factor is the largest
-/// that the sum allows, up to six decimals and six digits of the largest weight; weights whose sum
-/// is too large are scaled down. The results are rounded, positive weights to at least 1. O(n) per
-/// power
-/// \pre all are finite and not negative, and there are at most 2^28
+/// that the sum allows, up to six decimals and six digits of the largest weight; weights with
+/// too large a sum are scaled down. The results are rounded, positive weights to at least 1. O(n)
+/// per power \pre all are finite and not negative, and there are at most 2^28
 std::vector<std::uint32_t> integerWeights(const std::vector<double>& weights);
 
 /// Computes the costs that sets of sensors can have, each sensor on a different candidate:

@@ -20,7 +20,7 @@ constexpr LagrangeLimits kQuick = {.gap = 0.01, .rounds = 8};
 constexpr double kSmallGap = 0.001;
 // A tree takes too long to close a wider gap than this.
 constexpr double kWideGap = 0.005;
-/// With at least so many sensors, the overlap bound and kicks close more of the gap than a tree
+/// With at least this many sensors, the overlap bound and kicks close more of the gap than a tree
 /// does in the same time.
 constexpr std::size_t kManySensors = 6;
 /// Before the overlap bound, which also gains from a better solution.

@@ -95,8 +95,8 @@ std::vector<BranchNode> childrenOf(const BranchNode& node, const Split& split) {
     return children;
 }
 
-/// Builds two children, with one candidate and without it, for a node whose groups may choose all
-/// their candidates, but of which only a subset may be feasible.
+/// Builds two children, with one candidate and without it, for a node with groups that may choose
+/// all their candidates, but of which only a subset may be feasible.
 std::vector<BranchNode> withAndWithout(const BranchNode& node) {
     const auto larger = std::max_element(
         node.groups.begin(), node.groups.end(),
