@@ -28,7 +28,7 @@ MapCells randomBlob(std::mt19937_64& random, int size, unsigned density) {
     return largestPiece(noise);
 }
 
-/// A half plane seen through cells: those whose centre lies right of the line through the middle.
+/// Creates a half plane of cells: those with centres right of the line through the middle.
 MapCells halfPlane(int size, double degrees) {
     const Vec2 normal = unitVector(Angle::degrees(degrees));
     MapCells cells(size, size);
@@ -120,7 +120,7 @@ TEST(WithoutStairs, KeepsRectanglesAndRightAngles) {
         const auto curves = boundaryCurves(cellsOf(rows));
         EXPECT_EQ(withoutStairs(curves), curves);
     }
-    // An L whose legs are wide enough to mean it.
+    // An L with legs wide enough to be kept.
     const std::vector<Polygon> corner{{{9, 0}, {9, 3}, {4, 3}, {4, 8}, {0, 8}, {0, 0}}};
     EXPECT_EQ(withoutStairs(corner), corner);
 }
@@ -317,7 +317,7 @@ TEST(Contours, FillExactlyTheCells) {
 }
 
 TEST(CellRegions, HolesBelongToTheInnermostOutline) {
-    // A ring, in its hole an island that has a hole of its own.
+    // A ring with an island in its hole, and a hole in the island.
     const Grid grid{{{0, 0}, {9, 9}}, 9, 9};
     CellSet cells(grid.size());
     for (int row = 0; row < 9; ++row)

@@ -94,7 +94,7 @@ TEST(Pgm, SurvivesEveryTruncationAndRandomBytes) {
             const GreyPicture image = parsePgm(bytes, "x");
             EXPECT_EQ(image.samples.size(), static_cast<std::size_t>(image.width * image.height));
         } catch (const FormatError&) {
-            // Most of them are bad; none may do worse.
+            // Most of the files are damaged and rejected.
         }
     }
 }

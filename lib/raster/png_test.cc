@@ -66,7 +66,7 @@ TEST(PngPicture, SixteenBitsAreRoundedAndNotBent) {
 
 TEST(PngPicture, ColourSpacesDoNotCount) {
     const Samples plain = parsePng(pngFile(2, 8, 0, {"\x40\xcd"}), "x").samples;
-    // A gamma of 1, which would brighten everything; a profile that is none.
+    // A gamma of 1, which would brighten the picture; an invalid profile.
     for (const std::string& chunk : {pngChunk("gAMA", bigEndian32(100000)),
                                      pngChunk("iCCP", "x\0\0nonsense"s), pngChunk("sRGB", "\x00"s)})
         EXPECT_EQ(parsePng(pngFile(2, 8, 0, {"\x40\xcd"}, chunk), "x").samples, plain);
