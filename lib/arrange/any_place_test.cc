@@ -62,7 +62,7 @@ TEST(MostCellsInView, ANarrowFanMayRunAlongARowOfCenters) {
     EXPECT_LE(seen, maxCellsInView(laser, grid));
 }
 
-constexpr double kPlane = 0.3;  // height of what is looked at
+constexpr double kPlane = 0.3;  // height of the covered plane
 
 /// Poses in the middle of a hall, turned in every way.
 class PoseSource {

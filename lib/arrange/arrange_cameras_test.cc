@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cameras at their places: by brute force over all choices, with views that this file works out.
+// Compares arranged cameras with brute force over all choices, with views computed by this file.
 #include <gtest/gtest.h>
 
 #include <bitset>
@@ -22,7 +22,7 @@ const std::string kRoom =
     "#env 1\nispace id=room size=8,6,2.5\ncube id=c1 at=1.03,0.41 size=1.3,0.9,1.7\n";
 constexpr Point3 kCabinetLow{0.38, -0.04, 0}, kCabinetHigh{1.68, 0.86, 1.7};
 
-/// True if the cabinet stands between two places: the slab test.
+/// Returns true if the cabinet stands between two points: the slab test.
 bool isHidden(Point3 from, Point3 to) {
     double enter = 0, leave = 1;
     const auto cut = [&](double a, double b, double low, double high) {
@@ -40,7 +40,7 @@ bool isHidden(Point3 from, Point3 to) {
     return enter < leave;
 }
 
-/// The cells for whose centre at a height this holds.
+/// Returns the cells with centres at a height that satisfy `is_seen`.
 template <typename IsSeen>
 Cells cellsWhere(double height, IsSeen is_seen) {
     Cells cells;
@@ -78,7 +78,7 @@ Cells seenBy(const Laser& laser, const Pose3& pose) {
     });
 }
 
-/// What may be chosen.
+/// A candidate of the brute force.
 struct Offer {
     Cells cells;
     double cost = 1;
@@ -121,7 +121,7 @@ class BruteForce {
 
 double shareOf(std::size_t cells) { return static_cast<double>(cells) / (kColumns * kRows); }
 
-/// A few places with four headings, and all that the options leave open.
+/// Returns options with few sites and four headings; all else at its default.
 ArrangeOptions fewPlaces(Optimizer optimizer = Optimizer::Exact) {
     ArrangeOptions options;
     options.strategy = Strategy::List;

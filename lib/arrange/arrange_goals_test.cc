@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an arrangement is to reach: zones, weights, redundancy, targets, budgets; and refining.
+// Tests the goals of an arrangement: zones, weights, redundancy, targets, budgets; and refining.
 #include <gtest/gtest.h>
 
 #include "arrange/measured_scene.h"

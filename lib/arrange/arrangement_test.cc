@@ -103,7 +103,7 @@ TEST(Arrangement, RandomHasPlacesOfItsOwnForEachSensor) {
             }
     }
     EXPECT_EQ(kinds, (std::set<std::string>{"laser", "laser.2", "mine"}));
-    // Where the search finds the number all choose of the same places.
+    // If the search finds the number, all sensors share the same sites.
     options.budget = 3;
     EXPECT_LE(arranged(scene, groupsOf(scene, {"laser,range=2:3"}), options).candidates, 3U * 2);
 }
@@ -189,7 +189,7 @@ TEST(Arrangement, RobotsAndWhatTheyCarryPassThrough) {
         writeRecordText(layoutDocument(partsOf(scene), &layout, groups, arrangement));
     EXPECT_NE(text.find(kept), std::string::npos) << text;
 
-    // What they see counts, and the result is what coverage measures.
+    // Their coverage counts, and the result equals the measured coverage.
     const Document written = readRecordText(text, "best.3dm", sceneSchemas());
     const Scene again = roomScene(kTestRoom, &written);
     Worlds worlds(again.environment);
@@ -212,7 +212,7 @@ TEST(Arrangement, TiltsAndHeightsAreChosen) {
     EXPECT_EQ(both.sensors[0].pose.position.z, 2.2);
     const Record record = placedRecord(groups[0], both.sensors[0]);
     EXPECT_EQ(record.angle("tilt"), both.sensors[0].pose.tilt);
-    // What the sensor says itself stays.
+    // The sensor's parameters take precedence.
     options.mount.tilts = {Angle::degrees(0)};
     const auto tilted = groupsOf(scene, {"laser,tilt=10,range=4"});
     EXPECT_EQ(arranged(scene, tilted, options).sensors[0].pose.tilt, Angle::degrees(10));

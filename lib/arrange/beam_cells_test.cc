@@ -55,7 +55,7 @@ TEST(BeamCells, AreThoseWithinTheContour) {
     EXPECT_NEAR(area("laser,range=20,fov=360", 1), 48, 0.1) << "the whole room";
 }
 
-/// The pillar hides what is behind it, as wide as the beams that meet it say.
+/// The pillar hides the cells behind it, at the width of the beams that hit it.
 TEST(BeamCells, SearchesSeeWhatTheBeamsOfTheirStepSay) {
     const Scene scene = roomScene("#env 1\nispace size=8,6\npillar at=1,0 size=0.3,0.3\n");
     const auto groups = groupsOf(scene, {"laser,range=3,fov=180,step=10"});

@@ -127,7 +127,7 @@ TEST(CandidatePool, FramesCarryWhatLooksDown) {
     EXPECT_LT(pooled.set->pose(0).position.z, 2);
 }
 
-/// Random places of a laser in a part of the room, of which there are few.
+/// Draws random sites of a laser in a part of the room with few valid sites.
 CandidatePool::Made drawnIn(const char* zone, int count, Progress& progress) {
     const Scene scene = roomScene();
     Worlds worlds(scene.environment);
@@ -232,7 +232,7 @@ TEST(CandidatePool, WhatIsThereWhenStoppedIsAtAllHeights) {
     for (const auto& [height, count] : at) EXPECT_GE(count, 2 * 20) << height;
 }
 
-/// Places within 4 x 3 m, row by row.
+/// Returns sites within 4 x 3 m, row by row.
 std::vector<Site> latticeOf(int columns, int rows) {
     std::vector<Site> sites;
     sites.reserve(static_cast<std::size_t>(columns * rows));
@@ -306,7 +306,7 @@ TEST(CandidatePool, IndoorTestKeepsTheSensorInTheRoom) {
     laser.max_range = 4;
     const VisibleArea sight(room, 0, &worlds);
     const CandidateViews views(sight, target.grid, laser, {{0, 0, kScanHeight}, {}, {}, {}});
-    // The thesis counts what lies within the limits, indoor or not.
+    // The thesis counts all cells within the limits, indoor or not.
     const WeightSums ones(std::vector<std::uint32_t>(target.grid.size(), 1));
     const auto best_of = [&](const std::vector<Site>& sites) {
         PosedCandidates set(target.grid.size());

@@ -38,7 +38,7 @@ std::string randomRoom(Random& random) {
     return text;
 }
 
-/// Places with 1 to 5 headings, some of them alike.
+/// Creates sites with 1 to 5 headings, some of them equal.
 std::vector<Site> randomSites(Random& random, int count) {
     std::vector<Site> sites;
     for (int i = 0; i < count; ++i) {
@@ -98,7 +98,7 @@ std::vector<Mounted> devices() {
             {receiverAt({}, 100, 5).as<Receiver>(), at(1, -45)}};
 }
 
-/// Candidates see what measureCoverage() finds for such a sensor, of the cells that are counted.
+/// Candidates see the counted cells that measureCoverage() finds for such a sensor.
 void expectSame(const Scene& scene, const Mounted& mounted, const std::vector<Site>& sites,
                 bool only_free) {
     Worlds worlds(scene.environment);
@@ -217,7 +217,7 @@ TEST(CandidateViews, HeadingsTooNearToBeTold) {
 TEST(CandidateViews, SevenFansThatMeetBetweenCells) {
     const Scene scene = sceneOf("ispace size=8,6\n");
     // Sides of the fans, 360 / 3.5 degrees wide, lie 2e-8 degrees on this side and on the other of
-    // the row through the place.
+    // the row through the site.
     std::vector<Site> sites = {{{0.1, 0.1}, {}}};
     for (int k = 0; k < 7; ++k) sites[0].headings.push_back(Angle::degrees(360.0 / 7 * k));
     ASSERT_NO_FATAL_FAILURE(expectSame(

@@ -56,7 +56,7 @@ TEST(PlacesAlong, OfASquareRoom) {
 
 TEST(PlacesAlong, AStepLongerThanTheRoomGivesOneForEachWall) {
     const Environment room = roomOf("ispace size=4,3\n");
-    // The walls are shorter than a step: they share places.
+    // The walls are shorter than a step: they share sites.
     EXPECT_EQ(placesAlong(room.level(kScanHeight)->freeFloor(), 4, 0.02).size(), 2U + 1U + 1U);
     EXPECT_EQ(placesAlong(room.level(kScanHeight)->freeFloor(), 100, 0.02).size(), 1U);
 }
@@ -136,7 +136,7 @@ TEST(MedialPlaces, RunAroundHoles) {
 }
 
 TEST(MedialPlaces, DoNotRunIntoWideCorners) {
-    // From places on the way to a corner of a hexagon its walls are seen 60 degrees apart.
+    // From sites on the way to a corner of a hexagon its walls are seen 60 degrees apart.
     Region hexagon;
     for (int i = 0; i < 6; ++i)
         hexagon.outline.push_back(Point2{5, 5} + 3 * unitVector(Angle::degrees(60 * i)));

@@ -90,7 +90,7 @@ TEST(ExactGain, TargetsAndWeightsOfWhichTheLastDecides) {
                                        at("b", laserOfRange(20, 360), 1, 0, 180)};
     FloorWeights floor;
     floor.weights = {{box(-1, -1, 1, 1), 3}, {box(0, 0, 2, 2), 5}, {box(3, 3, 9, 9), 0}};
-    // 64 of which 4 weigh 5, 3 weigh 3, 1 nothing.
+    // 64 of which 4 weigh 5, 3 weigh 3, 1 weighs 0.
     EXPECT_NEAR(Gain(scene, whole, floor).gain.total(), 56 + 20 + 9, 1e-5);
     EXPECT_NEAR(Gain(scene, whole, floor).gain.value(), 56 + 20 + 9, 1e-5);
     floor.targets = {box(-2, -2, 0, 0), box(-1, -1, 1, 1)};  // 4 + 4 - 1

@@ -9,7 +9,7 @@
 namespace ispace {
 namespace {
 
-/// Least distance between two of the sensors, and from them to a place.
+/// Computes the least distance between two of the sensors, and from them to other points.
 double leastDistance(const Arrangement& arrangement, std::initializer_list<Point3> others = {}) {
     std::vector<Point3> places = others;
     double least = 1e9;

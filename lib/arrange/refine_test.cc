@@ -35,7 +35,7 @@ Refined refined(const Scene& scene, const std::vector<Sensor>& sensors,
     return refine(scene, VisibleArea(scene.environment, 0), sensors, floor, options, progress);
 }
 
-/// Places that these rules allow.
+/// Accepts the sites that these rules allow.
 RefineOptions within(const SiteValidity& validity) {
     return {.is_valid = [&](std::size_t, Point2 place) { return validity.isValid(place); }};
 }
@@ -70,7 +70,7 @@ TEST(Refine, ADiscComesOutOfItsCorner) {
 
 TEST(Refine, HalfATurnTurnsToItsBestHeading) {
     const Scene scene = sceneOf("ispace size=4,4\n");
-    // In a corner with steps of place refused: only towards the room all of it is seen.
+    // In a corner, with all moves rejected: only a heading towards the room sees all of it.
     const std::vector<Sensor> one = {{"a", laserOfRange(10, 90), poseAt(-1.99, -1.99, 80)}};
     const auto stays = [](const std::vector<Pose3>& poses) {
         return poses[0].position == poseAt(-1.99, -1.99).position;
@@ -78,7 +78,8 @@ TEST(Refine, HalfATurnTurnsToItsBestHeading) {
     const Refined result = refined(scene, one, {}, {.accepts = stays});
     EXPECT_NEAR(result.poses[0].heading.degrees(), 45, 0.1);
     EXPECT_NEAR(result.after, 3.99 * 3.99, 0.01);
-    // Half a turn on a wall sees all once it looks away from it; a place free to move finds one.
+    // On a wall, a laser of 180 degrees sees all once it faces away from the wall; a sensor free to
+    // move finds such a pose.
     const Pose3 on_wall = poseAt(0, -1.9995, 33.3);
     const std::vector<Sensor> half = {{"a", laserOfRange(10), on_wall}};
     const Refined turned =
@@ -112,7 +113,7 @@ TEST(Refine, NeverWorseAndEachStepHelped) {
             EXPECT_LE(std::abs(result.poses[i].heading.degrees()), 180);
         }
         EXPECT_NEAR(result.after, valueOf(scene, sensors), 1e-9);
-        // From there on next to nothing is left.
+        // From there on hardly any gain is left.
         EXPECT_NEAR(refined(scene, sensors, {},
                             {.step = 0.001,
                              .turn = Angle::degrees(0.05),

@@ -99,7 +99,8 @@ TEST(SiteValidity, KeepsNearWalls) {
     EXPECT_FALSE(SiteValidity(divided, rules).isValid({0.1, 2}));
 }
 
-/// Places where it is decided: at random, at corners, on and about lines, in line with corners.
+/// Returns points that are hard to decide: at random, at corners, on and about lines, in line with
+/// corners.
 std::vector<Point2> hardPlaces(const Environment& plan, std::uint64_t seed) {
     std::vector<Segment2> lines;
     plan.indoor().forEachEdge([&lines](const Segment2& edge) { lines.push_back(edge); });
@@ -232,7 +233,7 @@ TEST(ReadSites, SaysWhereAndWhatIsWrong) {
     EXPECT_EQ(findingsOf("nan,1\n"), "sites.csv:1:1: error: x `nan` is no number\n");
     EXPECT_EQ(findingsOf("1,1e7\n"),
               "sites.csv:1:3: error: y `1e7` is too large: a million at most\n");
-    // A header stands before all places.
+    // A header stands before all sites.
     EXPECT_EQ(findingsOf("1,2\nx,y\n"), "sites.csv:2:1: error: x `x` is no number\n");
     // All that is wrong is told.
     EXPECT_EQ(findingsOf("1\n2,3\n4\n"),

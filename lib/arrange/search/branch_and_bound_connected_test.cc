@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trees over sensors whose views have to hang together: there fewer may be feasible where all are
-// not.
+// Tests trees over sensors that require connected coverage: fewer sensors may be feasible where the
+// full number is not.
 #include <gtest/gtest.h>
 
 #include "arrange/search/branch_and_bound.h"

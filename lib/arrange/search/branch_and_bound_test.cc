@@ -78,7 +78,7 @@ TEST(OpenNodes, WhatIsSharedCountsOnce) {
     EXPECT_EQ(open.bytes(), 0U);
 }
 
-/// From nothing known, with a bound that has hardly begun, so that the tree has work to do.
+/// Searches without a known solution, with a bound of few rounds, so that the tree has work to do.
 SearchResult searchTree(const Problem& problem, double gap, Progress& progress,
                         std::size_t max_bytes = kMaxTreeBytes) {
     SearchResult known;
@@ -289,7 +289,7 @@ TEST(ReducedProblem, CellsThatTheSameSeeAreOne) {
     problem.kinds = {{&set, 1, 1, 1}};
     RelaxedCells cells(problem);
     std::vector<std::uint32_t> multipliers = {1, 1, 1, 1, 1, 1, 1, 1};
-    // Cells 0, 1, 5 of the left alone; 2, 6 of both; 7 of the right alone; the others of nobody.
+    // Cells 0, 1, 5 of the left alone; 2, 6 of both; 7 of the right alone; the others are unseen.
     const ReducedProblem reduced = reduce(wholeProblem(problem, cells), {{0, 1}}, multipliers);
     EXPECT_EQ(multipliers, (std::vector<std::uint32_t>{3, 2, 1}));
     EXPECT_EQ(reduced.weights,

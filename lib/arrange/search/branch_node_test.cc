@@ -30,7 +30,7 @@ BranchNode nodeOf(const Problem& problem, const Bound& bound) {
     return node;
 }
 
-/// Splits it as branch() does, after some steps of its own bound.
+/// Splits it as branch() does, after some steps of the node's bound.
 SplitNode splitOf(BranchNode& node, std::uint64_t cut) {
     SilentProgress progress;
     NodeRelaxation relaxed(node);

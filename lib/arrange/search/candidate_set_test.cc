@@ -11,7 +11,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-/// Disjoint parts of random cells: cell i lies in part where[i], or in none.
+/// Creates disjoint parts of random cells: cell i lies in part where[i], if there is such a part.
 CellParts partsOf(const std::vector<std::size_t>& where, std::size_t parts) {
     CellParts all;
     all.first = {0};
@@ -51,7 +51,7 @@ std::uint32_t weightOf(const CellSet& cells, const std::vector<std::uint32_t>& w
     return sum;
 }
 
-/// A set and, beside it, what its candidates should see.
+/// A set and the expected views of its candidates.
 struct Model {
     CandidateSet set;
     std::vector<CellSet> seen;
@@ -160,7 +160,8 @@ TEST(CandidateSet, LongRunsOnLargeGrids) {
 }
 
 TEST(CandidateSet, SumsMayWrapAround) {
-    // What is before a run may sum up to more than 2^32, but no run and no candidate does.
+    // The weights before a run may sum up to more than 2^32, but those of a run or candidate do
+    // not.
     const std::vector<std::uint32_t> weights = {4'000'000'000, 4'000'000'000, 5, 7};
     CandidateSet set(4);
     CellSet cells(4);

@@ -17,7 +17,7 @@ bool holds(const std::vector<Choice>& chosen, const Choice& choice) {
     return std::find(chosen.begin(), chosen.end(), choice) != chosen.end();
 }
 
-/// Shares that cells have of what stands and of the sensors of different choices.
+/// Computes the multiplicity of cells from standing sensors and from different choices.
 std::vector<int> loadsOf(const Problem& problem, const std::vector<Choice>& chosen) {
     std::vector<int> loads(problem.achieved.begin(), problem.achieved.end());
     loads.resize(problem.cells(), 0);
@@ -30,7 +30,7 @@ std::vector<int> loadsOf(const Problem& problem, const std::vector<Choice>& chos
     return loads;
 }
 
-/// What greedy placement goes by: weights times 840, each by the number of sensors of its kind that
+/// The gain of greedy placement: weights times 840, each by the number of sensors of its kind that
 /// the cell lacks; then the parts of the demand that are met.
 using Gain = std::pair<std::uint64_t, std::uint64_t>;
 
@@ -166,11 +166,11 @@ TEST(GreedySearch, MeetsDemandsRatherThanPartsOfThem) {
     const std::vector<Choice> same_place{{0, 0}, {0, 2}};
     EXPECT_EQ(placeGreedily(problem, progress).chosen, same_place);
     EXPECT_EQ(placeGreedily(problem, progress).value, 3U);
-    // A budget leaves no more than two, either, and none of those that are dearer.
+    // A budget leaves at most two, too, and rejects the more expensive ones.
     problem.kinds = {{&candidates, 3, 1, 1}, {&others, 3, 2, 1}};
     problem.budget = 2;
     EXPECT_EQ(placeGreedily(problem, progress).chosen, same_place);
-    // What follows may be dearer and meet more: a first step towards that has a value.
+    // Later sensors may cost more and meet more: a first step towards that has a value.
     CandidateSet few(cells);
     few.addSite(set_of(0, 4));
     problem.required = 5;
@@ -178,11 +178,11 @@ TEST(GreedySearch, MeetsDemandsRatherThanPartsOfThem) {
     problem.budget = 3;
     EXPECT_EQ(placeGreedily(problem, progress).chosen, (std::vector<Choice>{{0, 0}, {1, 0}}));
     problem.required = 2;
-    // One meets nothing: it goes where most are half met.
+    // One sensor completes no cell: it goes to the most half-met cells.
     problem.budget.reset();
     problem.kinds = {{&candidates, 1}};
     EXPECT_EQ(placeGreedily(problem, progress).chosen, (std::vector<Choice>{{0, 0}}));
-    // What one sensor meets wholly counts more than a quarter of more cells.
+    // A cell that one sensor completes counts more than a quarter of more cells.
     problem.required = 4;
     problem.kinds = {{&others, 1, 1, 1}, {&candidates, 1, 1, 4}};
     EXPECT_EQ(placeGreedily(problem, progress).chosen.front(), (Choice{1, 0}));

@@ -141,7 +141,7 @@ TEST(Lagrange, IsTheSameForAnyNumberOfThreads) {
 
 using Counts = std::vector<std::size_t>;
 
-/// Six candidates that see nothing.
+/// Creates six candidates with empty views.
 CandidateSet sixCandidates() {
     CandidateSet candidates(1);
     for (int i = 0; i < 6; ++i) candidates.addSite(CellSet(1));

@@ -11,7 +11,7 @@
 namespace ispace {
 namespace {
 
-/// The minimum cost of a set of that value; infinite if there is none.
+/// Returns the minimum cost of a set of that value; infinite if there is no such set.
 double leastCost(const Problem& problem, std::uint64_t wanted) {
     double least = std::numeric_limits<double>::infinity();
     std::vector<Choice> chosen;
@@ -104,7 +104,7 @@ TEST(MinimumCost, SmallCostsCountBesideLargeOnes) {
 }
 
 TEST(MinimumCost, ManyOfEqualCostHideNothingCheaper) {
-    // Greedy takes three of each group of eight where two are enough: 1700 in place of 1500.
+    // Greedy takes three of each group of eight, although two are enough: 1700 instead of 1500.
     constexpr std::size_t kGroups = 200, kOwn = 300, kOthers = 800;
     constexpr std::size_t kCells = 8 * kGroups + kOwn + kOthers;
     CandidateSet first(kCells), second(kCells);
@@ -131,7 +131,7 @@ TEST(MinimumCost, ManyOfEqualCostHideNothingCheaper) {
 }
 
 TEST(MinimumCost, EvenLevelsHaveFewDigits) {
-    // More than 4000 sums, and no bound is far off, as nothing overlaps.
+    // More than 4000 sums, and tight bounds, as views do not overlap.
     constexpr std::size_t kOfEach = 30;
     std::vector<CandidateSet> sets(3, CandidateSet(3 * kOfEach));
     for (std::size_t i = 0; i < 3 * kOfEach; ++i) addCandidate(sets[i / kOfEach], {i});

@@ -11,7 +11,7 @@
 namespace ispace {
 namespace {
 
-/// The numbers of a model file; of what is not there 0.
+/// Stores the numbers of a model file; missing ones are 0.
 struct Model {
     std::map<std::pair<std::string, std::string>, double> entries;  ///< column, row
     std::map<std::string, double> limits;                           ///< row
@@ -79,7 +79,7 @@ TEST(WriteMps, HasTheNumbersOfASmallProblem) {
     Problem problem = smallProblem(set);
     problem.budget = 4.5;
     const Model model = modelOf(problem, {"laser"});
-    // Cell 1 is met, cell 3 has no weight, nobody sees cell 4.
+    // Cell 1 is met, cell 3 has no weight, cell 4 is unseen.
     EXPECT_EQ(model.rows, (std::vector<std::string>{"minus_value", "cell_0", "cell_2", "most_laser",
                                                     "budget"}));
     EXPECT_EQ(model.whole, (std::vector<std::string>{"x_laser_0", "x_laser_1"}));

@@ -41,7 +41,7 @@ struct Case {
             lagrangianBound(random.problem, near.chosen,
                             {.cut = cut(), .rounds = 40, .stall = 0, .pace = kLongPace}, progress);
     }
-    /// Below what there is, so that no bound is cut off there.
+    /// Below the known value, so that no bound is cut off there.
     [[nodiscard]] std::uint64_t cut() const { return near.value - near.value / 50; }
     [[nodiscard]] std::uint64_t bound(int rounds) const { return bound(rounds, near.chosen); }
     [[nodiscard]] std::uint64_t bound(int rounds, const std::vector<Choice>& about) const {

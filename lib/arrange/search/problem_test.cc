@@ -199,7 +199,7 @@ TEST(Problem, NormalisedCostIsTheDecimalNumberMeant) {
     EXPECT_EQ(normaliseCost(4 * 1e-9), 4e-9);
     EXPECT_EQ(normaliseCost(1e9 + 0.001), 1e9 + 0.001);
     EXPECT_EQ(normaliseCost(0), 0);
-    // What is no short decimal number stays the same cost.
+    // Costs that are no short decimal numbers stay unchanged.
     for (const double cost : {1.0 / 3, 2.0 / 3, 1e6 / 7, 1 + 1.0 / 3}) {
         EXPECT_FALSE(isCheaper(normaliseCost(cost), cost));
         EXPECT_FALSE(isCheaper(cost, normaliseCost(cost)));
@@ -229,7 +229,7 @@ TEST(Problem, ThoseThatStandAreOnePart) {
     problem.kinds = {{&candidates, 3}};
     problem.standing = CellSet(6);
     problem.standing.set(3);
-    EXPECT_TRUE(isConnected(problem, {{0, 0}}));  // what stands sees nothing that counts
+    EXPECT_TRUE(isConnected(problem, {{0, 0}}));  // standing sensors see no cell of weight
     problem.standing.set(0);
     problem.standing.set(4);
     EXPECT_TRUE(isConnected(problem, {}));
@@ -293,7 +293,7 @@ TEST(WholeUnits, SmallWeightsCountByTheLargest) {
     EXPECT_EQ(integerWeights({3e-7, 1e-7, 0}), (Units{3, 1, 0}));
     EXPECT_EQ(integerWeights({2e-10}), (Units{2}));
     EXPECT_EQ(integerWeights({1e-8 / 3}), (Units{333333})) << "six digits";
-    // Too small to be told apart from nothing beside the large one; but it is not nothing.
+    // Below the resolution beside the large one; but it is positive.
     EXPECT_EQ(integerWeights({1, 1e-12}), (Units{1000000, 1}));
     const double least = std::numeric_limits<double>::denorm_min();
     EXPECT_EQ(integerWeights({least, 0}), (Units{1, 0}));
@@ -304,7 +304,7 @@ TEST(WholeUnits, LargeWeightsAreScaledDown) {
     EXPECT_EQ(integerWeights({6e9, 2e9}), (Units{3000000000U, 1000000000U}));
     std::vector<double> many(10000, 1e6);
     EXPECT_EQ(integerWeights(many), Units(10000, 400000));
-    // What counts little still counts where something else counts a million times as much.
+    // Small weights still count beside weights a million times as large.
     many.resize(1000000, 1);
     std::fill_n(many.begin(), 500000, 1e6);
     const Units units = integerWeights(many);

@@ -28,7 +28,7 @@ TEST(CoverageState, ValueAndPricesHoldWhileSensorsComeAndGo) {
         const RandomProblem made = randomProblem(seed, mixed());
         const Problem& problem = made.problem;
         const auto parts = partialWeights(problem);
-        EXPECT_EQ(parts, problem.weights);  // small enough as they are
+        EXPECT_EQ(parts, problem.weights);  // small enough without scaling
         CoverageState state(problem, parts);
         std::vector<std::uint32_t> gains;
         for (int step = 0; step < 30; ++step) {
@@ -88,7 +88,7 @@ TEST(CoverageState, StepsCountByTheSensorsThatAreLacking) {
     EXPECT_TRUE(takesSteps(problem));
     problem.kinds = {{&candidates, 1, 1, 4}, {&candidates, 1, 1, 5}};
     EXPECT_FALSE(takesSteps(problem));
-    // Where there is no room nothing grows.
+    // Without room for a factor the weights stay.
     problem.weights = {std::numeric_limits<std::uint32_t>::max() - 1, 1, 0, 0, 0, 0, 0};
     problem.achieved.clear();
     problem.kinds = {{&candidates, 1, 1, 1}};

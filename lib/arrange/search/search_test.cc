@@ -13,7 +13,7 @@ namespace ispace {
 
 namespace {
 
-/// Ends after so many steps, and keeps what was said.
+/// Says stop after so many steps, and stores the reports.
 class DetectionMonitor final : public Progress {
   public:
     explicit DetectionMonitor(int left = 1'000'000'000, std::string_view last = {})

@@ -289,7 +289,7 @@ TEST(SwapSearch, EndsWhereItIsEnough) {
             EXPECT_GE(found[0].value, std::min(enough, most * 98 / 100)) << seed;
             if (found[0].value < most) ++less;
         }
-        // What is enough already stays as it is.
+        // A start of sufficient value is returned unchanged.
         const Solution start = placeGreedily(made.problem, progress);
         EXPECT_EQ(improveBySwaps(made.problem, start, {20, 0, start.value}, progress).chosen,
                   start.chosen);
