@@ -20,8 +20,8 @@ std::string_view nameOf(Shared shared);
 
 /// Divides a search among processes without communication, and continues an earlier run.
 ///
-/// Shards differ only in the steps that they compute, and store these in a ledger. A merge runs the
-/// same search again: it reads the steps of all shards from its ledger, and computes missing ones
+/// Shards differ only in the steps that they compute, and store these by key. A merge runs the same
+/// search again: it reads the steps of all shards from their results, and computes missing ones
 /// itself. So candidates and starts merge to the bytes of a single run.
 ///
 /// For a proof, all shards grow the same tree until it has enough open nodes, deal these out in
@@ -31,9 +31,9 @@ std::string_view nameOf(Shared shared);
 /// equally good layouts the merge may have another one.
 struct SearchShare {
     Shared what = Shared::Tree;
-    std::optional<Shard> own;  ///< compute only these steps, and end
-    int joined = 0;            ///< of a merge: the shards in the ledger
-    Ledger* ledger = nullptr;  ///< null: do not store steps
+    std::optional<Shard> own;       ///< compute only these steps, and end
+    int joined = 0;                 ///< of a merge: the number of shards
+    JobResults* results = nullptr;  ///< null: do not store steps
 
     /// Returns true for a shard that divides this work.
     [[nodiscard]] bool isOwn(Shared which) const { return own && what == which; }

@@ -15,21 +15,13 @@ namespace {
 /// Results in a folder of their own, kept or not.
 class TestResults {
   public:
-    [[nodiscard]] std::optional<std::string> find(const std::string& name) const override {
-        const std::lock_guard lock(mutex_);
-        const auto at = kept_.find(name);
-        return at == kept_.end() ? std::nullopt : std::optional(at->second);
-    }
-    void keep(const std::string& name, std::string_view bytes) override {
-        const std::lock_guard lock(mutex_);
-        kept_[name] = bytes;
-        ++times_;
-    }
-    [[nodiscard]] bool isDue() override { return is_due; }
-    /// Copies the entries that another process would find.
-    void takeFrom(const MemoryLedger& other, const std::string& prefix = "") {
-        for (const auto& [name, bytes] : other.kept_)
-            if (name.starts_with(prefix)) kept_[name] = bytes;
+    explicit TestResults(bool is_kept = false)
+        : results_(folder_ / "results", jobOfTest(), {}, is_kept) {}
+    [[nodiscard]] JobResults* get() { return &results_; }
+    /// What another process would find.
+    void takeFrom(const TestResults& other, const std::string& prefix = "") {
+        for (const std::string& key : other.results_.keys())
+            if (key.starts_with(prefix)) results_.store(key, other.results_.find(key).value());
     }
     [[nodiscard]] std::size_t size() const { return results_.keys().size(); }
 
@@ -156,8 +148,8 @@ TEST(SearchShare, ASearchGoesOnWhereItWasStopped) {
             int runs = 0;
             for (int asking = 2;; asking += 1 + asking / 4) {
                 SearchOptions resuming = options;
-                // A new process counts anew, and finds the stored steps.
-                MemoryLedger own;
+                // A new process counts anew, and finds what is kept.
+                TestResults own(true);
                 own.takeFrom(kept);
                 own.get()->setInterval(runs++ % 2 == 0 ? 0 : 1e6);
                 resuming.share.results = own.get();
@@ -174,7 +166,7 @@ TEST(SearchShare, ASearchGoesOnWhereItWasStopped) {
         }
 }
 
-/// Stored steps of another problem are ignored.
+/// What was kept is of another problem: it is not used.
 TEST(SearchShare, StepsOfAnotherProblemAreNotTaken) {
     const RandomProblem one = hardProblem(36), other = hardProblem(37);
     const SearchOptions options = searchOptions(Optimizer::Exact);
