@@ -85,8 +85,9 @@ SensorView viewOf(const Sensor& sensor, std::size_t index) {
             .max_range = maxRange(sensor.model)};
 }
 
-/// Cells whose centre lies in the polygon through the sensor and the ends of its beams, seen from
-/// above; a beam without return ends at max_range (thesis, section 4.5.2). `beams` as of castBeams.
+/// Returns the cells with their centre in the polygon through the sensor and the ends of its beams,
+/// seen from above; a beam without return ends at max_range (thesis, section 4.5.2). `beams` as
+/// castBeams returns them.
 CellSet cellsAmongBeams(const Grid& grid, const Sensor& sensor, std::span<const float> beams) {
     const Point3 origin = sensor.pose.position;
     Polygon outline;
@@ -101,16 +102,15 @@ CellSet cellsAmongBeams(const Grid& grid, const Sensor& sensor, std::span<const 
     return cellsWithin(grid, curves);
 }
 
-/// Runs both, at once if there are threads. Who waits for tasks within one does not begin with
-/// others: it may hold what these wait for.
+/// Runs both functions, in parallel if threads are free. A thread that waits for tasks in one does
+/// not start the other: it may hold a lock that these tasks need.
 template <typename F, typename G>
 void runBoth(F f, G g) {
     tbb::parallel_invoke([&] { tbb::this_task_arena::isolate(f); },
                          [&] { tbb::this_task_arena::isolate(g); });
 }
 
-/// Finds what every laser, ranger and receiver of a scene sees, in this order; shared out over all
-/// cores.
+/// Computes the view of each laser, ranger and receiver of a scene, in this order, in parallel.
 class Viewer {
   public:
     Viewer(const Scene& scene, Worlds& worlds, const Grid& grid, const CoverageOptions& options)
@@ -118,7 +118,7 @@ class Viewer {
 
     std::vector<SensorView> run() {
         makeViews();
-        // Height by height, so that no level is made twice.
+        // Sorted by height, so that each level is built once.
         std::map<double, std::vector<std::size_t>> at_height;
         for (std::size_t i = 0; i < views_.size(); ++i)
             at_height[sensorOf(views_[i]).pose.position.z].push_back(i);
@@ -128,7 +128,7 @@ class Viewer {
         const auto first = sight_.levelAt(groups.front().first);
         runBoth([&] { prepareWorlds(); }, [&] { prepareSight(*first, groups.front().second); });
         tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t k) {
-            // Whoever waits for others in here does not begin with another level or sensor.
+            // A thread that waits in here does not start another level or sensor.
             tbb::this_task_arena::isolate([&] {
                 const auto level = sight_.levelAt(groups[k].first);
                 tbb::parallel_for(std::size_t{0}, groups[k].second.size(), [&](std::size_t i) {
@@ -158,7 +158,7 @@ class Viewer {
             sight_.prepare(sensor);
         }
     }
-    /// What level sensors at a height see through; others are made when it is their turn.
+    /// Builds the worlds for level sensors at a height; other sensors build theirs on demand.
     void prepareSight(const Level& level, const std::vector<std::size_t>& views) const {
         const bool is_used = std::any_of(views.begin(), views.end(), [&](std::size_t i) {
             return scansSlice(sensorOf(views_[i]));
@@ -167,7 +167,7 @@ class Viewer {
         try {
             level.prepareSight();
         } catch (const FormatError&) {
-            return;  // who looks through it meets the error again
+            return;  // later calls report the error again
         }
     }
     [[nodiscard]] const Sensor& sensorOf(const SensorView& view) const {
@@ -187,7 +187,7 @@ class Viewer {
         }
         const Laser* laser = std::get_if<Laser>(&sensor.model);
         if (laser != nullptr) view.beams = castBeams(worlds_.at(sensor.pose), sensor);
-        // Beams are those of one scan: of a sweep they outline nothing.
+        // The beams of one scan are required: those of a sweep outline no polygon.
         const bool by_beams = laser != nullptr && options_.cells_by == CellRule::Beams &&
                               laser->sweep == SweepAxis::None;
         view.cells = by_beams && (scansSlice(sensor) || !isInsideSolid(sensor))
@@ -201,7 +201,7 @@ class Viewer {
         try {
             return sight_.regionOf(sensor);
         } catch (const FormatError&) {
-            return std::nullopt;  // more crossings than can be laid over each other
+            return std::nullopt;  // too many crossings for an overlay
         }
     }
 
@@ -229,7 +229,7 @@ class Viewer {
     std::vector<SensorView> views_;
 };
 
-/// Where at least kMinReceivers hear.
+/// Returns the region heard by at least kMinReceivers receivers.
 CoveredSet heardByEnough(const std::vector<const SensorView*>& receivers, const Grid& grid) {
     CoveredSet set;
     set.cells = CellSet(grid.size());
@@ -242,7 +242,8 @@ CoveredSet heardByEnough(const std::vector<const SensorView*>& receivers, const 
     return set;
 }
 
-/// The sets that count, of these views: each laser and ranger, then all receivers together.
+/// Returns the covered sets of these views: one for each laser and ranger, then one for all
+/// receivers.
 std::vector<CoveredSet> setsOf(const std::vector<SensorView>& views, const Grid& grid) {
     std::vector<CoveredSet> sets;
     std::vector<const SensorView*> receivers;
@@ -268,7 +269,7 @@ SensorMetrics metricsOf(const Scene& scene, const SensorView& view, const Grid& 
     return metrics;
 }
 
-/// Cells are a bit a sensor, twice: of its view, and of the set it is.
+/// Memory: two bits a sensor and cell, one of the view and one of the covered set.
 void mustFit(const Scene& scene, const Grid& grid) {
     constexpr double kMaxBytes = 8e9;
     const auto sensors =
@@ -280,7 +281,7 @@ void mustFit(const Scene& scene, const Grid& grid) {
                          " GB: use fewer cells");
 }
 
-/// Exact metrics, or the reason why there are none.
+/// Computes the exact metrics, or stores the reason why they are missing.
 void tryExactMetrics(Coverage& coverage, const Environment& environment, FloorCurves floor,
                      const std::vector<Zone>& zones, bool keep_depths) {
     std::string& missing = coverage.report.exact_missing;
@@ -301,7 +302,7 @@ void tryExactMetrics(Coverage& coverage, const Environment& environment, FloorCu
     }
 }
 
-/// Layers of both, told apart by their numbers.
+/// Labels of the two layouts' layers, kept apart by their numbers.
 constexpr std::int64_t kThisNumber = 1, kOtherNumber = std::int64_t{1} << 32;
 
 void addLayers(const Coverage& coverage, std::int64_t number, std::vector<Layer>& layers) {
@@ -324,7 +325,7 @@ void compareExactly(const Coverage& coverage, const Coverage& other, const Regio
             if (label.numbers % kOtherNumber == 0) lost += area;
         });
     } catch (const FormatError&) {
-        return;  // each for itself could be laid out, but not both together
+        return;  // each layout fits an overlay, but not both together
     }
     comparison.gained.exact = std::max(0.0, gained);
     comparison.lost.exact = std::max(0.0, lost);
@@ -345,7 +346,8 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
                 coverage.target = makeTarget(environment, options.cells, options.height);
                 report.free_area = totalArea(level->freeFloor());
                 if (options.exact) floor = floorCurvesOf(environment, level->freeFloor());
-                static_cast<void>(scene.digest());  // made here, beside the views, and kept
+                static_cast<void>(
+                    scene.digest());  // computed here, in parallel with the views, and cached
             });
     coverage.sets = setsOf(coverage.sensors, grid);
 

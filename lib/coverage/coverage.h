@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/coverage: cells, areas, coverage and its map. Uses sense, draw and below; TBB inside.
-// Covered floor as regions, for formats of areas: exact where that is known (see withArcAreas()),
-// else outlines of cells.
+// lib/coverage: cells, areas, coverage and its map. Uses sense, drawing and below; TBB inside.
+// Returns covered floor as regions for vector formats: exact if they are known (see
+// withArcAreas()), else outlines of cells.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,15 @@
 
 namespace ispace {
 
-/// When a cell counts as seen by a laser.
+/// Decides whether a laser sees a cell.
 enum class CellRule {
-    Region,  ///< its centre lies in what the laser sees, as exactly as doubles are
-    Beams,   ///< in the polygon through the ends of its beams (thesis, section 4.5.2)
+    Region,  ///< the cell centre lies in the exact view, up to rounding
+    Beams,   ///< the centre lies in the polygon through the ends of the beams (thesis,
+             ///< section 4.5.2)
 };
 
-/// Floor that so many cameras see whose axes are pairwise so far apart, for stereo and tracking.
+/// Area seen by at least K cameras with axes that differ pairwise by at least an angle, for stereo
+/// and tracking.
 struct ParallaxChoice {
     Angle least = Angle::degrees(30);
     int cameras = 2;
@@ -33,116 +35,118 @@ struct ParallaxChoice {
 
 struct CoverageOptions {
     CellChoice cells = RoomCells();
-    double height = kScanHeight;  ///< at which the floor is free or not
-    double plane = 0;             ///< height of what rangers, cameras and ultrasound cover
-    double density = 0;  ///< cameras cover where they have so many pixels a metre; 0: all in view
+    double height = kScanHeight;  ///< height at which the free floor is computed
+    double plane = 0;    ///< height of the plane that rangers, cameras and ultrasound cover
+    double density = 0;  ///< pixels a metre that a camera requires to cover floor; 0: any
     CellRule cells_by = CellRule::Region;
-    bool exact = true;  ///< closed forms beside the cells
-    /// Keep in Coverage::overlay by how many sensors and by which floor is seen; else whether any
-    /// does (count 0 or 1), which takes much less memory where many look at the same floor.
+    bool exact = true;  ///< computes closed forms, too
+    /// Stores the number of sensors in Coverage::overlay; else only whether any sensor sees the
+    /// floor (count 0 or 1), which takes much less memory where many views overlap.
     bool keep_depths = true;
     std::optional<ParallaxChoice> parallax = {};
 };
 
-/// A metric by cells and in closed form; one that is not known is empty (null in JSON), as a share
-/// by cells of what holds no centre of any.
+/// A metric by cells and in closed form. Empty (null in JSON) if unknown, e.g. a share by cells of
+/// an area without cell centres.
 struct Metric {
     std::optional<double> grid, exact;
 };
 
-/// What a camera makes of the plane.
+/// Metrics of a camera's view of the plane.
 struct PictureMetrics {
-    /// With at least the pixels of each of pixelDensities(), m2; of its whole field of view,
-    /// whatever density is asked for.
+    /// Area with at least the pixels of each of pixelDensities(), m2, of the whole field of view,
+    /// independent of the requested density.
     std::vector<Metric> areas;
-    /// Of what it covers, along the plane from the place below or above it; none if it covers
-    /// nothing.
+    /// Distances in the plane from the sensor's foot to the nearest and farthest covered point;
+    /// empty if the sensor covers no floor.
     std::optional<double> nearest = {}, farthest = {};
-    Metric mean_density = {};  ///< over what it covers, pixels a metre
+    Metric mean_density = {};  ///< mean over the covered area, pixels a metre
 };
 
 struct SensorMetrics {
-    std::string id, model;  ///< model "" for a bare sensor
+    std::string id, model;  ///< model is "" for a sensor without one
     const SensorKind* kind = &kLaserKind;
-    std::optional<double> slice_area = {};       ///< eq. (4.4), m2; of lasers
-    Metric area = {};                            ///< of its region, m2; what a receiver hears
-    Metric marginal = {};                        ///< lost if this sensor is removed, m2
-    Metric overlap = {};                         ///< that others see, too, m2; not of receivers
+    std::optional<double> slice_area = {};  ///< eq. (4.4), m2; of lasers
+    Metric area = {};      ///< of its region, m2; of a receiver the region that it hears
+    Metric marginal = {};  ///< area lost if this sensor is removed, m2
+    Metric overlap = {};   ///< area that other sensors see, too, m2; not of receivers
     std::optional<PictureMetrics> picture = {};  ///< of cameras
 };
 
 struct ZoneMetrics {
     std::string id;
     double area = 0;                     ///< of its indoor part, exact, m2
-    Metric coverage = {};                ///< of that part; exact is 0 where there is none
-    std::vector<Metric> densities = {};  ///< as DensityMetrics::indoor, of that part
+    Metric coverage = {};                ///< of the indoor part; exact is 0 if that is empty
+    std::vector<Metric> densities = {};  ///< as DensityMetrics::indoor, of the indoor part
 };
 
-/// Shares of the floor that some camera sees with at least the pixels of each of pixelDensities(),
-/// whatever density is asked for. Empty without cameras.
+/// Shares of the floor seen by cameras with at least the pixels of each of pixelDensities(),
+/// independent of the requested density. Empty without cameras.
 struct DensityMetrics {
-    Metric seen;  ///< of the indoor region: by any camera, at the density that is asked for
+    Metric seen;  ///< share of the indoor region seen by any camera at the requested density
     std::vector<Metric> indoor, free;
 };
 
 /// A connected piece of floor that no sensor sees.
 struct UncoveredSpot {
-    Point2 place;  ///< inside, well away from the rim where it can be
+    Point2 place;  ///< an inner point, away from the boundary if the piece is wide enough
     double area = 0;
 };
 
-/// Pieces of less m2 are left out: what rounding cuts off.
+/// Smaller pieces, m2, are skipped as rounding errors.
 constexpr double kMinPiece = 1e-4;
 
-/// What another layout of the same room sees, beside this one.
+/// Compares this layout with another one of the same room.
 struct Comparison {
     std::string name;
-    Metric coverage;  ///< of the other one
-    Metric gained = {},
-           lost = {};  ///< indoor area seen by this layout alone, by the other alone, m2
+    Metric coverage;                ///< of the other layout
+    Metric gained = {}, lost = {};  ///< indoor area that only this layout sees, and that only the
+                                    ///< other one sees, m2
 };
 
-/// The metrics of DESIGN's `coverage --json`, and more.
+/// The metrics that `coverage` reports as text and JSON.
 struct CoverageReport {
     std::string digest;
     Box2 limits;  ///< of the room; square cells may reach beyond
     Grid grid;
     double height = 0, plane = 0;
-    double density = 0;                     ///< as asked for; 0: none
+    double density = 0;                     ///< requested pixels a metre; 0: not requested
     double indoor_area = 0, free_area = 0;  ///< exact, m2
     std::vector<SensorMetrics> sensors;     ///< by kind
-    Metric total_effective_area;            ///< eq. (4.6), m2; all cells, indoor or not
-    Metric overlap;                         ///< seen by two and more, m2; indoor or not
+    Metric total_effective_area;            ///< eq. (4.6), m2; of all cells, indoor or not
+    Metric overlap;                         ///< area seen by two sensors or more, m2; indoor or not
     Metric coverage;                        ///< eq. (4.7), fraction of the indoor region
-    Metric free_coverage;                   ///< fraction of the free floor
-    std::vector<double> redundancy;  ///< [k]: share of indoor cells seen by exactly k sensors (all
-                                     ///< ultrasonic receivers count as one); all 0 where no cell
-                                     ///< is indoor
+    Metric free_coverage;                   ///< share of the free floor
+    std::vector<double>
+        redundancy;  ///< [k]: share of indoor cells seen by exactly k sensors (all ultrasonic
+                     ///< receivers count as one); all 0 without indoor cells
     std::optional<std::vector<double>> redundancy_exact;
-    std::vector<ZoneMetrics> zones;  ///< in the order of their records
-    /// Connected pieces of the covered indoor floor (thesis 4.1 f) and the share of the largest in
-    /// it, 0 without any; walls part them. Where that is not known exactly, of cells, which walls
-    /// do not part.
+    std::vector<ZoneMetrics> zones;  ///< in the order of the zones' records
+    /// Number of connected pieces of the covered indoor floor (thesis 4.1 f) and the share of the
+    /// largest in it, 0 without covered floor; walls separate pieces. If the exact region is
+    /// unknown, pieces of cells, which walls do not separate.
     std::size_t pieces = 0;
     double largest_piece = 0;
-    /// Pieces of the free floor that no sensor sees, the largest first. Likewise.
+    /// Pieces of the free floor that no sensor sees, sorted by size, the largest first; by cells if
+    /// the exact region is unknown.
     std::vector<UncoveredSpot> unseen;
     std::optional<Comparison> comparison;
     DensityMetrics densities;
     std::optional<ParallaxChoice> parallax;
     Metric parallax_coverage;  ///< share of the indoor region
-    /// Why exact metrics of all together are missing; "" where they are there or nobody asked.
+    /// Reason why exact metrics of all sensors are missing; "" if they were computed or not
+    /// requested.
     std::string exact_missing;
 };
 
-/// Floor that counts as seen by one: what a laser or a ranger sees, or where at least four
-/// ultrasonic receivers hear.
+/// A set that covers floor: the view of a laser or a ranger, or the floor where at least four
+/// ultrasonic receivers hear a tag.
 struct CoveredSet {
     CellSet cells = CellSet();
     std::optional<std::vector<Curve>> region = {};
 };
 
-/// What one sensor sees.
+/// The view of one sensor.
 struct SensorView {
     const SensorKind* kind = &kLaserKind;
     std::size_t index = 0;  ///< in Scene::sensors
@@ -150,33 +154,33 @@ struct SensorView {
     Pose3 pose;
     double max_range = 0;
     CellSet cells = CellSet();
-    /// Its exact region: disjoint curves, what is seen on their left; nothing if not known.
+    /// Exact region: disjoint curves with the seen floor on their left; empty if unknown.
     std::optional<std::vector<Curve>> region = {};
-    std::vector<float> beams = {};  ///< of a laser, as of castBeams
-    /// Of a camera: what has the pixels of each of pixelDensities().
+    std::vector<float> beams = {};  ///< of a laser, as castBeams returns them
+    /// Of a camera: the floor seen with the pixels of each of pixelDensities().
     std::vector<CoveredSet> classes = {};
 
-    /// It covers floor only together with others.
+    /// True for a sensor that covers floor only together with others.
     [[nodiscard]] bool isPartial() const { return kind->together > 1; }
 };
 
 /// Bits of LayerLabel::marks in Coverage::overlay.
 constexpr std::uint64_t kIndoorMark = 1, kFreeMark = 2;
 
-/// Report and what is behind it, for maps.
+/// The report, with the regions and cells that maps require.
 struct Coverage {
     CoverageReport report;
     Target target;
     std::vector<SensorView> sensors;  ///< as report.sensors
-    /// One for each laser and ranger, in order, then one for all receivers if there are any.
+    /// One set for each laser and ranger, in order, then one for all receivers if there are any.
     std::vector<CoveredSet> sets;
-    /// The regions of all sets (count, number i + 1 of set i; see CoverageOptions::keep_depths)
-    /// over indoor region and free floor (marks). Nothing where a region is not known or nobody
-    /// asked.
+    /// Overlay of all regions (count, number i + 1 of set i; see CoverageOptions::keep_depths) on
+    /// indoor region and free floor (marks). Empty if a region is unknown or exact metrics were not
+    /// requested.
     std::optional<Overlay> overlay;
-    /// Indoor region and free floor (marks as above), what cameras see at all (kCameraMark) and
-    /// with the pixels of each of pixelDensities() (classMark), and some zones each
-    /// (densityZoneMark). Empty without cameras and where the region of one is not known.
+    /// Overlays of indoor region and free floor (marks as above), the cameras' views (kCameraMark),
+    /// the floor with the pixels of each of pixelDensities() (classMark), and some zones each
+    /// (densityZoneMark). Empty without cameras, or if the region of one is unknown.
     std::vector<Overlay> density_overlays;
 };
 
@@ -189,35 +193,36 @@ constexpr std::uint64_t densityZoneMark(std::size_t zone) {
     return std::uint64_t{1} << (16 + zone % kDensityZones);
 }
 
-/// Measures all placed lasers, rangers, cameras and ultrasonic receivers of a scene. Deterministic
-/// for any number of threads. \throws UsageError as makeTarget
+/// Computes the coverage of all placed lasers, rangers, cameras and ultrasonic receivers of a
+/// scene. Deterministic for any number of threads. \throws UsageError as makeTarget
 Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options);
 
 /// Sets report.comparison of `coverage`. \pre both were measured with the same options in the room
-/// that has this indoor region
+/// with this indoor region
 void compare(Coverage& coverage, const Coverage& other, const Regions& indoor,
              const std::string& name);
 
-/// By how many sets each cell of the grid is seen: the redundancy of a cell.
+/// Returns the redundancy of each cell: the number of sets that see it.
 std::vector<std::uint32_t> timesSeen(const Coverage& coverage);
-/// Cells seen by any.
+/// Returns the cells that any set covers.
 CellSet coveredCells(const Coverage& coverage);
 
-/// Cells that some camera sees with the pixels of a class, by its index.
+/// Returns the cells that cameras see with the pixels of a class, by its index.
 CellSet cellsOfClass(const Coverage& coverage, std::size_t index);
 
-/// Share of target cells that a union covers: eq. (4.7) on cells; nothing where the target has
-/// none.
+/// Returns the share of target cells in a union, eq. (4.7) on cells; empty if the target has no
+/// cells.
 std::optional<double> coveredShare(const CellSet& covered, const CellSet& target);
 
-/// The most sensors that see one place. \param cell_times timesSeen()
+/// Returns the largest redundancy of a cell. \param cell_times timesSeen()
 std::uint32_t maxMultiplicity(const Coverage& coverage,
                               const std::vector<std::uint32_t>& cell_times);
 
-/// What one sensor sees.
+/// Returns the view of one sensor as regions.
 std::vector<Region> viewRegions(const SensorView& view, const Grid& grid);
 
-/// Indoor floor seen by exactly so many sensors; 0: the unseen. \param cell_times timesSeen()
+/// Returns the indoor floor seen by exactly `times` sensors; 0: the unseen. \param cell_times
+/// timesSeen()
 std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
                            const std::vector<std::uint32_t>& cell_times);
 

@@ -33,8 +33,8 @@ std::size_t countSeenOnce(const CellSet& cells, const std::vector<std::uint32_t>
     return count;
 }
 
-/// Cells that are lost if one receiver is removed: those that just enough receivers hear, this one
-/// among them, and nothing else sees.
+/// Counts the cells lost if one receiver is removed: those heard by just enough receivers,
+/// including it, and not seen by another set.
 std::size_t countNeeding(const Coverage& coverage, const CellSet& heard_by_this,
                          const std::vector<std::uint16_t>& heard,
                          const std::vector<std::uint32_t>& times) {
@@ -69,7 +69,7 @@ void addSensorMetrics(Coverage& coverage, const std::vector<std::uint32_t>& time
     }
 }
 
-/// The pieces of free floor that nothing sees, the largest first.
+/// Adds the unseen pieces of free floor, the largest first.
 void addUnseen(Coverage& coverage, const CellSet& covered) {
     const Grid& grid = coverage.target.grid;
     CellSet cells = coverage.target.free;
@@ -137,7 +137,7 @@ void addCellMetrics(Coverage& coverage, const std::vector<Zone>& zones) {
 
 namespace {
 
-/// Zones take the bits from here on; of more than fit, the others are measured in further passes.
+/// Zones take the bits from here on; further zones require further passes.
 constexpr std::size_t kFirstZoneBit = 2, kZonesAtOnce = 62;
 
 std::uint64_t zoneMark(std::size_t zone) {
@@ -156,7 +156,7 @@ void addZoneLayers(std::span<const Zone> zones, std::vector<Layer>& layers) {
     }
 }
 
-/// Calls visit(zone) for each zone that holds a face, if it is of the indoor region.
+/// Calls visit(zone) for each zone that holds an indoor face.
 template <typename Visit>
 void forEachIndoorZone(const LayerLabel& label, Visit visit) {
     if ((label.marks & kIndoorMark) == 0) return;
@@ -164,7 +164,7 @@ void forEachIndoorZone(const LayerLabel& label, Visit visit) {
         visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
-/// All sets over indoor region, free floor and some zones.
+/// Returns the layers of all sets, the indoor region, the free floor and some zones.
 std::vector<Layer> layersOf(const Coverage& coverage, FloorCurves floor,
                             std::span<const Zone> zones) {
     std::vector<Layer> layers;
@@ -178,12 +178,12 @@ std::vector<Layer> layersOf(const Coverage& coverage, FloorCurves floor,
     return layers;
 }
 
-/// Whether anything is seen, and on which floor.
+/// Reduces the count to 0 or 1 and keeps the floor marks.
 LayerLabel withoutDepths(const LayerLabel& label) {
     return {.count = std::min(label.count, 1), .marks = label.marks & (kIndoorMark | kFreeMark)};
 }
 
-/// Areas of an overlay, by what they count for.
+/// Areas of an overlay's faces, by count and set.
 struct Areas {
     double covered = 0, repeated = 0, free_covered = 0;
     std::vector<double> indoor_by_count;  // [k], k > 0
@@ -217,7 +217,7 @@ struct ZoneAreas {
     }
 };
 
-/// The connected regions of faces whose label satisfies `in`, with their areas.
+/// Connected regions of faces with a label that satisfies `in`, with their areas.
 struct Pieces {
     std::vector<Region> regions;
     std::vector<double> areas;
@@ -256,7 +256,7 @@ void addPieces(CoverageReport& report, const Overlay& overlay) {
         [](const UncoveredSpot& a, const UncoveredSpot& b) { return a.area > b.area; });
 }
 
-/// Of the sensors whose views are sets of their own: not of receivers.
+/// Sets the metrics of sensors with a covered set each: not of receivers.
 void addSensors(Coverage& coverage, const Areas& areas) {
     std::size_t set = 0;
     for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
@@ -270,8 +270,8 @@ void addSensors(Coverage& coverage, const Areas& areas) {
     }
 }
 
-/// What is lost without one receiver: what enough of them hear with it alone, and nothing else
-/// sees. Left out for more receivers than there are marks.
+/// Computes the area lost without each receiver: heard by just enough receivers including it, and
+/// not seen by another set. Skipped if there are more receivers than marks.
 void addReceivers(Coverage& coverage) {
     constexpr std::size_t kMax = 62;
     std::vector<const SensorView*> receivers;
@@ -334,7 +334,7 @@ void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCu
     CoverageReport& report = coverage.report;
     Areas areas(coverage.sets.size());
     const auto level = environment.level(coverage.target.height);
-    std::optional<Overlay> main;  // with the first zones
+    std::optional<Overlay> main;  // holds the first zones
     for (std::size_t first = 0; first == 0 || first < zones.size(); first += kZonesAtOnce) {
         const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
         const bool is_last = first + kZonesAtOnce >= zones.size();
@@ -357,7 +357,7 @@ void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCu
         by_zone.setShares(std::span(report.zones).subspan(first, count));
     }
     addReceivers(coverage);
-    coverage.overlay = std::move(main);  // from here on nothing throws
+    coverage.overlay = std::move(main);  // does not throw from here on
 
     report.total_effective_area.exact = std::max(0.0, areas.covered);
     report.overlap.exact = std::max(0.0, areas.repeated);

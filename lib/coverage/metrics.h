@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/coverage only: what the parts of measureCoverage() share.
+// Private to lib/coverage: steps that measureCoverage() shares between its sources.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-/// The region that at least kMinReceivers of these hear; nothing if it is not known.
+/// Returns the region heard by at least kMinReceivers of these receivers; empty if unknown.
 std::optional<std::vector<Curve>> regionHeardByEnough(std::span<const SensorView* const> receivers);
 /// A zone of the environment.
 struct Zone {
@@ -19,11 +19,11 @@ struct Zone {
     Polygon outline;
 };
 std::vector<Zone> zonesOf(const Environment& environment);
-/// Their indoor areas, exact.
+/// Computes the zones' exact indoor areas.
 std::vector<ZoneMetrics> zoneMetricsOf(const Environment& environment,
                                        const std::vector<Zone>& zones);
 
-/// Sets what the report says by cells, of a Coverage whose target, sensors and sets are there.
+/// Sets the metrics by cells of report. \pre target, sensors and sets are set
 void addCellMetrics(Coverage& coverage, const std::vector<Zone>& zones);
 
 /// Boundaries of the indoor region and of its free floor, arcs included.
@@ -32,12 +32,12 @@ struct FloorCurves {
 };
 FloorCurves floorCurvesOf(const Environment& environment, const std::vector<Region>& free_floor);
 
-/// Makes the overlay, with depths or without, and sets what the report says in closed form.
-/// \pre all regions are known
+/// Builds the overlay, with or without depths, and sets the exact metrics of the report. \pre all
+/// regions are known
 void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCurves floor,
                      const std::vector<Zone>& zones, bool keep_depths);
 
-/// A share of `whole`, from 0 to 1 whatever rounds; 0 of nothing
+/// Returns part / whole, clamped to [0, 1] against rounding; 0 if `whole` is 0
 double shareOf(double part, double whole);
 
 }  // namespace ispace

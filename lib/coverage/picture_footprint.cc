@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The border of a camera's picture, bent by the lens, as a curve on a level plane.
+// Maps the border of a camera's picture, distorted by the lens, to a curve on a level plane.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,8 +16,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr int kHalvings = 52;
 
-/// The last place at which `is_inside` still holds, on the way from one where it does to one where
-/// it does not.
+/// Finds by bisection the last point inside, between a point inside and one outside.
 template <typename IsInside>
 double lastInside(double inside, double outside, IsInside is_inside) {
     for (int i = 0; i < kHalvings; ++i) {
@@ -27,15 +26,15 @@ double lastInside(double inside, double outside, IsInside is_inside) {
     return inside;
 }
 
-/// A smooth piece of the border: along a side of the picture, or along the circle where the lens
-/// ends. Pieces run counter-clockwise around what the camera sees, as it sees it.
+/// A smooth piece of the border: along a side of the picture, or along the circle at which the lens
+/// ends. Pieces run counter-clockwise around the picture as the camera sees it.
 struct Piece {
-    int side = 0;                ///< 4: of the circle
-    double first = 0, last = 1;  ///< parameters: of a side 0 to 1, of the circle radians
+    int side = 0;                ///< 4: the circle
+    double first = 0, last = 1;  ///< parameters: 0 to 1 on a side, radians on the circle
 };
 constexpr int kCircle = 4;
 
-/// What holds the directions in a picture.
+/// The border that encloses the directions in a picture.
 class Border {
   public:
     explicit Border(const Camera& camera) : camera_(camera) {
@@ -43,7 +42,7 @@ class Border {
         for (int side = 0; side < kCircle; ++side) addSide(side, sides);
         if (sides.empty()) {
             shows_all_ = camera.holds({camera.cx, camera.cy});
-            // At 180 degrees the circle is the point behind the camera.
+            // At 180 degrees the circle shrinks to the point behind the camera.
             constexpr double kPoint = 1e-6;
             if (shows_all_ && camera.widest.radians() < kPi - kPoint)
                 pieces_.push_back({kCircle, 0, 2 * kPi});
@@ -59,10 +58,11 @@ class Border {
         }
     }
     [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
-    /// Without pieces: all directions are in the picture, else none.
+    /// Tells apart the two cases without pieces: every direction is in the picture, or no
+    /// direction.
     [[nodiscard]] bool showsAll() const { return shows_all_; }
 
-    /// A direction of unit length in the camera's frame.
+    /// Returns a unit direction in the camera's frame.
     [[nodiscard]] Vec3 at(const Piece& piece, double t) const {
         if (piece.side == kCircle) return onCircle(t);
         const PixelPoint place = onSide(piece.side, t);
@@ -71,12 +71,12 @@ class Border {
     }
 
   private:
-    /// `around`: 0 is the right in the picture, a quarter turn up.
+    /// `around`: 0 is right in the picture, a quarter turn is up.
     [[nodiscard]] Vec3 onCircle(double around) const {
         const auto [c, s] = cosSin(camera_.widest);
         return {c, -s * std::cos(around), s * std::sin(around)};
     }
-    /// Sides: the lower, the right, the upper, the left one.
+    /// Sides in order: lower, right, upper, left.
     [[nodiscard]] PixelPoint onSide(int side, double t) const {
         const double left = -0.5, right = camera_.columns - 0.5, top = -0.5,
                      bottom = camera_.rows - 0.5;
@@ -87,10 +87,10 @@ class Border {
         if (t == 1) return b;
         return {a.column + t * (b.column - a.column), a.row + t * (b.row - a.row)};
     }
-    /// The parts of a side of which the lens shows something.
+    /// Adds the pieces of a side within the lens's field of view.
     void addSide(int side, std::vector<Piece>& pieces) const {
         const auto shows = [&](double t) { return camera_.ray(onSide(side, t)).has_value(); };
-        // The place nearest to the centre is the last one that the lens gives up.
+        // The point nearest to the centre is the last one that the lens maps.
         const bool is_level = side % 2 == 0;
         const PixelPoint a = onSide(side, 0), b = onSide(side, 1);
         const double nearest = is_level ? (camera_.cx - a.column) / (b.column - a.column)
@@ -122,10 +122,10 @@ class Border {
     bool shows_all_ = false;
 };
 
-/// How finely a piece is searched for places where it passes a plane.
+/// Number of steps in which a piece is searched for crossings with a plane.
 constexpr int kSearchSteps = 64;
 
-/// Traces the border on a plane over or under the sensor. What lies at or beyond the horizon is
+/// Traces the border on a plane above or below the sensor. Points at or beyond the horizon are
 /// replaced by a circle about the foot, well out of reach.
 class Tracer {
   public:
@@ -147,10 +147,10 @@ class Tracer {
     }
 
   private:
-    /// A run of the border that is nearer than the circle.
+    /// A part of the border nearer than the circle.
     struct Part {
         Curve curve;
-        double entry = 0, exit = 0;  ///< where it leaves and meets the circle, radians
+        double entry = 0, exit = 0;  ///< angles at which it leaves and meets the circle, radians
         bool is_used = false;
     };
 
@@ -158,7 +158,7 @@ class Tracer {
         const Frame3& f = view_.frame;
         return {dot(way, f.forward), dot(way, f.left), dot(way, f.up)};
     }
-    /// Seen from above the plane, the border runs the other way if the camera looks up at it.
+    /// If the camera looks up at the plane, the border seen from above runs the other way.
     [[nodiscard]] Vec3 direction(const Piece& piece, double t) const {
         const double share = drop_ < 0 ? t : 1 - t;
         return view_.frame * border_.at(piece, piece.first + share * (piece.last - piece.first));
@@ -175,14 +175,14 @@ class Tracer {
     void traceAll() {
         std::vector<Piece> pieces = border_.pieces();
         if (drop_ > 0) std::reverse(pieces.begin(), pieces.end());
-        bool is_open = false;  // the part before goes on
+        bool is_open = false;  // the previous part continues
         for (const Piece& piece : pieces) trace(piece, is_open);
         if (parts_.empty() || !is_open || !isNear(direction(pieces.front(), 0))) return;
         if (parts_.size() == 1) {
             is_closed_ = true;
             return;
         }
-        // The last part goes on in the first.
+        // The last part continues in the first.
         Part& last = parts_.back();
         last.curve.insert(last.curve.end(), parts_.front().curve.begin(),
                           parts_.front().curve.end());
@@ -243,7 +243,7 @@ class Tracer {
         std::erase_if(curve, [](const CurveEdge& edge) { return edge.from == edge.to; });
     }
 
-    /// What a border holds that is near all around, or what is around it.
+    /// Returns the area of a closed border without far points, or its complement.
     [[nodiscard]] std::vector<Curve> closed(Curve curve) const {
         close(curve);
         if (signedArea(curve) > 0) return {std::move(curve)};
@@ -252,8 +252,8 @@ class Tracer {
         close(around);
         return {std::move(around), std::move(curve)};
     }
-    /// What is in view lies on the left: from where a part leaves, the circle runs
-    /// counter-clockwise to where the next one comes back.
+    /// The area in view lies on the left: from the end of a part, the circle runs counter-clockwise
+    /// to the start of the next part.
     std::vector<Curve> linked() {
         std::vector<Curve> curves;
         const auto turn = [](double from, double to) {
@@ -289,7 +289,7 @@ class Tracer {
     bool is_closed_ = false;
 };
 
-/// The bearings in view of the plane through the sensor, as sectors about the foot.
+/// Computes the bearings in view in the plane through the sensor, as sectors about the foot.
 std::optional<std::vector<Curve>> bearingsInView(const FieldOfView& view, const Border& border,
                                                  double reach) {
     std::vector<double> turns;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all cameras together see, by density of pixels and by the angles between their axes.
+// Computes pixel densities of all cameras, and the parallax from the angles between their axes.
 #include "coverage/pixel_density.h"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ std::vector<Curve> FloorDensity::least(double pixels_per_metre, const Box2& box)
 
 namespace {
 
-/// Mean of ln(t) for t from a to b, both over 0.
+/// Mean of ln(t) for t from a to b, both positive.
 double meanLog(double a, double b) {
     const double step = b - a, middle = a + step / 2;
     if (std::fabs(step) < 1e-2 * middle) {
@@ -66,8 +66,8 @@ double meanLog(double a, double b) {
 
 }  // namespace
 
-/// The part of an edge in the integral of focal / depth, by Green's theorem: depth grows along one
-/// direction of the plane, and edges count by how far they go across it.
+/// Computes the contribution of an edge to the integral of focal / depth, by Green's theorem: depth
+/// grows along one direction of the plane, and edges are weighted by their extent across it.
 double FloorDensity::alongAxis(Point2 a, Point2 b) const {
     constexpr double kNearest = 1e-12;
     const Vec2 uphill{axis_.x / slope_, axis_.y / slope_};
@@ -77,7 +77,7 @@ double FloorDensity::alongAxis(Point2 a, Point2 b) const {
     return focal_ / slope_ * cross(uphill, b - a) * meanLog(depth(a), depth(b));
 }
 
-/// Likewise of focal / distance, by the angle that edges span about the foot.
+/// Likewise of focal / distance, weighted by the angle that an edge spans about the foot.
 double FloorDensity::around(Point2 a, Point2 b) const {
     constexpr std::array<double, 4> kPlaces = {-0.861136311594052575, -0.339981043584856265,
                                                0.339981043584856265, 0.861136311594052575};
@@ -140,7 +140,7 @@ std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
 
 namespace {
 
-/// How near and how far curves come to a place; 0 near if they hold it.
+/// Adds the least and greatest distance of curves from a point; the least is 0 if they enclose it.
 void addDistances(const std::vector<Curve>& curves, Point2 foot, PictureMetrics& metrics) {
     bool is_inside = false;
     for (const Curve& curve : curves) {
@@ -200,7 +200,7 @@ Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
     return {.curves = std::move(curves), .counts = false, .marks = marks};
 }
 
-/// The zones from `first` on, as many as fit.
+/// Builds the overlay of as many zones from `first` on as fit.
 Overlay densityOverlay(const Coverage& coverage, const Environment& environment,
                        const std::vector<Region>& free_floor, std::span<const Zone> zones) {
     std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoorMark)};
@@ -221,7 +221,7 @@ Overlay densityOverlay(const Coverage& coverage, const Environment& environment,
     return Overlay(layers, environment.slice(coverage.target.height).sheets);
 }
 
-/// The exact shares, of the indoor region, the free floor, and the zones from `first` on.
+/// Sets the exact shares of the indoor region, the free floor, and the zones from `first` on.
 void addShares(CoverageReport& report, const Overlay& overlay, std::size_t first) {
     const std::size_t classes = pixelDensities().size();
     const std::size_t zones = std::min(kDensityZones, report.zones.size() - first);
@@ -290,7 +290,7 @@ void addDensities(Coverage& coverage, const Environment& environment,
                 std::span(zones).subspan(first, std::min(kDensityZones, zones.size() - first))));
         coverage.density_overlays = std::move(overlays);
     } catch (const FormatError&) {
-        return;  // more crossings than can be laid over each other: by cells only
+        return;  // too many crossings for an overlay: by cells only
     }
     for (std::size_t i = 0; i < coverage.density_overlays.size(); ++i)
         addShares(report, coverage.density_overlays[i], i * kDensityZones);
@@ -298,11 +298,11 @@ void addDensities(Coverage& coverage, const Environment& environment,
 
 namespace {
 
-/// Cameras have bits; sets of them are words.
+/// A set of cameras, a bit each.
 using CameraBits = std::uint64_t;
 constexpr std::size_t kMaxExact = 60;
 
-/// Which sets of cameras hold so many whose axes are pairwise far enough apart.
+/// Decides whether a set of cameras holds `count` with axes that differ pairwise by enough.
 class AxisPairs {
   public:
     AxisPairs(const std::vector<const SensorView*>& cameras, const ParallaxChoice& choice)
@@ -314,7 +314,7 @@ class AxisPairs {
                     dot(Frame3(cameras[i]->pose).forward, Frame3(cameras[k]->pose).forward) <= most)
                     apart_[i].push_back(k);
     }
-    /// `seen_by[i]`: whether camera i is in the set.
+    /// `seen_by[i]` is true if camera i is in the set.
     [[nodiscard]] bool isEnough(const std::vector<bool>& seen_by) const {
         std::vector<std::size_t> all;
         for (std::size_t i = 0; i < seen_by.size(); ++i)
@@ -323,7 +323,7 @@ class AxisPairs {
     }
 
   private:
-    /// True if `count` of these are pairwise apart.
+    /// True if `count` of these cameras differ pairwise by enough.
     [[nodiscard]] bool canChoose(const std::vector<std::size_t>& from, int count) const {
         if (count <= 0) return true;
         if (from.size() < static_cast<std::size_t>(count)) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/coverage only: what cameras make of the plane, one by one and together.
+// Private to lib/coverage: metrics of cameras on a plane, one by one and together.
 #pragma once
 
 #include <span>
@@ -11,18 +11,19 @@
 
 namespace ispace {
 
-/// How many pixels a metre a camera has on a level plane, see rangeOf(): its focal length over
-/// depth or distance.
+/// Pixels a metre of a camera on a level plane, see rangeOf(): its focal length divided by depth or
+/// distance.
 class FloorDensity {
   public:
     FloorDensity(const Camera& camera, const Pose3& pose, double plane);
 
-    /// At a place of the plane; +infinity at the camera and, of a pinhole, beside it.
+    /// Returns the density at a point of the plane; +infinity at the camera and, of a pinhole,
+    /// beside it.
     [[nodiscard]] double at(Point2 place) const;
-    /// What of `box` has at least so many; of a fisheye or mirror all around the foot. No curves:
-    /// nothing has.
+    /// Returns the part of `box` with at least this density, for a fisheye or mirror a disc about
+    /// the foot. Empty curves if it is lower everywhere.
     [[nodiscard]] std::vector<Curve> least(double pixels_per_metre, const Box2& box) const;
-    /// Integral over what curves hold, in pixels times metres. Chords stand for arcs.
+    /// Integrates the density over the area of curves, in pixels times metres. Chords replace arcs.
     [[nodiscard]] double integral(std::span<const Curve> curves) const;
 
   private:
@@ -33,24 +34,24 @@ class FloorDensity {
     bool is_by_depth_;
     Point2 foot_;
     Vec3 axis_;
-    double slope_;  ///< of depth, along the plane
+    double slope_;  ///< change of depth per metre along the plane
 };
 
-/// What of its view has the pixels of each of pixelDensities(). \param view all that it sees, so
-/// that `region` and `cells` have no less than they have at any density
+/// Returns the parts of a view with the pixels of each of pixelDensities(). \param view at density
+/// 0, so that `region` and `cells` contain the parts of any density
 std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
                                   const CoveredSet& view);
 
-/// \pre view.classes are there
+/// Computes the picture metrics. \pre view.classes is set
 PictureMetrics pictureMetricsOf(const FloorDensity& density, const Grid& grid, Point2 foot,
                                 const SensorView& view);
 
-/// Sets report.densities, those of its zones, and the overlays behind them. Nothing without
+/// Sets report.densities, those of its zones, and the overlays. Does not change a report without
 /// cameras.
 void addDensities(Coverage& coverage, const Environment& environment,
                   const std::vector<Region>& free_floor, const std::vector<Zone>& zones);
 
-/// Sets report.parallax and its coverage. Exact for up to 60 cameras whose regions are known.
+/// Sets report.parallax and its coverage. Exact for up to 60 cameras with known regions.
 void addParallax(Coverage& coverage, const Environment& environment, const ParallaxChoice& choice);
 
 }  // namespace ispace

@@ -18,29 +18,29 @@ namespace ispace {
 
 namespace {
 
-/// As many views as a word has bits are looked through together.
+/// Number of views tested together, one for each bit of a word.
 constexpr std::size_t kTogether = 64;
 
-/// What of a plane may be in view.
+/// The part of a plane that may be in view.
 struct Reach {
     Point3 origin;
-    double distance = 0;  ///< on the plan: no farther place is in view
+    double distance = 0;  ///< maximum distance of a point in view, on the plan
 
-    /// Nothing if the plane, `drop` above or below, is out of range.
+    /// Empty if the plane, `drop` above or below, is out of range.
     static std::optional<Reach> of(Point3 origin, double range, double drop) {
-        constexpr double kSlack = 1 + 1e-6;  // range tests are those of float32
+        constexpr double kSlack = 1 + 1e-6;  // ranges are compared as float32
         if (!withinRange(std::fabs(drop), range)) return std::nullopt;
         return Reach{origin, kSlack * std::sqrt(std::max(0.0, range * range - drop * drop))};
     }
 };
 
-/// Where to look for a cell's sake, and which of some views hold that place.
+/// The target of a cell's ray, and the views that contain it.
 struct CellTarget {
     Point3 place;
-    std::uint64_t held = 0;  ///< bit k: view k
+    std::uint64_t held = 0;  ///< bit k: in view k
 };
 
-/// Looks at the cells of one row after another. `target_of(center)` is the CellTarget of a cell.
+/// Tests the cells row by row. `target_of(center)` returns the CellTarget of a cell.
 template <typename TargetOf>
 class RowLook {
   public:
@@ -51,7 +51,7 @@ class RowLook {
           reach_(reach),
           target_of_(target_of) {}
 
-    /// Adds what each view sees of a row to its runs.
+    /// Appends the cells of a row that each view sees to its runs.
     void add(int row, std::span<std::vector<CellRun>> runs) {
         findTargets(row);
         if (targets_.empty()) return;
@@ -65,7 +65,7 @@ class RowLook {
     }
 
   private:
-    /// Those of the row's cells that are in some view.
+    /// Finds the cells of the row that lie in any view.
     void findTargets(int row) {
         cells_.clear();
         targets_.clear();
@@ -101,7 +101,7 @@ class RowLook {
     std::vector<std::uint8_t> seen_;
 };
 
-/// Appends a part for each view. Bands of rows are shared out over the cores.
+/// Appends a part for each view. Bands of rows run in parallel.
 template <typename TargetOf>
 void addParts(const Grid& grid, const RayWorld& mesh, const Reach& reach, std::size_t views,
               const TargetOf& target_of, CellParts& parts) {
@@ -127,13 +127,13 @@ void addParts(const Grid& grid, const RayWorld& mesh, const Reach& reach, std::s
     }
 }
 
-/// A laser that scans in one tilted plane covers the floor over or under which that passes.
+/// A laser that scans in one tilted plane covers the floor below or above that plane.
 void addScan(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, CellParts& parts) {
     const Point3 origin = sensor.pose.position;
     const Laser& laser = sensor.as<Laser>();
     const ScanPlane plane(sensor.pose);
     const auto reach = Reach::of(origin, laser.max_range, 0);
-    if (plane.up() == 0 || !reach) return;  // upright: seen from above, a line
+    if (plane.up() == 0 || !reach) return;  // upright: a line, as seen from above
     const BearingWindow window(laser);
     addParts(
         grid, mesh, *reach, 1,
@@ -167,21 +167,21 @@ void addSweep(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, doub
         parts);
 }
 
-/// Tells of nearly all directions whether they are in the picture of a lens that bends by the angle
-/// to the axis alone, without the lens's own mathematics: where a direction lies in the picture is
-/// read off a table over the cosine of that angle.
+/// Decides for nearly all directions whether they are in the picture of a lens that distorts by the
+/// angle to the axis alone, without evaluating the lens model: reads the position in the picture
+/// from a table over the cosine of that angle.
 class PictureTable {
   public:
     enum class Answer { Outside, Inside, Unsure };
 
-    /// \pre a fisheye or a mirror
+    /// Builds the table. \pre a fisheye or a mirror
     explicit PictureTable(const Camera& camera)
         : low_{(-0.5 - camera.cx) / camera.fx, (-0.5 - camera.cy) / camera.fy},
           high_{(camera.columns - 0.5 - camera.cx) / camera.fx,
                 (camera.rows - 0.5 - camera.cy) / camera.fy} {
         const Angle widest = camera.widestInPicture();
         has_all_ = widest <= kLimit;
-        // A little less, as the lens may have nothing beyond.
+        // Slightly less, as the lens may end there.
         least_ = cos(std::min(widest, kLimit) - Angle::radians(kRounding / 10));
         step_ = (1 - least_) / kSteps;
         for (int i = 0; i <= kSteps; ++i)
@@ -193,7 +193,7 @@ class PictureTable {
         margin_ = kSafety * margin_ + kRounding;
     }
 
-    /// \pre distance is the length of `local`
+    /// Finds the direction in the picture. \pre distance is the length of `local`
     [[nodiscard]] Answer locate(Vec3 local, double distance) const {
         if (!(distance > 0)) return Answer::Unsure;
         const double cosine = local.x / distance;
@@ -210,10 +210,11 @@ class PictureTable {
   private:
     static constexpr int kSteps = 256;
     static constexpr double kSafety = 8, kRounding = 1e-9;
-    /// Beyond it pictures of directions move apart quickly.
+    /// Beyond it neighbouring directions map to distant pixels.
     static constexpr Angle kLimit = Angle::radians(2.4);
 
-    /// Distance from the centre of the picture, in focal lengths, over the sine of the angle.
+    /// Returns the distance from the centre of the picture, in focal lengths, divided by the sine
+    /// of the angle.
     static double stretchAt(const Camera& camera, double cosine) {
         const double sine = std::max(std::sqrt(std::max(0.0, 1 - cosine * cosine)), 1e-5);
         const auto place = camera.project({cosine, -sine, 0});
@@ -225,16 +226,16 @@ class PictureTable {
         return stretch_[i] + (at - static_cast<double>(i)) * (stretch_[i + 1] - stretch_[i]);
     }
 
-    Vec2 low_, high_;       // the picture's borders, in focal lengths from its centre
-    bool has_all_ = false;  // nothing beyond the table is in the picture
+    Vec2 low_, high_;       // the picture's bounds, in focal lengths from its centre
+    bool has_all_ = false;  // the table spans the whole picture
     double least_ = 0, step_ = 0, margin_ = 0;
     std::array<double, kSteps + 1> stretch_{};
 };
 
-/// The same as views[k].holds(), for views of one sensor that differ in heading.
+/// Returns the same as views[k].holds(), for views of one sensor that differ in heading.
 class ViewTest {
   public:
-    /// \pre at most kTogether
+    /// Stores the views. \pre at most kTogether
     explicit ViewTest(std::span<const FieldOfView> views) : views_(views) {
         const FieldOfView& first = views.front();
         is_pyramid_ = first.shape == FieldOfView::Shape::Pyramid;
@@ -258,12 +259,12 @@ class ViewTest {
     }
 
   private:
-    /// Outward normals of one side, by view.
+    /// Outward normals of one side of each view.
     struct Normals {
         std::array<double, kTogether> x, y, z;
     };
 
-    /// Of the side on this side of an axis.
+    /// Sets a side of a view, by its axis and sign.
     void setSide(std::size_t side, std::size_t view, double sign, Vec3 axis, double tangent) {
         const Vec3& forward = views_[view].frame.forward;
         sides_[side].x[view] = sign * axis.x - tangent * forward.x;
@@ -277,9 +278,9 @@ class ViewTest {
             if (holds(views_[k])) held |= std::uint64_t{1} << k;
         return held;
     }
-    /// A loop over all views that compilers vectorise tells of nearly all places.
+    /// Decides nearly all points in a loop over all views that compilers vectorise.
     [[nodiscard]] std::uint64_t pyramidsHolding(Point3 place) const {
-        constexpr double kEdge = 1e-9;  // wider than the margin for rounding
+        constexpr double kEdge = 1e-9;  // exceeds the margin for rounding
         const Vec3 way = place - views_.front().frame.origin;
         const double edge = kEdge * (std::fabs(way.x) + std::fabs(way.y) + std::fabs(way.z));
         std::array<double, kTogether> beyond;

@@ -11,18 +11,18 @@
 
 namespace ispace {
 
-/// The cells that a sensor which does not scan a level slice sees of the plane at `height`, tested
-/// one by one: the centre is in view, its edges included, and in range, and a ray of float32 (see
-/// RayWorld::query) meets nothing of the mesh on its way there. A mesh of Solid surfaces for
-/// receivers, of Opaque ones for all others.
+/// Returns the cells of the plane at `height` that a sensor which does not scan a level slice sees,
+/// tested one by one: the centre is in view, including its edges, and in range, and a float32 ray
+/// (see RayWorld::query) to it misses the mesh. The mesh holds Solid surfaces for receivers, Opaque
+/// ones for all other sensors.
 ///
-/// These are the centres in ShadowCaster::regionSeen(), but for those within 0.3 mm of its
-/// boundary. A swept laser, of which no region is known, sees what its scans pass as it turns on,
-/// between scans as well.
+/// They agree with ShadowCaster::regionSeen(), except for centres within 0.3 mm of its boundary. A
+/// swept laser, whose region is unknown, sees the floor that its scans cross, and the floor
+/// between scans.
 CellSet cellsOnPlane(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height);
 
-/// The same for fields of view at one place that differ in the direction in which they face alone:
-/// part k of `parts` is what view k sees. O(cells in reach * views + rays)
+/// Computes the cells of several fields of view at one position that differ only in heading: part k
+/// of `parts` is the view k. O(cells in reach * views + rays)
 void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
                  double height, CellParts& parts);
 

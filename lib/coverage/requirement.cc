@@ -18,21 +18,22 @@ double shareOfText(std::string_view text) {
                      "` is no share: write 95% or 0.95, free:95%, zone:NAME=95%, identify:95%");
 }
 
-/// With all digits where two do not show that a share is below another.
+/// Formats a share in per cent, with all digits if two do not show that it is below the required
+/// one.
 std::string percent(double share, double required) {
     const std::string text = formatFixed(100 * share, 2);
     return text == formatFixed(100 * required, 2) ? formatPercent(roundSignificant(share))
                                                   : text + "%";
 }
 
-/// What a requirement is about.
+/// The metric that a requirement compares.
 struct Subject {
     std::string what;
     Metric share;
     double area = 0;
 };
 
-/// \pre there is such a zone
+/// Finds the zone. \pre the report has it
 std::size_t zoneIndex(const Requirement& requirement, const CoverageReport& report) {
     const auto found =
         std::find_if(report.zones.begin(), report.zones.end(),
@@ -60,7 +61,8 @@ Subject densitySubject(const Requirement& requirement, const CoverageReport& rep
     return {"coverage to " + name, of(report.densities.indoor), report.indoor_area};
 }
 
-/// The largest piece of what is asked for that no camera sees so well; nothing if it is not known.
+/// Finds the largest piece of the required floor that no camera sees at the required density; empty
+/// if unknown.
 std::optional<UncoveredSpot> largestWithout(const Requirement& requirement,
                                             const Coverage& coverage) {
     if (coverage.density_overlays.empty()) return std::nullopt;
@@ -98,7 +100,7 @@ Subject subjectOf(const Requirement& requirement, const CoverageReport& report) 
     return {"coverage", report.coverage, report.indoor_area};
 }
 
-/// Of a name of pixelDensities().
+/// Finds an index by a name of pixelDensities().
 std::optional<std::size_t> densityIndex(std::string_view name) {
     if (name.empty() || (name.front() >= '0' && name.front() <= '9')) return std::nullopt;
     const auto pixels = pixelDensityOf(name);
@@ -108,7 +110,7 @@ std::optional<std::size_t> densityIndex(std::string_view name) {
     return std::nullopt;
 }
 
-/// With more digits where two would be 0.00.
+/// Formats an area, with more digits if two would be 0.00.
 std::string squareMetres(double area) { return formatFixed(area, area < 0.01 ? 6 : 2) + " m2"; }
 
 }  // namespace
@@ -128,7 +130,7 @@ Requirement parseRequirement(std::string_view text) {
     if (text.starts_with(kFree))
         return {Requirement::Of::Free, "", shareOfText(text.substr(kFree.size()))};
     if (!text.starts_with(kZone)) return {Requirement::Of::Indoor, "", shareOfText(text)};
-    // A name may have an equals sign, a share has none.
+    // A name may contain an equals sign, a share does not.
     const auto equals = text.rfind('=');
     if (equals == std::string_view::npos || equals == kZone.size())
         throw UsageError('`' + std::string(text) + "` is no requirement: write zone:NAME=95%");

@@ -10,9 +10,9 @@
 
 namespace ispace {
 
-/// What somebody asks of a layout: `95%` of the indoor region, `free:95%` of the free floor, or
-/// `zone:NAME=95%` of a zone; with the name of a density class before, such as `identify:90%`,
-/// `identify:free:90%` and `identify:NAME=100%`, by cameras with so many pixels.
+/// A required coverage: `95%` of the indoor region, `free:95%` of the free floor, or
+/// `zone:NAME=95%` of a zone. A prefix with the name of a density class, such as `identify:90%`,
+/// `identify:free:90%` and `identify:NAME=100%`, requires cameras with the pixels of that class.
 struct Requirement {
     enum class Of { Indoor, Free, Zone };
     Of of = Of::Indoor;
@@ -22,26 +22,27 @@ struct Requirement {
     friend bool operator==(const Requirement&, const Requirement&) = default;
 };
 
-/// \throws UsageError for what is none
+/// Parses a requirement. \throws UsageError if it is malformed
 Requirement parseRequirement(std::string_view text);
 
-/// As parseRequirement() reads it: "identify:free:95%".
+/// Returns the text that parseRequirement() reads: "identify:free:95%".
 std::string requirementText(const Requirement& requirement);
 
-/// \throws UsageError if it is about a zone that the room does not have, with the nearest name
+/// Checks the zone's name. \throws UsageError for a zone that the room does not have, with the
+/// nearest name
 void mustHaveZone(const Requirement& requirement, const Environment& environment);
 
-/// Whether it is met, and a sentence without end that says by which metric: "coverage is 50.00%
-/// (exact), as required (40%)", or with what is missing: "coverage is 50.00% (by cells), below the
-/// required 95%: 7.20 m2 are missing; the largest unseen spot has 4.10 m2 around (1.00, 2.00)".
+/// Result of a check, and a clause that names the metric: "coverage is 50.00% (exact), as required
+/// (40%)", or with the missing area: "coverage is 50.00% (by cells), below the required 95%: 7.20
+/// m2 are missing; the largest unseen spot has 4.10 m2 around (1.00, 2.00)".
 struct Verdict {
     bool is_met = false;
     std::string text;
 };
 
-/// The exact metric decides where it is known, else that by cells; a share of which neither is
-/// known is not met. Of classes without a camera all is missing. An exact one may be short by what
-/// rounding takes, 1e-7. \pre mustHaveZone()
+/// Compares with the exact metric if it is known, else with the one by cells; if both are unknown,
+/// the requirement is not met. Without cameras, density classes have coverage 0. An exact metric
+/// may be lower by 1e-7, for rounding. \pre mustHaveZone()
 Verdict checkRequirement(const Requirement& requirement, const Coverage& coverage);
 
 }  // namespace ispace

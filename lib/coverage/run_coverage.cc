@@ -21,23 +21,23 @@ namespace {
 constexpr double kSampling = 0.02;  // s
 constexpr double kThinning = 0.02;  // m
 
-/// A moment that is looked at.
+/// A moment of the run that is sampled.
 struct Sample {
     double time = 0;
     std::vector<RunState> states;
-    std::vector<Pose2> robots, people;  // of the scene, for sensors that ride on them
-    std::vector<std::size_t> counts;    // of each state
-    std::vector<double> fastest;        // m/s, of each state
+    std::vector<Pose2> robots, people;  // of the scene, for sensors mounted on movers
+    std::vector<std::size_t> counts;    // numbers of sensors that see each mover
+    std::vector<double> fastest;        // m/s, maximum speed of each mover
 };
 
-/// Finds the members of a record in a scene.
+/// Maps the members of a record to movers of a scene.
 class Members {
   public:
     Members(const Scene& scene, const RunReader& reader) : scene_(&scene), reader_(&reader) {
         for (const PlacedRobot& robot : scene.robots) robots.push_back(robot.pose);
         for (const PlacedPerson& person : scene.people) people.push_back(person.pose);
     }
-    /// \throws FormatError for who is there and not in the scene
+    /// Checks the members at the start. \throws FormatError for a member that is not in the scene
     void check() {
         for (const RunState& state : reader_->states())
             if (ownerOf(state.who) == MovingBodies::kNoOwner)
@@ -47,13 +47,13 @@ class Members {
                                        ": it is not that of the record"});
     }
 
-    /// As carrierOf(); kNoOwner of who was added while the run went on.
+    /// Returns the same as carrierOf(); kNoOwner for movers added during the run.
     std::uint32_t ownerOf(std::size_t who) {
         for (std::size_t i = owners_.size(); i < reader_->who().size(); ++i)
             owners_.push_back(find(reader_->who()[i]));
         return owners_[who];
     }
-    /// What nobody goes faster than, m/s: with a margin, as a record may have changed in the run.
+    /// Returns the maximum speed of any mover, m/s: with a margin, as a run may change records.
     double fastest(const RunState& state) {
         const std::uint32_t owner = ownerOf(state.who);
         constexpr double kUnknown = std::numeric_limits<double>::infinity(), kMargin = 2;
@@ -64,7 +64,7 @@ class Members {
         const RobotModel& model = scene_->robots[owner].model;
         return kMargin * std::max(std::hypot(model.max_speed, model.max_sidespeed), going);
     }
-    /// Where everybody is now.
+    /// Moves all movers of the scene to their poses in `state`.
     void move(const RunState& state) {
         const std::uint32_t owner = ownerOf(state.who);
         if (owner == MovingBodies::kNoOwner) return;
@@ -89,23 +89,23 @@ class Members {
     std::vector<std::uint32_t> owners_;
 };
 
-/// Adds up what happens between moments.
+/// Sums durations and ways between moments.
 class SightSum {
   public:
     void add(const Sample& sample);
     RunCoverage finish(const RunReader& reader);
 
   private:
-    /// Somebody at the last moment.
+    /// A mover at the last moment.
     struct Last {
         bool is_there = false;
         double time = 0;
         Point2 place;
         std::size_t count = 0;
-        std::optional<UnseenInterval> gap;  // that goes on
-        bool was_seen = false;              // ever
-        bool has_jumped = false;            // since its way was drawn
-        std::size_t way = 0;                // index of its last one
+        std::optional<UnseenInterval> gap;  // open interval
+        bool was_seen = false;              // at any moment so far
+        bool has_jumped = false;            // since its last way was drawn
+        std::size_t way = 0;                // index of its last way
     };
 
     void lookAt(std::size_t who, double time, Point2 place, std::size_t count, double fastest);
@@ -165,7 +165,7 @@ void SightSum::lookAt(std::size_t who, double time, Point2 place, std::size_t co
     if (last.is_there) {
         const double passed = time - last.time;
         double way = distance(last.place, place);
-        if (way > fastest * passed + kThinning) {  // put there by a client: nobody went that way
+        if (way > fastest * passed + kThinning) {  // a client moved it there: not a way
             way = 0;
             last.has_jumped = true;
         }
@@ -221,10 +221,10 @@ RunCoverage SightSum::finish(const RunReader& reader) {
     return std::move(sight_);
 }
 
-/// Looks at some samples at once, then adds them in order.
+/// Measures a batch of samples in parallel, then adds them in order.
 void flush(const DetectionMonitor& watch, Members& members, std::vector<Sample>& samples,
            SightSum& sum) {
-    // Known before threads ask.
+    // Computed before threads read it.
     for (Sample& sample : samples)
         for (const RunState& state : sample.states)
             sample.fastest.push_back(members.fastest(state));
@@ -245,7 +245,7 @@ RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions
                        RunChanges* changes) {
     if (!reader.next())
         throw FormatError({reader.name(), 0, 0, "holds no moment of a run: nobody moved in it"});
-    // As changes leave it.
+    // The scene after the changes so far.
     std::optional<Scene> changed;
     std::optional<DetectionMonitor> watch(std::in_place, start, options);
     std::optional<Members> members(std::in_place, start, reader);
@@ -253,7 +253,7 @@ RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions
     SightSum sum;
     constexpr std::size_t kTogether = 256;
     std::vector<Sample> samples;
-    std::optional<Sample> passed;  // the last moment, if it was not looked at
+    std::optional<Sample> passed;  // the last moment, if it was not sampled
     double next = reader.time();
     const auto take = [&](Sample sample) {
         samples.push_back(std::move(sample));

@@ -15,55 +15,55 @@
 
 namespace ispace {
 
-/// The longest time that somebody was seen by no sensor.
+/// The longest unseen interval of a mover.
 struct UnseenInterval {
     double begin = 0, end = 0;  ///< seconds
-    Point2 from, to;            ///< where sight was lost, and found again
+    Point2 from, to;            ///< positions at which sight was lost, and restored
 };
 
-/// How well one robot or person was seen in a run, or all of them together.
+/// Metrics of how one mover, or all together, were seen in a run.
 struct RunSightMetrics {
-    std::string id = {};  ///< "" of all together
+    std::string id = {};  ///< "" for all together
     bool is_person = false;
-    double duration = 0, length = 0;  ///< it was there, s, and its way, m
-    /// [k]: share of that time and of that way on which exactly k sensors saw it. The way is empty
-    /// of who did not move.
+    double duration = 0, length = 0;  ///< time that it was present, s, and length of its way, m
+    /// [k]: share of that time and of that way on which exactly k sensors saw it. way_shares is
+    /// empty if it did not move.
     std::vector<double> time_shares = {}, way_shares = {};
-    std::size_t losses = 0;  ///< how often it was seen and then no more
+    std::size_t losses = 0;  ///< number of times that sight was lost
     std::optional<UnseenInterval> longest_gap = {};
 };
 
-/// A piece of somebody's way on which the same number of sensors saw it.
+/// A piece of a mover's way seen by a constant number of sensors.
 struct SeenWay {
     std::size_t who = 0;  ///< index in RunCoverage::members
     std::size_t sensors = 0;
-    std::vector<Point2> points = {};  ///< one if it stood there
+    std::vector<Point2> points = {};  ///< a single one if it stood there
 };
 
-/// Where somebody who was seen was lost.
+/// A point at which sight of a mover was lost.
 struct TrackLoss {
     std::size_t who = 0;
-    double begin = 0, duration = 0;  ///< seconds; to the end of the run if it was not found again
+    double begin = 0,
+           duration = 0;  ///< seconds; until the end of the run if sight was not restored
     Point2 place;
 };
 
-/// What a layout achieved in a run (the second valuation of the thesis, section 3.1): by how many
-/// sensors everybody was seen, and where nobody saw.
+/// Coverage of a recorded run (the second valuation of the thesis, section 3.1): the number of
+/// sensors that saw each mover, and its unseen intervals.
 struct RunCoverage {
-    std::string name = {};  ///< of the record
+    std::string name = {};  ///< of the recorded file
     double begin = 0, end = 0;
     std::vector<RunSightMetrics> members;
     RunSightMetrics all;
     std::vector<SeenWay> ways = {};
-    std::vector<TrackLoss> losses = {};  ///< the longest first
+    std::vector<TrackLoss> losses = {};  ///< sorted by duration, the longest first
 };
 
-/// What is seen is told by Watch. Moments at least 0.02 s apart are looked at; what was seen at one
-/// lasts until the next. Deterministic for any number of threads. O(moments x people x sensors);
-/// memory for the ways, thinned to 0.02 m.
-/// \throws FormatError as the reader does, for a record without a moment, and for who was there at
-///         its beginning and is not in the scene
-/// \param changes of the world in the run, which are made again; null: none
+/// Computes the coverage of a recorded run by DetectionMonitor. Samples moments at least 0.02 s
+/// apart and holds each result until the next sample. Deterministic for any number of threads.
+/// O(moments x people x sensors); memory for the ways, thinned to 0.02 m. \throws FormatError as
+/// the reader, for a record without a moment, and for a mover at its start that is not in the scene
+/// \param changes of the world during the run, which are replayed; null: the world is static
 RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
                        RunChanges* changes = nullptr);
 

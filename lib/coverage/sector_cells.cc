@@ -12,13 +12,13 @@ namespace ispace {
 
 namespace {
 
-/// How much farther than its range a place looks for the sake of cells: those at the greatest range
-/// are then not on the outline of what is seen.
+/// Factor by which the range is extended for cells, so that those at the maximum range do not lie
+/// on the outline of the view.
 constexpr double kBeyondRange = 1 + 1e-6;
 
-/// Calls visit(Point2) for the corners of a polygon that holds what is seen and, beyond the
-/// greatest range, nothing that is nearer: arcs become the tangents at their ends. Neighbours may
-/// be the same.
+/// Calls visit(Point2) for the corners of a polygon that contains the view and, apart from it, only
+/// points beyond the maximum range: arcs become the tangents at their ends. Neighbours may be
+/// equal.
 template <typename Visit>
 void forEachCorner(const VisibleRegion& region, Visit visit) {
     for (const VisibilityEdge& edge : region.edges) {
@@ -26,16 +26,15 @@ void forEachCorner(const VisibleRegion& region, Visit visit) {
         if (edge.line == VisibilityEdge::kArc) {
             const Vec2 a = edge.from - region.viewpoint, b = edge.to - region.viewpoint;
             const double r2 = region.max_range * region.max_range;
-            // Where the tangents meet: on a + b, at t with t (a + b) a = r2.
+            // The intersection of the tangents: on a + b, at t with t (a + b) a = r2.
             visit(region.viewpoint + (r2 / (r2 + dot(a, b))) * (a + b));
         }
         visit(edge.to);
     }
 }
 
-/// A direction at which one part ends and the next begins, and the line that it makes: a cell's
-/// centre is at or beyond it if cross(unit, offset) >= 0, in the half (above, below) in which the
-/// limit is.
+/// A direction between two parts, and its line: a cell's centre is at or beyond it if cross(unit,
+/// offset) >= 0, in the half (above, below) of the limit.
 struct Limit {
     Angle angle;
     Vec2 unit;
@@ -50,7 +49,7 @@ struct LimitRange {
     std::size_t first = 0, end = 0;
 };
 
-/// Rasterises what places see, one after another, in the same memory.
+/// Rasterises the views of one position after another and reuses the memory.
 class SectorRaster {
   public:
     void run(const Grid& grid, const Level& level, Point2 place, double max_range,
@@ -73,20 +72,20 @@ class SectorRaster {
         return static_cast<std::uint32_t>(
             grid_.cell(scan_.firstColumn() + column, scan_.firstRow() + row));
     }
-    /// Of a cell's centre from the place.
+    /// Returns the offset of a cell's centre from the viewpoint.
     [[nodiscard]] Vec2 offsetOf(int row, int column) const {
         return {x_axis_.center(scan_.firstColumn() + column) - place_.x,
                 dy_[static_cast<std::size_t>(row)]};
     }
-    /// Where a coordinate is among the columns of the window.
+    /// Converts x to a fractional column of the window.
     [[nodiscard]] double columnAt(double x) const {
         return x_axis_.position(x) - scan_.firstColumn();
     }
-    /// The first column beyond a position, from 0 to the number of columns.
+    /// Returns the first column beyond a position, clamped to the columns.
     [[nodiscard]] int firstBeyond(double position) const {
         return static_cast<int>(std::max(-1.0, std::min(position, scan_.columns() - 1.0)) + 1);
     }
-    /// Below the place the first column that has passed a limit, above it the first that has not.
+    /// Below the viewpoint the first column past a limit, above it the first column before it.
     [[nodiscard]] int cutOf(std::size_t limit, int row) const {
         return cuts_[limit * dy_.size() + static_cast<std::size_t>(row)];
     }
@@ -102,21 +101,21 @@ class SectorRaster {
     Point2 place_;
     double max_range_ = 0, slack_ = 0;
     CellParts* parts_ = nullptr;
-    std::size_t part_begin_ = 0;  // its first run
+    std::size_t part_begin_ = 0;  // index of its first run
 
     std::vector<Limit> limits_;
-    LimitRange below_, above_;  // those of directions below 0, and between 0 and 180 degrees
+    LimitRange below_, above_;  // limits below 0 degrees, and between 0 and 180
     VisibleRegion region_;
     Scanline scan_;
-    std::vector<std::uint64_t> words_;     // what is seen
-    std::vector<double> dy_;               // of the rows' middles from the place
-    int level_begin_ = 0, level_end_ = 0;  // rows level with the place: one or none
-    std::vector<int> cuts_;                // by limit, by row
-    std::vector<char> is_empty_;           // parts between limits that cut all rows alike
+    std::vector<std::uint64_t> words_;     // bits of the seen cells
+    std::vector<double> dy_;               // offsets of the rows' middles from the viewpoint
+    int level_begin_ = 0, level_end_ = 0;  // rows level with the viewpoint: one or zero
+    std::vector<int> cuts_;                // by limit and row
+    std::vector<char> is_empty_;           // parts between limits with equal cuts in all rows
     std::optional<std::uint32_t> centre_;
 };
 
-/// The bits of a row's word i that stand for columns [begin, end).
+/// Returns the bits of a row's word i for columns [begin, end).
 std::uint64_t bitsOf(int i, int begin, int end) {
     const int low = std::max(begin - 64 * i, 0), high = std::min(end - 64 * i, 64);
     if (low >= high) return 0;
@@ -176,7 +175,7 @@ void SectorRaster::setLimits(std::span<const Angle> limits) {
               first_from(Angle::degrees(180))};
 }
 
-/// Cells strictly inside the outline of what is seen, within a box about the range.
+/// Rasterises the cells strictly inside the outline of the view, within the bounds of the range.
 void SectorRaster::rasterise(const Level& level) {
     level.query(place_, kBeyondRange * max_range_, region_);
     Box2 box;
@@ -235,7 +234,7 @@ void SectorRaster::cutAtRange() {
     }
 }
 
-/// Finds the row level with the place, and the cell whose centre is the place.
+/// Finds the row level with the viewpoint, and the cell centred at it.
 void SectorRaster::takeCentre() {
     const auto [begin, end] = std::equal_range(dy_.begin(), dy_.end(), 0.0);
     level_begin_ = static_cast<int>(begin - dy_.begin());
@@ -251,10 +250,10 @@ void SectorRaster::takeCentre() {
                     });
 }
 
-/// Finds where a limit crosses rows [begin, end), none of them level with the place: by its
-/// cotangent, and by the limit's own rule where that is too near to a centre to be sure.
+/// Computes where a limit cuts rows [begin, end), all above or all below the viewpoint: by its
+/// cotangent, and by the limit's exact test if the cut is too near to a centre.
 void SectorRaster::cutAt(std::size_t limit, int begin, int end) {
-    constexpr double kUnsure = 1e-6;  // columns: far more than what rounds
+    constexpr double kUnsure = 1e-6;  // columns: far above rounding errors
     const Limit& at = limits_[limit];
     const bool is_below = at.unit.y < 0;
     const double slope = x_axis_.perMetre() * at.cotangent, middle = columnAt(place_.x);
@@ -274,7 +273,7 @@ void SectorRaster::cutAt(std::size_t limit, int begin, int end) {
         cuts[row] = firstBeyond(position - slack);
         while (cuts[row] < last && at.isPassed(offsetOf(row, cuts[row])) != is_below) ++cuts[row];
     }
-    // Limits that rounding makes one line stay in order.
+    // Limits that rounding merges into one line keep their order.
     if (limit == (is_below ? below_ : above_).first) return;
     const int* before = cuts - dy_.size();
     int different = 0;
@@ -285,11 +284,11 @@ void SectorRaster::cutAt(std::size_t limit, int begin, int end) {
     if (different == 0) is_empty_[limit - 1] = 1;
 }
 
-/// Below the place columns rise counter-clockwise, above it they fall.
+/// Below the viewpoint columns rise counter-clockwise, above it they fall.
 void SectorRaster::addPart(std::size_t part) {
     part_begin_ = parts_->runs.size();
     const std::size_t count = limits_.size();
-    // What lies before the first limit of a half belongs to the part of the limit before it.
+    // Cells before the first limit of a half belong to the part of the limit before it.
     const auto part_before = [count](std::size_t limit) {
         return (limit == 0 ? count : limit) - 1;
     };
@@ -317,7 +316,7 @@ void SectorRaster::addPart(std::size_t part) {
         add_half(above_, false, row);
 }
 
-/// All cells on a side of the place lie in the very same direction: 180 or 0 degrees.
+/// All cells on one side of the viewpoint have exactly the same direction: 180 or 0 degrees.
 void SectorRaster::addLevelRow(std::size_t part, int row) {
     const int middle =
         std::clamp(x_axis_.firstNotBelow(place_.x) - scan_.firstColumn(), 0, scan_.columns());
@@ -358,7 +357,7 @@ std::optional<Sector> sectorOf(const Laser& laser, Angle heading) {
 
 void cellsBySector(const Grid& grid, const Level& level, Point2 place, double max_range,
                    std::span<const Angle> limits, CellParts& parts) {
-    thread_local SectorRaster raster;  // for its memory
+    thread_local SectorRaster raster;  // reuses its memory
     raster.run(grid, level, place, max_range, limits, parts);
 }
 

@@ -15,7 +15,7 @@ namespace ispace {
 
 namespace {
 
-constexpr int kSides = 5;  // of the box, and the plane
+constexpr int kSides = 5;  // sides of the box, and the plane
 
 using Edge = ShadowEdge;
 
@@ -24,9 +24,9 @@ bool lessEdge(const Edge& a, const Edge& b) {
     return lexLess(a.to, b.to);
 }
 
-/// Drops as many edges as run the other way.
+/// Removes pairs of edges that run in opposite directions.
 std::vector<Edge> uncancelled(const std::vector<Edge>& edges) {
-    // Each edge by its lower end, with the way it runs.
+    // An edge from its lower end, with its direction.
     struct Way {
         Edge edge;
         int sign;
@@ -52,7 +52,8 @@ std::vector<Edge> uncancelled(const std::vector<Edge>& edges) {
     return left;
 }
 
-/// Closed curves of edges of which as many arrive at each point as leave it. Sorted by lessEdge.
+/// Builds closed curves from edges that arrive at each point as often as they leave it. \pre sorted
+/// by lessEdge
 std::vector<Curve> chained(const std::vector<Edge>& edges) {
     const auto leaving = [&edges](Point2 p) {
         const auto found = std::lower_bound(
@@ -60,7 +61,7 @@ std::vector<Curve> chained(const std::vector<Edge>& edges) {
             [](const Edge& edge, Point2 place) { return lexLess(edge.from, place); });
         return static_cast<std::size_t>(found - edges.begin());
     };
-    // Of the edges that leave a point the next to be taken, kept where the first of them is.
+    // Next edge to take of those that leave a point, stored at the index of the first of them.
     std::vector<std::size_t> next(edges.size());
     for (std::size_t i = 0; i < edges.size(); ++i) next[i] = i;
     const auto is_left = [&](std::size_t first) {
@@ -210,7 +211,7 @@ Shadows::Place Shadows::placeOf(Point3 p) const {
     return {way.x, way.y, way.z / drop_};
 }
 
-/// Not below 0 on the inner side.
+/// Positive or 0 on the inner side.
 double Shadows::sideOf(const Place& p, int plane) const {
     switch (plane) {
         case 0:
@@ -226,7 +227,7 @@ double Shadows::sideOf(const Place& p, int plane) const {
     }
 }
 
-/// True if nothing of the triangle falls into the box, or lies farther from the plane than contact.
+/// True if the triangle casts no shadow in the box, or lies nearer to the plane than contact.
 bool Shadows::isClear(const Corners& corners) const {
     const auto& [a, b, c] = corners;
     const double touching = 1 - kRayEpsilon / std::fabs(drop_);
@@ -236,7 +237,7 @@ bool Shadows::isClear(const Corners& corners) const {
     return false;
 }
 
-/// Triangles with a common edge cut it at the very same place.
+/// Triangles with a common edge cut it at exactly the same point.
 void Shadows::clip(std::vector<Place>& polygon, int plane) const {
     std::vector<Place> kept;
     kept.reserve(polygon.size() + 2);
@@ -258,12 +259,13 @@ void Shadows::clip(std::vector<Place>& polygon, int plane) const {
 }
 
 Point2 Shadows::shadowOf(const Place& p) const {
-    // Rounding may carry it out of the box, far where the share is small.
+    // Rounding may move it out of the box, far if the share is small.
     return {std::clamp(p.x / p.share, box_.low.x, box_.high.x),
             std::clamp(p.y / p.share, box_.low.y, box_.high.y)};
 }
 
-/// `turn` is below 0 if the corners turn right as their shadow does.
+/// Adds the edges of a triangle's shadow. `turn` is negative if the corners of the shadow turn
+/// right.
 void Shadows::addShadow(const Corners& corners, double turn, std::vector<Edge>& edges) const {
     std::vector<Place> polygon(corners.begin(), corners.end());
     if (turn < 0) std::swap(polygon[1], polygon[2]);
@@ -282,7 +284,7 @@ void Shadows::addShadow(const Corners& corners, double turn, std::vector<Edge>& 
 bool Shadows::isOutOfTheWay(const ShadowBody& body) const {
     return body.top <= std::min(sensor_.z, sensor_.z + drop_) ||
            body.bottom >= std::max(sensor_.z, sensor_.z + drop_) ||
-           // Shadows fall away from the foot.
+           // Shadows point away from the foot.
            body.plan.low.x > sensor_.x + std::max(0.0, box_.high.x) ||
            body.plan.high.x < sensor_.x + std::min(0.0, box_.low.x) ||
            body.plan.low.y > sensor_.y + std::max(0.0, box_.high.y) ||
@@ -292,10 +294,10 @@ bool Shadows::isOutOfTheWay(const ShadowBody& body) const {
 std::vector<Layer> Shadows::of(const ShadowBody& standing) const {
     if (isOutOfTheWay(standing)) return {};
     ShadowBody memory;
-    // What is in contact is known by its own triangles.
+    // For a body in contact its own triangles decide.
     const ShadowBody& body = mayTouch(standing) ? standing : seenFrom(sensor_, standing, memory);
     const bool is_convex = body.kind == ShadowBody::Kind::Convex;
-    // From outside, what is behind a solid throws no shadow that those in front do not throw.
+    // From outside, the front faces of a solid cast its whole shadow.
     const bool in_front_only = is_convex && !mayTouch(body);
     std::vector<Layer> layers;
     const auto finish = [&layers](std::vector<Edge>& edges) {
@@ -312,7 +314,7 @@ std::vector<Layer> Shadows::of(const ShadowBody& standing) const {
         const double turn = a.x * (b.y * c.share - c.y * b.share) -
                             a.y * (b.x * c.share - c.x * b.share) +
                             a.share * (b.x * c.y - c.x * b.y);
-        // Seen from below, left and right change sides.
+        // Seen from below, left and right are swapped.
         const bool is_behind = is_convex && (turn > 0) != (drop_ < 0);
         if (turn == 0 || (in_front_only && is_behind) || isPassed(triangle)) continue;
         addShadow(corners, turn, is_behind ? behind : before);
@@ -325,11 +327,11 @@ std::vector<Layer> Shadows::of(const ShadowBody& standing) const {
 
 namespace {
 
-/// Rays meet what is this near aside, in metres.
+/// Rays hit bodies within this distance, metres.
 constexpr double kAside = 1e-9;
 
-/// Where a triangle meets the plane z = 0. Closed: one that only touches it with a side does; one
-/// that lies in it is seen from its edge.
+/// Computes the segment in which a triangle cuts the plane z = 0. The triangle is closed: one that
+/// only touches the plane with a side cuts it there; one in the plane is cut along its edge.
 std::optional<Segment2> cutOf(const std::vector<Vec3>& local,
                               const std::array<std::uint32_t, 3>& triangle) {
     std::array<Point2, 3> on;
@@ -337,7 +339,7 @@ std::optional<Segment2> cutOf(const std::vector<Vec3>& local,
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec3& p = local[triangle[i]];
         if (p.z == 0) on[count++] = {p.x, p.y};
-        // From the same end for both triangles of a side.
+        // The same end for both triangles of a side.
         const Vec3& a = local[std::min(triangle[i], triangle[(i + 1) % 3])];
         const Vec3& b = local[std::max(triangle[i], triangle[(i + 1) % 3])];
         if (!((a.z > 0 && b.z < 0) || (a.z < 0 && b.z > 0))) continue;

@@ -14,31 +14,31 @@
 
 namespace ispace {
 
-/// Triangles that throw shadows together.
+/// A group of triangles that cast one shadow.
 struct ShadowBody {
     enum class Kind {
         Convex,  ///< the surface of a convex solid, counter-clockwise seen from outside
         Flat,    ///< triangles of one plane that do not overlap
-        Loose,   ///< any
+        Loose,   ///< any triangles
     };
     Kind kind = Kind::Loose;
     std::vector<Point3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     Box2 plan;
     double bottom = 0, top = 0;
-    /// Of a round prism: the triangles are those of the inscribed one.
+    /// The curve of a round prism; the triangles are those of the inscribed prism.
     std::optional<Ellipse> curve = {};
 };
 
-/// The body as it is seen from a place, made in `memory` if need be: the outline of a round prism
-/// has corners where lines of sight touch its curve, and the area of the curve.
+/// Returns the body as seen from a point, stored in `memory` if it differs: the outline of a round
+/// prism gets corners where lines of sight touch its curve, and the area of the curve.
 const ShadowBody& seenFrom(Point3 place, const ShadowBody& body, ShadowBody& memory);
 
 /// Adds a prism: as one body if it is convex, else face by face.
 void addPrism(const Prism& prism, std::vector<ShadowBody>& bodies);
-/// Clear glass, which throws shadows of sound alone.
+/// Returns clear glass, which blocks sound only.
 std::vector<ShadowBody> clearBodiesOf(const Environment& environment);
-/// Everything else that stands, and as the last the floor.
+/// Returns all other standing bodies, and the floor as the last.
 std::vector<ShadowBody> opaqueBodiesOf(const Environment& environment);
 
 /// An edge of a shadow, which lies on its left.
@@ -46,20 +46,20 @@ struct ShadowEdge {
     Point2 from, to;
 };
 
-/// Where light comes from, and where shadows fall.
+/// Computes the shadows that bodies cast from a sensor on a level plane.
 class Shadows {
   public:
-    /// Shadows on the level plane at `height`, cut off at the box, which counts from the foot of
-    /// the sensor. \pre height is not that of the sensor
+    /// Sets the level plane at `height` and the box, relative to the sensor's foot, that clips the
+    /// shadows. \pre height is not that of the sensor
     Shadows(std::span<const ShadowBody> bodies, Point3 sensor, double height, const Box2& box);
 
-    /// The shadow of a standing body as layers that count from the foot of the sensor. Surfaces in
-    /// contact with the sensor (and what continues them) or with the plane throw none.
+    /// Returns the shadow of a standing body as layers relative to the sensor's foot. Surfaces in
+    /// contact with the sensor (and those that continue them) or with the plane cast no shadow.
     [[nodiscard]] std::vector<Layer> of(const ShadowBody& standing) const;
 
   private:
-    /// A place between sensor and plane: the way from the sensor along the floor, and how much of
-    /// the way to the plane it is (0 at the sensor). Its shadow falls at (x, y) / share.
+    /// A point between sensor and plane: its offset from the sensor in the plan, and its share of
+    /// the drop to the plane (0 at the sensor). Its shadow falls at (x, y) / share.
     struct Place {
         double x, y, share;
         friend auto operator<=>(const Place&, const Place&) = default;
@@ -79,11 +79,11 @@ class Shadows {
     Point3 sensor_;
     double drop_;
     Box2 box_;
-    std::vector<Vec3> touched_;  // unit normals of what is in contact with the sensor
+    std::vector<Vec3> touched_;  // unit normals of surfaces in contact with the sensor
 };
 
-/// The lines in which everything meets a plane, in its own axes (forward, left) from its origin.
-/// What lies in the plane is left out, but not the sides of what only touches it.
+/// Returns the segments in which bodies cut a plane, in its axes (forward, left) from its origin.
+/// Skips faces in the plane, but not the sides of faces that only touch it.
 std::vector<Segment2> cutsOf(std::span<const ShadowBody> bodies, const Frame3& plane,
                              double max_range);
 

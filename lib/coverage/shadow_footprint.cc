@@ -23,16 +23,16 @@ constexpr double kPi = std::numbers::pi;
 
 Polygon square(double half) { return {{-half, -half}, {half, -half}, {half, half}, {-half, half}}; }
 
-/// The part of a level plane, `drop` over the foot, on the side of a plane through the sensor to
-/// which its normal points.
+/// Returns the part of a level plane, `drop` above the foot, on the positive side of a plane
+/// through the sensor with this normal.
 Polygon halfOf(const Polygon& polygon, Vec3 normal, double drop) {
     return ispace::halfOf(polygon, Vec2{normal.x, normal.y}, normal.z * drop);
 }
 
-/// A cone with its tip at the sensor, cut by a level plane: a conic that opens along `axis`.
+/// A cone with its apex at the sensor, cut by a level plane: a conic that opens along `axis`.
 struct Conic {
     Vec2 along{1, 0}, across{0, 1};  ///< of unit length
-    double run = 0, rise = 0;        ///< of the axis: along the plane and towards it
+    double run = 0, rise = 0;        ///< components of the axis: along the plane and towards it
     double cosine = 1, sine = 0;     ///< of the half angle
     double drop = 0;                 ///< distance of the plane, not 0
 
@@ -45,7 +45,7 @@ struct Conic {
         if (run > 0) along = {axis.x / run, axis.y / run};
         across = perpendicular(along);
     }
-    /// How steep the cone is at an angle around its axis: 0 where it is nearest to the plane.
+    /// Slope of the cone at an angle around its axis: 0 where it is nearest to the plane.
     [[nodiscard]] double steepness(double around) const {
         return cosine * rise + sine * run * std::cos(around);
     }
@@ -56,7 +56,7 @@ struct Conic {
     }
 };
 
-/// What a cone makes of the disc about the foot: all of it, nothing, or what a curve holds.
+/// Intersection of a cone with the disc about the foot: the disc, the empty set, or a curve's area.
 struct ConeCut {
     bool holds_all = false;
     std::optional<Curve> curve;
@@ -74,12 +74,12 @@ ConeCut wedgeOf(Vec3 axis, Angle half, double reach) {
     return {false, curveOf(wedge)};
 }
 
-/// Where the conic leaves the disc it is closed well outside of it. \pre 0 < half < 90 degrees
+/// Closes the conic well outside the disc. \pre 0 < half < 90 degrees
 ConeCut coneOnPlane(Vec3 axis, Angle half, double drop, double reach) {
     if (drop == 0) return wedgeOf(axis, half, reach);
     const Conic conic(axis, half, drop);
     const double beyond = 2 * std::hypot(reach, drop);
-    // cos(around) from where on the conic is within that distance.
+    // cos(around) at which the conic enters that distance.
     const double least = conic.drop / beyond - conic.cosine * conic.rise;
     const double swing = conic.sine * conic.run;
     if (swing <= least) return {conic.rise >= conic.cosine, std::nullopt};
@@ -98,7 +98,7 @@ ConeCut coneOnPlane(Vec3 axis, Angle half, double drop, double reach) {
         return Point2{} + radius * std::cos(angle) * conic.along +
                radius * std::sin(angle) * conic.across;
     };
-    curve.push_back({right, outside(-turn)});  // of no length but for rounding
+    curve.push_back({right, outside(-turn)});  // zero length up to rounding
     follow(outside, -turn, turn, curve);
     curve.back().to = left;
     follow([&conic](double around) { return conic.at(around); }, end, -end, curve);
@@ -174,7 +174,8 @@ void Footprint::addCone(Vec3 axis, Angle half, double drop, bool is_in_view) {
     if (cut.holds_all != is_in_view) box = {};
 }
 
-/// What planes through the sensor, and a range along its axis, bound.
+/// Clips by the planes through the sensor that bound the field of view, and by a range along its
+/// axis.
 void Footprint::addPolygon(const FieldOfView& view, double drop) {
     const Frame3& frame = view.frame;
     const Angle right_angle = Angle::degrees(90);
@@ -212,7 +213,7 @@ void Footprint::addPicture(const FieldOfView& view, double drop) {
         mark(*std::move(curves));
 }
 
-/// What bearings leave out behind the sensor that span more than a half turn.
+/// Removes the wedge behind the sensor that bearings of more than a half turn leave out.
 void Footprint::addWedgeBehind(const FieldOfView& view, double drop) {
     const auto [c, s] = cosSin(Angle::degrees(180) - view.half_x);
     Polygon wedge = square(2 * reach);
@@ -247,15 +248,15 @@ Footprint::Footprint(const FieldOfView& view, double drop, bool disc_is_left_out
 }
 
 struct ShadowCaster::Data {
-    std::vector<ShadowBody> bodies;  ///< clear glass first, the floor last
-    std::size_t clear = 0;           ///< so many are of clear glass
+    std::vector<ShadowBody> bodies;  ///< sorted: clear glass first, the floor last
+    std::size_t clear = 0;           ///< number of bodies of clear glass
 
     explicit Data(const Environment& environment) : bodies(clearBodiesOf(environment)) {
         clear = bodies.size();
         std::vector<ShadowBody> opaque = opaqueBodiesOf(environment);
         std::move(opaque.begin(), opaque.end(), std::back_inserter(bodies));
     }
-    /// What throws shadows of sound and of light.
+    /// Bodies that cast shadows of sound, and of light.
     [[nodiscard]] std::span<const ShadowBody> solid() const { return bodies; }
     [[nodiscard]] std::span<const ShadowBody> opaque() const { return solid().subspan(clear); }
     [[nodiscard]] std::optional<std::vector<Curve>> regionScanned(const Sensor& sensor) const;
@@ -275,7 +276,7 @@ Curve movedBy(Vec2 way, Curve curve) {
     return curve;
 }
 
-/// What has all marks and is in no shadow, of layers that count from `foot`.
+/// Returns the area with all marks outside all shadows, of layers relative to `foot`.
 std::vector<Curve> laid(std::span<const Layer> layers, std::uint64_t marks, Point2 foot) {
     std::vector<Curve> curves = Overlay(layers).curves(
         [marks](const LayerLabel& label) { return label.marks == marks && label.count == 0; });
@@ -283,7 +284,7 @@ std::vector<Curve> laid(std::span<const Layer> layers, std::uint64_t marks, Poin
     return curves;
 }
 
-/// A plane this near to the sensor is taken for one that passes through it.
+/// A plane this near to the sensor counts as one through it.
 bool passesThrough(double drop) { return std::fabs(drop) <= kRayEpsilon; }
 
 std::vector<Curve> regionInView(std::span<const ShadowBody> bodies, const FieldOfView& view,
@@ -309,7 +310,7 @@ std::vector<Curve> regionInView(std::span<const ShadowBody> bodies, const FieldO
     return laid(footprint.layers, footprint.marks, sensor.onFloor());
 }
 
-/// A line of sight in a scan plane ends at the floor, which has no end.
+/// Adds the floor, an unbounded plane, at which lines of sight in a scan plane end.
 void addFloor(const Frame3& plane, double max_range, std::vector<Segment2>& lines) {
     const Vec2 uphill{plane.forward.z, plane.left.z};
     const double slope = length(uphill);
@@ -320,7 +321,7 @@ void addFloor(const Frame3& plane, double max_range, std::vector<Segment2>& line
     lines.push_back({nearest - aside, nearest + aside});
 }
 
-/// A curve of a scan plane on the plan, counted from the foot.
+/// Maps a curve of a scan plane to the plan, relative to the foot.
 Curve onPlan(const Curve& curve, const ScanPlane& plane) {
     const Vec3 &f = plane.frame().forward, &l = plane.frame().left;
     const auto place_of = [&](Point2 p) {
@@ -376,7 +377,7 @@ std::optional<std::vector<Curve>> ShadowCaster::Data::regionScanned(const Sensor
     if (curve.empty()) return std::vector<Curve>{};
     const Point2 foot = sensor.pose.position.onFloor();
     if (is_over_floor) return std::vector<Curve>{movedBy(foot - Point2{}, curve)};
-    // From below the floor: what of it is above.
+    // From below the floor: the part of the scan plane above it.
     const double far = laser.max_range;
     const double z = plane.heightAt(foot);
     const Vec2 uphill{plane.heightAt(foot + Vec2{1, 0}) - z, plane.heightAt(foot + Vec2{0, 1}) - z};
@@ -390,7 +391,7 @@ std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const Sensor& sensor,
                                                            double height) const {
     const auto view = fieldOfView(sensor);
     if (!view) return data_->regionScanned(sensor);
-    // Such a lens ends somewhere in the picture, and on no circle.
+    // Such a lens ends within the picture, but not on a circle.
     if (const Camera* camera = std::get_if<Camera>(&sensor.model);
         camera != nullptr && camera->isLopsided() && !camera->fillsPicture())
         return std::nullopt;

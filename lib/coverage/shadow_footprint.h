@@ -16,41 +16,42 @@
 
 namespace ispace {
 
-/// How finely conics are laid out: as arcs none farther from them than this, in metres.
+/// Maximum distance of the arcs that approximate a conic from it, metres.
 constexpr double kConicError = kChordError / 100;
 
-/// Appends arcs along a smooth curve from place(begin) to place(end), which begin where the edges
-/// of `curve` end. O(1 / error^(1/3))
+/// Appends arcs along a smooth curve from place(begin) to place(end); they begin where the edges of
+/// `curve` end. O(1 / error^(1/3))
 template <typename Place>
 void follow(Place place, double begin, double end, Curve& curve);
 
-/// The circle about (0, 0), counter-clockwise.
+/// Returns the circle about (0, 0), counter-clockwise.
 Curve circleOf(double radius);
 
-/// The part of a convex polygon where dot(normal, p) + offset >= 0.
+/// Returns the part of a convex polygon where dot(normal, p) + offset >= 0.
 Polygon halfOf(const Polygon& polygon, Vec2 normal, double offset);
 
-/// What a camera's picture shows of a level plane, `drop` over the foot, within `reach` of the
-/// foot; farther away the curves close somehow. Its border is traced as it is bent, within
-/// kConicError. No value: all of the plane is in view; no curves: nothing. (picture_footprint.cc)
+/// Computes the part of a level plane in a camera's picture, `drop` above the foot, within `reach`
+/// of the foot; beyond that, closing edges are arbitrary. The distorted border is traced within
+/// kConicError. No value: the whole plane is in view; no curves: the plane is out of view.
+/// (picture_footprint.cc)
 std::optional<std::vector<Curve>> pictureOnPlane(const FieldOfView& view, double drop,
                                                  double reach);
 
-/// What of a level plane is in view if nothing stands between, as layers: a place is in view if
-/// it has all `marks` and no counted layer holds it. Places count from the foot, where the sensor
-/// is right above or below.
+/// The part of a level plane in an unobstructed field of view, as layers: a point is in view if it
+/// has all `marks` and lies in no counted layer. Coordinates are relative to the foot of the
+/// sensor, the point right above or below it.
 struct Footprint {
     std::vector<Layer> layers;
     std::uint64_t marks = 0;
-    Box2 box;  ///< holds all that is in view; empty if nothing is
-    /// No place in view is farther from the foot. The disc is one of the layers unless
+    Box2 box;  ///< bounds of the part in view; empty if the plane is out of view
+    /// Maximum distance of a point in view from the foot. The disc is one of the layers unless
     /// `disc_is_left_out`.
     double reach = 0;
 
-    /// `drop` is the height of the plane over the sensor: below 0 if it looks down. With 0 the
-    /// plane passes through the sensor.
+    /// `drop` is the height of the plane above the sensor: negative if the sensor looks down, 0 if
+    /// the plane passes through it.
     Footprint(const FieldOfView& view, double drop, bool disc_is_left_out);
-    /// Adds what must hold a place; nothing is in view any more without curves.
+    /// Intersects the view with the area of these curves; without curves the view is empty.
     void mark(std::vector<Curve> curves);
 
   private:
@@ -60,11 +61,12 @@ struct Footprint {
     void addWedgeBehind(const FieldOfView& view, double drop);
 };
 
-// What follow() is made of.
+// Steps of follow().
 
-/// The arc from a to b through `middle`, straight if it is so within rounding.
+/// Returns the arc from a to b through `middle`, straight if it is so within rounding.
 CurveEdge arcThrough(Point2 a, Point2 middle, Point2 b);
-/// How far a place on it may lie from an edge; +infinity for arcs of more than a half turn.
+/// Returns the maximum distance of a point on the arc from an edge; +infinity for arcs of more than
+/// a half turn.
 double distanceFrom(const CurveEdge& edge, Point2 middle, Point2 place);
 
 template <typename Place>
@@ -94,25 +96,26 @@ void follow(Place place, double begin, double end, Curve& curve) {
     }
 }
 
-/// What sensors that do not scan in a level slice see of a level plane: what is in their field of
-/// view and range, and in no shadow that a body throws. The blind zone is not cut out. A place on
-/// the plane that a body covers is seen if sight reaches it. Light passes clear glass, sound does
-/// not; a receiver hears there a tag that emits all around.
+/// Computes the part of a level plane that a sensor sees, unless it scans in a level slice: in its
+/// field of view and range, outside all shadows. The blind zone is not cut out. A point of the
+/// plane inside a body is seen if a line of sight reaches it. Light passes clear glass, sound does
+/// not; a receiver hears an omnidirectional tag there.
 ///
-/// A laser that scans in one tilted plane covers the floor over or under which that plane passes in
-/// sight, above the floor (`height` does not count). Of swept lasers no closed form is known, nor
-/// of cameras whose tangential distortion ends their field of view within the picture.
+/// A laser that scans in one tilted plane covers the floor below or above the visible part of that
+/// plane, above the floor (`height` does not count). The closed form is unknown for swept lasers,
+/// and for cameras whose tangential distortion ends their field of view within the picture.
 ///
-/// Needs the environment no longer once it is made; copies share what they hold. Thread-safe.
+/// The environment is required only during construction; copies share their data. Thread-safe.
 class ShadowCaster {
   public:
     explicit ShadowCaster(const Environment& environment);
 
-    /// The exact region: disjoint curves with what is seen on their left. Conics are laid out
-    /// within kChordError (of receivers and spherical rangers that see farther than some hundred
-    /// times their height over the plane somewhat worse). Empty curves: nothing is seen; nothing:
-    /// not known. O(n log n) in the triangles near the field of view and the crossings of their
-    /// shadows. \throws FormatError for shadows that cross by the ten million
+    /// Computes the exact region: disjoint curves with the seen floor on their left. Conics are
+    /// approximated within kChordError (less closely for receivers and spherical rangers whose
+    /// range exceeds some hundred times their height above the plane). Empty curves: no floor is
+    /// seen; no value: unknown. O(n log n) in the triangles near the field of view and the
+    /// crossings of their shadows. \throws FormatError for shadows with tens of millions of
+    /// crossings
     [[nodiscard]] std::optional<std::vector<Curve>> regionSeen(const Sensor& sensor,
                                                                double height) const;
 

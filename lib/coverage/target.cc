@@ -12,7 +12,7 @@ namespace ispace {
 
 namespace {
 
-/// Columns or rows of square cells.
+/// Number of columns or rows of square cells.
 double cellsAlong(double extent, double edge) {
     return std::max(1.0, std::ceil(extent / edge - 1e-9));
 }
@@ -21,7 +21,7 @@ double squareCells(const Box2& limits, double edge) {
     return cellsAlong(limits.width(), edge) * cellsAlong(limits.depth(), edge);
 }
 
-/// An edge of two digits: digits * 10^exponent metres.
+/// An edge of two decimal digits: digits * 10^exponent metres.
 struct Edge {
     int digits = 10, exponent = -2;
 

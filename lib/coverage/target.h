@@ -13,9 +13,8 @@
 
 namespace ispace {
 
-/// Square cells that follow the room: their edge is 0.1 m, smaller where that makes fewer than
-/// 10 000 of them over the limits, and larger where it makes more than `most`, both a number of two
-/// digits.
+/// Square cells sized by the room: their edge is 0.1 m, smaller if the limits held fewer than 10
+/// 000 of them, larger if they held more than `most`; rounded to two decimal digits.
 struct RoomCells {
     int most = 200'000;
 };
@@ -27,41 +26,42 @@ struct CellCount {
 struct CellSize {
     double edge;
 };
-/// Which cells count. Square ones lie from the lower left corner of the limits on, the last column
-/// and row as far beyond the limits as need be.
+/// The choice of cells. Square cells start at the lower left corner of the limits; the last column
+/// and row may reach beyond the limits.
 using CellChoice = std::variant<RoomCells, CellCount, CellSize>;
 
-/// The edge of RoomCells that are not too many, metres.
+/// Default edge of RoomCells, metres.
 constexpr double kRoomCell = 0.1;
 
-/// \throws UsageError for less than one column or row, or more than kMaxCells in all
+/// Builds the grid. \throws UsageError for less than one column or row, or more than kMaxCells in
+/// all
 Grid gridOver(const Box2& limits, const CellChoice& cells);
 
-/// What is to be covered, in cells.
+/// The floor to be covered, in cells.
 struct Target {
     Grid grid;
-    double height = kScanHeight;  ///< at which the floor is free or not
+    double height = kScanHeight;  ///< height at which the free floor is computed
     CellSet indoor;               ///< centre strictly inside the indoor region
-    CellSet free;                 ///< indoor and not in a solid at `height`
+    CellSet free;                 ///< indoor and outside solids at `height`
 };
 
-/// Most cells of a grid.
+/// Maximum number of cells of a grid.
 constexpr int kMaxCells = 10'000'000;
 
-/// \throws UsageError as gridOver
+/// Computes the target's cells. \throws UsageError as gridOver
 Target makeTarget(const Environment& environment, const CellChoice& cells, double height);
 
-/// The weight of each part of the floor; by default all indoor floor weighs the same.
+/// The weight of each part of the floor; by default all indoor floor has weight 1.
 struct FloorWeights {
-    std::vector<NamedZone> targets;  ///< only floor in one of them counts; none: all
-    /// The last that holds a place decides; else 1.
+    std::vector<NamedZone> targets;  ///< only floor in one of them counts; empty: all floor
+    /// The last zone that holds a point decides; 1 outside all zones.
     std::vector<std::pair<NamedZone, double>> weights;
 
     [[nodiscard]] bool isUniform() const { return targets.empty() && weights.empty(); }
 };
 
-/// Weight of each cell of the target's grid: 0 outside the indoor region and all targets. A cell
-/// counts by its centre, strictly inside.
+/// Computes the weight of each cell of the target's grid: 0 outside the indoor region and all
+/// targets. A cell counts by its centre, strictly inside.
 std::vector<double> weightsOfCells(const Target& target, const FloorWeights& floor);
 
 }  // namespace ispace

@@ -23,7 +23,7 @@ std::vector<Curve> regionOfScan(const Level& level, const Sensor& sensor) {
     if (outline.empty()) return {};
     const std::vector<Polygon> solids = level.solidsTouching(place);
     if (solids.empty()) return {std::move(outline)};
-    // Sight passes into what the sensor touches, but there is nothing to be seen.
+    // A sensor in contact with a body looks into it, but sees no floor there.
     std::vector<Layer> layers = {{.curves = {std::move(outline)}, .counts = false, .marks = 1}};
     for (const Polygon& solid : solids) layers.push_back({.curves = {curveOf(solid)}});
     return Overlay(layers).curves(
@@ -33,7 +33,7 @@ std::vector<Curve> regionOfScan(const Level& level, const Sensor& sensor) {
 CellSet cellsOfScan(const Grid& grid, const Level& level, const Sensor& sensor) {
     const Laser& laser = sensor.as<Laser>();
     std::vector<Angle> limits;
-    std::size_t seen = 0;  // the part before the last
+    std::size_t seen = 0;  // number of the seen part before the last
     if (const auto sector = sectorOf(laser, sensor.pose.heading)) {
         limits = {std::min(sector->first, sector->beyond), std::max(sector->first, sector->beyond)};
         seen = sector->first < sector->beyond ? 0 : 1;

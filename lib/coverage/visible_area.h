@@ -16,35 +16,35 @@
 
 namespace ispace {
 
-/// What each sensor of an environment sees of the floor by itself: a laser that scans a slice sees
-/// of that slice, any other sensor of one level plane (see ShadowCaster). From inside a solid,
-/// deeper than kRayEpsilon, nothing is seen.
+/// Computes the visible area of single sensors: for a laser that scans a slice in that slice, for
+/// any other sensor on one level plane (see ShadowCaster). A sensor inside a solid, deeper than
+/// kRayEpsilon, sees no floor.
 ///
-/// The exact region is the truth; cells are those with their centre in it, rasterised
+/// The exact region is the reference; cells count if their centre lies in it, rasterised
 /// (cellsBySector) for slices and tested one by one (cellsOnPlane) for planes. The edges of a field
-/// of view and the greatest range count as inside, a line that hides what is behind it does not.
+/// of view and the maximum range count as inside, an occluding line does not.
 class VisibleArea {
   public:
-    /// Keeps the references. \param plane its height \param worlds for cells on planes; null if
-    /// only regions are asked for
+    /// Stores the references. \param plane height of the plane \param worlds required for cells on
+    /// planes; null if only regions are requested
     VisibleArea(const Environment& environment, double plane, Worlds* worlds = nullptr)
         : environment_(environment), plane_(plane), worlds_(worlds) {}
 
-    /// To be called for a sensor like it (its model, height, tilt and roll) before its cells are
-    /// asked for, by one thread. \pre there are worlds
+    /// Builds the world for sensors of the same model, height, tilt and roll. One thread must call
+    /// it before cellsOf(). \pre worlds is not null
     void prepare(const Sensor& sensor) const;
 
-    /// Disjoint curves, what is seen on their left; nothing if no closed form is known: for swept
-    /// lasers that do not scan a slice. Thread-safe. \throws FormatError as ShadowCaster
+    /// Returns disjoint curves with the seen floor on their left; empty if no closed form is known:
+    /// for swept lasers that do not scan a slice. Thread-safe. \throws FormatError as ShadowCaster
     [[nodiscard]] std::optional<std::vector<Curve>> regionOf(const Sensor& sensor) const;
-    /// Thread-safe. \pre prepare()
+    /// Returns the cells with their centre in the view. Thread-safe. \pre prepare()
     [[nodiscard]] CellSet cellsOf(const Grid& grid, const Sensor& sensor) const;
 
     [[nodiscard]] double plane() const { return plane_; }
     [[nodiscard]] std::shared_ptr<const Level> levelAt(double height) const {
         return environment_.level(height);
     }
-    /// What stops the sight of a sensor that looks at the plane. \pre prepare()
+    /// Returns the triangles that block the sight of a sensor on the plane. \pre prepare()
     [[nodiscard]] const RayWorld& meshFor(const SensorModel& model) const;
 
   private:
