@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cells as arrays of NumPy.
-// Masks for the filters of Nav2's costmaps.
+// Writes coverage in the formats of other programs: tables, GIS, CAD, glTF, NumPy, and masks for
+// the costmap filters of Nav2.
 #include "report/coverage_formats.h"
 
 #include <algorithm>
@@ -33,8 +33,8 @@ namespace {
 
 bool hasDensities(const Coverage& coverage) { return !coverage.report.densities.indoor.empty(); }
 
-/// Of each cell how many of pixelDensities(), the coarsest first, some camera sees it with; empty
-/// without cameras.
+/// Returns for each cell the number of pixelDensities(), sorted from the coarsest, that the best
+/// camera reaches; empty without cameras.
 std::vector<std::size_t> classesOfCells(const Coverage& coverage) {
     std::vector<std::size_t> reached;
     if (!hasDensities(coverage)) return reached;
@@ -94,7 +94,7 @@ CoverageFiles coverageRosMap(const Coverage& coverage, double cell, const std::s
 
 namespace {
 
-/// Indoor floor that cameras see with the pixels of a class, by its index.
+/// Returns the indoor floor that cameras see with the pixels of a class, by its index.
 std::vector<Region> withPixelsOf(const Coverage& coverage, std::size_t density_class) {
     const std::uint64_t wanted = kIndoorMark | classMark(density_class);
     if (!coverage.density_overlays.empty()) {
@@ -303,7 +303,7 @@ std::string coverageNpz(const Coverage& coverage) {
 
 namespace {
 
-/// Viewers take pictures of this many pixels a side.
+/// Maximum side of a picture in pixels, as viewers accept it.
 constexpr int kMaxSide = 4096;
 
 using Pixel = std::array<std::uint8_t, 3>;
@@ -315,7 +315,8 @@ Pixel pixelOf(const Color& color) {
     return {part(color.red), part(color.green), part(color.blue)};
 }
 
-/// The cells from above, a pixel each unless they are too many; the top row has the high y.
+/// Draws the cells from above, a pixel each unless there are too many; the top row has the greatest
+/// y.
 std::string cellsPng(const Coverage& coverage) {
     const Grid& grid = coverage.target.grid;
     const Shades shades = shadesFor(coverage.report);

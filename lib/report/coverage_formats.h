@@ -13,82 +13,84 @@
 
 namespace ispace {
 
-/// The cells as a table for other programs: `column,row,x,y,indoor,free,seen`, x and y of the
-/// middle, indoor and free 0 or 1, seen by how many; row by row, the lowest first. With cameras
-/// there is `density`, too: the finest of pixelDensities() that one of them has there, or nothing.
+/// Writes the cells as a CSV table: `column,row,x,y,indoor,free,seen`, where x and y are the cell
+/// centre, indoor and free 0 or 1, seen the number of sensors; row by row, the lowest first. With
+/// cameras it has a column `density`: the finest of pixelDensities() that one of them reaches, or
+/// empty.
 std::string coverageCsv(const Coverage& coverage);
 
-/// The plan as a GeoJSON FeatureCollection in metres of the plan: the indoor region and the free
-/// floor, the floor seen by exactly 1, 2, ... sensors (`keyword` "seen", with `sensors` and
-/// `area`), that which cameras see with the pixels of each of pixelDensities() (`keyword`
-/// "density", with `pixels_per_metre` and `area`), each sensor as a Point with `heading` and what
-/// it sees as an area (`keyword` "view"), and the unseen pieces of the free floor as Points with
-/// `area`. Arcs are polygons of the same area, see withArcAreas(); where regions are not known
-/// exactly, cells are outlined instead.
+/// Writes the plan as a GeoJSON FeatureCollection in metres: the indoor region and the free floor,
+/// the floor seen by exactly 1, 2, ... sensors (`keyword` "seen", with `sensors` and `area`), the
+/// floor that cameras see with the pixels of each of pixelDensities() (`keyword` "density", with
+/// `pixels_per_metre` and `area`), each sensor as a Point with `heading`, its view as an area
+/// (`keyword` "view"), and the unseen pieces of the free floor as Points with `area`. Arcs become
+/// polygons of the same area, see withArcAreas(); if regions are not known exactly, cells are
+/// outlined.
 std::string coverageGeoJson(const Scene& scene, const Coverage& coverage);
 
-/// The plan as DXF in metres: walls, doors, windows and objects, sensors, what each sees ("views",
-/// closed polylines with true arcs), and as solid fillings the indoor floor seen by exactly 1, 2,
-/// ... ("seen-1", ...) and by none ("unseen"), each on a layer of its own. Fillings have
-/// polygons of the same area for arcs.
+/// Writes the plan as DXF in metres: walls, doors, windows and objects, sensors, their views
+/// ("views", closed polylines with true arcs), and solid fillings of the indoor floor seen by
+/// exactly 1, 2, ... sensors ("seen-1", ...) and of the unseen floor ("unseen"), each on a separate
+/// layer. In fillings, polygons of the same area replace arcs.
 std::string coverageDxf(const Scene& scene, const Coverage& coverage);
 
-/// The compiled room, see writeGlb(), whose floor has a picture of the cells on it: unseen floor,
-/// and the colours of the map by how many sensors see it, a pixel a cell (at most 4096 a side).
-/// \param document its records, those of the scene
+/// Writes the compiled room, see writeGlb(), with a texture of the cells on its floor: unseen
+/// floor, and the map's colours of redundancy, a pixel a cell (at most 4096 a side). \param
+/// document the records of the scene
 std::string coverageGlb(const Scene& scene, const Coverage& coverage, const Document& document);
 
-/// A product, and the file that stands beside it.
+/// A product, and the file beside it.
 struct CoverageFiles {
     std::string product, beside;
 };
 
-/// The cells as a map.yaml that ROS' map_server reads, and its picture: 254 (free) where the indoor
-/// floor is seen, 205 (unknown) where it is not, 0 (occupied) where a cell is not on the free
-/// floor. \pre cells are squares of `cell` metres \param image_name how the YAML names the picture
+/// Writes the cells as a map.yaml and its picture for map_server of ROS: 254 (free) for seen indoor
+/// floor, 205 (unknown) for unseen floor, 0 (occupied) for cells off the free floor. \pre cells are
+/// squares of `cell` metres \param image_name name of the picture in the YAML
 CoverageFiles coverageRosMap(const Coverage& coverage, double cell, const std::string& image_name);
 
-/// A mask for Nav2's speed filter, as nav2MaskFiles() writes it: free floor that k sensors see has
-/// the k-th of `speeds`, or the last one; there is no limit elsewhere. \param speeds shares of full
-/// speed, 0.01 to 1, to a hundredth \pre cells are squares of `cell` metres
+/// Writes a mask for Nav2's speed filter, as nav2MaskFiles() does: free floor that k sensors see
+/// gets the k-th of `speeds`, or the last one; elsewhere speed is not limited. \param speeds shares
+/// of full speed, 0.01 to 1, to a hundredth \pre cells are squares of `cell` metres
 CoverageFiles coverageSpeedMask(const Coverage& coverage, double cell,
                                 std::span<const double> speeds, const std::string& picture_name);
-/// A mask for Nav2's keep-out filter: free floor that no sensor sees.
+/// Writes a mask for Nav2's keep-out filter: free floor that no sensor sees.
 CoverageFiles coverageKeepoutMask(const Coverage& coverage, double cell,
                                   const std::string& picture_name);
 
-/// The cells as a NumPy array (.npy) of rows and columns, the lowest first: by how many sensors a
-/// cell is seen as int32, -1 outside the room.
+/// Writes the cells as a NumPy array (.npy) of rows and columns, the lowest first: the number of
+/// sensors that see a cell as int32, -1 outside the room.
 std::string coverageNpy(const Coverage& coverage);
-/// As arrays (.npz): seen (uint32), indoor and free (bool), x of the middles of columns, y of those
-/// of rows, and with cameras density, the pixels a metre of the finest of pixelDensities(), or 0.
+/// Writes NumPy arrays (.npz): seen (uint32), indoor and free (bool), x of the columns' middles, y
+/// of the rows' middles, and with cameras density, the pixels a metre of the finest of
+/// pixelDensities(), or 0.
 std::string coverageNpz(const Coverage& coverage);
 
-/// What a product is made of.
+/// The input of a product's writer.
 struct CoverageProduct {
     const Scene& scene;
     const Coverage& coverage;
-    const Coverage* other = nullptr;  ///< what it is compared with, if it is
+    const Coverage* other = nullptr;  ///< compared with it; null: not compared
     MapOptions map = {};
-    double cell = 0;                  ///< edge of square cells where the format wants them
-    std::string beside_name = {};     ///< by which the product names the file beside it
+    double cell = 0;                  ///< edge of square cells, if the format requires them
+    std::string beside_name = {};     ///< name by which the product refers to the file beside it
     std::vector<double> speeds = {};  ///< see coverageSpeedMask()
-    Document document = {};           ///< the scene's records, with their history, for models
+    Document document = {};           ///< the scene's records, with their history, for glTF
 };
 
-/// One format of products: a row that `coverage --to`, the choice by suffix, and the checks of
-/// options read.
+/// A product format: a row that `coverage --to`, the choice by suffix, and the option checks read.
 struct CoverageFormat {
-    std::string_view name;                      ///< as --to takes it
-    std::optional<PictureFormat> picture = {};  ///< it is a map, which has options of its own
-    double square_cell = 0;                     ///< it wants square cells, of this edge unless told
-    std::string_view suffix = name;             ///< of its files, without dot
-    const char* beside_suffix = nullptr;        ///< of a file beside the product, named after it
+    std::string_view name;                      ///< as --to accepts it
+    std::optional<PictureFormat> picture = {};  ///< set for maps, which have further options
+    double square_cell =
+        0;  ///< the format requires square cells, of this edge by default; 0: any cells
+    std::string_view suffix = name;       ///< of its files, without dot
+    const char* beside_suffix = nullptr;  ///< of a file beside the product, named after it
     bool takes_speeds = false;
     CoverageFiles (*write)(const CoverageProduct& product) = nullptr;
 };
 std::span<const CoverageFormat> coverageFormats();
-/// \pre a format has this name
+/// Finds a format. \pre a format has this name
 const CoverageFormat& coverageFormat(std::string_view name);
 
 }  // namespace ispace

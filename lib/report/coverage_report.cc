@@ -12,7 +12,7 @@ namespace ispace {
 
 namespace {
 
-/// Null for what is not known.
+/// Writes a metric, null if it is unknown.
 void write(JsonWriter& json, const char* key, const std::optional<double>& metric) {
     json.key(key);
     if (metric)
@@ -33,7 +33,7 @@ void write(JsonWriter& json, const char* key, const Metric& metric) {
     json.endObject();
 }
 
-/// One for each class, or nothing.
+/// Writes a metric for each density class, or skips the member without classes.
 void writeClasses(JsonWriter& json, const char* key, const char* figure,
                   const std::vector<Metric>& metrics) {
     if (metrics.empty()) return;
@@ -179,7 +179,7 @@ std::string withSign(double value, Format format) {
     return text.front() == '-' || text.front() == '+' ? text : "+" + text;
 }
 
-/// A metric three ways: by cells, exact, and by how much cells are off.
+/// Formats a metric by cells, exact, and the error of the cells.
 template <typename Format>
 TextRow row(std::string name, const Metric& metric, Format format) {
     TextRow row = {std::move(name), metric.grid ? format(*metric.grid) : "-",
@@ -200,7 +200,7 @@ std::string seenBy(std::size_t first, std::size_t last) {
     return text + std::to_string(last) + " sensors";
 }
 
-/// A row for each number of sensors, of many the greater ones together.
+/// Adds a row for each number of sensors, and one for all greater numbers if there are many.
 void addRedundancy(const CoverageReport& report, std::vector<TextRow>& rows) {
     constexpr std::size_t kMaxRows = 8;
     const auto exact = [&report](std::size_t k) { return (*report.redundancy_exact)[k]; };
@@ -265,8 +265,8 @@ std::string sensorTable(const std::vector<SensorMetrics>& sensors) {
     return aligned(rows, "llr");
 }
 
-/// How far cameras see, and with how many pixels; "" without any. Areas are exact where they can
-/// be.
+/// Returns a table of the cameras' distances and pixel densities; "" without cameras. Areas are
+/// exact if known.
 std::string cameraTable(const std::vector<SensorMetrics>& sensors) {
     const auto best = [](const Metric& metric) {
         return metric.exact ? metric.exact : metric.grid;

@@ -18,17 +18,17 @@ constexpr int kMinWidth = 200, kMaxWidth = 12000;
 
 using palette::kFaintInk, palette::kInk;
 constexpr Color kGridLine = Color::rgb(0xE1E4E8);
-/// Lets the grid through.
+/// Transparent, so that the grid shows through.
 constexpr Color kGap = Color::rgb(0x0072B2).faded(0.14);
 Color valueColor() { return seriesColor(3); }
 Color boundColor() { return seriesColor(0); }
 
-/// A stretch of an axis with its ticks, all whole multiples of `step`.
+/// An interval of an axis with ticks at all whole multiples of `step`.
 struct Axis {
     double first = 0, last = 1, step = 1;
 
     [[nodiscard]] double shareOf(double value) const { return (value - first) / (last - first); }
-    /// Calls visit(value).
+    /// Calls visit(value) for each tick.
     template <typename Visit>
     void forEachTick(Visit visit) const {
         const double end = std::floor(last / step + 1e-9);
@@ -36,7 +36,7 @@ struct Axis {
     }
 };
 
-/// Whole sensors, from none on unless that would leave half of the picture empty.
+/// Axis of whole sensors, from 0 unless that would leave half of the chart empty.
 Axis sensorAxis(const std::vector<CurvePoint>& points, double max_ticks) {
     Axis axis;
     if (points.empty()) return axis;
@@ -47,7 +47,7 @@ Axis sensorAxis(const std::vector<CurvePoint>& points, double max_ticks) {
     return axis;
 }
 
-/// Per cent from 0 to the next tick above everything.
+/// Axis in per cent, from 0 to the first tick above all values.
 Axis shareAxis(const std::vector<CurvePoint>& points) {
     constexpr double kMaxTicks = 6;
     double most = 0;
@@ -59,7 +59,7 @@ Axis shareAxis(const std::vector<CurvePoint>& points) {
     return axis;
 }
 
-/// The picture and where its axes lie on the page.
+/// The picture and the bounds of its axes on the page.
 struct Chart {
     Picture& picture;
     const std::vector<CurvePoint>& points;
@@ -104,7 +104,7 @@ void drawAxes(const Chart& chart) {
                        chart.text(Align::Center));
 }
 
-/// Values beside their dots, where there is room.
+/// Writes values beside their dots if there is room.
 void drawFigures(const Chart& chart) {
     const double em = chart.em;
     const double apart = chart.plot.width() / (chart.sensors.last - chart.sensors.first);
@@ -143,7 +143,7 @@ void drawLines(const Chart& chart) {
     for (const Point2 place : values) chart.picture.circle(place, dot, {valueColor()});
 }
 
-/// The key, in a line from `left` on.
+/// Draws the key on one line from `left` on.
 void drawKey(const Chart& chart, double left, double base) {
     const double em = chart.em, y = base - 0.36 * em;
     chart.picture.line({left, y}, {left + 1.6 * em, y}, {valueColor(), em / 7});

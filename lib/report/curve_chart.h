@@ -9,17 +9,17 @@
 
 namespace ispace {
 
-/// CSV: a header `sensors,value,bound`, then a line per point, as fractions.
+/// Writes CSV: a header `sensors,value,bound`, then a line per point, as fractions.
 std::string curveCsv(const std::vector<CurvePoint>& points);
-/// The formats of a file with a curve: csv, png, svg, pdf.
+/// Returns the formats of a curve's file: csv, png, svg, pdf.
 std::vector<std::string> curveFormats();
-/// The file in one of them.
+/// Writes the curve in one of these formats.
 std::string curveFile(const std::vector<CurvePoint>& points, const std::string& format);
-/// An aligned table in per cent.
+/// Writes an aligned table in per cent.
 std::string curveText(const std::vector<CurvePoint>& points);
 
 /// Draws coverage over the number of sensors: values as a line with dots, bounds as a line above,
-/// the gap between them shaded; axes in whole sensors and per cent. Points may come in any order.
+/// the gap between them shaded; axes in whole sensors and per cent. Points may be in any order.
 /// \throws UsageError for a width outside the limits of a map
 std::string drawCurve(const std::vector<CurvePoint>& points, const std::string& title,
                       PictureFormat format, int width);

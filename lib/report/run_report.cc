@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The ways of robots and people on a map, coloured by how many sensors saw them.
+// Reports the coverage of a run: text, JSON, and ways coloured on a map by the number of sensors.
 #include "report/run_report.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace ispace {
 
 namespace {
 
-constexpr std::size_t kColumns = 4;  // numbers of sensors, the last one and more
+constexpr std::size_t kColumns = 4;  // numbers of sensors; the last column includes greater ones
 constexpr std::size_t kLossesListed = 5;
 
 std::string seconds(double time) { return formatFixed(time, 2) + " s"; }
@@ -57,7 +57,7 @@ void write(JsonWriter& json, const RunSightMetrics& metrics) {
     json.endObject();
 }
 
-/// Of exactly k sensors, of the last column of so many and more.
+/// Returns the share of exactly k sensors; with `and_more`, of k or more.
 double shareOf(const std::vector<double>& shares, std::size_t k, bool and_more) {
     double sum = 0;
     for (std::size_t i = k; i < shares.size() && (i == k || and_more); ++i) sum += shares[i];
@@ -145,8 +145,8 @@ std::string runText(const RunCoverage& run) {
 
 namespace {
 
-/// Of no sensor, one, two, and more: Okabe and Ito's vermilion, orange, green, and ink. All lie on
-/// a white rim, as floor has the blues; in grey it is the dashes of the first that tell.
+/// Colours of ways seen by 0, 1, 2 and more sensors: Okabe and Ito's vermilion, orange, green, and
+/// ink. All have a white rim, as floor is blue; in grey, the dashes of the first identify it.
 constexpr std::array<std::uint32_t, 4> kRunColors = {0xD55E00, 0xF0A000, 0x00845F, 0x1F2328};
 
 std::size_t classOf(std::size_t sensors) { return std::min(sensors, kRunColors.size() - 1); }

@@ -9,7 +9,7 @@ namespace ispace {
 
 class JsonWriter;
 
-/// The metrics of a run as aligned lines of text.
+/// Writes the metrics of a run as aligned lines of text.
 std::string runText(const RunCoverage& run);
 /// Writes the member `run` of coverageJson().
 void writeRun(JsonWriter& json, const RunCoverage& run);

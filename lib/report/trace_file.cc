@@ -25,7 +25,7 @@ const char* const kWanted = "no trace, wanted what arrange --trace writes";
     throw FormatError({"", 0, static_cast<int>(column), message});
 }
 
-/// The object of one line. \throws FormatError without file and line
+/// Parses the object of one line. \throws FormatError without file and line
 json parseTraceLine(std::string_view text) {
     std::set<std::string> keys;
     const auto check = [&keys](int depth, json::parse_event_t event, const json& key) {
@@ -48,7 +48,7 @@ json parseTraceLine(std::string_view text) {
     }
 }
 
-/// A member of the type T. \throws FormatError as parseTraceLine
+/// Returns a member of the type T. \throws FormatError as parseTraceLine
 template <typename T>
 T memberOf(const json& line, const char* key, const char* type) {
     const auto member = line.find(key);

@@ -10,16 +10,16 @@
 namespace ispace {
 
 /// The "assist info" of the thesis' Sensor Arranger as JSONL: a header object
-/// {"schema":"ispace-trace/1","history":[...]}, then a line a pose,
-/// {"sensor","pose":[x,y,z,heading,tilt,roll],"value"}, of lasers with "slice_area", and with
-/// "chosen":true where a sensor was placed. Metres and radians, as in every JSON pose.
+/// {"schema":"ispace-trace/1","history":[...]}, then a line per pose,
+/// {"sensor","pose":[x,y,z,heading,tilt,roll],"value"}, for lasers with "slice_area", and with
+/// "chosen":true if a sensor was put there. Metres and radians, as in every JSON pose.
 struct TraceFile {
     History history;
     std::vector<TriedPose> poses;
 };
 std::string writeTrace(const TraceFile& trace);
-/// Strict JSON; keys may come in any order, unknown ones and empty lines are passed over.
-/// \throws FormatError with the line; `name` is the file's
+/// Parses strict JSON; keys may be in any order, unknown keys and empty lines are skipped. \throws
+/// FormatError with the line; `name` is the file's name
 TraceFile readTrace(const std::string& text, const std::string& name);
 
 }  // namespace ispace

@@ -15,26 +15,26 @@ namespace ispace {
 namespace {
 
 constexpr int kMinWidth = 200, kMaxWidth = 12000;
-/// A PDF's page unit is the point.
+/// The page unit of PDF is the point.
 constexpr double kPointsPerMillimetre = 72 / 25.4;
 
-/// Where everything lies on the page, in its units.
+/// Bounds of the parts of a page, in its units.
 struct Page {
     double em = 0;  ///< size of text
     double width = 0, height = 0;
     double margin = 0;
-    double title_base = 0, subtitle_base = 0;  ///< base lines of the head
-    bool is_to_scale = false;                  ///< a usual one
+    double title_base = 0, subtitle_base = 0;  ///< base lines of the title and subtitle
+    bool is_to_scale = false;                  ///< plan drawn at a usual scale
     PageView view;
     Box2 plan;
     Point2 scale_corner;       ///< lower left end of the scale bar
-    double max_scale_bar = 0;  ///< its greatest length
+    double max_scale_bar = 0;  ///< its maximum length
     LegendLayout legend;
     Point2 legend_corner;
     double legend_width = 0;
 };
 
-/// The plan within a box of the page: as large as fits, in the middle of the width.
+/// Fits the plan into a box of the page: as large as possible, centred in the width.
 void fitPlan(Page& page, const Box2& limits, double left, double top, double width,
              double max_height) {
     double scale = std::min(width / limits.width(), max_height / limits.depth());
@@ -44,7 +44,7 @@ void fitPlan(Page& page, const Box2& limits, double left, double top, double wid
     }
     const double plan_width = scale * limits.width(), plan_height = scale * limits.depth();
     const double x = left + (width - plan_width) / 2;
-    // A mere strip of a room still gets room for marks and labels.
+    // Even a very narrow room leaves space for marks and labels.
     const double y = top + std::max(0.0, (5 * page.em - plan_height) / 2);
     page.plan = {{x, y}, {x + plan_width, y + plan_height}};
     page.view = {scale, {limits.low.x, limits.high.y}, {x, y}};
@@ -53,9 +53,10 @@ void fitPlan(Page& page, const Box2& limits, double left, double top, double wid
     if (x + page.max_scale_bar + 6 * page.em > left + width) page.scale_corner.x = left;
 }
 
-/// \param max_height of a page to scale; 0: the plan may be 1.4 times as high as the page is wide
+/// \param max_height maximum height of a page to scale; 0: the plan may be 1.4 times as high as the
+/// page is wide
 Page layOut(const MapPicture& map, double width, double max_height) {
-    // Widths of the legend, in sizes of text.
+    // Widths of the legend, in text sizes.
     constexpr double kPanel = 18, kNarrowPanel = 17, kGap = 2;
     Page page;
     page.width = width;
@@ -71,7 +72,7 @@ Page layOut(const MapPicture& map, double width, double max_height) {
     }
     const Box2& limits = map.limits();
     const double inner = page.width - 2 * page.margin;
-    // Leaves `below` units to the legend.
+    // Reserves `below` units for the legend.
     const auto plan_height = [&](double below) {
         if (!page.is_to_scale) return 1.4 * page.width;
         return std::max(5 * em, max_height - page.margin - top - 3.5 * em - below);
@@ -81,10 +82,11 @@ Page layOut(const MapPicture& map, double width, double max_height) {
     fitPlan(page, limits, page.margin, top, inner - panel - gap, plan_height(0));
     page.legend = layOutLegend(blocks, 1, em);
     const double plan_end = page.scale_corner.y;
-    // Beside the plan if it leaves the larger part of the page to it, and no large part empty.
+    // The legend stands beside the plan if that leaves most of the page to the plan, and no large
+    // gap.
     if (panel + gap <= 0.32 * page.width && limits.depth() > 0.65 * limits.width() &&
         page.legend.height < 1.25 * (plan_end - top)) {
-        if (page.is_to_scale) {  // and no wider than it must be
+        if (page.is_to_scale) {  // and not wider than necessary
             const double spare = inner - panel - gap - std::max(page.plan.width(), 12 * em);
             page.width -= spare;
             for (double* x : {&page.view.page_anchor.x, &page.plan.low.x, &page.plan.high.x})
@@ -105,7 +107,7 @@ Page layOut(const MapPicture& map, double width, double max_height) {
     return page;
 }
 
-/// On A4 or A3, upright or lying: where the plan is the largest, on the smallest such sheet.
+/// Chooses A4 or A3, portrait or landscape: the smallest sheet on which the plan is largest.
 Page layOutPaper(const MapPicture& map) {
     Page best;
     best.view.scale = 0;
@@ -119,7 +121,7 @@ Page layOutPaper(const MapPicture& map) {
     return best;
 }
 
-/// Title and main metrics, of which as many as fit.
+/// Draws the title and as many main metrics as fit.
 void drawHead(Picture& picture, const MapPicture& map, const Page& page) {
     if (map.options.title.empty()) return;
     const double width = page.width - 2 * page.margin;
@@ -137,7 +139,7 @@ void drawHead(Picture& picture, const MapPicture& map, const Page& page) {
     picture.text({page.margin, page.subtitle_base}, fitText(line, width, style), style);
 }
 
-/// The plan with what is seen between its floor and what stands on it.
+/// Draws the coverage between the plan's floor and the bodies that stand on it.
 void drawPlanSeen(Picture& picture, const MapPicture& map) {
     PlanDrawing plan(picture, map.scene,
                      {map.view, map.em, map.limits(), map.coverage.target.height, true});
@@ -202,9 +204,9 @@ std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const 
 
 namespace {
 
-// Of the size of text: from one line to the next, and between blocks.
+// In text sizes: line spacing, and the gap between blocks.
 constexpr double kLine = 1.5, kBlockGap = 0.9;
-// Likewise: between columns of metrics, and the place of a sign.
+// Likewise: the gap between columns of metrics, and the width of a sign.
 constexpr double kColumnGap = 0.7, kSignWidth = 1.6;
 
 using Sign = LegendItem::Sign;
@@ -213,13 +215,13 @@ double heightOf(const LegendBlock& block, double em) {
     return em * kLine * static_cast<double>(block.items.size() + 1);
 }
 
-/// The colours of places tried, from left to right.
+/// Draws the colour scale of tried positions, from left to right.
 void drawScale(Picture& picture, double left, double y, double em) {
     constexpr int kSteps = 24;
     const double half = 0.42 * em, step = kSignWidth * em / kSteps;
     for (int i = 0; i < kSteps; ++i) {
         const double from = left + i * step;
-        // Each reaches to the end, so that no seam shows.
+        // Each rectangle extends to the end, which avoids visible seams.
         const double to = left + kSignWidth * em;
         const Polygon patch = {{from, y - half}, {to, y - half}, {to, y + half}, {from, y + half}};
         picture.area(patch, {triedColor(i / (kSteps - 1.0))});
@@ -236,7 +238,7 @@ void drawPatch(Picture& picture, const LegendItem& item, double left, double y, 
     picture.area(patch, {Stroke{palette::kObjectEdge, em / 16}});
 }
 
-/// The sign of an item, in a box kSignWidth em wide from `left` on, middle at y.
+/// Draws the sign of an item in a box kSignWidth em wide from `left` on, middle at y.
 void drawSign(Picture& picture, const LegendItem& item, double left, double y, double em) {
     const double right = left + kSignWidth * em;
     switch (item.sign) {
@@ -268,10 +270,10 @@ void drawSign(Picture& picture, const LegendItem& item, double left, double y, d
     }
 }
 
-/// How far the columns of a block's metrics reach from its right side.
+/// Distances of a block's metric columns from its right side.
 struct ColumnWidths {
-    double second = 0;  ///< without its gap; 0: there is one column only
-    double first = 0;   ///< of the first alone
+    double second = 0;  ///< without its gap; 0: only one column
+    double first = 0;   ///< of the first column alone
 };
 
 ColumnWidths columnsOf(const LegendBlock& block, double em) {
@@ -281,7 +283,7 @@ ColumnWidths columnsOf(const LegendBlock& block, double em) {
     widths = {textWidth(block.columns[1], style), textWidth(block.columns[0], style)};
     for (const LegendItem& item : block.items) {
         widths.second = std::max(widths.second, textWidth(item.second, style));
-        // A metric alone may take more than its column.
+        // A single metric may be wider than its column.
         if (!item.second.empty())
             widths.first = std::max(widths.first, textWidth(item.value, style));
     }
@@ -308,7 +310,7 @@ void drawItem(Picture& picture, const LegendItem& item, const ColumnWidths& colu
         value_style.color = palette::kFaintInk;
         picture.text({right, base}, item.second, value_style);
     } else {
-        // What does not fit is cut on both sides alike.
+        // Wider text is cut on both sides.
         const double needed = textWidth(item.text, style) + 0.7 * em;
         const double most = std::max(0.5 * room, room - needed);
         const std::string value = fitText(item.value, most, value_style);

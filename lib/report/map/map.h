@@ -11,42 +11,42 @@
 
 namespace ispace {
 
-/// What the colour of covered floor tells.
+/// Meaning of the colour of covered floor.
 enum class MapColor {
-    Redundancy,  ///< how many sensors see it
-    Sensor,      ///< which one does; where several do, hatched or mixed so that it shows
-    Density,     ///< with how many pixels a metre cameras see it, by the classes of the standard
+    Redundancy,  ///< number of sensors that see the floor
+    Sensor,      ///< the sensor that sees it; overlaps are hatched or mixed
+    Density,     ///< pixels a metre of the best camera, by the classes of the standard
 };
 
-/// How a sensor's view is drawn.
+/// Style of a sensor's view.
 enum class FanStyle {
-    Contours,  ///< the outline of what it sees (the thesis' "show area")
-    Beams,     ///< the beams of lasers, thinned where they would run together; sweeps and other
-               ///< sensors as contours
+    Contours,  ///< the outline of the view (the thesis' "show area")
+    Beams,     ///< the beams of lasers, thinned if they would merge; contours for sweeps and other
+               ///< sensors
 };
 
 struct MapOptions {
     PictureFormat format = PictureFormat::Png;
     int width = 1200;        ///< of PNG and SVG, in pixels
-    std::string title = {};  ///< e.g. base name of ENV; "" for none
+    std::string title = {};  ///< e.g. base name of ENV; "" for no title
     MapColor color = MapColor::Redundancy;
     FanStyle fans = FanStyle::Contours;
-    /// What a search tried: places in the colours of the best value there, below the sensors.
+    /// Poses that a search tried: positions coloured by the best value there, below the sensors.
     std::vector<TriedPose> trace = {};
-    /// What the layout saw of a run: ways in colours by the number of sensors that saw them, and
-    /// rings where sight was lost; null for none. It outlives the options.
+    /// Coverage of a recorded run: ways coloured by the number of sensors that saw them, and rings
+    /// where sight was lost; null: no run. It outlives the options.
     const RunCoverage* run = nullptr;
 };
 
-/// The plan as a picture for a paper: covered floor, walls, objects, each sensor with its id,
-/// heading and view, the largest unseen spots, legend, scale bar, the metrics. Returns the bytes of
-/// the file; equal input gives equal bytes. Covered floor is drawn from coverage.overlay, whatever
-/// the size of the picture sharp, or from cells where there is none. A PDF is to scale: on A4 or
-/// A3, the plan at the largest usual scale (1:20, 1:25, 1:50, …) that fits.
+/// Draws the plan as a picture for a paper: covered floor, walls, objects, each sensor with its id,
+/// heading and view, the largest unseen spots, legend, scale bar, and metrics. Returns the bytes of
+/// the file; equal input gives equal bytes. Covered floor is drawn from coverage.overlay, sharp at
+/// any size, or from cells if there is no overlay. A PDF is to scale: on A4 or A3, the plan at the
+/// largest usual scale (1:20, 1:25, 1:50, …) that fits.
 ///
-/// `other`, if not null, is what coverage was compared with (compare()): the colours then tell the
-/// indoor floor that both see, this one alone (gained), and the other alone (lost), and the other's
-/// sensors are marked as such.
+/// `other`, if not null, is the coverage with which compare() was called: colours then show the
+/// indoor floor that both see, only this one (gained), or only the other one (lost), and the
+/// sensors of the other are marked.
 std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const MapOptions& options,
                             const Coverage* other = nullptr);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves of what is seen, thinned and cut for the page, and the floor in their colours.
+// Thins and clips the curves of coverage for the page, and fills the floor with their colours.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -13,7 +13,7 @@ namespace ispace {
 
 namespace {
 
-/// One side of a box: what has a coordinate of at least (or at most) `bound`.
+/// The half-plane on one side of a box: coordinates of at least (or at most) `bound`.
 struct HalfPlane {
     bool along_x;
     bool above;
@@ -23,7 +23,7 @@ struct HalfPlane {
     [[nodiscard]] bool holds(Point2 p) const {
         return above ? coordinate(p) >= bound : coordinate(p) <= bound;
     }
-    /// Where a -> b passes the bound. \pre one of the ends is held
+    /// Returns the intersection of a -> b with the bound. \pre one end is inside
     [[nodiscard]] Point2 crossing(Point2 a, Point2 b) const {
         const double share = (bound - coordinate(a)) / (coordinate(b) - coordinate(a));
         const Point2 p = a + share * (b - a);
@@ -41,7 +41,7 @@ bool within(const Box2& inner, const Box2& outer) {
            inner.high.x <= outer.high.x && inner.high.y <= outer.high.y;
 }
 
-/// A closed curve thinned in two halves, which meet at vertices far apart.
+/// Thins a closed curve in two halves between distant vertices.
 Polygon thinnedCurve(const Polygon& curve, double tolerance) {
     if (curve.size() < 4) return curve;
     const auto farther = [&](Point2 a, Point2 b) {
@@ -58,9 +58,8 @@ Polygon thinnedCurve(const Polygon& curve, double tolerance) {
 
 using Curves = std::vector<Polygon>;
 
-/// Indoor cells of a set. Cells that do not count, with the centre off the free floor, are added
-/// beside free ones of the set, so that the colour of the floor reaches walls and objects, which
-/// are drawn over it.
+/// Returns the indoor cells of a set. Adds cells with a centre off the free floor beside free cells
+/// of the set, so that the colour of the floor reaches walls and objects, which are drawn over it.
 CellSet shownCells(const CellSet& seen, const Target& target) {
     const Grid& grid = target.grid;
     const auto columns = static_cast<std::size_t>(grid.columns);
@@ -86,7 +85,7 @@ Curves curvesOfCells(const MapPicture& map, const CellSet& seen) {
     return drawable(map, contours(map.coverage.target.grid, shownCells(seen, map.coverage.target)));
 }
 
-/// Indoor floor that at least so many sets see: its exact curves.
+/// Returns the exact curves of indoor floor that at least `least` sets see.
 Curves exactCurves(const MapPicture& map, const Overlay& overlay, std::uint32_t least) {
     const auto is_seen = [least](const LayerLabel& label) {
         return (label.marks & kIndoorMark) != 0 && label.count >= static_cast<std::int32_t>(least);
@@ -94,7 +93,7 @@ Curves exactCurves(const MapPicture& map, const Overlay& overlay, std::uint32_t 
     return drawable(map, curvesOf(overlay.regions(is_seen)));
 }
 
-/// The same, exact where that is known, else by cells.
+/// Returns the same, exact if known, else by cells.
 Curves seenCurves(const MapPicture& map, std::uint32_t least) {
     if (map.coverage.overlay) return exactCurves(map, *map.coverage.overlay, least);
     const std::vector<std::uint32_t> times = timesSeen(map.coverage);
@@ -105,19 +104,20 @@ Curves seenCurves(const MapPicture& map, std::uint32_t least) {
 }
 
 Curves curvesOfSet(const MapPicture& map, const CoveredSet& set) {
-    // Both kinds are never mixed: stripes would show steps where they meet.
+    // The two kinds are not mixed: stripes would show steps between them.
     if (map.coverage.overlay && set.region) return drawable(map, *set.region);
     return curvesOfCells(map, set.cells);
 }
 
 void drawRedundancy(Picture& picture, const MapPicture& map) {
     const Shades shades = shadesFor(map.coverage.report);
-    // Each class is laid over those below it, so that no seam shows between two.
+    // Each class is drawn over the lower ones, which avoids visible seams.
     for (int shade = 1; shade <= shades.count; ++shade)
         picture.area(seenCurves(map, shades.least(shade)), {shades.color(shade)});
 }
 
-/// Floor that several see: stripes in their colours, or without colours if there are many.
+/// Draws floor that several sensors see: stripes in their colours, or without colours if there are
+/// many.
 void drawShared(Picture& picture, const MapPicture& map, const std::vector<Curves>& sets) {
     const Curves shared = seenCurves(map, 2);
     picture.area(shared, {palette::kShared});
@@ -142,7 +142,7 @@ void drawBySensor(Picture& picture, const MapPicture& map) {
     if (sets.size() > 1) drawShared(picture, map, sets);
 }
 
-/// Indoor floor that cameras see with the pixels of a class, exact where that is known.
+/// Returns the indoor floor that cameras see with the pixels of a class, exact if known.
 Curves densityCurves(const MapPicture& map, std::size_t density_class) {
     const Coverage& coverage = map.coverage;
     if (!coverage.density_overlays.empty()) {
@@ -165,8 +165,8 @@ void drawDensity(Picture& picture, const MapPicture& map) {
         picture.area(densityCurves(map, i), {densityColor(i)});
 }
 
-/// Both, gained and lost. Those that one sees alone are drawn over what both do: where the curves
-/// of the two run together, no seam shows.
+/// Draws common, gained and lost floor. Gained and lost floor are drawn over the common floor,
+/// which avoids seams along common curves.
 void drawComparison(Picture& picture, const MapPicture& map) {
     const bool exact = map.coverage.overlay && map.other->overlay;
     const Curves now = exact ? exactCurves(map, *map.coverage.overlay, 1)
@@ -233,7 +233,7 @@ std::optional<Segment2> clipped(const Segment2& segment, const Box2& box) {
 }
 
 std::vector<Polygon> drawable(const MapPicture& map, std::vector<Polygon> curves) {
-    // Far enough outside for strokes along the box not to be seen.
+    // Far enough outside to hide strokes along the box.
     const double rim = 4 * map.em / map.view.scale, tolerance = 0.03 / map.view.scale;
     const Box2 box{{map.limits().low.x - rim, map.limits().low.y - rim},
                    {map.limits().high.x + rim, map.limits().high.y + rim}};
@@ -251,7 +251,7 @@ std::vector<Polygon> drawable(const MapPicture& map, const std::vector<Curve>& c
 
 Shades shadesFor(const CoverageReport& report) {
     constexpr std::uint32_t kMaxShades = 6;
-    constexpr double kMinShare = 1e-6;  // slivers of exact regions make no class
+    constexpr double kMinShare = 1e-6;  // slivers of exact regions do not count as a class
     const std::vector<double>& shares =
         report.redundancy_exact ? *report.redundancy_exact : report.redundancy;
     std::uint32_t most = 1;
@@ -282,14 +282,14 @@ Metric shareOfDensity(const CoverageReport& report, std::size_t density_class) {
 
 Color setColor(const MapPicture& map, std::size_t set) {
     if (map.options.color != MapColor::Sensor) return seriesColor(set);
-    // Green and purple are greys to many colour-blind people: as floor they come late and apart.
+    // To many colour-blind people green and purple are greys: they come late, and apart.
     constexpr std::array<std::size_t, kSeriesColors> kOrder = {0, 3, 1, 4, 6, 2, 5};
     return seriesColor(kOrder[set % kSeriesColors]);
 }
 
 Color floorColor(const MapPicture& map, std::size_t set) {
     const Color color = setColor(map, set);
-    // Dark colours become as light as the others: marks and lines on the floor stay readable.
+    // Lightens dark colours to the level of the others: marks and lines on the floor stay readable.
     return tint(color, std::min(0.4, 0.25 / (1 - lightness(color))));
 }
 

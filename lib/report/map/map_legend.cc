@@ -23,14 +23,14 @@ std::string area(double value) {
 
 using Format = std::string (*)(double);
 
-/// A block whose first column holds exact metrics and the second those by cells, if any is exact.
+/// Creates a block with columns of exact metrics and of metrics by cells, if any metric is exact.
 LegendBlock metricBlock(std::string title, bool exact) {
     LegendBlock block{std::move(title), {}};
     if (exact) block.columns = {"exact", "cells"};
     return block;
 }
 
-/// Sets the values of an item of such a block.
+/// Sets the values of an item in such a block.
 void setMetric(LegendItem& item, const LegendBlock& block, const Metric& metric, Format format) {
     const bool columns = !block.columns[0].empty();
     const auto text = [format](const std::optional<double>& value) {
@@ -67,14 +67,14 @@ LegendBlock metricsBlock(const CoverageReport& report, bool terse) {
     return block;
 }
 
-/// Sums of the shares of `shares[first ..]` up to but without `end`.
+/// Sums `shares` from `first` to before `end`.
 double shareOf(const std::vector<double>& shares, std::size_t first, std::size_t end) {
     double sum = 0;
     for (std::size_t k = first; k < std::min(end, shares.size()); ++k) sum += shares[k];
     return sum;
 }
 
-/// How much of the indoor floor is seen by first .. end - 1 sensors.
+/// Returns the share of the indoor floor seen by first .. end - 1 sensors.
 Metric shareSeenBy(const CoverageReport& report, std::size_t first, std::size_t end) {
     Metric metric;
     if (report.coverage.grid) metric.grid = shareOf(report.redundancy, first, end);
@@ -97,7 +97,7 @@ LegendBlock shadesBlock(const CoverageReport& report) {
         std::string text;
         if (shades.width > 1) text = std::to_string(first).append("–");
         text.append(std::to_string(last)).append(last == 1 ? " sensor" : " sensors");
-        // The last class is open: what is too little to make one of its own counts there.
+        // The last class is open: it includes numbers too rare for a class.
         const std::size_t end = shade == shades.count ? report.redundancy.size() : last + 1;
         add(shades.color(shade), std::move(text), first, end);
     }
@@ -120,7 +120,7 @@ LegendBlock bySensorBlock(const CoverageReport& report, std::size_t sets) {
     return block;
 }
 
-/// Classes that no floor is in are left out.
+/// Lists the density classes; skips those without floor.
 LegendBlock densityBlock(const CoverageReport& report) {
     const Metric& seen = report.densities.seen;
     LegendBlock block = metricBlock("Pixels a metre", seen.exact.has_value());
@@ -159,7 +159,7 @@ Metric areaOf(const Metric& share, double whole) {
     return {times(share.grid), times(share.exact)};
 }
 
-/// The four kinds of floor of a comparison, m2.
+/// Lists the four kinds of floor of a comparison, m2.
 LegendBlock comparisonBlock(const CoverageReport& report) {
     const Comparison comparison = report.comparison.value_or(Comparison{});
     LegendBlock block = metricBlock("Indoor floor", comparison.gained.exact.has_value());
@@ -179,7 +179,7 @@ LegendBlock comparisonBlock(const CoverageReport& report) {
     return block;
 }
 
-/// E.g. "2 lasers, 1 ranger".
+/// Returns e.g. "2 lasers, 1 ranger".
 std::string countsOf(const std::vector<SensorView>& sensors) {
     std::string text;
     for (const SensorKind* kind : sensorKinds()) {
@@ -193,14 +193,14 @@ std::string countsOf(const std::vector<SensorView>& sensors) {
     return text.empty() ? "no sensor" : text;
 }
 
-/// "… and 3 more", if there are more.
+/// Adds "… and 3 more" if the list is cut.
 void addRest(LegendBlock& block, std::size_t all, std::size_t listed) {
     if (listed < all)
         block.items.push_back(
             {Sign::None, {}, {}, "… and " + std::to_string(all - listed) + " more", ""});
 }
 
-/// How many of a list are shown if there is room for so many lines.
+/// Returns the number of list items shown on so many lines.
 std::size_t listedOf(std::size_t all, std::size_t lines) { return all > lines ? lines - 1 : all; }
 
 LegendBlock sensorsBlock(const MapPicture& map) {
@@ -268,7 +268,7 @@ LegendBlock zonesBlock(const CoverageReport& report, bool terse) {
     return block;
 }
 
-/// Places tried and what the best sensor there would add.
+/// Explains tried positions and the gain of the best sensor there.
 LegendBlock triedBlock(const std::vector<TriedPose>& trace) {
     const std::vector<TriedPlace> places = placesTried(trace);
     LegendBlock block{"Places tried", {}};
@@ -287,7 +287,7 @@ LegendBlock triedBlock(const std::vector<TriedPose>& trace) {
     return block;
 }
 
-/// What the picture shows of a scene, in the order of the legend.
+/// Explains the elements of the scene on the plan, in the order of the legend.
 LegendBlock planBlock(const MapContents& contents, double height) {
     LegendBlock block{"Plan", {}};
     const auto add = [&block](bool shown, Sign sign, Color color, Color edge, std::string text) {

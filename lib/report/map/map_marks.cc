@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sensors on a map: what each sees, its mark and its id; signs of what none sees.
+// Draws sensors on a map: each with its view, mark and id; and signs of unseen spots.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,13 +15,14 @@ namespace ispace {
 
 namespace {
 
-constexpr std::size_t kCrowd = 40;  // marks and labels of more sensors are smaller
-/// Receivers make one set: what one of them hears counts for nothing alone.
+constexpr std::size_t kCrowd = 40;  // number of sensors above which marks and labels are smaller
+/// True for receivers, which cover floor only as one set.
 bool countsInSet(const SensorView& view) { return view.isPartial(); }
 
-constexpr std::size_t kManySensors = 2 * kSeriesColors;  // lines become finer
+constexpr std::size_t kManySensors =
+    2 * kSeriesColors;  // number of sensors above which lines are finer
 
-/// Contours of what a sensor or a set sees.
+/// Draws the contours of a sensor's or a set's view.
 template <typename View>
 std::vector<Polygon> contoursOf(const MapPicture& map, const View& view) {
     if (view.region) return drawable(map, *view.region);
@@ -30,7 +31,8 @@ std::vector<Polygon> contoursOf(const MapPicture& map, const View& view) {
 
 void drawContours(Picture& picture, const MapPicture& map, const std::vector<Polygon>& curves,
                   const Stroke& line) {
-    constexpr std::size_t kMaxBands = 12;  // soft rims help to tell few views apart, and hide many
+    constexpr std::size_t kMaxBands =
+        12;  // soft rims help with few views, and hide floor with many
     const bool plain = map.other == nullptr && map.options.color != MapColor::Sensor;
     if (plain && map.coverage.sets.size() <= kMaxBands) {
         const Box2& limits = map.limits();
@@ -40,15 +42,14 @@ void drawContours(Picture& picture, const MapPicture& map, const std::vector<Pol
         picture.area(curves, {Stroke{line.color.faded(0.16), rim}});
         picture.pop();
     }
-    // A pale rim lifts the line off stripes.
+    // A pale rim separates the line from stripes.
     if (map.other == nullptr && map.options.color == MapColor::Sensor)
         picture.area(curves, {Stroke{palette::kWhite.faded(0.7), line.width + map.em / 9}});
     picture.area(curves, {line});
 }
 
-/// The beams on the plan, from above: each to what it meets, or to the maximum range. Where the
-/// ends of neighbours would lie too near each other, every second one is left out, or three of
-/// four, ...
+/// Returns the beams on the plan, from above: each to its return, or to the maximum range. If the
+/// ends of neighbours would lie too near each other, skips every second one, or three of four, ...
 std::vector<Segment2> beamsOf(const MapPicture& map, const SensorView& view) {
     const Laser& laser = map.scene.sensors[view.index].as<Laser>();
     const double least_gap = std::max(2.0, map.em / 6) / map.view.scale;
@@ -68,7 +69,7 @@ std::vector<Segment2> beamsOf(const MapPicture& map, const SensorView& view) {
     return beams;
 }
 
-/// A sweep has the beams of many scans: they would hide all.
+/// A sweep is excluded: the beams of its many scans would hide the floor.
 bool showsBeams(const MapPicture& map, const SensorView& view) {
     return map.options.fans == FanStyle::Beams && !view.beams.empty() &&
            map.scene.sensors[view.index].as<Laser>().sweep == SweepAxis::None;
@@ -91,7 +92,7 @@ Point2 pageOf(const MapPicture& map, const SensorView& sensor) {
     return map.view * sensor.pose.position.onFloor();
 }
 
-/// Marks of those that stand on the plan; `hollow`: of the layout that this one is compared with.
+/// Draws the marks of sensors on the plan; `hollow`: of the layout that this one is compared with.
 void drawSensors(Picture& picture, const MapPicture& map, const Box2& frame, bool hollow,
                  LabelPlacer& places) {
     const std::vector<SensorView>& sensors = map.coverage.sensors;
@@ -104,7 +105,7 @@ void drawSensors(Picture& picture, const MapPicture& map, const Box2& frame, boo
         SensorMark mark = markOf(map, i);
         mark.hollow = hollow;
         if (hollow) mark.color = palette::kOtherSensor;
-        // On top of another one it is smaller, so that both are seen.
+        // A mark on top of another one is smaller, so that both are visible.
         const auto is_here = [&](const SensorView& sensor) {
             return distance(pageOf(map, sensor), page) < 0.4 * radius;
         };
@@ -133,14 +134,14 @@ void drawIds(Picture& picture, const MapPicture& map, const Box2& frame, LabelPl
     }
 }
 
-/// Names of zones in their first free corner; the legend names those that have no room.
+/// Writes names of zones in their first free corner; the legend lists names without a free corner.
 void drawZoneNames(Picture& picture, const MapPicture& map, LabelPlacer& places) {
     const double size = std::max(10.0, 0.85 * map.em), inset = 0.4 * map.em;
     const TextStyle style{size, false, Align::Left, palette::kZone, palette::kWhite.faded(0.8)};
     for (const Element& element : map.scene.environment.elements()) {
         if (element.record.keyword() != "zone") continue;
         const Box2 zone = bounds(zoneOutline(element.record));
-        const Point2 low = map.view * Point2{zone.low.x, zone.high.y};  // y is down on the page
+        const Point2 low = map.view * Point2{zone.low.x, zone.high.y};  // y points down on the page
         const Point2 high = map.view * Point2{zone.high.x, zone.low.y};
         const double room = high.x - low.x - 2 * inset;
         const std::string name = fitText(element.id, room, style);
@@ -220,7 +221,7 @@ void drawSpotSign(Picture& picture, Point2 page, const std::string& number, doub
 }
 
 std::size_t markedSpots(const MapPicture& map) {
-    constexpr double kMinShare = 0.0025;  // of the room
+    constexpr double kMinShare = 0.0025;  // of the room's area
     const CoverageReport& report = map.coverage.report;
     const std::size_t most = std::min<std::size_t>(map.terse ? 3 : 5, report.unseen.size());
     std::size_t count = 0;
@@ -252,18 +253,18 @@ void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame) {
 
 namespace {
 
-/// Colours that are told apart when places are drawn: all of one make one path.
+/// Number of distinct colours of positions: each draws its dots in one path.
 constexpr int kLevels = 32;
 
-/// Dots of less than this radius (page units) have neither tick nor rim: nobody would see them.
+/// Minimum radius of a dot with tick and rim (page units); on smaller ones they are invisible.
 constexpr double kMinTicked = 2;
 
-/// Radius of a dot on the page: dots of a lattice over the plan leave room between them.
+/// Returns the radius of a dot on the page: dots of a lattice over the plan do not touch.
 double dotRadius(const MapPicture& map, std::size_t places) {
     const Box2& limits = map.limits();
     const double area = map.view.scale * map.view.scale * limits.width() * limits.depth();
     const double spacing = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, places)));
-    const double ticked = 0.24 * spacing;  // with room for the tick
+    const double ticked = 0.24 * spacing;  // leaves room for the tick
     return ticked > kMinTicked ? std::min(ticked, 0.26 * map.em)
                                : std::clamp(0.38 * spacing, 0.6, kMinTicked);
 }
@@ -319,7 +320,7 @@ void drawTrace(Picture& picture, const MapPicture& map, const Box2& frame) {
             continue;
         const double share = span > 0 ? (tried.value - least) / span : 1;
         Dots& own = levels[static_cast<std::size_t>(std::lround(share * (kLevels - 1)))];
-        own.dots.push_back({page, page});  // a line without length has round ends
+        own.dots.push_back({page, page});  // a line of length 0 has round ends
         if (tried.heading) {
             const Vec2 way = 2.2 * radius * unitVector(*tried.heading);
             own.ticks.push_back({page, {page.x + way.x, page.y - way.y}});
@@ -330,7 +331,8 @@ void drawTrace(Picture& picture, const MapPicture& map, const Box2& frame) {
         const Dots& own = levels[static_cast<std::size_t>(i)];
         const Color color = triedColor(i / (kLevels - 1.0));
         if (radius > kMinTicked) {
-            // Pale rims lift dots off dark floor; the palest dot is darker than any pale floor.
+            // Pale rims separate dots from dark floor; the palest dot is darker than any pale
+            // floor.
             const double rim = std::min(0.25 * radius, map.em / 16);
             picture.lines(own.dots, {Stroke{palette::kWhite, 2 * (radius + rim)}});
             picture.lines(own.ticks, {Stroke{palette::kWhite, 0.55 * radius + 2 * rim}});

@@ -30,7 +30,7 @@ ContactSheet::ContactSheet(const std::vector<PictureSize>& shapes)
     constexpr std::size_t kMaxARow = 4;
     const std::size_t others = shapes.size() - 1;
     if (others == 0) return;
-    // Rows alike: five are three and two.
+    // Rows of similar length: five are three and two.
     const std::size_t rows = (others + kMaxARow - 1) / kMaxARow;
     const auto a_row = static_cast<int>((others + rows - 1) / rows);
     const int gap = std::max(2, page_.columns / 100);
@@ -75,7 +75,7 @@ struct EncodeAhead::Queue {
     Encode encode;
     Write write;
     std::deque<std::unique_ptr<Job>> jobs = {};
-    std::size_t pixels = 0;  // of all jobs
+    std::size_t pixels = 0;  // sum over all jobs
 
     void writeFirst() {
         const std::unique_ptr<Job> job = std::move(jobs.front());
@@ -93,7 +93,7 @@ EncodeAhead::~EncodeAhead() {
     while (!queue_->jobs.empty()) {
         try {
             queue_->writeFirst();
-        } catch (...) {  // another error is on its way already
+        } catch (...) {  // an earlier error is being reported
         }
     }
 }
@@ -122,7 +122,7 @@ namespace {
 constexpr std::size_t kMaxColors = 256;
 constexpr int kMaxSize = 65535;
 
-/// Part of a picture: columns and rows from a first one to before a last.
+/// A rectangle of a picture: columns and rows from a first one to before a last.
 struct Part {
     int left = 0, top = 0, right = 0, bottom = 0;
 
@@ -130,7 +130,8 @@ struct Part {
     [[nodiscard]] int height() const { return bottom - top; }
 };
 
-/// What differs; one pixel where nothing does, since the format knows no empty picture.
+/// Returns the bounds of changed pixels; one pixel if no pixel changed, since GIF requires a
+/// picture.
 Part changeOf(const Image& before, const Image& image) {
     Part part{image.width, image.height, 0, 0};
     for (int y = 0; y < image.height; ++y) {
@@ -158,7 +159,7 @@ int distanceOf(std::uint32_t a, std::uint32_t b) {
     return sum;
 }
 
-/// The colours of a part of a picture, and which of them each of its pixels has.
+/// The colours of a rectangle of a picture, and the colour index of each pixel.
 class Palette {
   public:
     Palette(const Image& image, const Part& part) {
@@ -175,7 +176,7 @@ class Palette {
         for (const Shade& shade : shades) index_.emplace(shade.color, shade.nearest);
     }
     [[nodiscard]] GifPixelType of(std::uint32_t color) const { return index_.at(color); }
-    /// In as many places as a power of two.
+    /// Returns the colour table; its size is a power of two.
     [[nodiscard]] std::vector<GifColorType> table() const {
         std::vector<GifColorType> table(std::max(std::bit_ceil(colors_.size()), std::size_t{2}));
         for (std::size_t i = 0; i < colors_.size(); ++i)
@@ -189,12 +190,12 @@ class Palette {
     struct Shade {
         std::uint32_t color = 0;
         int count = 0;
-        int distance = std::numeric_limits<int>::max();  // from the nearest of those chosen
+        int distance = std::numeric_limits<int>::max();  // to the nearest chosen shade
         GifPixelType nearest = 0;
     };
 
-    /// One more: half are the most frequent, the others those farthest from all before them, so
-    /// that no colour is far off. \pre shades are in the order of their frequency
+    /// Adds colours: half are the most frequent ones, the others those farthest from all chosen
+    /// before, which bounds the error of each shade. \pre shades are sorted by frequency
     void choose(std::vector<Shade>& shades) {
         const std::size_t index = colors_.size();
         const std::uint32_t color =
@@ -230,13 +231,13 @@ struct GifFilm::Data {
         int ignored = 0;
         if (file != nullptr) EGifCloseFile(std::exchange(file, nullptr), &ignored);
     }
-    /// The library's answer: it writes into memory, which either works or throws.
+    /// Checks the library's result: it writes to memory, so an error is bad_alloc.
     static void check(int answer) {
         if (answer == GIF_ERROR) throw std::bad_alloc();
     }
 
     double fps;
-    std::string bytes;  // not taken yet
+    std::string bytes;  // not yet returned
     GifFileType* file = nullptr;
     Image before;
     int count = 0;
@@ -258,7 +259,7 @@ void GifFilm::Data::begin(const Image& image) {
     EGifSetGifVersion(file, true);
     constexpr int kBits = 8;
     check(EGifPutScreenDesc(file, image.width, image.height, kBits, 0, nullptr));
-    // Round and round, as Netscape began to do.
+    // Loops for ever, by Netscape's extension.
     constexpr std::array<GifByteType, 3> kForEver{1, 0, 0};
     check(EGifPutExtensionLeader(file, APPLICATION_EXT_FUNC_CODE));
     check(EGifPutExtensionBlock(file, 11, "NETSCAPE2.0"));
@@ -271,7 +272,7 @@ void GifFilm::Data::write(const Image& image, const Part& part) {
     const auto time_of = [this](int picture) {
         return static_cast<int>(std::lround(picture * kHundredths / fps));
     };
-    // From its own beginning to that of the next, so that rounding does not add up.
+    // Duration from this picture's time to the next one's, so that rounding errors do not add up.
     const GraphicsControlBlock control{DISPOSE_DO_NOT, false, time_of(count + 1) - time_of(count),
                                        NO_TRANSPARENT_COLOR};
     std::array<GifByteType, 4> block{};
@@ -323,7 +324,7 @@ std::string y4mHeader(int width, int height, double fps) {
 
 namespace {
 
-/// ITU-R BT.601 in video range, times 256.
+/// Luma of ITU-R BT.601 in video range, times 256.
 struct Luma {
     int red, green, blue, offset;
 
@@ -344,7 +345,7 @@ Rgb rgbOf(std::uint32_t pixel) {
             static_cast<int>(pixel & 255U)};
 }
 
-/// The mean of a square of four pixels.
+/// Returns the mean of a square of four pixels.
 Rgb meanOf(const Image& image, int x, int y) {
     Rgb sum;
     for (const int dy : {0, 1})

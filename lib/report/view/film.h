@@ -15,13 +15,13 @@ namespace ispace {
 /// equal width with their names (thesis, fig. 3.15).
 class ContactSheet {
   public:
-    /// \param shapes columns and rows of each picture as if it stood alone; the first is the size
-    /// it has, the others keep their shape \pre not empty
+    /// Computes the layout. \param shapes columns and rows of each picture shown alone; the first
+    /// keeps its size, the others their aspect ratio \pre not empty
     explicit ContactSheet(const std::vector<PictureSize>& shapes);
 
-    /// The size that a picture is to have.
+    /// Returns the size that a picture must have.
     [[nodiscard]] PictureSize sizeOf(std::size_t picture) const { return places_[picture].size; }
-    /// \pre images[i] has sizeOf(i)
+    /// Composes the page. \pre images[i] has sizeOf(i)
     [[nodiscard]] Image draw(const std::vector<Image>& images,
                              const std::vector<std::string>& names) const;
 
@@ -35,24 +35,23 @@ class ContactSheet {
     double em_;
 };
 
-/// Encodes pictures on other cores while the next ones are drawn, and writes them in order, from
-/// the thread that adds them.
+/// Encodes pictures on other cores while the next ones are drawn, and writes them in order, in the
+/// thread that adds them.
 class EncodeAhead {
   public:
-    using Encode = std::function<std::string(const Image& image)>;  ///< from any thread
+    using Encode = std::function<std::string(const Image& image)>;  ///< called from any thread
     using Write = std::function<void(const std::string& file, const std::string& bytes)>;
 
     EncodeAhead(Encode encode, Write write);
-    /// Without finish(), after an error, what was added is written all the same; further errors
-    /// are passed over.
+    /// Without finish(), after an error, writes all pictures added before; ignores further errors.
     ~EncodeAhead();
     EncodeAhead(const EncodeAhead&) = delete;
     EncodeAhead& operator=(const EncodeAhead&) = delete;
 
-    /// Writes earlier ones where more are on their way than there are cores, or than have 64
-    /// million pixels. \throws what encoding and writing those throws
+    /// Adds a picture; first writes earlier ones if more pictures are pending than there are cores,
+    /// or more than 64 million pixels. \throws any error of encoding and writing them
     void add(std::string file, Image image);
-    /// Writes all that is left. \throws likewise
+    /// Writes all pending pictures. \throws likewise
     void finish();
 
   private:
@@ -61,26 +60,27 @@ class EncodeAhead {
     std::unique_ptr<Queue> queue_;
 };
 
-/// A film in GIF, picture by picture, that goes round for ever in whatever shows it.
+/// Writes a film in GIF, picture by picture, which repeats for ever.
 ///
-/// Each picture holds what has changed since the one before, in up to 256 colours of its own. That
-/// is for drawings: their flat colours are right, and shades at edges by the nearest of the others.
+/// Each picture stores its changes since the one before, in a separate palette of up to 256
+/// colours. The format suits drawings: flat colours are exact, shades at edges use the nearest
+/// colour.
 class GifFilm {
   public:
-    /// Pictures a second: the format counts in hundredths, and what shows it takes two of them at
-    /// least.
+    /// Limits of pictures a second: the format counts in hundredths of a second, and viewers
+    /// require at least two of them.
     static constexpr double kSlowest = 0.01, kFastest = 50;
 
-    /// \pre kSlowest <= fps <= kFastest
+    /// Starts a film. \pre kSlowest <= fps <= kFastest
     explicit GifFilm(double fps);
     ~GifFilm();
     GifFilm(const GifFilm&) = delete;
     GifFilm& operator=(const GifFilm&) = delete;
 
-    /// The bytes that come next. \pre all pictures have the size of the first
-    /// \throws FormatError if that is above 65535 pixels, which the format does not know
+    /// Adds a picture and returns the next bytes. \pre all pictures have the size of the first
+    /// \throws FormatError for a side above 65535 pixels, the limit of the format
     std::string add(const Image& image);
-    /// The last bytes. \pre at least one picture was added
+    /// Returns the last bytes. \pre at least one picture was added
     std::string end();
 
   private:

@@ -16,7 +16,7 @@ namespace ispace {
 
 namespace {
 
-/// A number of a view.
+/// A number in a view's text.
 enum class Part { X, Y, Z, Width, Distance, Heading, Elevation, Pitch, Azimuth };
 
 struct PartRow {
@@ -37,8 +37,8 @@ constexpr std::array<PartRow, 9> kParts = {{
     {Part::Azimuth, "AZIMUTH", -360, 360},
 }};
 
-/// What a mode takes: an id or not, then numbers, of which the first `least` must be there, and the
-/// first `pair` come together.
+/// Syntax of a mode: an id or not, then numbers: the first `least` are required, the first `pair`
+/// must be given together.
 struct ModeRow {
     ViewMode mode;
     const char* name;
@@ -144,7 +144,7 @@ const ModeRow& modeOf(const std::string& word) {
     throw UsageError(excerpt(word) + " is none of " + known + didYouMean(word, names));
 }
 
-/// The characters that every file system takes.
+/// Replaces characters that some file systems reject.
 std::string nameFor(const std::string& mode, const std::string& id) {
     std::string name = id.empty() ? mode : mode + "-" + id;
     for (char& c : name)
@@ -168,7 +168,7 @@ ViewSpec parseView(const std::string& text) {
     if (has_id) {
         spec.id = fields.front();
         fields.erase(fields.begin());
-        if (parts.size() >= 2) parts.erase(parts.begin(), parts.begin() + 2);  // not X,Y
+        if (parts.size() >= 2) parts.erase(parts.begin(), parts.begin() + 2);  // removes X,Y
     }
     if (row.must_have_id && spec.id.empty()) refuse(row, "no id given");
     if (fields.size() < row.least ||

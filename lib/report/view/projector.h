@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/report/view: pictures of a room for people: from where one looks, what sensors see drawn into
-// it. Uses cover, render, draw and below.
+// lib/report/view: pictures of a room for people: viewpoints, and sensors' views drawn into
+// pictures. Uses coverage, render, drawing and below.
 #pragma once
 
 #include <memory>
@@ -14,50 +14,50 @@
 
 namespace ispace {
 
-/// The view modes of the thesis (sections 3.3.4, 3.4.6 and 3.5.2), and what a camera sees.
+/// The view modes of the thesis (sections 3.3.4, 3.4.6 and 3.5.2), and a camera's picture.
 enum class ViewMode {
     Bird,         ///< from above, to scale, north up
-    FirstPerson,  ///< by the eyes of somebody who stands there
-    Omni,         ///< all around from any place, as a panorama of equal angles
-    Central,      ///< around a place or a thing, which stays in the middle
+    FirstPerson,  ///< at the eye height of a person standing there
+    Omni,         ///< an equirectangular panorama at a point
+    Central,      ///< around a point or an object, which stays in the middle
     Orbit,        ///< around the whole plan, which fills the picture
-    Robot,        ///< from on top of a robot, ahead
+    Robot,        ///< from the top of a robot, ahead
     Camera,       ///< through the lens of a camera
 };
 
-/// What `--view` says. What is left out has no value.
+/// A parsed `--view`. Omitted parts are empty.
 struct ViewSpec {
     ViewMode mode = ViewMode::Bird;
-    std::string name;             ///< fit for a file: "orbit", "robot-r1"
-    std::string id;               ///< of what is looked at, or from
-    std::optional<Point2> at;     ///< of what is looked at, or from
-    std::optional<double> z;      ///< of Omni
+    std::string name;             ///< usable in a file name: "orbit", "robot-r1"
+    std::string id;               ///< of the target or the viewer's carrier
+    std::optional<Point2> at;     ///< position of the target or the viewer
+    std::optional<double> z;      ///< height of Omni
     std::optional<double> width;  ///< of Bird, metres
     std::optional<double> distance;
-    /// Where the viewer faces; of Central and Orbit where he stands, seen from the middle.
+    /// Heading of the viewer; of Central and Orbit the viewer's direction as seen from the middle.
     std::optional<Angle> heading;
     std::optional<Angle> tilt;  ///< up is positive; of Central and Orbit the viewer's elevation
 };
 
-/// Reads `MODE[:VALUE,…]`. \throws UsageError
+/// Parses `MODE[:VALUE,…]`. \throws UsageError
 ViewSpec parseView(const std::string& text);
 
-/// "bird[:X,Y[,WIDTH]]", … in the order of ViewMode.
+/// Returns "bird[:X,Y[,WIDTH]]", … in the order of ViewMode.
 std::vector<std::string> viewForms();
 
-/// Where a place of the world is in a picture, and its depth there as Rendering has it.
+/// Position of a point in a picture, and its depth as in Rendering.
 struct ProjectedPoint {
     PixelPoint pixel;
     double depth = 0;
 };
 
-/// A viewpoint that can be asked where something is.
+/// A viewpoint that also projects points to the picture.
 class Projector {
   public:
     virtual ~Projector() = default;
     [[nodiscard]] virtual const Viewpoint& viewpoint() const = 0;
-    /// Nothing for what is behind it, or not shown by its lens; else a place on the picture or
-    /// beside it.
+    /// Projects a point; empty if it is behind the viewer or outside the lens, else a position on
+    /// the picture or beside it.
     [[nodiscard]] virtual std::optional<ProjectedPoint> find(Point3 place) const = 0;
 
   protected:
@@ -67,10 +67,10 @@ class Projector {
 };
 
 std::unique_ptr<Projector> cameraEye(const Camera& camera, const Pose3& pose);
-/// See OrthographicView.
+/// Creates a parallel projection, see OrthographicView.
 std::unique_ptr<Projector> parallelEye(const Pose3& pose, double width, int columns, int rows);
-/// All around: columns are equal steps of bearing, the heading in the middle and its left on the
-/// left; rows of elevation, straight up at the top. Depth is distance.
+/// Creates a panorama: columns are equal steps of bearing, the heading in the middle and left of it
+/// on the left; rows of elevation, straight up at the top. Depth is distance.
 std::unique_ptr<Projector> panoramaEye(const Pose3& pose, int columns, int rows);
 
 /// Columns and rows of a picture.
@@ -79,28 +79,28 @@ struct PictureSize {
     friend bool operator==(const PictureSize&, const PictureSize&) = default;
 };
 
-/// The size of a view's picture: `wanted`, whose rows follow from the view if they are 0; without,
-/// a camera's own, or one that fits the mode.
+/// Computes the size of a view's picture: `wanted`, with rows computed from the view if they are 0;
+/// without it a camera's resolution, or a default of the mode.
 PictureSize sizeOf(const ViewSpec& spec, const Scene& scene, std::optional<PictureSize> wanted);
 
-/// From where a picture of a scene is taken.
+/// The viewpoint of a picture.
 struct Standpoint {
     std::unique_ptr<Projector> eye;
-    /// One looks into the room from outside: ceilings, and walls in between, are left out, and
-    /// there is nothing around.
+    /// The viewer looks into the room from outside: ceilings, and walls in between, are hidden, and
+    /// the background is empty.
     bool looks_in = false;
     bool is_to_scale = false;              ///< of Bird
-    std::optional<Point3> place;           ///< of the viewer; none for Bird
+    std::optional<Point3> place;           ///< of the viewer; empty for Bird
     std::vector<std::size_t> hidden = {};  ///< records, see RenderOptions::hidden
 };
 
-/// Eyes of an adult, metres (thesis, section 3.3.1).
+/// Eye height of an adult, metres (thesis, section 3.3.1).
 constexpr double kEyeHeight = 1.7;
 
-/// \throws UsageError for an unknown id, with the nearest one
+/// Computes the standpoint of a view. \throws UsageError for an unknown id, with the nearest one
 Standpoint standpointOf(const ViewSpec& spec, const Scene& scene, PictureSize size);
 
-/// Index in `ids`. \throws UsageError naming what was wanted, with the nearest of the ids
+/// Finds an index in `ids`. \throws UsageError with the unknown id and the nearest of the ids
 std::size_t indexOfId(const std::string& id, const std::vector<std::string>& ids,
                       const std::string& wanted);
 

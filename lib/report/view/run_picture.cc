@@ -20,11 +20,11 @@ namespace ispace {
 namespace {
 
 constexpr int kMinWidth = 200, kMaxWidth = 12000;
-constexpr double kThinning = 0.02;  // m
+constexpr double kThinning = 0.02;  // metres
 constexpr std::size_t kMaxNamed = 24;
-constexpr double kLegendColumn = 14;  // sizes of text
+constexpr double kLegendColumn = 14;  // in text sizes
 
-/// The scene without those who move, and what rides on them.
+/// Returns the scene without movers and the sensors mounted on them.
 Scene standing(const Scene& scene) {
     Scene rest = scene;
     std::erase_if(rest.placed, [&scene](const PlacedRecord& placed) {
@@ -230,7 +230,7 @@ bool has(const Scene& scene, const std::string& id) {
     return std::find(scene.ids.begin(), scene.ids.end(), id) != scene.ids.end();
 }
 
-/// With the sensors that she carries.
+/// Moves a person, with the sensors that it carries.
 void movePerson(Scene& scene, std::size_t person, const Pose2& pose) {
     const Pose2 before = std::exchange(scene.people[person].pose, pose);
     for (PlacedRecord& placed : scene.placed) {
@@ -258,7 +258,7 @@ RunRecord::RunRecord(RunReader reader) : name_(reader.name()) {
 }
 
 void RunRecord::checkStart(const Scene& scene) const {
-    // One that begins later began with nobody.
+    // A record that begins later may begin without movers.
     if (begin() > 0) return;
     for (const Step& step : steps_) {
         if (step.time > begin()) return;

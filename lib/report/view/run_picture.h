@@ -14,25 +14,26 @@
 namespace ispace {
 
 struct RunPictureOptions {
-    int width = 1200;   ///< pixels; of a film made even
-    std::string title;  ///< "" for none
+    int width = 1200;   ///< pixels; rounded to even for a film
+    std::string title;  ///< "" for no title
 };
 
-/// A run on the plan of its room: the ways that robots and people went, a colour each, rings where
-/// they began and crosses where they ran into something.
+/// Draws a run on the plan of its room: the ways of robots and people, a colour each, rings at
+/// their starts and crosses at collisions.
 class RunPicture {
   public:
-    /// Draws the plan once. The scene must outlive it. \throws UsageError for a width that cannot
-    /// be laid out (200 to 12000)
+    /// Draws the plan once. The scene must outlive it. \throws UsageError for a width outside 200
+    /// to 12000
     RunPicture(const Scene& scene, const RunPictureOptions& options);
 
-    /// Takes the reader's moment, which follows those before.
+    /// Adds the reader's moment. \pre it follows those before
     void add(const RunReader& reader);
 
-    /// All up to now as a file: the ways with who is at their ends, and a legend. On paper the page
-    /// is as wide as on screen.
+    /// Returns all moments so far as a file: the ways with movers' ids at their ends, and a legend.
+    /// A page on paper is as wide as on screen.
     [[nodiscard]] std::string write(PictureFormat format) const;
-    /// The next picture of a film: everybody where they are now, on the ways so far, and the time.
+    /// Returns the next picture of a film: all movers at their current positions, their ways so
+    /// far, and the time.
     Image frame();
 
   private:
@@ -42,7 +43,7 @@ class RunPicture {
         double radius = 0.3, length = 0;
         Pose2 pose;
         std::vector<Point2> way;
-        std::size_t drawn = 0;  // points of the way that are on the canvas
+        std::size_t drawn = 0;  // number of the way's points on the canvas
     };
 
     void meet(const RunMember& member);
@@ -64,32 +65,31 @@ class RunPicture {
     Image canvas_;  // of a film: plan and ways so far
 };
 
-/// A picture of a film in YUV4MPEG2 (4:2:0, BT.601), as ffmpeg and mpv read it; the file begins
-/// with y4mHeader().
-/// \param fps pictures a second, of up to three decimals
+/// Writes the header of a film in YUV4MPEG2 (4:2:0, BT.601), which ffmpeg and mpv read; y4mFrame()
+/// writes its pictures.
+/// \param fps pictures a second, with up to three decimals
 std::string y4mHeader(int width, int height, double fps);
-/// \pre width and height are even
+/// Writes a picture of a film. \pre width and height are even
 std::string y4mFrame(const Image& image);
 
-/// Where robots and people were in a run that simrun recorded, held in memory.
+/// Holds the poses of robots and people in a recorded run in memory.
 class RunRecord {
   public:
-    /// Reads all moments. \throws as the reader, and FormatError if there is none
+    /// Reads all moments. \throws as the reader, and FormatError if there is no moment
     explicit RunRecord(RunReader reader);
 
-    /// The first and last time, seconds.
+    /// Returns the first and last time, seconds.
     [[nodiscard]] double begin() const { return steps_.front().time; }
     [[nodiscard]] double end() const { return steps_.back().time; }
-    /// \throws FormatError for one of the start that the scene does not have
+    /// Checks the movers at the start. \throws FormatError for one that the scene does not have
     void checkStart(const Scene& scene) const;
-    /// Puts robots and people where they were at the last step at or before this time, with what
-    /// they carry. Who is not in the scene is passed over.
+    /// Moves robots and people, and the sensors mounted on them, to their poses at the last step at
+    /// or before this time. Skips movers that the scene does not have.
     void apply(Scene& scene, double time) const;
-    /// How far the limbs of Scene::people swung at that step, as humanParts() takes it; 0 of those
-    /// who were not there.
+    /// Returns the swing of the limbs of Scene::people at that step, as humanParts() takes it; 0
+    /// for absent people.
     [[nodiscard]] std::vector<Angle> swingsAt(const Scene& scene, double time) const;
-    /// The ways of all from the beginning up to this time, on the floor, without turns on
-    /// the spot.
+    /// Returns the ways of all movers until this time, on the floor, without turns on the spot.
     [[nodiscard]] std::vector<std::vector<Point2>> waysUntil(double time) const;
 
   private:
@@ -100,12 +100,12 @@ class RunRecord {
         Angle swing = {};  // of a person's limbs
     };
 
-    /// The last step of each at or before this time, by `who`.
+    /// Returns the last step of each mover at or before this time, by `who`.
     [[nodiscard]] std::map<std::size_t, const Step*> lastSteps(double time) const;
 
     std::string name_;
     std::vector<RunMember> who_;
-    std::vector<Step> steps_;  // by ascending time, never empty
+    std::vector<Step> steps_;  // sorted by time, not empty
 };
 
 }  // namespace ispace

@@ -20,11 +20,11 @@ namespace ispace {
 
 namespace {
 
-/// Rays along the rim of a view cube: all edges of a picture alike.
+/// Number of rays along the rim of a view cube, equal for all edges of a picture.
 constexpr int kRimRays = 96;
 constexpr int kMostBeams = 120;
 
-/// The farthest of the directions from `inside` to `rim` that is in view, where `inside` is.
+/// Finds the last direction in view from `inside`, which is in view, to `rim`.
 template <typename IsSeen>
 double edgeOf(const IsSeen& is_seen, double inside, double rim) {
     constexpr int kHalvings = 30;
@@ -35,7 +35,7 @@ double edgeOf(const IsSeen& is_seen, double inside, double rim) {
     return inside;
 }
 
-/// Along the edges of the picture, or of what the lens shows of it.
+/// Returns directions along the edges of the picture, or along the lens's limit within it.
 std::vector<Vec3> rimOf(const Camera& camera) {
     std::vector<Vec3> rim;
     constexpr int kPerEdge = kRimRays / 4;
@@ -62,7 +62,7 @@ std::vector<Vec3> rimOf(const Camera& camera) {
 std::vector<Vec3> rimOf(const FieldOfView& view) {
     std::vector<Vec3> rim;
     for (int i = 0; i < kRimRays; ++i) {
-        // Corners of pictures of any shape are met where the rays are many.
+        // With this many rays, corners of pictures of any shape are hit closely.
         const double turn = 2 * std::numbers::pi * i / kRimRays;
         const auto ray = [turn](double angle) {
             return Vec3{std::cos(angle), std::sin(angle) * std::cos(turn),
@@ -74,7 +74,7 @@ std::vector<Vec3> rimOf(const FieldOfView& view) {
     return rim;
 }
 
-/// bodiesOf() with limbs that swing.
+/// Returns bodiesOf() with swinging limbs.
 std::vector<MovingBody> bodiesWith(std::span<const Angle> swings, const Scene& scene) {
     std::vector<MovingBody> bodies = bodiesOf(scene);
     if (swings.empty()) return bodies;
@@ -85,7 +85,7 @@ std::vector<MovingBody> bodiesWith(std::span<const Angle> swings, const Scene& s
     return bodies;
 }
 
-/// Rays through all that stands, and stops light.
+/// Casts rays at all standing bodies that block light.
 class Sightlines {
   public:
     Sightlines(const Scene& scene, std::span<const Angle> swings)
@@ -97,8 +97,8 @@ class Sightlines {
         reach_ = std::hypot(plan_.width(), plan_.depth());
     }
 
-    /// Where rays from a sensor end, by their directions in its frame: at what stops them, or so
-    /// far that the view cubes of many sensors can be told apart.
+    /// Returns the ends of rays from a sensor, by their directions in its frame: at obstacles, or
+    /// at a length that keeps the view cubes of many sensors apart.
     [[nodiscard]] std::vector<Point3> ends(const Sensor& sensor, const std::vector<Vec3>& rays,
                                            const FieldOfView& view) const {
         const Frame3 frame(sensor.pose);
@@ -108,9 +108,9 @@ class Sightlines {
         std::vector<float> ranges(rays.size());
         worlds_.mesh().cast(frame.origin, directions, reach_, ranges);
         bodies_.shorten(frame.origin, directions, reach_, carrierOf(sensor), ranges);
-        constexpr double kLength = 0.25;  // of the plan
+        constexpr double kLength = 0.25;  // of the plan's size
         const double most = std::min(view.max_range, kLength * reach_);
-        // A flat end, as long as it is not too wide.
+        // A flat end, if the cube is not too wide.
         constexpr double kSteepest = 0.4;
         std::vector<Point3> ends;
         for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -122,8 +122,8 @@ class Sightlines {
         return ends;
     }
 
-    /// How far it is until a ray leaves the plan, or passes over its walls: rooms need no ceiling,
-    /// and windows may be open.
+    /// Computes the distance at which a ray leaves the plan or passes above its walls: a room may
+    /// lack a ceiling, and windows may be open.
     [[nodiscard]] double wayOut(Point3 origin, Vec3 direction) const {
         double way = std::numeric_limits<double>::infinity();
         const auto limit = [&way](double room, double speed) {
@@ -153,7 +153,7 @@ class Sightlines {
     double height_, reach_ = 0;
 };
 
-/// The sides from `apex` to a rim.
+/// Returns the sides of a pyramid from `apex` to a rim.
 Mesh cubeOf(Point3 apex, const std::vector<Point3>& rim) {
     Mesh mesh;
     mesh.material = Material::View;
@@ -183,7 +183,7 @@ void addCube(SensorOverlay& marks, const Sightlines& sightlines, const Sensor& s
     marks.lines.push_back({std::move(ends), edge});
 }
 
-/// True in what a sensor would see were nothing in the way, or where it is.
+/// True if a sensor's unobstructed view contains the point, or the sensor is there.
 bool isWithin(std::optional<Point3> place, const Sensor& sensor) {
     const std::optional<FieldOfView> view = fieldOfView(sensor);
     return place && view && (*place == sensor.pose.position || view->holds(*place));
@@ -204,7 +204,7 @@ void addBeams(SensorOverlay& marks, Sightlines& sightlines, const Sensor& sensor
 }  // namespace
 
 Color sensorColor(std::size_t index) {
-    // Without black, which is a wall's.
+    // Skips black, the colour of walls.
     constexpr std::array<std::size_t, 6> kOrder = {3, 0, 1, 2, 4, 6};
     return seriesColor(kOrder[index % kOrder.size()]);
 }
@@ -232,7 +232,7 @@ SensorOverlay sightMarks(const Scene& scene, bool beams, std::optional<Point3> v
 
 namespace {
 
-/// Cells of a set as rectangles, row by row.
+/// Merges cells of a set into rectangles, row by row.
 std::vector<Polygon> rectanglesOf(const CellSet& cells, const Grid& grid) {
     const double width = grid.limits.width() / grid.columns;
     const double depth = grid.limits.depth() / grid.rows;
@@ -282,7 +282,7 @@ void FloorColors::add(const std::vector<Polygon>& seen, const Color& color) {
     for (const Polygon& part : seen)
         for (const Point2 p : part) box.add(p);
     if (box.empty()) return;
-    // Only the pixels about it: there may be thousands of sensors.
+    // Only the pixels near it: there may be thousands of sensors.
     const auto pixel = [this](double metres, int most) {
         return std::clamp(static_cast<int>(std::floor(scale_ * metres)), 0, most);
     };
@@ -316,7 +316,7 @@ Rgb FloorColors::at(Point2 place) const {
     const Sum& sum = sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
                            static_cast<std::size_t>(x)];
     if (sum.sensors <= 0) return {1, 1, 1};
-    // The mean colour, the deeper the more sensors there are; it never turns dark.
+    // The mean colour, deeper for each further sensor, up to a limit that keeps it light.
     constexpr double kOne = 0.38, kEachMore = 0.07, kMost = 0.6;
     const double share = std::min(sum.sensors, 1.0F);
     const double depth = share * std::min(kOne + kEachMore * (sum.sensors - share), kMost);
@@ -335,10 +335,10 @@ bool isWall(const Element& element) {
 
 struct Crossing {
     Point2 middle;
-    Vec2 across;  ///< from the middle to a little beside the wall
+    Vec2 across;  ///< from the middle to just beside the wall
 };
 
-/// Of the longest edge, or of the line.
+/// Crosses the longest edge, or the line.
 Crossing crossingOf(std::span<const Point2> footprint) {
     Vec2 longest{}, sum{};
     for (std::size_t i = 0; i < footprint.size(); ++i) {
@@ -385,7 +385,7 @@ PaintedMesh WallTops::paint() const {
     tops.mesh.material = Material::Wall;
     tops.mesh.open = true;
     constexpr double kAbove = 0.003;
-    // Seen as a line in pictures of whole buildings, too.
+    // Visible as a line in pictures of whole buildings, too.
     constexpr double kThin = 0.03, kThick = 0.2, kOfPlan = 0.0009;
     const Box2& plan = scene_.environment.limits();
     const double half_width =

@@ -14,12 +14,12 @@
 
 namespace ispace {
 
-/// The colour of a sensor, by its index in Scene::sensors, in all that is drawn of it.
+/// Returns the colour of a sensor, by its index in Scene::sensors, in all drawings of it.
 Color sensorColor(std::size_t index);
-/// For what is rendered: linear.
+/// Converts a colour to linear values for rendering.
 Rgb linearOf(const Color& color);
 
-/// What sensors look at, as drawn in space.
+/// Sensors' views, as drawn in space.
 struct SensorOverlay {
     struct Line {
         std::vector<Point3> places;
@@ -30,23 +30,23 @@ struct SensorOverlay {
     std::vector<Line> lines;
 };
 
-/// View cubes of all sensors with an axis (thesis, fig. 3.15), up to what stops them or a quarter
-/// of the plan, and with `beams` those of lasers, thinned where they would run together.
-/// \param viewer where one looks from: the view cubes about it are left out
-/// \param swings of the limbs of Scene::people, see humanParts(); none: they stand
+/// Returns view cubes of all sensors with an axis (thesis, fig. 3.15), up to obstacles or a quarter
+/// of the plan, and with `beams` those of lasers, thinned if they would merge.
+/// \param viewer position of the viewer: view cubes around it are skipped
+/// \param swings of the limbs of Scene::people, see humanParts(); empty: people stand
 SensorOverlay sightMarks(const Scene& scene, bool beams, std::optional<Point3> viewer,
                          std::span<const Angle> swings = {});
 
-/// What sensors cover, as colours on the floor.
+/// Colours of the sensors' coverage on the floor.
 class FloorColors {
   public:
-    /// The sensors' regions at their own height (lasers) or on the floor.
+    /// Computes the sensors' regions at their height (lasers) or on the floor.
     explicit FloorColors(const Scene& scene);
-    /// By which the floor's colour is multiplied there; white where nothing is covered.
+    /// Returns the factor of the floor's colour at a point; white where it is not covered.
     [[nodiscard]] Rgb at(Point2 place) const;
 
   private:
-    /// Of the sensors that see a place.
+    /// Sum over the sensors that see a point.
     struct Sum {
         Rgb color{};  ///< sRGB
         float sensors = 0;
@@ -60,16 +60,16 @@ class FloorColors {
     std::vector<Sum> sums_;
 };
 
-/// Walls as one sees them who looks into a room: a dark line along the top, as in plans, and on the
-/// floor for those that are left out.
+/// Draws walls as seen from above: a dark line along the top, as in plans, and on the floor for
+/// walls that are hidden.
 class WallTops {
   public:
-    /// Keeps the references.
+    /// Stores the references.
     WallTops(const Standpoint& standpoint, const Scene& scene)
         : standpoint_(standpoint), scene_(scene) {}
 
     /// True for parts of walls between the viewer and the room: the side that faces the viewer is
-    /// not indoors, the other one is. See RenderSceneOptions::leaves_out.
+    /// outdoors, the other side indoors. See RenderSceneOptions::leaves_out.
     [[nodiscard]] bool isBetween(const Element& element, std::span<const Point2> footprint) const;
     [[nodiscard]] PaintedMesh paint() const;
 

@@ -14,9 +14,10 @@ namespace ispace {
 namespace {
 
 const Angle kQuarter = Angle::degrees(90);
-// Where one stands in Central and Orbit if nobody says: in the south-west, well above the walls.
+// Default direction of the viewer in Central and Orbit: south-west, well above the walls.
 const Angle kAzimuth = Angle::degrees(-120), kElevation = Angle::degrees(42);
-constexpr double kMargin = 0.05;  // of a picture about what fills it, each side
+constexpr double kMargin =
+    0.05;  // around the contents of a picture, as a share of it, on each side
 
 Camera pinhole(PictureSize size, Angle fov_across) {
     Camera camera;
@@ -28,7 +29,7 @@ Camera pinhole(PictureSize size, Angle fov_across) {
     return camera;
 }
 
-/// Corners of all that is to be seen.
+/// Returns corners that bound the scene.
 std::vector<Point3> extremesOf(const Scene& scene) {
     std::vector<Point3> places;
     for (const Region& part : scene.environment.indoor().parts)
@@ -39,8 +40,8 @@ std::vector<Point3> extremesOf(const Scene& scene) {
     return places;
 }
 
-/// The focal length and the centre with which these places just fill the picture. \pre all of them
-/// are before the camera
+/// Sets the focal length and the centre so that these points just fill the picture. \pre all of
+/// them are in front of the camera
 void fill(Camera& camera, const Pose3& pose, const std::vector<Point3>& places) {
     const Frame3 frame(pose);
     Box2 tangents;
@@ -65,7 +66,7 @@ Pose3 around(Point3 middle, Angle azimuth, Angle elevation, double distance) {
             {}};
 }
 
-/// What Central turns around.
+/// The centre of Central's orbit.
 struct Focus {
     Point3 middle;
     double size = 0;
@@ -88,7 +89,7 @@ Focus focusOn(const std::string& id, const Scene& scene) {
     for (const PlacedRecord& placed : scene.placed)
         if (placed.record == record) {
             const Point3 p = placed.pose.position;
-            // What stands on the floor is looked at a little above it.
+            // For targets on the floor, the viewer looks slightly above it.
             return {{p.x, p.y, p.z > 0 ? p.z : 0.3}, 0.5};
         }
     for (const Element& element : scene.environment.elements())
@@ -120,7 +121,7 @@ Standpoint orbit(const ViewSpec& spec, const Scene& scene, PictureSize size) {
     const Point3 middle{plan.center().x, plan.center().y, scene.environment.height() / 3};
     double radius = 0;
     for (const Point3& p : extremes) radius = std::max(radius, length(p - middle));
-    constexpr double kNear = 2.5;  // in radii: perspective without distortion
+    constexpr double kNear = 2.5;  // in radii: perspective without visible distortion
     const double distance = spec.distance.value_or(kNear * radius);
     const Pose3 pose =
         around(middle, spec.heading.value_or(kAzimuth), spec.tilt.value_or(kElevation), distance);
@@ -184,7 +185,7 @@ const Sensor& cameraOf(const std::string& id, const Scene& scene) {
                          [&id](const Sensor& sensor) { return sensor.id == id; });
 }
 
-/// The same lens before an image sensor with more, or fewer, pixels.
+/// Returns the same lens with another number of pixels.
 Camera scaled(Camera camera, PictureSize size) {
     const double across = static_cast<double>(size.columns) / camera.columns;
     const double down = static_cast<double>(size.rows) / camera.rows;
@@ -220,7 +221,7 @@ PictureSize sizeOf(const ViewSpec& spec, const Scene& scene, std::optional<Pictu
         const auto& camera = cameraOf(spec.id, scene).as<Camera>();
         const double shape = static_cast<double>(camera.columns) / camera.rows;
         if (!wanted) return {camera.columns, camera.rows};
-        // The largest of its shape.
+        // The largest size of this shape.
         if (wanted->rows > 0 && wanted->columns > shape * wanted->rows)
             return {atLeastOne(shape * wanted->rows), wanted->rows};
         return {wanted->columns, atLeastOne(wanted->columns / shape)};

@@ -17,18 +17,18 @@ namespace ispace {
 namespace {
 
 const Color kViewerColor = Color::rgb(0xE3120B);
-/// Of no material, and of no sensor.
+/// Differs from all materials and sensors.
 const Color kHighlight = Color::rgb(0xE6007E);
 
-/// How many times as wide, and as high, a picture is rendered: what is decided for each pixel as a
-/// whole (colours on the floor, outlines) has smooth edges, too.
+/// Returns the factor by which a picture is rendered larger, so that per-pixel decisions (colours
+/// on the floor, outlines) get smooth edges, too.
 int finenessFor(PictureSize size, int samples) {
     constexpr double kMostPixels = 16e6;
     const double pixels = 1.0 * size.columns * size.rows;
     return samples >= 4 && 4 * pixels <= kMostPixels ? 2 : 1;
 }
 
-/// Nothing is drawn into what a camera takes.
+/// Removes overlays: a camera's picture shows only the scene.
 ViewOptions asTaken(ViewOptions options) {
     options.show = OverlayLayers::None;
     options.labels = false;
@@ -36,7 +36,7 @@ ViewOptions asTaken(ViewOptions options) {
     return options;
 }
 
-/// One picture in the making.
+/// Draws one picture.
 class ViewDrawer {
   public:
     ViewDrawer(const Scene& scene, const ViewSpec& spec, PictureSize size,
@@ -105,7 +105,7 @@ class ViewDrawer {
                                  standpoint_.eye->viewpoint(), how);
     }
 
-    /// With people whose limbs swing.
+    /// Returns the scene with swinging limbs.
     [[nodiscard]] RenderScene walking(const RenderScene& still) const {
         std::vector<Pose3> poses;
         for (const PlacedRecord& placed : scene_.placed) poses.push_back(placed.pose);
@@ -130,14 +130,14 @@ class ViewDrawer {
         }
     }
 
-    /// A line just above the floor.
+    /// Adds a line just above the floor.
     void addWay(const std::vector<Point2>& way) {
         SensorOverlay::Line line{{}, palette::kRobot.faded(0.8), 2.5};
         for (const Point2& p : way) line.places.push_back({p.x, p.y, 0.01});
         marks_.lines.push_back(std::move(line));
     }
 
-    /// The rims of what stands out, so wide, in a picture as it was rendered.
+    /// Draws rims of highlighted records, this wide, into a picture as rendered.
     void outline(std::vector<std::uint8_t>& bytes) const {
         const auto reach = static_cast<int>(std::lround(fine_ * em() / 5));
         const auto wide = static_cast<int>(columns()), high = static_cast<int>(rows());
@@ -169,12 +169,12 @@ class ViewDrawer {
                 }
     }
 
-    /// The rendered picture at its size.
+    /// Returns the rendered picture, scaled to its size.
     [[nodiscard]] Image finished() const {
-        constexpr double kPaper = 1.15;  // a floor looks dull beside white
+        constexpr double kPaper = 1.15;  // floor looks dark beside white paper
         std::vector<std::uint8_t> bytes =
             toSrgb8(picture_, options_.exposure * (standpoint_.looks_in ? kPaper : 1));
-        if (standpoint_.looks_in)  // paper
+        if (standpoint_.looks_in)  // white background
             for (std::size_t i = 0; i < picture_.depths.size(); ++i)
                 if (!std::isfinite(picture_.depths[i]) && picture_.radiance[i] == Rgb{1, 1, 1})
                     std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 255);
@@ -197,12 +197,12 @@ class ViewDrawer {
         return image;
     }
 
-    /// Where it is on the page.
+    /// Converts a pixel to the page.
     [[nodiscard]] Point2 toPage(PixelPoint pixel) const {
         return {(pixel.column + 0.5) / fine_, (pixel.row + 0.5) / fine_};
     }
 
-    /// True unless something stands before it, more than `slack` metres nearer.
+    /// True unless a surface more than `slack` metres nearer hides it.
     [[nodiscard]] bool isSeen(const ProjectedPoint& sighting, double slack) const {
         const double column = std::round(sighting.pixel.column);
         const double row = std::round(sighting.pixel.row);
@@ -246,7 +246,8 @@ class ViewDrawer {
         page.lines(chains, {Stroke{line.color, std::max(0.6, line.width * unit)}});
     }
 
-    /// A place for a sign: looked in on, all of them, else what is not hidden.
+    /// Returns the position of a sign: of any point if the viewer looks in from outside, else only
+    /// of visible points.
     [[nodiscard]] std::optional<Point2> signPlace(Point3 place) const {
         const auto sighting = standpoint_.eye->find(place);
         constexpr double kBody = 0.3;
@@ -256,7 +257,7 @@ class ViewDrawer {
         return p;
     }
 
-    /// Beside a place, where no other id is.
+    /// Writes an id beside a point, where it overlaps no other id.
     void addLabel(Picture& page, Point2 at, const std::string& id, Color color) {
         const TextStyle style{em(), true, Align::Left, color, palette::kWhite};
         const double wide = textWidth(id, style), gap = 0.6 * em();
@@ -288,7 +289,7 @@ class ViewDrawer {
                            [&](std::size_t record) { return scene_.ids[record] == id; });
     }
 
-    /// Small things are hardly seen in their colour alone: one of these has a ring, and its id.
+    /// Small objects are hardly visible by colour alone: a single one gets a ring and its id.
     void addId(Picture& page, Point2 at, const std::string& id, Color color) {
         if (isHighlighted(id)) {
             page.circle(at, 0.7 * em(), {Stroke{kHighlight, 0.2 * em()}});
@@ -335,7 +336,7 @@ class ViewDrawer {
     std::vector<std::size_t> highlighted_;
     SensorOverlay marks_;
     Rendering picture_;
-    std::vector<Box2> labels_;  // places of ids on the page
+    std::vector<Box2> labels_;  // boxes of ids on the page
 };
 
 }  // namespace

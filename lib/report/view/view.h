@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-/// What is drawn of what sensors see.
+/// The overlay that shows sensors' views.
 enum class OverlayLayers {
     None,
     Beams,  ///< beams of lasers, and view cubes of all sensors with an axis
@@ -20,29 +20,29 @@ enum class OverlayLayers {
 
 struct ViewOptions {
     OverlayLayers show = OverlayLayers::None;
-    std::vector<std::string> highlight = {};  ///< ids of records that stand out
+    std::vector<std::string> highlight = {};  ///< ids of highlighted records
     bool labels = true;                       ///< ids beside sensors and robots, dots for cameras
-    int samples = 16;                         ///< of each pixel, see RenderOptions
-    /// Auto: lamps for those who look in from outside, else as RenderOptions has it.
+    int samples = 16;                         ///< per pixel, see RenderOptions
+    /// Auto: lamps if the viewer looks in from outside, else as RenderOptions.
     Illumination light = Illumination::Auto;
     double exposure = 1;  ///< factor of brightness
-    /// Where other pictures are taken from: red points in those to scale (thesis, section 3.3.1).
+    /// Viewpoints of other pictures: red points in pictures to scale (thesis, section 3.3.1).
     std::vector<Point3> viewers = {};
-    std::vector<std::vector<Point2>> ways = {};  ///< that robots have gone
-    /// Of the limbs of Scene::people, see humanParts(); none: they stand.
+    std::vector<std::vector<Point2>> ways = {};  ///< of robots so far
+    /// Of the limbs of Scene::people, see humanParts(); empty: people stand.
     std::vector<Angle> swings = {};
 };
 
-/// A picture of a scene for people. The same pixels for any number of threads.
-/// \throws UsageError for unknown ids, FormatError for a texture that cannot be read
+/// Renders a picture of a scene for people. Deterministic for any number of threads. \throws
+/// UsageError for unknown ids, FormatError for a texture that cannot be read
 Image viewPicture(const Scene& scene, const ViewSpec& spec, PictureSize size,
                   const ViewOptions& options);
 
-/// What the user may not have meant, a phrase: the viewer is below the floor, on the line of a
-/// wall, outside the room, or inside something solid; "" if all is well.
+/// Returns a warning, as a phrase, if the viewer is below the floor, on the line of a wall, outside
+/// the room, or inside a solid; else "".
 std::string standpointWarning(const ViewSpec& spec, const Scene& scene);
 
-/// The scene with a robot elsewhere, and with it what it carries. \pre it has that robot
+/// Moves a robot of the scene, and the sensors mounted on it. \pre it has that robot
 void moveRobot(Scene& scene, std::size_t robot, const Pose2& pose);
 
 }  // namespace ispace
