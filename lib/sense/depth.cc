@@ -12,7 +12,7 @@ namespace ispace {
 
 namespace {
 
-/// Beyond everything there is, in metres.
+/// Exceeds the size of any scene, metres.
 constexpr double kEverything = 1e7;
 
 RayGrid gridOf(const Ranger& ranger, const Frame3& axes) {
@@ -24,7 +24,7 @@ RayGrid gridOf(const Ranger& ranger, const Frame3& axes) {
             .rows = ranger.rows};
 }
 
-/// Rays of a spherical ranger: cosines are those of its columns and of its rows.
+/// Computes rays of a spherical ranger from the cosines of its columns and rows.
 Directions sphereOf(const Ranger& ranger, const Frame3& axes) {
     std::vector<CosSin> bearings, elevations;
     bearings.reserve(static_cast<std::size_t>(ranger.columns));
@@ -40,8 +40,7 @@ Directions sphereOf(const Ranger& ranger, const Frame3& axes) {
     return directions;
 }
 
-/// Rays of any ranger with an error of bearing each, of unit length, and how far each leads
-/// forward.
+/// Rays of any ranger with a bearing error each, as unit vectors, and their forward components.
 struct StrayRays {
     Directions directions;
     std::vector<float> forward;
@@ -63,7 +62,7 @@ struct StrayRays {
     }
 };
 
-/// Lengths of the rays of a pinhole, pixel by pixel.
+/// Computes the lengths of a pinhole's rays, pixel by pixel.
 ISPACE_SIMD_CLONES void rayLengths(double cx, double cy, double fx, double fy, int columns,
                                    int rows, float* lengths) {
     for (int j = 0; j < rows; ++j) {
@@ -84,10 +83,10 @@ ISPACE_SIMD_CLONES void divide(float* values, const float* by, std::size_t count
     for (std::size_t i = 0; i < count; ++i) values[i] /= by[i];
 }
 
-/// Which of the distances that light may have gone a phase stands for, and which of them are told.
+/// Ambiguity of a phase: the true distance that a phase stands for, and the reported interval.
 struct Phase {
     double ambiguity;
-    float least, greatest;  ///< of what is told
+    float least, greatest;  ///< ends of the reported interval
 
     [[nodiscard]] float wrapped(float distance) const {
         const double full = distance;
@@ -97,7 +96,7 @@ struct Phase {
     [[nodiscard]] bool isTold(float wrapped) const {
         return wrapped >= least && wrapped <= greatest;
     }
-    /// Of what noise carried out of range, the limit it passed: the nearer one round the phase.
+    /// Clamps a value that noise moved out of range to the nearer limit round the phase.
     [[nodiscard]] float kept(float wrapped) const {
         if (isTold(wrapped)) return wrapped;
         const auto turn = static_cast<float>(ambiguity);
@@ -107,7 +106,7 @@ struct Phase {
     }
 };
 
-/// One picture in the making.
+/// Computes one picture.
 class Exposure {
   public:
     Exposure(const RayWorld& environment, const MovingBodies& bodies, const Sensor& sensor,
@@ -141,7 +140,7 @@ class Exposure {
     }
 
   private:
-    /// What there is to measure along the pixels' rays: depths, or distances.
+    /// Computes depths, or distances, along the pixels' rays.
     void cast() {
         const double most = reach();
         const Point3 origin = frame_.pose.position;
@@ -158,12 +157,12 @@ class Exposure {
         }
     }
 
-    /// The same along rays that stray.
+    /// Likewise along rays with bearing errors.
     void castStray() {
         std::vector<float> errors(ranger_.pixels());
         bearingErrors(ranger_.noise, key_, errors);
         const StrayRays rays(ranger_, Frame3(frame_.pose), errors);
-        // The rays of a pinhole are at most as long as that of a corner.
+        // No ray of a pinhole is longer than that of a corner.
         const double most = reach() * length(ranger_.ray(0, 0));
         environment_.cast(frame_.pose.position, rays.directions, most, frame_.depths, cosines_);
         bodies_.shorten(frame_.pose.position, rays.directions, most, own(), frame_.depths,
@@ -172,7 +171,7 @@ class Exposure {
             multiply(frame_.depths.data(), rays.forward.data(), rays.forward.size());
     }
 
-    /// From what there is to what the device says of it.
+    /// Converts true values to measured ones.
     void measure() {
         const double least = ranger_.min_range, greatest = ranger_.max_range;
         const std::span<float> values = frame_.depths;
@@ -182,7 +181,7 @@ class Exposure {
                               static_cast<float>(greatest)};
             for (float& value : values)
                 if (!(value < kNoReturn) || !phase.isTold(phase.wrapped(value))) value = kNoReturn;
-            // What is added comes before the phase, whole units behind it.
+            // Spread is added before the phase wraps, resolution after it.
             noise.resolution = 0;
             addNoise(noise, -kEverything, kEverything, key_, cosines_, values);
             for (float& value : values)

@@ -10,9 +10,9 @@
 
 namespace ispace {
 
-/// One picture of a ranger: for each pixel, row by row, the multiple of its ray() at which it meets
-/// a surface. That is the depth along the axis for a pinhole, and the distance for a spherical
-/// ranger. +infinity is no return.
+/// One picture of a ranger: for each pixel, row by row, the multiple of its ray() at which the ray
+/// hits a surface. For a pinhole it is the depth along the axis, for a spherical ranger the
+/// distance. +infinity is no return.
 struct DepthFrame {
     double time = 0;
     int frame = 0;
@@ -20,7 +20,8 @@ struct DepthFrame {
     std::vector<float> depths;
 };
 
-/// What a ranger sees at `pose`, with its limits, its ambiguity and, if wanted, its noise.
+/// Computes a ranger's picture at `pose`, with its limits, its ambiguity and, if requested, its
+/// noise.
 /// \pre `environment` is a mesh, not a slice
 DepthFrame castDepth(const RayWorld& environment, const MovingBodies& bodies, const Sensor& sensor,
                      const Pose3& pose, int frame, const ReadingOptions& options);

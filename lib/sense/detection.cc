@@ -19,15 +19,15 @@ namespace ispace {
 
 namespace {
 
-/// A sensor with what can be computed once for all its poses.
+/// A sensor with values precomputed for all its poses.
 struct Watcher {
-    Sensor sensor;  // where it starts
+    Sensor sensor;  // at its start
     std::uint32_t carrier = MovingBodies::kNoOwner;
-    Pose3 from_carrier;                   // of one that rides on something
-    std::optional<FieldOfView> view;      // of all but lasers, where it starts
+    Pose3 from_carrier;                   // of a sensor mounted on a mover
+    std::optional<FieldOfView> view;      // of all but lasers, at the start
     std::optional<BearingWindow> window;  // of lasers
-    std::size_t together = 1;             // of its kind, before a place counts as seen
-    bool is_blind = false;                // it stands in something
+    std::size_t together = 1;             // number of its kind required for a detection
+    bool is_blind = false;                // it is inside a solid
 
     [[nodiscard]] bool rides() const { return carrier != MovingBodies::kNoOwner; }
     [[nodiscard]] Pose3 poseAt(const WatchMoment& moment) const;
@@ -40,7 +40,7 @@ Pose3 Watcher::poseAt(const WatchMoment& moment) const {
     return index < poses.size() ? mountedPose(poses[index], from_carrier) : sensor.pose;
 }
 
-/// Where the people of a scene start, in its order.
+/// Returns the start poses of a scene's people, in order.
 std::vector<Pose2> peopleOf(const Scene& scene) {
     std::vector<Pose2> people;
     for (const PlacedRecord& placed : scene.placed)
@@ -57,7 +57,7 @@ Watcher watcherOf(const Sensor& sensor, const std::vector<Pose2>& people, double
         *camera = withDensity(*camera, density);
     watcher.view = fieldOfView(watcher.sensor);
     if (const Laser* laser = std::get_if<Laser>(&watcher.sensor.model))
-        // One that turns counter-clockwise adds the whole sweep to its first bearing.
+        // A counter-clockwise sweep adds its whole angle to the first bearing.
         watcher.window.emplace(*laser, laser->sweptSpan() - laser->span());
     watcher.together = kindOf(sensor.model).together;
     if (sensor.mount)
@@ -106,7 +106,8 @@ bool DetectionMonitor::Data::isClear(const Sensor& sensor, Point3 origin, Point3
     return seen[0] != 0;
 }
 
-/// A level scan: in its slice, or, if there are too many of these, in the mesh.
+/// True if a level scan sees the point: in its slice, or, if there are too many slices, in the
+/// mesh.
 bool DetectionMonitor::Data::scans(const Watcher& watcher, const Pose3& pose, Point2 place) const {
     const Vec2 way = place - pose.position.onFloor();
     const double distance = std::hypot(way.x, way.y);
@@ -124,7 +125,7 @@ bool DetectionMonitor::Data::scans(const Watcher& watcher, const Pose3& pose, Po
     return static_cast<double>(range[0]) >= distance * (1 - kFarSlack) - kRayEpsilon;
 }
 
-/// A scan in a plane that is not level sees somebody where it passes over the floor.
+/// True if a scan in a plane that is not level crosses the floor at the point.
 bool DetectionMonitor::Data::scansAslant(const Watcher& watcher, const Pose3& pose,
                                          Point2 place) const {
     const Laser& laser = watcher.sensor.as<Laser>();
@@ -140,7 +141,7 @@ bool DetectionMonitor::Data::scansAslant(const Watcher& watcher, const Pose3& po
                isClear(watcher.sensor, pose.position, target);
     }
     const ScanPlane scan(pose);
-    if (scan.up() == 0) return false;  // upright: seen from above, a line
+    if (scan.up() == 0) return false;  // upright: a line, as seen from above
     const Point3 target{place.x, place.y, scan.heightAt(place)};
     return target.z >= 0 && is_near(target) &&
            watcher.window->holds(scan.frame().toLocal(target)) &&

@@ -12,45 +12,45 @@
 
 namespace ispace {
 
-/// What counts as seen.
+/// Conditions of a detection.
 struct WatchOptions {
-    double plane = 0;    ///< height at which rangers, cameras and ultrasound look for somebody
-    double density = 0;  ///< pixels a metre that a camera needs; 0: any
+    double plane = 0;    ///< height at which rangers, cameras and ultrasound detect movers
+    double density = 0;  ///< pixels a metre that a camera requires; 0: any
 };
 
-/// Where everybody is at a moment. What is not given is where it starts.
+/// Poses of all movers at a moment; empty spans mean the start.
 struct WatchMoment {
     std::span<const Pose2> robots = {};  ///< as Scene::robots
     std::span<const Pose2> people = {};  ///< in the order of the scene
 };
 
-/// Which sensors see robots and people.
+/// Counts the sensors that see robots and people.
 ///
-/// Somebody is seen by a sensor if its place on the floor (centre of rotation, middle of a person)
-/// lies in what `coverage` calls the region of the sensor: for a laser that scans a slice, in that
-/// slice; for a tilted or nodding one where its scans pass over the floor; for rangers, cameras and
-/// ultrasound on one plane. Walls and things hide, robots and people do not. All ultrasonic
-/// receivers count as one sensor, which sees where kMinReceivers of them hear. Sensors that ride on
-/// a robot or a person are taken where that is, and do not see their carrier.
+/// A sensor sees a mover if the mover's point on the floor (centre of rotation, middle of a person)
+/// lies in the sensor's region as `coverage` defines it: for a laser that scans a slice, in that
+/// slice; for a tilted or nodding one the floor that its scans cross; for rangers, cameras and
+/// ultrasound, on one plane. Walls and objects block sight, robots and people do not. All
+/// ultrasonic receivers count as one sensor, which detects a mover heard by kMinReceivers of them.
+/// Sensors mounted on a mover move with it and do not see it.
 class DetectionMonitor {
   public:
-    /// The scene must outlive it.
+    /// Prepares the sensors. The scene must outlive it.
     explicit DetectionMonitor(const Scene& scene, const WatchOptions& options = {});
     ~DetectionMonitor();
     DetectionMonitor(DetectionMonitor&&) noexcept;
     DetectionMonitor& operator=(DetectionMonitor&&) noexcept;
 
-    /// How many sensors could see somebody: all receivers count as one.
+    /// Returns the number of sensors; all receivers count as one.
     [[nodiscard]] std::size_t sensors() const;
-    /// True if some ride on robots or people, so that what is seen changes with those.
+    /// True if sensors are mounted on movers, so that detections depend on the movers' poses.
     [[nodiscard]] bool rides() const;
 
-    /// Somebody; `owner` as carrierOf() names it.
+    /// A mover to be detected; `owner` as carrierOf() returns it.
     struct Target {
         Point2 place;
         std::uint32_t owner = MovingBodies::kNoOwner;
     };
-    /// By how many sensors this target is seen now. Thread-safe.
+    /// Returns the number of sensors that see the target now. Thread-safe.
     [[nodiscard]] std::size_t seenBy(const Target& target, const WatchMoment& moment = {}) const;
 
   private:

@@ -18,18 +18,18 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Receivers this near to one line, as a share of its length, do not fix a place.
+/// Receivers this near to one line, as a share of its length, do not determine a position.
 constexpr double kLine = 1e-6;
-/// Receivers nearer to one plane than this share of their extent tell nothing of the height above
-/// it by linear equations.
+/// For receivers nearer to one plane than this share of their extent, linear equations do not
+/// determine the height above it.
 constexpr double kPlane = 1e-5;
 
-/// Receivers about their middle, with the axes along which they spread.
+/// Receivers relative to their centroid, with the principal axes of their spread.
 struct Layout {
     Point3 middle;
-    std::vector<Vector3d> places;  // from the middle
-    Vector3d spread;               // mean squares along the axes, in ascending order
-    Matrix3d axes;                 // columns; the first is the normal of the plane that fits best
+    std::vector<Vector3d> places;  // relative to the centroid
+    Vector3d spread;               // mean squares along the axes, ascending
+    Matrix3d axes;                 // columns; the first is the normal of the best-fitting plane
 
     [[nodiscard]] double extent() const { return std::sqrt(spread[2]); }
 };
@@ -56,8 +56,8 @@ Layout layoutOf(std::span<const Hearing> heard) {
     return layout;
 }
 
-/// Sum of squares of measured less computed distances at `x`, and what a step of Gauss-Newton
-/// needs.
+/// Sum of squares of measured minus computed distances at `x`, and the terms of a Gauss-Newton
+/// step.
 struct Linearised {
     double cost = 0;
     Matrix3d normal = Matrix3d::Zero();    // J^T J
@@ -71,7 +71,7 @@ Linearised linearise(const Layout& layout, std::span<const double> distances, co
         const double computed = from_receiver.norm();
         const double error = computed - distances[i];
         result.cost += error * error;
-        // At the receiver itself its distance has no direction.
+        // At the receiver itself the direction is undefined.
         if (computed == 0) continue;
         const Vector3d direction = from_receiver / computed;
         result.normal += direction * direction.transpose();
@@ -109,26 +109,28 @@ Vector3d refine(const Layout& layout, std::span<const double> distances, Vector3
     return x;
 }
 
-/// Where the search begins: solutions of the differences of squared spheres, which are linear.
+/// Start values of the search: solutions of the differences of squared spheres, which are linear.
 struct Starts {
-    std::array<Vector3d, 2> mirrored;  // with the height over the plane that squares sum up to
+    std::array<Vector3d, 2> mirrored;  // with the height above the plane from the sum of squares
     std::optional<Vector3d> spatial;   // if the receivers are not in one plane
 };
 
 Starts startsOf(const Layout& layout, std::span<const double> distances) {
     const auto count = static_cast<double>(distances.size());
     double mean_square = 0;
-    Vector3d right = Vector3d::Zero();  // mean of place * (|place|^2 - distance^2) / 2
+    Vector3d right = Vector3d::Zero();  // mean of p * (|p|^2 - distance^2) / 2 over positions p
     for (std::size_t i = 0; i < distances.size(); ++i) {
         const double less = layout.places[i].squaredNorm() - distances[i] * distances[i];
         mean_square -= less / count;
         right += layout.places[i] * (less / 2 / count);
     }
-    // |x|^2 = mean_square, and in the plane's axes each coordinate by itself.
+    //
+    // x
+    // ^2 = mean_square, and in the plane's axes each coordinate is independent.
     const Vector3d along = layout.axes.transpose() * right;
     const Vector3d in_plane = layout.axes.col(1) * (along[1] / layout.spread[1]) +
                               layout.axes.col(2) * (along[2] / layout.spread[2]);
-    // Not in the plane itself, from where no direction leads out of it.
+    // Not in the plane itself, where the gradient has no component across it.
     const double least = 1e-6 * layout.extent();
     const double height = std::sqrt(std::max(mean_square - in_plane.squaredNorm(), least * least));
     const Vector3d up = height * layout.axes.col(0);
@@ -138,7 +140,7 @@ Starts startsOf(const Layout& layout, std::span<const double> distances) {
     return starts;
 }
 
-/// Diagonal of the inverse of J^T J; +infinity along what it leaves open.
+/// Returns the diagonal of the inverse of J^T J; +infinity along undetermined directions.
 Vector3d variances(const Matrix3d& normal) {
     constexpr double kOpen = 1e-14;
     const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(normal);
@@ -158,7 +160,7 @@ Vector3d variances(const Matrix3d& normal) {
     return result;
 }
 
-/// How far a place is from the cone in which a receiver hears, in metres; 0 in it.
+/// Returns the distance of a point from the cone in which a receiver hears, in metres; 0 inside.
 double outsideOf(const Hearing& one, Point3 place) {
     const Vec3 way = place - one.place;
     const double distance = length(way), half = 0.5 * one.fov.radians();
@@ -168,15 +170,15 @@ double outsideOf(const Hearing& one, Point3 place) {
     return distance * (off_axis - half < std::numbers::pi / 2 ? std::sin(off_axis - half) : 1);
 }
 
-/// A place that distances may mean.
+/// A position that fits the distances.
 struct Candidate {
-    Vector3d x;         ///< from the middle of the receivers
+    Vector3d x;         ///< relative to the centroid of the receivers
     double cost;        ///< sum of squared errors of distances
-    Vector3d variance;  ///< for distances with errors of 1
-    double outside;     ///< greatest distance from the cones of the receivers
+    Vector3d variance;  ///< for unit errors of distances
+    double outside;     ///< maximum distance from the receivers' cones
 };
 
-/// Finds a tag that was heard.
+/// Locates a tag.
 class Search {
   public:
     explicit Search(std::span<const Hearing> heard) : heard_(heard), layout_(layoutOf(heard)) {
@@ -198,7 +200,7 @@ class Search {
         if (candidates_.size() == 2) dropTheWorse();
         if (candidates_.empty()) return std::nullopt;
         if (candidates_.size() == 1) return fixOf(candidates_[0], Vector3d::Zero());
-        // The axes of the receivers say which, if they point to a side at all.
+        // The receivers' axes decide, unless they point along the plane.
         const double out = std::fabs(towards_.dot(layout_.axes.col(0)));
         if (out > kAlong * towards_.norm())
             return fixOf(candidates_[0], ambiguity(candidates_[0], candidates_[1]));
@@ -208,18 +210,19 @@ class Search {
     }
 
   private:
-    /// More standard deviations than ever come up.
+    /// Threshold in standard deviations.
     static constexpr double kClearly = 5;
-    /// Of places, relative to the distances.
+    /// Rounding error of positions, relative to the distances.
     static constexpr double kRounding = 1e-6;
-    /// Axes of receivers that point less to a side than this share.
+    /// Minimum component of the receivers' axes across the plane.
     static constexpr double kAlong = 1e-3;
 
     [[nodiscard]] Point3 placeOf(const Vector3d& x) const {
         return layout_.middle + Vec3{x[0], x[1], x[2]};
     }
 
-    /// The best place on each side of the receivers' plane, that to which they look first.
+    /// Finds the best position on each side of the receivers' plane, first the side to which they
+    /// point.
     void findCandidates() {
         const Vector3d normal = layout_.axes.col(0);
         const bool is_up = towards_.dot(normal) >= 0;
@@ -241,7 +244,8 @@ class Search {
             if (of_side) candidates_.push_back(*of_side);
     }
 
-    /// Of two: that which fits clearly worse, else the only one that lies outside of a cone.
+    /// Of two candidates, removes the one that fits clearly worse, else the only one outside a
+    /// cone.
     void dropTheWorse() {
         const double clear = kClearly * error_ * kClearly * error_ + fit_ * fit_;
         const auto fits_worse = [clear](const Candidate& one, const Candidate& other) {
@@ -261,17 +265,17 @@ class Search {
             candidates_.pop_back();
     }
 
-    /// True if all cones hold it, as far as errors tell.
+    /// True if all cones contain it, within the errors.
     [[nodiscard]] bool isHeard(const Candidate& candidate) const {
         const double own = error_ > 0 ? error_ * std::sqrt(candidate.variance.sum()) : 0;
         return candidate.outside <= kClearly * own + rounding_;
     }
 
-    /// Squares of how many times an error of the distances becomes the way to the other place,
-    /// along each axis.
+    /// Returns the squares of the factors from a distance's error to the offset between the
+    /// candidates, along each axis.
     [[nodiscard]] Vector3d ambiguity(const Candidate& one, const Candidate& other) const {
         const Vector3d way = other.x - one.x;
-        // A place in the plane is its own image.
+        // A position in the plane is its mirror image.
         if (way.norm() <= 4 * rounding_) return Vector3d::Zero();
         double squares = 0;
         for (const Vector3d& place : layout_.places) {
@@ -303,10 +307,10 @@ class Search {
     Layout layout_;
     Vector3d towards_ = Vector3d::Zero();
     std::vector<double> distances_;
-    double error_ = 0;                   // root mean square of those of the distances
-    double rounding_ = 0;                // of places, in metres
+    double error_ = 0;                   // root mean square of the distances' errors
+    double rounding_ = 0;                // of positions, in metres
     double fit_ = 0;                     // of distances to them
-    std::vector<Candidate> candidates_;  // the first on the side to which receivers look
+    std::vector<Candidate> candidates_;  // the first on the side to which receivers point
 };
 
 }  // namespace

@@ -16,9 +16,9 @@ namespace {
 using noise_loops::kNoReturn;
 using noise_loops::Parameters;
 
-/// Elements that are dealt with together; a multiple of what random numbers are drawn in.
+/// Number of elements processed together; a multiple of the block size of random numbers.
 constexpr std::size_t kBlock = 512;
-/// Elements without any return are left out, so many at once.
+/// Number of elements that are skipped together if they have no return.
 constexpr std::size_t kPart = 64;
 
 ISPACE_SIMD_CLONES void disturb(const Parameters& parameters, std::size_t count,
@@ -35,7 +35,7 @@ ISPACE_INLINE std::uint32_t limitPart(const Parameters& parameters, std::size_t 
     return any;
 }
 
-/// Takes what is out of range for no return.
+/// Converts ranges outside the limits to no return.
 /// \return a bit for each part of kPart ranges that has a return
 ISPACE_SIMD_CLONES std::uint32_t partsWithReturns(const Parameters& parameters, std::size_t count,
                                                   float* ranges) {
@@ -58,7 +58,7 @@ Parameters parametersOf(const RangeNoise& noise, double min_range, double max_ra
     if (const Angle ramp = noise.graze_to - noise.graze_from; ramp > Angle())
         parameters.graze_slope = static_cast<float>(1 / ramp.radians());
     parameters.graze_cosine = static_cast<float>(cos(noise.graze_to));
-    // Steps far below those of a float change nothing, and would be too many to count.
+    // Steps far below those of a float have no effect, and cannot be counted exactly.
     if (noise.resolution > 1e-12) {
         parameters.resolution = noise.resolution;
         parameters.per_metre = 1 / noise.resolution;
@@ -96,7 +96,7 @@ void addNoise(const RangeNoise& noise, double min_range, double max_range, const
     for (std::size_t k = 0; k < ranges.size(); k += kBlock) {
         const std::size_t count = std::min(kBlock, ranges.size() - k);
         std::uint32_t parts = partsWithReturns(parameters, count, ranges.data() + k);
-        // Neighbouring parts at once.
+        // Adjacent parts are processed together.
         while (parts != 0) {
             const auto begin = static_cast<std::size_t>(std::countr_zero(parts));
             const auto end = begin + static_cast<std::size_t>(std::countr_one(parts >> begin));

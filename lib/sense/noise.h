@@ -17,48 +17,48 @@ namespace ispace {
 /// Identifies the noise of one reading.
 struct NoiseKey {
     std::uint64_t seed = 0;
-    std::uint64_t sensor = 0;  ///< hashOf its id
+    std::uint64_t sensor = 0;  ///< hashOf of its id
     std::uint64_t frame = 0;   ///< of a sweep: frame * scans + number of the scan
     Purpose purpose = Purpose::Range;
 };
 
-/// Turns true ranges into measured ones. A true range outside [min_range, max_range] (ends
-/// included, both as float32), infinity and NaN become no return, whatever the noise. All others
-/// get bias and spread, drop-out and resolution, in this order; a result beyond a limit becomes
-/// that limit. Vectorised, with the same values on any processor. Element k draws element k of the
-/// key's sequence (its `normal` and `uniform`; `other` belongs to bearingErrors), whatever the
-/// other elements are.
+/// Converts true ranges to measured ones. A true range outside [min_range, max_range] (ends
+/// included, both as float32), infinity and NaN become no return. All others get bias and spread,
+/// drop-out and resolution, in this order; results are clamped to the limits. Vectorised, with
+/// equal values on any processor. Element k draws element k of the key's sequence (its `normal` and
+/// `uniform`; `other` belongs to bearingErrors), independent of the other elements.
 ///
-/// A return is lost with probability p = d + (1 - d) g: d is noise.dropout; g rises in proportion
-/// to the angle between beam and normal from 0 at graze_from to 1 at graze_to, or jumps there if
-/// both are the same. p is rounded to steps of 2^-24. A multiple of the resolution is the float32
-/// nearest to n * resolution, which is what its decimal notation reads as. \param cosines |cosine|
+/// A return is lost with probability p = d + (1 - d) g: d is noise.dropout; g rises linearly with
+/// the angle between beam and normal from 0 at graze_from to 1 at graze_to, or jumps there if both
+/// are equal. p is rounded to steps of 2^-24. A multiple of the resolution is the float32 nearest
+/// to n * resolution, the value that its decimal notation reads as. \param cosines
+/// cosine
 /// of the angle between beam and normal for each range, empty unless noise.dropsByIncidence()
 void addNoise(const RangeNoise& noise, double min_range, double max_range, const NoiseKey& key,
               std::span<const float> cosines, std::span<float> ranges);
 
-/// Error of each bearing in radians: N(0, angle_sigma).
+/// Computes the error of each bearing in radians: N(0, angle_sigma).
 void bearingErrors(const RangeNoise& noise, const NoiseKey& key, std::span<float> radians);
 
 }  // namespace ispace
 
-/// The loops of addNoise(), to be compiled for one processor or another.
+/// The loops of addNoise(), compiled for several processors.
 namespace ispace::noise_loops {
 
-/// A device's parameters as the loops need them.
+/// A device's parameters in the form that the loops read.
 struct Parameters {
     float bias = 0;
     std::array<float, 3> sigma{0, 0, 0};
     float dropout = 0;
-    /// Of incidence: where the ramp begins, its slope (0: a step), and the cosine where it ends.
+    /// Of incidence: start of the ramp, its slope (0: a step), and the cosine at its end.
     float graze_from = 0, graze_slope = 0, graze_cosine = 0;
-    double resolution = 0, per_metre = 0;  // its inverse
+    double resolution = 0, per_metre = 0;  // per_metre is its inverse
     float min_range = 0, max_range = 0;
 };
 
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 
-/// `normal` null: no spread.
+/// Adds bias and spread. `normal` null: no spread.
 ISPACE_INLINE void spread(const Parameters& parameters, std::size_t count, const float* normal,
                           float* __restrict ranges) {
     const float bias = parameters.bias;
@@ -71,12 +71,12 @@ ISPACE_INLINE void spread(const Parameters& parameters, std::size_t count, const
         const float r = ranges[k];
         const float sigma = s0 + r * (s1 + r * s2);
         const float measured = r + (bias + 0.5F * (sigma + std::fabs(sigma)) * normal[k]);
-        // The spread of infinity may not be a number.
+        // The spread of infinity may be NaN.
         ranges[k] = simd::choose(r < kNoReturn, measured, kNoReturn);
     }
 }
 
-/// `cosines` null: none is lost by incidence.
+/// Removes lost returns. `cosines` null: incidence is ignored.
 ISPACE_INLINE void drop(const Parameters& parameters, std::size_t count, const float* cosines,
                         const float* uniform, float* __restrict ranges) {
     const float dropout = parameters.dropout;
@@ -91,7 +91,7 @@ ISPACE_INLINE void drop(const Parameters& parameters, std::size_t count, const f
     const float slope = parameters.graze_slope;
     const float end = parameters.graze_cosine;
     for (std::size_t k = 0; k < count; ++k) {
-        // Rounding may have left a cosine above 1.
+        // Rounding may make a cosine exceed 1.
         const float cosine = simd::choose(cosines[k] < 1.0F, cosines[k], 1.0F);
         const float ramp = (simd::arcCosine(cosine) - from) * slope;
         const float share = simd::choose(ramp > 0, ramp, 0.0F);
@@ -102,8 +102,8 @@ ISPACE_INLINE void drop(const Parameters& parameters, std::size_t count, const f
 
 ISPACE_INLINE void quantise(const Parameters& parameters, std::size_t count,
                             float* __restrict ranges) {
-    // Added and taken off again this rounds to a whole number; one too large for that is left as it
-    // is, but for the rounding of doubles.
+    // Adding and subtracting this number rounds to an integer; values too large for it stay
+    // unchanged up to double rounding.
     constexpr double kRounder = 0x1.8p52;
     const double resolution = parameters.resolution;
     const double per_metre = parameters.per_metre;
@@ -114,7 +114,7 @@ ISPACE_INLINE void quantise(const Parameters& parameters, std::size_t count,
     }
 }
 
-/// What is out of range, or not a number, is no return.
+/// Converts ranges outside the limits and NaN to no return.
 ISPACE_INLINE void limit(const Parameters& parameters, std::size_t count,
                          float* __restrict ranges) {
     const float low = parameters.min_range;
@@ -126,7 +126,7 @@ ISPACE_INLINE void limit(const Parameters& parameters, std::size_t count,
     }
 }
 
-/// Returns that noise carried out of range are at its end.
+/// Clamps noisy returns to the limits.
 ISPACE_INLINE void keepInRange(const Parameters& parameters, std::size_t count,
                                float* __restrict ranges) {
     const float low = parameters.min_range;
@@ -139,8 +139,7 @@ ISPACE_INLINE void keepInRange(const Parameters& parameters, std::size_t count,
     }
 }
 
-/// What a block of ranges goes through once limit() has been applied; arrays are null if not
-/// needed.
+/// Applies all noise to a block of ranges after limit(); unneeded arrays are null.
 ISPACE_INLINE void apply(const Parameters& parameters, std::size_t count, const float* normal,
                          const float* uniform, const float* cosines, float* ranges) {
     const bool moves = normal != nullptr || parameters.bias != 0;

@@ -21,7 +21,7 @@ struct Photographer::Data {
     const Scene& scene;
     PhotoOptions options;
     RenderScene surfaces;
-    /// Of lenses that bend rays: computed once for each sensor.
+    /// Of lenses with distortion: computed once for each sensor.
     mutable std::mutex mutex;
     mutable std::map<std::string, CameraView> bent;
 
@@ -63,7 +63,7 @@ Photo Photographer::take(const Sensor& sensor, const Pose3& pose, int frame) con
     photo.rgb = toSrgb8(picture, options.exposure);
     photo.labels = std::move(picture.labels);
     photo.depths = std::move(picture.depths);
-    // As coverage counts: in multiples of the lines of sight, both are depths or both distances.
+    // As in coverage: in multiples of the lines of sight, both are depths or both distances.
     const auto& camera = sensor.as<Camera>();
     for (float& depth : photo.depths)
         if (!(depth >= camera.min_range && depth <= camera.max_range))
@@ -76,7 +76,7 @@ void addExposureNoise(const Camera& camera, double exposure, std::uint64_t seed,
     const RandomKey key{seed, Purpose::Picture, hashOf(id), static_cast<std::uint64_t>(frame)};
     const auto white = static_cast<float>(exposure * camera.full_well);
     const auto read_noise = static_cast<float>(camera.read_noise);
-    // A multiple of what random numbers are drawn in.
+    // A multiple of the block size of random numbers.
     constexpr std::size_t kBlock = 512;
     const std::size_t samples = 3 * radiance.size();
     tbb::parallel_for(std::size_t{0}, (samples + kBlock - 1) / kBlock, [&](std::size_t block) {

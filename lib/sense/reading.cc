@@ -13,7 +13,7 @@ bool staysLevelAt(const Pose3& pose, double height) {
     return pose.isLevel() && pose.position.z == height;
 }
 
-/// The scans of a job, without their ranges.
+/// Returns the scans of a job, without their ranges.
 std::vector<Scan> scansOf(const Laser& laser, const ReadingJob& job) {
     const int count = laser.scans();
     const bool sweeps = laser.sweep != SweepAxis::None;
@@ -23,7 +23,7 @@ std::vector<Scan> scansOf(const Laser& laser, const ReadingJob& job) {
         scan.time = j == 0 ? job.time : wholeNanoseconds(job.time + j / laser.rate);
         scan.frame = job.frame;
         scan.number = j;
-        // Where it is some seconds later; a sweep goes on meanwhile.
+        // Returns the pose some seconds later; a sweep continues meanwhile.
         const auto pose_at = [&](double later) {
             const Pose3 carried =
                 job.way.empty() ? job.pose : poseAlong(job.way, scan.time + later);
@@ -44,7 +44,7 @@ struct ReadingSampler::Data {
     Worlds& worlds;
     const MovingBodies& bodies;
     TakerOptions options;
-    /// A caster a laser, made when first needed, for each thread.
+    /// A caster per laser, created on first use, for each thread.
     using Casters = std::vector<std::unique_ptr<LaserCaster>>;
     tbb::enumerable_thread_specific<Casters> casters;
 
@@ -61,7 +61,7 @@ struct ReadingSampler::Data {
         return *caster;
     }
 
-    // What a reading of each kind needs, and the reading.
+    // Preparations and readings of each kind of sensor.
     void prepare(const Laser& laser, const ReadingJob& job);
     void prepare(const Ranger& /*ranger*/, const ReadingJob& /*job*/) { worlds.prepareMesh(); }
     void prepare(const Tag& /*tag*/, const ReadingJob& /*job*/) {
@@ -70,7 +70,7 @@ struct ReadingSampler::Data {
     Reading take(const Laser& laser, const ReadingJob& job);
     Reading take(const Ranger& ranger, const ReadingJob& job);
     Reading take(const Tag& tag, const ReadingJob& job);
-    // Receivers hear tags; alone they read nothing.
+    // Receivers have no readings; they hear tags.
     void prepare(const Receiver& /*receiver*/, const ReadingJob& /*job*/) {}
     static Reading take(const Receiver& /*receiver*/, const ReadingJob& /*job*/) { return {}; }
     void prepare(const Camera& /*camera*/, const ReadingJob& /*job*/) {}

@@ -17,14 +17,14 @@
 
 namespace ispace {
 
-/// A reading to be taken.
+/// A requested reading.
 struct ReadingJob {
-    std::size_t sensor = 0;  ///< in Sensors::read
+    std::size_t sensor = 0;  ///< index in Sensors::read
     int frame = 0;
     double time = 0;  ///< seconds
     Pose3 pose;
-    /// Poses from `time` to the end of the reading; empty if the sensor stands still. In order of
-    /// time, the first one not after `time`.
+    /// Poses from `time` to the end of the reading, sorted by time, the first one not after `time`;
+    /// empty if the sensor stands still.
     std::vector<TimedPose> way;
 };
 
@@ -33,27 +33,27 @@ using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo>;
 
 struct TakerOptions {
     std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
-    double celsius = 20;                           ///< of the air, for sound
-    /// Sensors move from job to job, so their beams are turned as a whole; see Beams.
+    double celsius = 20;                           ///< of the air, for the speed of sound
+    /// Sensors move from job to job: their beams are rotated as a whole; see Beams.
     bool follows_poses = false;
-    /// Takes the pictures of cameras; null if there are none. It outlives the taker.
+    /// Required for cameras; null: no cameras. It outlives the sampler.
     const Photographer* photographer = nullptr;
 };
 
 /// Takes readings in any order on any thread; each depends only on its job.
 class ReadingSampler {
   public:
-    /// \pre all arguments outlive it
+    /// Prepares the sensors. \pre all arguments outlive it
     ReadingSampler(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,
                    const TakerOptions& options);
     ~ReadingSampler();
     ReadingSampler(const ReadingSampler&) = delete;
     ReadingSampler& operator=(const ReadingSampler&) = delete;
 
-    /// Prepares the worlds for a job. Called by one thread in the order of jobs, while others may
-    /// take readings.
+    /// Prepares the worlds for a job. One thread calls it, in the order of jobs, while other
+    /// threads take readings.
     void prepare(const ReadingJob& job);
-    /// \pre the job is prepared
+    /// Takes the reading of a job. \pre the job is prepared
     [[nodiscard]] Reading take(const ReadingJob& job);
 
   private:

@@ -18,7 +18,7 @@ namespace ispace {
 
 namespace {
 
-/// A line longer than this is no pose.
+/// A longer line is not a pose.
 constexpr std::size_t kLongestLine = 4096;
 
 constexpr int kLastFrame = std::numeric_limits<int>::max();
@@ -121,7 +121,7 @@ std::optional<TimedPose> PoseLines::next(Wait wait) {
 
 void PoseSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
     batch.clear();
-    // Whoever writes a pose and waits for its scan gets it.
+    // A program that writes a pose and waits for its scan must receive it.
     using Wait = PoseLines::Wait;
     while (batch.size() < most) {
         const auto timed = poses_.next(batch.empty() ? Wait::Yes : Wait::No);
@@ -132,7 +132,7 @@ void PoseSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
     }
 }
 
-/// Checks the next pose beside the last one.
+/// Compares the next pose with the last one.
 void MotionSource::follow(const TimedPose& timed) {
     const double last = window_.back().time;
     if (timed.time <= last)
@@ -145,14 +145,14 @@ void MotionSource::follow(const TimedPose& timed) {
                        " between two poses; are times in seconds? --frames N takes as many as N");
 }
 
-/// Reads on until the way from `begin` on reaches a time; false if it ends before, or has not come
-/// so far.
+/// Reads until the path from `begin` reaches a time; returns false if it ends before, or more input
+/// is pending.
 bool MotionSource::reach(double begin, double time, PoseLines::Wait wait) {
     while (window_.empty() || window_.back().time < time) {
         const auto timed = poses_.next(wait);
         if (!timed) return false;
         if (!window_.empty()) follow(*timed);
-        // What lies before the pose that the sensor comes from is of no use.
+        // Drops poses before the last one not after `begin`.
         if (window_.size() > 1 && window_[1].time <= begin) window_.pop_front();
         window_.push_back(*timed);
     }
@@ -171,7 +171,7 @@ void MotionSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
     while (batch.size() < most && !(frames_ && frame_ >= *frames_)) {
         const double time = wholeNanoseconds(begin_ + frame_ / rate_);
         if (!reach(time, time + duration_, batch.empty() ? Wait::Yes : Wait::No)) return;
-        // What lies behind is of no use any more, but for the pose it comes from.
+        // Drops poses before the last one not after `time`.
         while (window_.size() > 1 && window_[1].time <= time) window_.pop_front();
         ReadingJob job{.sensor = 0, .frame = frame_, .time = time, .pose = {}, .way = {}};
         for (const TimedPose& timed : window_) {
@@ -186,18 +186,18 @@ void MotionSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
 
 namespace {
 
-/// Rays of one batch: enough to hide what a batch costs, few enough for the cache.
+/// Rays per batch: enough to hide the cost of a batch, few enough for the cache.
 constexpr std::size_t kBatchRays = 1 << 15;
 
-/// Rays of the sensor with the most.
+/// Returns the maximum number of rays of a sensor.
 std::size_t mostRays(const Sensors& sensors) {
     std::size_t most = 1;
     for (const Sensor& sensor : sensors.read) most = std::max(most, rayCount(sensor.model));
     return most;
 }
 
-/// Batches that are worked on at once: enough for all cores, and few where pictures are so large
-/// that memory would run out.
+/// Returns the number of parallel batches: enough for all cores, and few if large pictures would
+/// exhaust memory.
 std::size_t batchesOf(const Sensors& sensors) {
     constexpr std::size_t kMaxBytes = std::size_t{2} << 30U;
     std::size_t bytes = 1;
@@ -216,12 +216,12 @@ void runReadings(ReadingSource& source, ReadingSampler& taker, const Sensors& se
                  Progress& progress, const std::function<void(Readings&)>& write) {
     using Batch = std::shared_ptr<Readings>;
     const std::size_t most = std::max<std::size_t>(1, kBatchRays / mostRays(sensors));
-    // Batches come back: their memory is used again.
+    // Batches are recycled, with their memory.
     tbb::concurrent_queue<Batch> spare;
-    // What comes before a bad pose is written, for any number of threads.
+    // Jobs before a bad pose are written, for any number of threads.
     std::exception_ptr failure;
-    // Not thrown in the pipeline, which would cancel the loops of readings that others are taking:
-    // these would go on with half of one.
+    // Not thrown in the pipeline, which would cancel the loops of readings in other threads, and
+    // leave them incomplete.
     std::exception_ptr write_failure;
     std::atomic<bool> is_over = false;
     const auto read = [&](tbb::flow_control& control) -> Batch {

@@ -15,25 +15,26 @@
 
 namespace ispace {
 
-/// Supplies the readings to be taken, in order, a batch at a time.
+/// Supplies the jobs of a run, in order, in batches.
 class ReadingSource {
   public:
     virtual ~ReadingSource() = default;
-    /// Puts the next jobs into `batch`, some `most` at most, as soon as there are any; none at the
-    /// end. Memory stays bounded. If it throws, `batch` holds the jobs before the error.
+    /// Stores the next jobs in `batch`, at most about `most`, as soon as some are available; an
+    /// empty batch ends the source. Memory is bounded. On an exception, `batch` holds the jobs
+    /// before the error.
     virtual void next(std::size_t most, std::vector<ReadingJob>& batch) = 0;
-    /// Leaves out the next jobs, `most` at most; returns how many there were. O(jobs)
+    /// Skips the next jobs, at most `most`, and returns their number. O(jobs)
     virtual std::int64_t skip(std::int64_t most);
 };
 
-/// Placed sensors, each at its rate from time 0 on: frame by frame, the sensors in order.
+/// Jobs of placed sensors, each at its rate from time 0 on: frame by frame, the sensors in order.
 class StillSource final : public ReadingSource {
   public:
     StillSource(const Sensors& sensors, int frames) : sensors_(&sensors), frames_(frames) {}
     void next(std::size_t most, std::vector<ReadingJob>& batch) override;
-    /// O(1)
+    /// Skips in O(1).
     std::int64_t skip(std::int64_t most) override;
-    /// All jobs.
+    /// Returns the number of all jobs.
     [[nodiscard]] std::int64_t count() const;
 
   private:
@@ -43,7 +44,7 @@ class StillSource final : public ReadingSource {
     std::size_t sensor_ = 0;
 };
 
-/// The next jobs of a source, so many at most.
+/// Limits a source to a number of jobs.
 class LimitedSource final : public ReadingSource {
   public:
     LimitedSource(ReadingSource& source, std::int64_t most) : source_(&source), left_(most) {}
@@ -54,16 +55,16 @@ class LimitedSource final : public ReadingSource {
     std::int64_t left_;
 };
 
-/// Reads more bytes to the end of a buffer; false at the end of the file.
+/// Appends more bytes to a buffer; returns false at the end of the file.
 using ByteReader = std::function<bool(std::string& buffer)>;
 
-/// The poses of a TUM trajectory, line by line.
+/// Reads the poses of a TUM trajectory, line by line.
 class PoseLines {
   public:
-    /// `name` is that of the file, for messages.
+    /// `name` is the file's name in messages.
     PoseLines(ByteReader read, std::string name) : read_(std::move(read)), name_(std::move(name)) {}
     enum class Wait { Yes, No };
-    /// The next pose; nothing at the end, or if it may not wait and none has arrived yet.
+    /// Returns the next pose; empty at the end, or if it may not wait and no pose has arrived yet.
     /// \throws FormatError with file and line
     std::optional<TimedPose> next(Wait wait = Wait::Yes);
     [[nodiscard]] int line() const { return line_; }
@@ -80,7 +81,7 @@ class PoseLines {
     bool done_ = false;
 };
 
-/// One sensor, at each pose of a trajectory once: frame k at pose k and its time.
+/// Jobs of one sensor, one at each pose of a trajectory: frame k at pose k and its time.
 class PoseSource final : public ReadingSource {
   public:
     explicit PoseSource(PoseLines poses) : poses_(std::move(poses)) {}
@@ -91,10 +92,10 @@ class PoseSource final : public ReadingSource {
     int frame_ = 0;
 };
 
-/// One sensor that drives along a trajectory: frame k begins at the first pose's time + k / rate
-/// and must end before the last pose. It stops after `frames` frames if given; else there may be at
-/// most kMaxBetween frames between two poses, since a mistyped time would mean millions. \throws
-/// FormatError if times do not grow or poses are too far apart
+/// Jobs of one sensor that moves along a trajectory: frame k begins at the first pose's time + k /
+/// rate and must end before the last pose. Stops after `frames` frames if set; else at most
+/// kMaxBetween frames may lie between two poses, since a mistyped time would produce millions.
+/// \throws FormatError if times do not increase or poses are too far apart
 class MotionSource final : public ReadingSource {
   public:
     static constexpr int kMaxBetween = 100'000;
@@ -119,16 +120,16 @@ class MotionSource final : public ReadingSource {
 struct Readings {
     std::vector<ReadingJob> jobs;
     std::string text;                             ///< of a stream
-    std::vector<std::vector<ReadingFile>> files;  ///< of each job, where each has files of its own
-    std::vector<PointCloud> clouds;               ///< of each job, where they are joined
+    std::vector<std::vector<ReadingFile>> files;  ///< of each job, for formats with separate files
+    std::vector<PointCloud> clouds;               ///< of each job, if they are joined
 };
 
-/// What a reading is turned into.
+/// The output form of readings.
 enum class Packing { Stream, Files, Clouds };
 
-/// Takes all readings of a source on all cores and hands them to `write` in order, from one thread
-/// at a time. Memory is bounded by the number of cores, not of jobs. If the source fails,
-/// everything before the error is still written.
+/// Takes all readings of a source on all cores and passes them to `write` in order, from one thread
+/// at a time. Memory is bounded by the number of cores, not of jobs. If the source fails, all
+/// readings before the error are still written.
 void runReadings(ReadingSource& source, ReadingSampler& taker, const Sensors& sensors,
                  const ReadingFormat& format, Packing packing, Coordinates coordinates,
                  Progress& progress, const std::function<void(Readings&)>& write);

@@ -27,7 +27,7 @@ Angle angleOf(const Laser& laser, const Pose3& pose) {
     }
 }
 
-/// From the first scan to the last, or a full turn.
+/// Returns the angle from the first scan to the last, or a full turn.
 Angle sweepOf(const Laser& laser) {
     const Angle turn = Angle::degrees(360);
     if (laser.sweep_span >= turn) return turn;
@@ -62,7 +62,7 @@ SweptScan::SweptScan(const Sensor& placed)
       middle_(cosSin(angleOf(placed.as<Laser>(), placed.pose) + 0.5 * sweepOf(placed.as<Laser>()))),
       cosine_(cosineOfHalf(sweepOf(placed.as<Laser>()))),
       window_(placed.as<Laser>()),
-      // Upside down, it turns the other way in its own frame.
+      // An upside-down laser turns the other way in its frame.
       wide_(placed.as<Laser>(),
             (turns_.tilt.cos * turns_.roll.cos < 0 ? -1.0 : 1.0) * sweepOf(placed.as<Laser>())) {}
 
@@ -116,8 +116,8 @@ bool SweptScan::passes(Point3 place) const {
     const double squared = a * a + b * b;
     const double slack = kUnitTolerance * kUnitTolerance * dot(way, way);
     if (squared <= slack) {
-        // Every scan has the place in its plane, or none. The place is on the axis of the sweep,
-        // or the plane turns in itself.
+        // The point is on the axis of the sweep, or the plane turns in itself: it lies in the plane
+        // of every scan, or of no scan.
         if (c * c > slack) return false;
         const bool turns_in_itself =
             axis_ == SweepAxis::Heading && turns_.tilt.sin == 0 && turns_.roll.sin == 0;
@@ -153,7 +153,7 @@ Beams::Beams(const Laser& laser, bool turns, std::shared_ptr<const Directions> l
 
 const Directions& Beams::at(const Pose3& pose) {
     if (turns_) {
-        thread_local Directions turned;  // kept for its memory
+        thread_local Directions turned;  // reuses its memory
         turn(pose, turned);
         return turned;
     }
@@ -164,7 +164,7 @@ const Directions& Beams::at(const Pose3& pose) {
 
 namespace {
 
-/// Turns level directions, each by an angle of its own.
+/// Rotates level directions, each by a separate angle.
 ISPACE_SIMD_CLONES void turnLevel(const double* x, const double* y, const double* cos,
                                   const double* sin, std::size_t count, double* out_x,
                                   double* out_y) {
@@ -180,7 +180,7 @@ void turnEach(const Directions& local, const BeamFrames& frames, Directions& out
     std::fill(out.z.begin(), out.z.end(), 0.0);
 }
 
-/// Turns directions in the plane of the sensor into the world.
+/// Rotates directions in the sensor's plane to the world frame.
 ISPACE_SIMD_CLONES void turnAll(const double* x, const double* y, std::size_t count, Vec3 forward,
                                 Vec3 left, double* out_x, double* out_y, double* out_z) {
     for (std::size_t k = 0; k < count; ++k) {
@@ -251,7 +251,7 @@ void LaserCaster::cast(Scan& scan, const BeamFrames& frames, std::span<const Bea
     castWith(scan, [&] { castLevel(scan, frames, parts); });
 }
 
-/// What makes readings of ranges, which `cast` sets.
+/// Converts the ranges that `cast` computes to readings.
 template <typename Cast>
 void LaserCaster::castWith(Scan& scan, Cast cast) {
     const Laser& laser = sensor_->as<Laser>();
@@ -267,17 +267,17 @@ void LaserCaster::castWith(Scan& scan, Cast cast) {
     errors_.resize(noisy && laser.noise.angle_sigma > Angle() ? count : 0);
     if (!errors_.empty()) bearingErrors(laser.noise, key, errors_);
     cast();
-    // Surfaces in the blind zone give no return, and hide what lies behind them all the same.
+    // Surfaces in the blind zone give no return, but hide surfaces behind them.
     addNoise(noisy ? laser.noise : RangeNoise(), laser.min_range, laser.max_range, key, cosines_,
              scan.ranges);
 }
 
-/// Rays of which each has a place of its own.
+/// Rays with a separate origin each.
 struct LaserCaster::RaysApart {
     Directions directions;
     std::vector<Point3> origins;
 
-    /// Of this thread, which reads many scans: kept for its memory.
+    /// Returns the buffer of this thread, which takes many scans.
     static RaysApart& ofThread(std::size_t count) {
         thread_local RaysApart rays;
         rays.directions.resize(count);
@@ -288,14 +288,14 @@ struct LaserCaster::RaysApart {
 
 namespace {
 
-/// Of some beams; of none if there are no cosines.
+/// Returns the values of some beams; empty if there are no cosines.
 std::span<float> valuesOf(std::span<float> values, const BeamsAmong& part) {
     return values.empty() ? values : values.subspan(part.begin, part.end - part.begin);
 }
 
 const Directions& partOf(const Directions& all, const BeamsAmong& part) {
     if (part.begin == 0 && part.end == all.size()) return all;
-    thread_local Directions some;  // kept for its memory
+    thread_local Directions some;  // reuses its memory
     const auto copy = [&part](const std::vector<double>& from, std::vector<double>& to) {
         to.assign(from.begin() + static_cast<std::ptrdiff_t>(part.begin),
                   from.begin() + static_cast<std::ptrdiff_t>(part.end));
@@ -321,7 +321,7 @@ void LaserCaster::castFrom(const Pose3& pose, std::span<float> ranges,
                              valuesOf(ranges, part), valuesOf(cosines_, part));
 }
 
-/// With its error.
+/// Returns a beam's direction with its bearing error.
 Vec2 LaserCaster::localBeam(std::size_t beam) const {
     const Directions& local = beams_.local();
     const Vec2 exact{local.x[beam], local.y[beam]};
@@ -330,7 +330,7 @@ Vec2 LaserCaster::localBeam(std::size_t beam) const {
     return {c * exact.x - s * exact.y, s * exact.x + c * exact.y};
 }
 
-/// Each beam by itself: it has a place or an error of its own.
+/// Casts each beam separately: it has an origin or an error that differs.
 void LaserCaster::castApart(Scan& scan, std::span<const BeamsAmong> parts) {
     const std::size_t count = scan.ranges.size();
     RaysApart& rays = RaysApart::ofThread(count);

@@ -47,7 +47,7 @@ Sensors sensorsOf(const Scene& scene, const std::vector<std::string>& globs) {
     for (const Sensor& sensor : scene.sensors)
         if (kindOf(sensor.model).is_read && isSelected(sensor.id, globs))
             (sensor.is<Receiver>() ? sensors.receivers : sensors.read).push_back(sensor);
-    // A choice of tags alone is not a choice of receivers.
+    // Globs that match only tags do not select receivers.
     if (sensors.receivers.empty()) sensors.receivers = sensorsOf<Receiver>(scene);
     return sensors;
 }
@@ -63,7 +63,7 @@ std::vector<std::size_t> sensorRecords(const Scene& scene, std::span<const std::
 }
 
 double wholeNanoseconds(double seconds) {
-    constexpr double kNano = 1e9, kMax = 9e6;  // whole numbers of doubles end at 9e15
+    constexpr double kNano = 1e9, kMax = 9e6;  // doubles are exact for integers up to 9e15
     return std::fabs(seconds) < kMax ? std::round(seconds * kNano) / kNano : seconds;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 
-/// The next word of a line, which loses it; empty at its end.
+/// Removes the next word of a line and returns it; empty at its end.
 std::string_view nextWord(std::string_view& line) {
     const std::size_t begin = line.find_first_not_of(kBlanks);
     if (begin == std::string_view::npos) return line = {};
@@ -29,7 +29,7 @@ std::string_view nextWord(std::string_view& line) {
     throw FormatError({"", 0, column, message});
 }
 
-/// Plans lie within this of the origin, in metres.
+/// Maximum distance from the origin, metres.
 constexpr double kMaxDistance = 1e6;
 
 }  // namespace
@@ -58,7 +58,7 @@ std::optional<TimedPose> parseTumLine(std::string_view line) {
     const auto [t, x, y, z, qx, qy, qz, qw] = values;
     if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > kMaxDistance)
         fail(columns[1], "the place is more than 1000 km away");
-    // What nanoseconds in 64 bits can count.
+    // Limit of nanoseconds in 64 bits.
     constexpr double kLongest = 9e9;
     if (std::fabs(t) > kLongest) fail(columns[0], "t is more than 285 years away");
     const double size = std::max({std::fabs(qx), std::fabs(qy), std::fabs(qz), std::fabs(qw)});

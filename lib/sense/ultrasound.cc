@@ -16,25 +16,26 @@ namespace ispace {
 
 namespace {
 
-/// Cosine of the angle between a sensor's axis and the direction to a place; 1 at its own place.
+/// Returns the cosine of the angle between a sensor's axis and the direction to a point; 1 at the
+/// sensor itself.
 double axisCosine(const Pose3& pose, Point3 place) {
     const Vec3 towards = place - pose.position;
     const double distance = length(towards);
     return distance > 0 ? dot(pose.beam({}), towards) / distance : 1;
 }
 
-/// Directions on the cone itself are in it, whatever rounding makes of them.
+/// Directions on the cone itself are inside, whatever rounding does.
 bool isWithinCone(Angle fov, double axis_cosine) {
     return axis_cosine >= cos(0.5 * fov) - kUnitTolerance;
 }
 
-/// Bodies of neither carrier are in the way.
+/// Bodies of either carrier do not block the line.
 bool isBodyBetween(const MovingBodies& bodies, Point3 a, Point3 b, std::uint32_t carrier_of_a,
                    std::uint32_t carrier_of_b) {
     if (carrier_of_a == MovingBodies::kNoOwner || carrier_of_a == carrier_of_b)
         return bodies.between(a, b, carrier_of_b);
     if (carrier_of_b == MovingBodies::kNoOwner) return bodies.between(a, b, carrier_of_a);
-    // A robot that hears another one is rare.
+    // Robots rarely hear each other.
     const double distance = length(b - a);
     const Vec3 direction = (1 / distance) * (b - a);
     return std::any_of(bodies.bodies().begin(), bodies.bodies().end(), [&](const auto& body) {
@@ -53,12 +54,12 @@ bool isInSight(const RayWorld& environment, const MovingBodies& bodies, const Se
     return seen != 0 && !isBodyBetween(bodies, from, to, carrierOf(receiver), carrierOf(tag));
 }
 
-/// Of the pair, in this order.
+/// Hashes the pair, in this order.
 std::uint64_t hashOfPair(const Sensor& tag, const Sensor& receiver) {
     return (std::rotl(hashOf(tag.id), 29) ^ hashOf(receiver.id)) * 0x9e3779b97f4a7c15U;
 }
 
-/// The distance that is measured, if the burst is heard.
+/// Returns the measured distance if the burst is heard.
 std::optional<double> distanceHeard(const RayWorld& environment, const MovingBodies& bodies,
                                     const Sensor& tag, const Sensor& placed, int frame,
                                     std::optional<std::uint64_t> noise_seed) {
@@ -84,7 +85,7 @@ std::optional<double> distanceHeard(const RayWorld& environment, const MovingBod
     return static_cast<double>(range);
 }
 
-/// About what a distance errs by.
+/// Estimates the standard deviation of a distance.
 double errorOf(const RangeNoise& noise, double distance) {
     const auto& [s0, s1, s2] = noise.sigma;
     const double sigma = std::max(0.0, s0 + distance * (s1 + distance * s2));
@@ -104,7 +105,7 @@ std::optional<PositionFix> fixOf(std::span<const TimeOfFlight> heard,
     return locate(hearings);
 }
 
-/// Eq. (3.7)-(3.10) of the thesis, whose floor is x-z.
+/// Computes eq. (3.7)-(3.10) of the thesis, whose floor is x-z.
 Point2 simplePlace(const Sensor& tag, int frame, std::optional<std::uint64_t> noise_seed) {
     const Point2 place = tag.pose.position.onFloor();
     if (!noise_seed) return place;

@@ -13,12 +13,12 @@
 
 namespace ispace {
 
-/// Speed of sound in dry air in m/s: 331.3 + 0.606 T for T degrees Celsius.
+/// Returns the speed of sound in dry air in m/s: 331.3 + 0.606 T for T degrees Celsius.
 double speedOfSound(double celsius);
 
 /// One receiver's measurement of one burst.
 struct TimeOfFlight {
-    std::size_t receiver = 0;  ///< index of those given
+    std::size_t receiver = 0;  ///< index in the given receivers
     double time = 0;           ///< seconds
     double distance = 0;       ///< metres: time times the speed of sound
 };
@@ -26,35 +26,36 @@ struct TimeOfFlight {
 /// A position computed from distances by least squares.
 struct PositionFix {
     Point3 position;
-    double residual = 0;  ///< root mean square of measured less computed distances, metres
+    double residual = 0;  ///< root mean square of measured minus computed distances, metres
     /// Dilution of precision: the factor from the error of a distance to that of the position, in
     /// space, horizontally and vertically; sqrt of the trace of (J^T J)^-1 and of its parts. If the
-    /// distances leave two positions (mirror images), the square of the distance between the two
-    /// over the difference of their distances is added: +infinity if those do not differ.
+    /// distances fit two positions (mirror images), the square of the distance between the two
+    /// divided by the difference of their distances is added: +infinity if that difference is 0.
     double pdop = 0, hdop = 0, vdop = 0;
 };
 
-/// What is known from one receiver that heard a burst.
+/// A burst as one receiver heard it.
 struct Hearing {
-    Point3 place;         ///< of the receiver
-    Vec3 axis;            ///< of the cone in which it hears, of unit length
+    Point3 place;         ///< position of the receiver
+    Vec3 axis;            ///< of the cone in which it hears, unit vector
     Angle fov;            ///< full angle of the cone
     double distance = 0;  ///< measured
-    double error = 0;     ///< standard deviation of that; 0: exact
+    double error = 0;     ///< standard deviation of the distance; 0: exact
 };
 
-/// The place whose distances to the receivers fit best: Gauss-Newton (Levenberg-Marquardt) from the
-/// linear solution, on each side of the plane that fits the receivers best. Receivers near one
-/// plane (a ceiling) leave two mirror images. Of the two places
-/// - one that lies outside of a receiver's cone, by more than five times its own error, is none;
-/// - one that fits clearly worse, by more than five standard deviations, is none;
-/// - one within all cones goes before one that is not;
-/// - and if both are, that on the side to which the axes of the receivers point on average is
-///   taken, and the dilution of precision tells that there is another.
+/// Computes the position that fits the distances to the receivers best: Gauss-Newton
+/// (Levenberg-Marquardt) from the linear solution, on each side of the best-fitting plane of the
+/// receivers. Receivers near one plane (a ceiling) leave two mirror images as candidates:
+/// - a candidate outside a receiver's cone, by more than five times its standard deviation, is
+///   rejected;
+/// - a candidate that fits worse, by more than five standard deviations, is rejected;
+/// - a candidate within all cones is preferred to one that is not;
+/// - if both remain, the one on the side to which the receivers' axes point on average is returned,
+///   and the dilution of precision includes the ambiguity.
 ///
-/// Nothing with fewer than kMinReceivers, if they do not determine a place (all in one line), if no
-/// place is left, or if two are and the axes point along the plane. Across the plane of the
-/// receivers the dilution of precision of a place in it is unbounded and may be +infinity. \pre
+/// Empty with fewer than kMinReceivers, if they do not determine a position (all on one line), if
+/// no candidate is left, or if two are and the axes point along the plane. For a position in the
+/// receivers' plane, the dilution of precision across it is unbounded and may be +infinity. \pre
 /// distances are finite
 std::optional<PositionFix> locate(std::span<const Hearing> heard);
 
@@ -62,10 +63,10 @@ std::optional<PositionFix> locate(std::span<const Hearing> heard);
 struct Burst {
     double time = 0;  ///< seconds
     int frame = 0;
-    Pose3 pose;                       ///< the tag's true one
-    std::vector<TimeOfFlight> heard;  ///< in the order of receivers
+    Pose3 pose;                       ///< true pose of the tag
+    std::vector<TimeOfFlight> heard;  ///< sorted as the receivers
     std::optional<PositionFix> fix;   ///< of a tag located by times of flight
-    std::optional<Point2> simple;     ///< of one located by the simple model
+    std::optional<Point2> simple;     ///< of a tag located by the simple model
 };
 
 struct UltrasoundOptions {
@@ -75,11 +76,12 @@ struct UltrasoundOptions {
 
 /// Simulates a burst of a tag and locates the tag from it. A receiver hears a tag within its range
 /// (ends included, as float32), its cone and the tag's cone if neither the mesh nor a moving body
-/// is in between; robots that carry the two do not count. \pre `environment` is a mesh, not a slice
+/// blocks the line; robots that carry one of the two do not block it. \pre `environment` is a mesh,
+/// not a slice
 ///
-/// Noise does not change who hears, except for drop-outs: a distance measured beyond the range
-/// becomes its limit. It depends on seed, tag, receiver and frame alone, not on other receivers.
-/// Its angle of incidence is that between the sound and the receiver's axis.
+/// Noise does not change the set of receivers, except for drop-outs: a measured distance beyond the
+/// range is clamped to it. It depends on seed, tag, receiver and frame alone, not on other
+/// receivers. Its angle of incidence is that between the sound and the receiver's axis.
 Burst castBurst(const RayWorld& environment, const MovingBodies& bodies, const Sensor& tag,
                 std::span<const Sensor> receivers, int frame, double time,
                 const UltrasoundOptions& options);

@@ -8,8 +8,8 @@
 
 namespace ispace {
 
-/// Tests many points for solids around them, see Level::isInsideSolid. Each height costs a slice,
-/// so only points at the first 64 heights are tested; at others the answer is no.
+/// Tests many points for solids around them, see Level::isInsideSolid. Each height requires a
+/// slice, so only points at the first 64 heights are tested; at other heights the result is false.
 class BurialTest {
   public:
     explicit BurialTest(const Environment& environment) : environment_(environment) {}

@@ -24,7 +24,7 @@ void appendFixed(std::string& out, std::string_view text, std::size_t bytes) {
     out.append(text.substr(0, bytes)).append(bytes - std::min(bytes, text.size()), '\0');
 }
 
-/// Records that tell which sensor has which number.
+/// Returns text records that map numbers to sensors.
 std::vector<std::string> sensorTexts(const Sensors& sensors) {
     constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max();
     std::vector<std::string> texts(1);
@@ -37,8 +37,8 @@ std::vector<std::string> sensorTexts(const Sensors& sensors) {
     return texts;
 }
 
-/// LAS 1.4, point format 1. Its head tells the number of points and their extent, so points wait
-/// until the last one is known.
+/// Writes LAS 1.4, point format 1. Its header holds the number of points and their bounds, so
+/// points wait for the last one.
 class LasStream final : public ReadingStream {
   public:
     LasStream(ByteSink write, const Sensors& sensors)
@@ -79,12 +79,12 @@ class LasStream final : public ReadingStream {
         const auto few = static_cast<std::uint32_t>(is_few ? count : 0);
 
         std::string out = "LASF";
-        appendLittle(out, std::uint32_t{0});  // no source; GPS times are seconds
-        out.append(16, '\0');                 // no project
-        out.append("\1\4");                   // 1.4
+        appendLittle(out, std::uint32_t{0});  // source unknown; GPS times are seconds
+        out.append(16, '\0');                 // project unset
+        out.append("\1\4");                   // version 1.4
         appendFixed(out, "simulation", kTextBytes);
         appendFixed(out, "ispace", kTextBytes);
-        appendLittle(out, std::uint32_t{0});  // no day of the year, so that bytes are the same
+        appendLittle(out, std::uint32_t{0});  // date unset, so that bytes do not depend on it
         appendLittle(out, kHead);
         appendLittle(out, static_cast<std::uint32_t>(kHead + records.size()));
         appendLittle(out, static_cast<std::uint32_t>(texts.size()));
@@ -97,7 +97,7 @@ class LasStream final : public ReadingStream {
             for (const std::int32_t value : {high_[axis], low_[axis]})
                 appendLittle(out, count == 0 ? 0.0 : kScale * value);
         for (int i = 0; i < 2; ++i)
-            appendLittle(out, std::uint64_t{0});  // no waves, no more records
+            appendLittle(out, std::uint64_t{0});  // no waveforms, no extended records
         appendLittle(out, std::uint32_t{0});
         appendLittle(out, count);
         constexpr int kReturns = 15;
@@ -162,7 +162,7 @@ class Las final : public FormatBase {
         constexpr std::uint8_t kOnlyReturn = 1U | 1U << 3U;
         appendLittle(out, std::uint16_t{0});  // no intensity
         appendLittle(out, kOnlyReturn);
-        appendLittle(out, std::uint8_t{0});   // not classified
+        appendLittle(out, std::uint8_t{0});   // unclassified
         appendLittle(out, std::uint16_t{0});  // no scan angle, no user data
         appendLittle(out, static_cast<std::uint16_t>(index + 1));
         appendLittle(out, time);

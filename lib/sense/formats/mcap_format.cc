@@ -14,13 +14,13 @@ namespace ispace {
 
 namespace {
 
-/// The frame that poses are in: fixed in the world, by REP 105.
+/// The frame of poses: fixed in the world, by REP 105.
 constexpr std::string_view kWorldFrame = "map";
 constexpr const char* kOptical = "_optical";
 
 constexpr RosTopic kOdometry{RosType::Odometry, "odom", RosFrame::World};
 
-/// The topics of a sensor, in the order of its channels.
+/// Returns the topics of a sensor, in the order of its channels.
 std::vector<const RosTopic*> topicsOf(const Sensor& sensor) {
     std::vector<const RosTopic*> topics;
     for (const RosTopic& topic : readingKind(sensor.model).topics)
@@ -28,7 +28,7 @@ std::vector<const RosTopic*> topicsOf(const Sensor& sensor) {
     return topics;
 }
 
-/// In nanoseconds; ROS counts seconds in 31 bits. \param who for messages
+/// Converts to nanoseconds; ROS counts seconds in 31 bits. \param who subject of messages
 std::uint64_t rosTime(double seconds, const std::string& who) {
     constexpr double kMost = 2147483647, kSecond = 1e9;
     if (!(seconds >= 0 && seconds <= kMost))
@@ -138,13 +138,13 @@ class McapStream final : public ReadingStream {
     McapWriter file_;
 };
 
-/// Somebody in a recorded run, as topics and frames have them.
+/// A mover of a recorded run, with its topics and frames.
 struct Member {
-    std::string name, odometry;  ///< the frames
+    std::string name, odometry;  ///< its frames
     std::uint16_t channel = 0;   ///< of a robot's odometry
 };
 
-/// Where the frame of a robot's odometry is, by where the robot is in both.
+/// Computes the pose of a robot's odometry frame from its pose in both frames.
 Pose2 odometryFrame(const Pose2& robot, const Pose2& odometry) {
     const Angle heading = robot.heading - odometry.heading;
     const Vec2 way = Pose2{{}, heading} * (odometry.position - Point2{});
@@ -204,7 +204,7 @@ class Mcap final : public FormatBase {
     [[nodiscard]] bool isBinary() const override { return true; }
 
   private:
-    /// \throws UsageError if another id has the same name
+    /// Reserves a name. \throws UsageError if another id has the same name
     std::string takeName(std::string name, const std::string& id) {
         const auto [other, is_new] = taken_.emplace(name, id);
         if (!is_new)
@@ -231,7 +231,7 @@ class Mcap final : public FormatBase {
                                               {"tf", "the topic of poses"}};
     std::vector<McapChannel> channels_;
     std::vector<Member> members_;
-    std::vector<std::string> names_;  ///< of each sensor, as topics and frames have it
+    std::vector<std::string> names_;  ///< of each sensor, in topics and frames
     std::vector<std::uint16_t> first_;
 };
 

@@ -29,7 +29,7 @@ enum Opcode : std::uint8_t {
     kDataEnd = 0x0f,
 };
 
-/// Of a message record: its head, and where the fields of its content are.
+/// Size of a message record's header, and offsets of its fields.
 constexpr std::size_t kRecordHead = 9, kChannelAt = kRecordHead, kTimeAt = kRecordHead + 6;
 
 template <typename Number>
@@ -59,7 +59,7 @@ void appendText(std::string& out, std::string_view text) {
     out += text;
 }
 
-/// A map or an array of pairs: its size in bytes, then the pairs.
+/// Appends a map or an array of pairs: its size in bytes, then the pairs.
 template <typename Pairs>
 void appendPairs(std::string& out, const Pairs& pairs) {
     using Pair = typename Pairs::value_type;
@@ -72,7 +72,8 @@ void appendPairs(std::string& out, const Pairs& pairs) {
     }
 }
 
-/// At zstd's own level; one frame, in one thread: the same bytes each time.
+/// Compresses at zstd's default level, as one frame in one thread, which gives equal bytes each
+/// time.
 std::string packedByZstd(const std::string& bytes) {
     std::string packed(ZSTD_compressBound(bytes.size()), '\0');
     const std::size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(),
@@ -91,8 +92,8 @@ void appendMcapMessage(std::string& out, std::uint16_t channel, std::uint32_t se
     appendHead(out, kMessage, kFields + message.size());
     appendLittle(out, channel);
     appendLittle(out, sequence);
-    appendLittle(out, nanoseconds);  // logged
-    appendLittle(out, nanoseconds);  // published
+    appendLittle(out, nanoseconds);  // log time
+    appendLittle(out, nanoseconds);  // publish time
     out += message;
 }
 
@@ -186,7 +187,7 @@ std::string McapWriter::schemaRecords() const {
     std::string out;
     for (std::size_t i = 0; i < schemas_.size(); ++i) {
         std::string content;
-        appendLittle(content, static_cast<std::uint16_t>(i + 1));  // 0 is no schema
+        appendLittle(content, static_cast<std::uint16_t>(i + 1));  // schema 0 is reserved
         appendText(content, schemas_[i].name);
         appendText(content, schemas_[i].encoding);
         appendText(content, schemas_[i].text);
@@ -203,7 +204,7 @@ std::string McapWriter::channelRecords() const {
         appendLittle(content, static_cast<std::uint16_t>(channels_[i].schema + 1));
         appendText(content, channels_[i].topic);
         appendText(content, encoding_);
-        appendLittle(content, std::uint32_t{0});  // no metadata
+        appendLittle(content, std::uint32_t{0});  // metadata count
         appendRecord(out, kChannel, content);
     }
     return out;

@@ -12,13 +12,13 @@
 
 namespace ispace {
 
-/// How the messages of a channel are to be read.
+/// Schema and encoding of a channel's messages.
 struct McapSchema {
     std::string name, encoding, text;
 };
 
 struct McapChannel {
-    std::uint16_t schema = 0;  ///< index of the schemas
+    std::uint16_t schema = 0;  ///< index in the schemas
     std::string topic;
 };
 
@@ -26,25 +26,25 @@ struct McapChannel {
 void appendMcapMessage(std::string& out, std::uint16_t channel, std::uint32_t sequence,
                        std::uint64_t nanoseconds, std::string_view message);
 
-/// How the chunks of a file are packed.
+/// Compression of a file's chunks.
 enum class McapCompression { None, Zstd };
 
-/// Writes an MCAP file (mcap.dev, version 0) piece by piece: chunks, each with an index of its
-/// messages, then a summary with statistics; CRCs everywhere. Equal messages give
-/// equal bytes, however they are handed over. Memory: one chunk, and some 100 bytes for each that
-/// was written.
+/// Writes an MCAP file (mcap.dev, version 0) incrementally: chunks, each with an index of its
+/// messages, then a summary with statistics; CRCs everywhere. Equal messages give equal bytes,
+/// independent of their grouping in calls. Memory: one chunk, and about 100 bytes for each written
+/// chunk.
 ///
-/// Our own, since Debian has no library for it.
+/// Written here, since Debian has no library for it.
 class McapWriter {
   public:
-    /// \param encoding of the messages, "cdr"
+    /// Starts a file. \param encoding of the messages, "cdr"
     McapWriter(ByteSink write, std::string_view profile, std::string_view encoding,
                std::vector<McapSchema> schemas, std::vector<McapChannel> channels,
                McapCompression compression = McapCompression::None);
 
-    /// Whole records of appendMcapMessage(), one behind another.
+    /// Adds whole records of appendMcapMessage(), concatenated.
     void add(std::string_view messages);
-    /// The rest of the file.
+    /// Writes the rest of the file.
     void finish();
 
   private:

@@ -15,11 +15,11 @@ namespace {
 
 constexpr std::string_view kFloat = "<f4", kDouble = "<f8";
 
-/// An array of a sensor that each reading adds a row to.
+/// An array to which each reading of a sensor adds a row.
 struct GrowingArray {
     std::string name;
     std::string_view type;
-    std::vector<std::uint64_t> row;  ///< shape of what one reading adds
+    std::vector<std::uint64_t> row;  ///< shape of a row
 
     [[nodiscard]] std::uint64_t rowBytes() const {
         std::uint64_t bytes = type == kFloat ? 4 : type == kDouble ? 8 : 1;
@@ -33,7 +33,7 @@ struct GrowingArray {
     }
 };
 
-/// Arrays that the readings of a sensor add to, the measured values first.
+/// Returns the arrays of a sensor's readings, the measured values first.
 std::vector<GrowingArray> arraysOf(const Sensor& sensor, const Sensors& sensors) {
     const ReadingView view{.sensor = sensor, .receivers = sensors.receivers};
     constexpr std::uint64_t kPoseParts = 6;
@@ -49,12 +49,12 @@ std::vector<GrowingArray> arraysOf(const Sensor& sensor, const Sensors& sensors)
     return arrays;
 }
 
-/// An array that is the same for all readings.
+/// An array that is constant for all readings.
 struct FixedArray {
-    std::string name, bytes;  ///< of the whole file
+    std::string name, bytes;  ///< bytes of the whole file
 };
 
-/// Texts of NumPy have equal lengths, four bytes a letter.
+/// Writes texts as NumPy stores them: of equal lengths, four bytes a letter.
 std::string textArray(const std::vector<std::string>& texts) {
     std::vector<std::u32string> letters;
     std::size_t most = 1;
@@ -82,7 +82,7 @@ std::string textArray(const std::vector<std::string>& texts) {
     return bytes;
 }
 
-/// The bytes of a field's numbers; "" of all others.
+/// Returns the bytes of a field's numbers; "" for other fields.
 struct NumberBytes {
     template <typename Number>
     std::string operator()(std::span<const Number> values) const {
@@ -103,7 +103,7 @@ struct NumberBytes {
     }
 };
 
-/// A whole file of an array with the field's value.
+/// Writes a whole file of an array with the field's value.
 std::string fixedArray(const ReadingField& field, const ReadingView& view) {
     const FieldValue value = field.value(view);
     if (const auto* const text = std::get_if<FieldText>(&value)) return textArray({text->value()});
@@ -127,7 +127,7 @@ std::vector<FixedArray> fixedArraysOf(const Sensor& sensor, const Sensors& senso
     return arrays;
 }
 
-/// An id as a folder in an archive: one that stays within it, wherever it is unpacked.
+/// Maps an id to a folder of an archive that stays within it when unpacked.
 std::string folderOf(const std::string& id) {
     std::string name = id.empty() ? "_" : id;
     for (char& c : name)
@@ -136,14 +136,15 @@ std::string folderOf(const std::string& id) {
     return name;
 }
 
-/// Rows of one array, as append() hands them to the stream: its number, its size, its bytes.
+/// Appends a row of one array, as append() passes it to the stream: its number, its size, its
+/// bytes.
 void appendRow(std::string& out, std::uint32_t array, std::string_view bytes) {
     appendLittle(out, array);
     appendLittle(out, static_cast<std::uint64_t>(bytes.size()));
     out += bytes;
 }
 
-/// The rows of a reading, in the order of arraysOf().
+/// Returns the rows of a reading, in the order of arraysOf().
 std::vector<std::string> rowsOf(const Sensor& sensor, const Sensors& sensors,
                                 const Reading& reading) {
     std::vector<std::string> rows;
@@ -164,7 +165,7 @@ std::vector<std::string> rowsOf(const Sensor& sensor, const Sensors& sensors,
     return rows;
 }
 
-/// Hands the rows in the results of append() to where their arrays are kept.
+/// Passes the rows in the results of append() to their arrays.
 template <typename Take>
 void forEachRow(std::string_view appended, Take take) {
     constexpr std::size_t kHead = sizeof(std::uint32_t) + sizeof(std::uint64_t);
@@ -185,7 +186,7 @@ std::uint64_t rowsIn(const Spool& spool, const GrowingArray& array) {
 /// The arrays of all sensors.
 struct Layout {
     std::vector<GrowingArray> growing;
-    std::vector<std::uint32_t> first;  ///< of each sensor, in `growing`
+    std::vector<std::uint32_t> first;  ///< of each sensor, index in `growing`
     std::vector<FixedArray> fixed;
 };
 

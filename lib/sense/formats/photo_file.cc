@@ -62,7 +62,7 @@ struct ChannelOfYuv {
     int red, green, blue, offset;
 };
 
-/// BT.601 from 0..255 to 16..235, and to 16..240 for differences; each row adds up.
+/// BT.601 from 0..255 to 16..235, and to 16..240 for differences; the rows sum exactly.
 constexpr std::array<ChannelOfYuv, 3> kBt601 = {
     {{16829, 33039, 6416, 16}, {-9714, -19071, 28785, 128}, {28785, -24103, -4682, 128}}};
 
@@ -122,7 +122,7 @@ std::vector<std::uint16_t> scaled(const std::vector<float>& depths, double per_m
     std::vector<std::uint16_t> samples(depths.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double units = static_cast<double>(depths[i]) * per_metre + 0.5;
-        const bool fits = units >= 0 && units < kEnd;  // no return does not
+        const bool fits = units >= 0 && units < kEnd;  // false for no return
         samples[i] = static_cast<std::uint16_t>(static_cast<std::int32_t>(fits ? units : 0));
     }
     return samples;
@@ -144,7 +144,7 @@ void appendMatrix(std::string& out, std::string_view key, int rows, int columns,
     for (const double value : data) {
         if (comma) out += ", ";
         comma = true;
-        // Readers that guess types by the look take 0 for a whole number.
+        // Readers that infer types read 0 as an integer.
         const std::string text = formatDouble(value);
         out += text;
         if (text.find_first_of(".e") == std::string::npos) out += ".0";
@@ -152,7 +152,7 @@ void appendMatrix(std::string& out, std::string_view key, int rows, int columns,
     out += "]\n";
 }
 
-/// What camera_info says of a picture.
+/// The content of a camera_info file.
 struct CameraInfo {
     int columns = 0, rows = 0;
     double fx = 0, fy = 0, cx = 0, cy = 0;
@@ -164,13 +164,13 @@ struct CameraInfo {
 std::string yamlOf(const CameraInfo& info, std::string_view name) {
     const double fx = nineDecimals(info.fx), fy = nineDecimals(info.fy);
     const double cx = nineDecimals(info.cx), cy = nineDecimals(info.cy);
-    // ROS does without the first two lines; OpenCV's FileStorage does not.
+    // OpenCV's FileStorage requires the first two lines, ROS does not.
     std::string out =
         "%YAML 1.0\n---\n"
         "# Pixel centres are whole numbers: the middle of the picture is (columns - 1) / 2.\n";
     out.append("image_width: ").append(std::to_string(info.columns));
     out.append("\nimage_height: ").append(std::to_string(info.rows));
-    // A string of JSON is one of YAML.
+    // A JSON string is a YAML string, too.
     out.append("\ncamera_name: ").append(JsonWriter().value(name).text()).append("\n");
     appendMatrix(out, "camera_matrix", 3, 3, {{fx, 0, cx, 0, fy, cy, 0, 0, 1}});
     out.append("distortion_model: ").append(info.model).append("\n");

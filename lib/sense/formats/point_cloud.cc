@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Point clouds as PCD and PLY, whole or as they come.
+// Writes point clouds as PCD and PLY, whole or incrementally.
 #include "sense/formats/point_cloud.h"
 
 #include <bit>
@@ -37,10 +37,10 @@ class Filler {
     float* next_;
 };
 
-/// The rays of all pixels: those of a column share a part, and so do those of a row.
+/// The rays of all pixels: pixels of a column share a part, and so do pixels of a row.
 struct PixelRays {
-    std::vector<Vec3> columns;  ///< with z 0
-    std::vector<Vec2> rows;     ///< what a column's ray is multiplied by, and its z
+    std::vector<Vec3> columns;  ///< z is 0
+    std::vector<Vec2> rows;     ///< factor of a column's ray, and its z
 
     explicit PixelRays(const Ranger& ranger) {
         const bool spherical = ranger.projection == Projection::Spherical;
@@ -58,8 +58,8 @@ struct PixelRays {
     }
 };
 
-/// Directions of a laser's beams in its frame. What one thread computed last is kept, as most
-/// clouds are those of one laser, or of lasers alike; valid until the next call.
+/// Returns directions of a laser's beams in its frame; valid until the next call. Each thread
+/// caches its last result, as most clouds come from one laser, or from lasers with equal beams.
 const std::vector<Vec2>& beamsOf(const Laser& laser) {
     struct Known {
         Angle first, step;
@@ -145,7 +145,7 @@ void appendViewpoint(std::string& out, const Pose3& pose) {
     out += '\n';
 }
 
-/// What a header says of a cloud.
+/// Size of a cloud in its header.
 struct CloudSize {
     std::size_t width = 0, height = 1;
     std::size_t returns = 0;
@@ -170,7 +170,7 @@ void appendBytes(std::string& out, std::span<const float> values) {
     out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
 }
 
-/// All points, missing ones as nan.
+/// Appends all points, missing ones as nan.
 void appendAll(std::string& out, std::span<const float> xyz, Encoding encoding) {
     if (encoding == Encoding::Binary) {
         appendBytes(out, xyz);
@@ -187,7 +187,7 @@ void appendAll(std::string& out, std::span<const float> xyz, Encoding encoding) 
     }
 }
 
-/// Those that are not missing. \return how many
+/// Appends the points that are not missing. \return their number
 std::size_t appendReturns(std::string& out, std::span<const float> xyz, Encoding encoding) {
     std::size_t count = 0;
     if (encoding == Encoding::Binary) {
@@ -228,7 +228,7 @@ std::string plyHeader(const CloudSize& size, Encoding encoding) {
     return out + "end_header\n";
 }
 
-/// Items of PLY's range_grid: the number of the next vertex where there is a return.
+/// Writes the items of PLY's range_grid: the number of the next vertex for each return.
 class GridWriter {
   public:
     explicit GridWriter(Encoding encoding) : encoding_(encoding) {}
@@ -287,7 +287,7 @@ void CloudRows::add(std::size_t row_width, std::size_t rows) {
 CloudStream::CloudStream(CloudFormat format, Encoding encoding, std::size_t width,
                          std::optional<std::size_t> rows, ByteSink write)
     : format_(format), encoding_(encoding), width_(width), write_(std::move(write)) {
-    // All that this header says is known.
+    // The values of this header are known.
     is_begun_ = format == CloudFormat::Pcd && width > 0 && rows.value_or(0) > 0;
     if (is_begun_) write_(pcdHeader({width, *rows}, {}, encoding));
 }

@@ -28,7 +28,7 @@ FieldValue fieldOf(const char* value) { return FieldText(value); }
 FieldValue fieldOf(const std::vector<float>& values) { return std::span(values); }
 FieldValue fieldOf(const std::vector<std::uint8_t>& values) { return std::span(values); }
 
-/// A member of the model, and of the value measured.
+/// Reads a member of the model, or of the measured value.
 template <typename Model, auto kMember>
 FieldValue figure(const View& reading) {
     return fieldOf(std::invoke(kMember, reading.sensor.as<Model>()));
@@ -241,7 +241,7 @@ constexpr RosTopic kCameraTopics[] = {
 
 const Burst& burstOf(const View& reading) { return reading.as<Burst>(); }
 
-/// The position by either way of locating, the unknown parts empty.
+/// Returns the position by either method of locating, unknown coordinates empty.
 std::array<std::optional<double>, 3> positionOf(const Burst& burst) {
     if (burst.fix) return {burst.fix->position.x, burst.fix->position.y, burst.fix->position.z};
     if (burst.simple) return {burst.simple->x, burst.simple->y, std::nullopt};
@@ -281,7 +281,7 @@ FieldValue heardReceivers(const View& reading) {
     return heard;
 }
 
-/// RECEIVER=SECONDS, one behind another.
+/// Formats RECEIVER=SECONDS pairs, separated by blanks.
 FieldValue timesOfFlight(const View& reading) {
     std::string times;
     for (const TimeOfFlight& flight : burstOf(reading).heard) {
@@ -347,7 +347,7 @@ constexpr RosTopic kTagTopics[] = {
 
 constexpr std::string_view kBeamIndex[] = {"beam"}, kPixelIndices[] = {"column", "row"};
 
-/// In the order of the alternatives of SensorModel.
+/// Sorted as the alternatives of SensorModel.
 constexpr ReadingKind kReadingKinds[] = {
     {.fields = kLaserFields,
      .topics = kLaserTopics,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of readings: what each kind of sensor measures, under which names formats write it.
-// Formats and records read the table; they know no kinds.
+// The table of readings: the quantities that each kind of sensor measures, and their names in
+// formats. Formats and records read the table and do not depend on kinds.
 #pragma once
 
 #include <cstddef>
@@ -19,15 +19,14 @@
 
 namespace ispace {
 
-/// A reading, or one scan of a sweep, with all that its fields are computed from. Refers to its
-/// arguments.
+/// A reading, or one scan of a sweep, with all inputs of its fields. Refers to its arguments.
 struct ReadingView {
     using Value =
         std::variant<std::monostate, const Scan*, const DepthFrame*, const Photo*, const Burst*>;
 
     const Sensor& sensor;
-    Value value = {};  ///< std::monostate: none yet, for fields of the sensor alone
-    std::span<const Sensor> receivers = {};  ///< those that a tag's burst refers to
+    Value value = {};  ///< std::monostate: not measured yet, for fields of the sensor alone
+    std::span<const Sensor> receivers = {};  ///< receivers of a tag's burst
     double time = 0;                         ///< seconds
     std::int64_t frame = 0;
     Pose3 pose = {};
@@ -42,7 +41,7 @@ template <typename One>
 ReadingView viewOf(const Sensor& sensor, const One& one, std::span<const Sensor> receivers = {}) {
     return {sensor, &one, receivers, one.time, one.frame, one.pose};
 }
-/// The scans of a sweep, or the one view of another reading.
+/// Returns views of the scans of a sweep, or one view of another reading.
 std::vector<ReadingView> viewsOf(const Sensor& sensor, const Reading& reading,
                                  std::span<const Sensor> receivers = {});
 
@@ -68,33 +67,34 @@ struct FieldRecord {
     std::vector<std::pair<std::string_view, FieldValue>> values;
 };
 
-/// Formats that have a field, as bits.
+/// Formats that write a field, as bits.
 enum FieldUse : unsigned {
     kInJson = 1,    ///< a line of JSON, of `scan` and of records; angles in radians
     kInColumn = 2,  ///< CSV: a value a row, or floats, one for each element
     kInArray = 4,   ///< NumPy: a row a reading
     kInFixed = 8,   ///< NumPy: an array of the sensor
-    kIsFrame = 16   ///< JSON names a file instead where the frame has one
+    kIsFrame = 16   ///< JSON writes a file name instead if the frame has a file
 };
 
 struct ReadingField {
     std::string_view name;
-    unsigned uses = 0;  ///< of FieldUse
+    unsigned uses = 0;  ///< bits of FieldUse
     FieldValue (*value)(const ReadingView& reading) = nullptr;
     std::string_view type = {};  ///< of a NumPy row: "<f4", "<f8", "|u1"
-    /// Of a NumPy row or array; null: as many values as there are.
+    /// Of a NumPy row or array; null: the number of values.
     std::vector<std::uint64_t> (*shape)(const ReadingView& reading) = nullptr;
 };
 
-/// The frame of ROS that a message is in.
+/// The ROS frame of a message.
 enum class RosFrame { Sensor, Optical, World };
 
-/// A topic of a sensor in ROS.
+/// A ROS topic of a sensor.
 struct RosTopic {
     RosType type;
     std::string_view name;
     RosFrame frame;
-    /// "": this reading has no message. Null: one message for all scans of a sweep, their points.
+    /// Returns "" if this reading has no message. Null: one message with the points of all scans of
+    /// a sweep.
     std::string (*message)(const RosHeader& header, const ReadingView& reading) = nullptr;
     bool (*is_sent)(const Sensor& sensor) = nullptr;  ///< null: always
 };
@@ -105,22 +105,23 @@ struct ReadingKind {
     std::span<const RosTopic> topics = {};
     /// Columns of CSV that count elements, the fastest first; empty: a row is a whole reading.
     std::span<const std::string_view> indices = {};
-    /// Numbers of elements in the order of `indices`; null without.
+    /// Numbers of elements in the order of `indices`; null if that is empty.
     std::vector<std::size_t> (*counts)(const Sensor& sensor) = nullptr;
-    /// A point for each element; null: none.
+    /// Returns a point for each element; null: the kind has no points.
     PointCloud (*points)(const Sensor& sensor, const Reading& reading, Coordinates in) = nullptr;
-    /// Scans of a sweep (0: a reading is one scan), and the number of this one; null: readings have
-    /// no parts.
+    /// Returns the number of scans of a sweep (0: a reading is one scan), and the index of this
+    /// scan; null: readings have no parts.
     int (*parts)(const Sensor& sensor) = nullptr;
     int (*part)(const ReadingView& reading) = nullptr;
-    /// Seconds from a reading's time to an element, and the pose then; null: all at once.
+    /// Returns the seconds from a reading's time to an element, and the pose then; null:
+    /// simultaneous.
     double (*delay)(const Sensor& sensor, std::size_t element) = nullptr;
     const Pose3& (*pose)(const ReadingView& reading, std::size_t element) = nullptr;
 };
 
-/// The table's row of a sensor.
+/// Returns the table's row of a sensor.
 const ReadingKind& readingKind(const SensorModel& model);
-/// Parts of each of its readings; 0: it is whole.
+/// Returns the number of parts of a sensor's reading; 0: it has no parts.
 int partsOf(const Sensor& sensor);
 bool isSwept(const Sensor& sensor);
 

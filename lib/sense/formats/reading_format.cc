@@ -38,7 +38,7 @@ std::string FormatBase::whole(std::size_t index, const Reading& reading) const {
 
 namespace {
 
-/// One reading behind another.
+/// Concatenates readings.
 class PlainStream final : public ReadingStream {
   public:
     PlainStream(ByteSink write, const std::string& header) : write_(std::move(write)) {
@@ -93,7 +93,7 @@ class Csv final : public FormatBase {
     }
 };
 
-/// Ranges and depths, float32, little-endian, nothing else; no return is +infinity.
+/// Writes ranges and depths as raw float32, little-endian; no return is +infinity.
 class Raw final : public FormatBase {
   public:
     Raw(const Sensors& sensors, FormatOptions options)
@@ -113,7 +113,7 @@ class Raw final : public FormatBase {
     [[nodiscard]] bool isBinary() const override { return true; }
 };
 
-/// Points, as `write` puts them into a file.
+/// Writes points by `write`, one file per reading.
 class Cloud : public FormatBase {
   public:
     using Writer = std::string (*)(const PointCloud& cloud, Encoding encoding);
@@ -164,7 +164,7 @@ class Carmen final : public FormatBase {
         return bytes;
     }
     void checkStream() const override {
-        // ROBOTLASER1 and ROBOTLASER2: readers know no more.
+        // Maximum that readers know: ROBOTLASER1 and ROBOTLASER2.
         constexpr std::size_t kMaxLasers = 2;
         if (sensors_.read.size() > kMaxLasers)
             throw UsageError("a CARMEN log tells two lasers apart, and these are " +
@@ -195,7 +195,7 @@ class Carmen final : public FormatBase {
     }
 };
 
-/// Pictures, depths and obstacle maps.
+/// Writes pictures, depths and obstacle maps.
 class Png final : public FormatBase {
   public:
     Png(const Sensors& sensors, FormatOptions options)
@@ -292,7 +292,7 @@ class Jpeg final : public FormatBase {
     [[nodiscard]] bool isBinary() const override { return true; }
 };
 
-/// The pictures of one camera, one behind another, for programs that make films.
+/// Concatenates the pictures of one camera, for programs that encode films.
 class Film : public FormatBase {
   public:
     using Header = std::string (*)(const Camera& camera);
@@ -349,7 +349,7 @@ std::unique_ptr<ReadingFormat> make(const Sensors& sensors, FormatOptions option
     return std::make_unique<Format>(sensors, std::move(options));
 }
 
-/// The table: a new format is a class, above or in a file of its own, and a row here.
+/// A new format requires a class, above or in a separate file, and a row here.
 constexpr std::pair<std::string_view, Maker> kFormats[] = {
     {"jsonl", make<Jsonl>}, {"csv", make<Csv>},       {"raw", make<Raw>}, {"pcd", make<Pcd>},
     {"ply", make<Ply>},     {"carmen", make<Carmen>}, {"png", make<Png>}, {"jpeg", make<Jpeg>},

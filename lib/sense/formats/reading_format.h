@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For the formats of readings: what they have in common, and those that have a file of their own.
+// The interface of reading formats, their shared base, and constructors of formats in separate
+// files.
 #pragma once
 
 #include <cstddef>
@@ -23,19 +24,19 @@
 
 namespace ispace {
 
-/// A file made of one reading; its name is the reading's with this ending.
+/// A file of one reading; its name is the reading's name with this ending.
 struct ReadingFile {
     std::string ending;  ///< ".png", "-color.png"
     std::string bytes;
 };
 
-/// Makes one file of many readings, in their order, by one thread. Memory is bounded.
+/// Combines many readings in one file, in order, in one thread. Memory is bounded.
 class ReadingStream {
   public:
     virtual ~ReadingStream() = default;
-    /// What ReadingFormat::append() made of the next readings.
+    /// Writes the output of ReadingFormat::append() for the next readings.
     virtual void write(std::string_view appended) = 0;
-    /// After the last one.
+    /// Writes the rest, after the last reading.
     virtual void finish() {}
 };
 
@@ -43,29 +44,29 @@ class ReadingStream {
 class ReadingFormat {
   public:
     virtual ~ReadingFormat() = default;
-    /// Bytes before the first reading.
+    /// Returns the bytes before the first reading.
     [[nodiscard]] virtual std::string header() const { return ""; }
-    /// Appends a reading of a sensor (in Sensors::read): its bytes, or what stream() makes them of.
+    /// Appends a reading of a sensor (index in Sensors::read): its bytes, or the input of stream().
     virtual void append(std::string& out, std::size_t sensor, const Reading& reading) const = 0;
-    /// Appends where everybody in a recorded run is at a moment of it, and what robots believe, in
-    /// formats that have words for it. \param states of FormatOptions::members
+    /// Appends the poses of all members of a recorded run at a moment, and robots' odometry, in
+    /// formats that can store them. \param states of FormatOptions::members
     virtual void appendMoment(std::string& /*out*/, std::uint32_t /*sequence*/, double /*time*/,
                               std::span<const RunState> /*states*/) const {}
-    /// One file of many readings: header(), and what append() made of each, unless a format says
-    /// otherwise. The format outlives the stream.
+    /// Creates a stream to one file of many readings: by default header(), then the output of
+    /// append(). The format outlives the stream.
     [[nodiscard]] virtual std::unique_ptr<ReadingStream> stream(ByteSink write) const;
-    /// True if that file is nothing else, so that parts of it can be joined.
+    /// True if the file is only that, so that its parts can be concatenated.
     [[nodiscard]] virtual bool isPlain() const { return true; }
-    /// A reading as separate files.
+    /// Writes a reading as separate files.
     [[nodiscard]] virtual std::vector<ReadingFile> files(std::size_t sensor,
                                                          const Reading& reading) const = 0;
-    /// Endings that those files may have, that of the reading itself first.
+    /// Returns the possible endings of those files, that of the reading itself first.
     [[nodiscard]] virtual std::vector<std::string> endings() const = 0;
-    /// True if readings may follow each other in one file; else each needs its own.
+    /// True if readings may follow each other in one file; else each requires a separate file.
     [[nodiscard]] virtual bool isStream() const { return true; }
-    /// \throws UsageError if one file cannot hold the readings of all these sensors
+    /// Checks the sensors. \throws UsageError if one file cannot hold the readings of all of them
     virtual void checkStream() const {}
-    /// What it may lose of the readings, a phrase each.
+    /// Returns warnings about lost data, a phrase each.
     [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
     /// True for bytes that are not text.
     [[nodiscard]] virtual bool isBinary() const { return false; }
@@ -74,38 +75,38 @@ class ReadingFormat {
 struct FormatOptions {
     History history;
     std::uint64_t seed = 0;
-    Coordinates coordinates = Coordinates::World;         ///< of points: csv, pcd, ply
-    Encoding encoding = Encoding::Binary;                 ///< of pcd and ply
-    double depth_per_metre = 1000;                        ///< of png
-    bool color = true;                                    ///< of png: a picture for people, too
-    std::optional<DepthSpectrum> spectrum;                ///< of that picture
-    int map_pixels = 800;                                 ///< of png: side of an obstacle map
+    Coordinates coordinates = Coordinates::World;  ///< of points: csv, pcd, ply
+    Encoding encoding = Encoding::Binary;          ///< of pcd and ply
+    double depth_per_metre = 1000;                 ///< of png
+    bool color = true;                      ///< of png: also writes a colour picture for people
+    std::optional<DepthSpectrum> spectrum;  ///< of the colour picture
+    int map_pixels = 800;                   ///< of png: side of an obstacle map
     McapCompression compression = McapCompression::None;  ///< of mcap
-    /// Of png and jpeg: pictures have these files beside them; the table of labels needs the scene.
+    /// Of png and jpeg: writes these files beside pictures; the table of labels requires the scene.
     bool labels = false, depths = false;
     const Scene* scene = nullptr;
-    std::vector<RunMember> members = {};  ///< everybody in a recorded run
+    std::vector<RunMember> members = {};  ///< all movers of a recorded run
 };
 
-/// Names of the formats.
+/// Returns the names of the formats.
 std::vector<std::string> readingFormats();
 
-/// \throws UsageError for sensors that the format cannot hold
+/// Creates a format. \throws UsageError for sensors that the format cannot hold
 /// \pre the name is one of readingFormats()
 std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& sensors,
                                           FormatOptions options);
 
-/// Adds what stands beside the picture of a camera (labels and their table, depths, camera_info),
-/// and the endings of these files where they are not there yet.
+/// Adds the files beside the picture of a camera (labels and their table, depths, camera_info), and
+/// their endings unless they are listed.
 void addFilesBeside(const Sensor& sensor, const Photo& photo, const FormatOptions& options,
                     std::vector<ReadingFile>& files);
 void addEndingsBeside(const FormatOptions& options, std::vector<std::string>& endings);
 
-/// The points of a reading; empty for a burst.
+/// Returns the points of a reading; empty for a burst.
 PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,
                    Coordinates in);
 
-/// The sensors of a format, and one file a reading.
+/// Base of formats: stores the sensors, and writes one file a reading.
 class FormatBase : public ReadingFormat {
   public:
     FormatBase(const Sensors& sensors, FormatOptions options, std::string ending)
@@ -120,12 +121,12 @@ class FormatBase : public ReadingFormat {
 
   protected:
     [[nodiscard]] const Sensor& sensor(std::size_t index) const { return sensors_.read[index]; }
-    /// \throws UsageError for the first sensor that is none of these
+    /// Checks the sensors' kinds. \throws UsageError for the first sensor of another kind
     void accept(std::string_view format, std::string_view what,
                 bool (*is_held)(const Sensor&)) const;
     [[noreturn]] static void refuse(std::string_view format, std::string_view what,
                                     const Sensor& one);
-    /// A reading as a file of its own.
+    /// Writes a reading as a separate file.
     [[nodiscard]] virtual std::string whole(std::size_t index, const Reading& reading) const;
     static bool hasRanges(const Sensor& one) { return readingKind(one.model).points != nullptr; }
     static bool isCamera(const Sensor& one) { return one.is<Camera>(); }
@@ -139,12 +140,12 @@ class FormatBase : public ReadingFormat {
     std::string ending_;
 };
 
-/// MCAP with messages of ROS 2.
+/// Creates the format MCAP with messages of ROS 2.
 std::unique_ptr<ReadingFormat> makeMcap(const Sensors& sensors, FormatOptions options);
-/// NumPy: arrays of all sensors, or the one of a single sensor.
+/// Creates the format NumPy: arrays of all sensors, or the array of a single sensor.
 std::unique_ptr<ReadingFormat> makeNpz(const Sensors& sensors, FormatOptions options);
 std::unique_ptr<ReadingFormat> makeNpy(const Sensors& sensors, FormatOptions options);
-/// LAS 1.4: the points of all lasers and rangers.
+/// Creates the format LAS 1.4: the points of all lasers and rangers.
 std::unique_ptr<ReadingFormat> makeLas(const Sensors& sensors, FormatOptions options);
 
 }  // namespace ispace

@@ -32,7 +32,7 @@ std::string degrees(Angle angle) {
 
 namespace {
 
-// Of the page, in pixels.
+// Measures of the page, in pixels.
 constexpr double kMargin = 16, kText = 13, kTitle = 16, kHead = 58;
 constexpr double kBarGap = 28, kBarWidth = 18, kLegendWidth = 112;
 constexpr int kMinWidth = 640, kMaxWidth = 4096, kMinHeight = 200;
@@ -48,7 +48,7 @@ std::uint32_t pixelOf(Color color) {
 }
 
 /// Maps depths to colours. For a device of long range equal steps of colour are equal ratios, since
-/// most of what it sees is near.
+/// most surfaces are near.
 class Scale {
   public:
     Scale(const Ranger& ranger, std::optional<DepthSpectrum> spectrum)
@@ -72,12 +72,12 @@ class Scale {
         return std::clamp(share, 0.0, 1.0);
     }
     [[nodiscard]] std::uint32_t color(double share) const {
-        // The ends of the map are left out: its darkest blue looks like no return.
+        // The ends of the map are skipped: its darkest blue looks like no return.
         constexpr double kColdest = 0.07, kWarmest = 0.96;
         if (near_is_cold_) share = 1 - share;
         return pixelOf(turboColor(kWarmest + (kColdest - kWarmest) * share));
     }
-    /// Round depths for an axis with room for so many labels.
+    /// Returns round depths for the ticks of an axis with room for so many labels.
     [[nodiscard]] std::vector<double> ticks(double room) const {
         constexpr double kSlack = 1e-9;
         std::vector<double> depths;
@@ -98,7 +98,7 @@ class Scale {
     bool is_ratio_ = false, near_is_cold_ = false;
 };
 
-/// How large a pixel of the ranger is on the page; `stride`: only each so-manieth is shown.
+/// Size of a ranger's pixel on the page; only every `stride`-th pixel is drawn.
 struct Zoom {
     int stride = 1, x = 1, y = 1;
 
@@ -106,7 +106,7 @@ struct Zoom {
         const int longest = std::max(ranger.columns, ranger.rows);
         stride = (longest + kMaxWidth - 1) / kMaxWidth;
         x = std::clamp(kMinWidth / longest, 1, 8);
-        // Rings of a turning head are wide apart.
+        // Rings of a rotating head are far apart.
         const double shape =
             ranger.projection == Projection::Pinhole
                 ? ranger.fx() / ranger.fy()
@@ -144,7 +144,7 @@ std::string subtitle(const Ranger& ranger) {
     return text.append(degrees(ranger.fov_y));
 }
 
-/// The scale as a bar with ticks, and what black means, in a column from `top` to `bottom`.
+/// Draws the scale as a bar with ticks, and the key of black, in a column from `top` to `bottom`.
 void drawLegend(Picture& picture, const Scale& scale, double left, double top, double bottom) {
     const double bar_bottom = bottom - 2.4 * kText;
     const int steps = static_cast<int>(bar_bottom - top);
@@ -207,7 +207,7 @@ namespace {
 constexpr Color kGrid = Color::rgb(0xC8CCD0), kView = Color::rgb(0xEAF2F9);
 constexpr Color kViewEdge = Color::rgb(0x9DBAD5), kReturn = Color::rgb(0xC0392B);
 
-/// Bearing 0 is up, positive ones to the left.
+/// Bearing 0 is up, positive bearings are on the left.
 Angle onPage(Angle bearing) { return bearing + Angle::degrees(90); }
 Point2 place(Angle bearing, double range) { return Point2{} + range * unitVector(onPage(bearing)); }
 
@@ -217,7 +217,7 @@ struct Layout {
     double em;      ///< of text
     double disc;    ///< radius of the polar grid
     double extent;  ///< metres at the rim of the disc
-    double ring;    ///< metres from ring to ring
+    double ring;    ///< metres between rings
     Point2 center;
 
     Layout(const Laser& laser, const Scan& scan, int pixels)
@@ -225,7 +225,7 @@ struct Layout {
         double farthest = 0;
         for (const float range : scan.ranges)
             if (std::isfinite(range)) farthest = std::max<double>(farthest, range);
-        // A scan of a desk by a sensor that reaches far shows the desk.
+        // The map zooms to the returns: a desk fills it even for a long-range sensor.
         const double limit = std::max(laser.max_range, 0.001);
         if (farthest == 0) farthest = limit;
         constexpr double kMinRings = 4;
@@ -258,15 +258,15 @@ void drawGrid(Picture& picture, const Layout& layout) {
                      place(Angle::degrees(degrees), layout.extent), fine);
 }
 
-/// Text centred at a place of the page.
+/// Writes text centred at a point of the page.
 void writeAt(Picture& picture, Point2 page, std::string_view text, const TextStyle& style) {
-    constexpr double kHalfCapital = 0.36;  // of the size
+    constexpr double kHalfCapital = 0.36;  // of the text size
     picture.pushView({1, {}, {page.x, page.y + kHalfCapital * style.size}});
     picture.text({}, text, style);
     picture.pop();
 }
 
-/// Bearings outside the rim, distances on their rings.
+/// Writes bearings outside the rim, distances on their rings.
 void drawLabels(Picture& picture, const Layout& layout) {
     TextStyle style{layout.em, false, Align::Center, kFaint, {}};
     for (int spoke = -5; spoke <= 6; ++spoke) {
@@ -296,7 +296,7 @@ void drawReturns(Picture& picture, const Laser& laser, const Scan& scan, const L
     }
 }
 
-/// A triangle that points to bearing 0.
+/// Draws a triangle that points to bearing 0.
 void drawSensor(Picture& picture, const Layout& layout) {
     const double metre = layout.extent / layout.disc, size = 0.62 * layout.em * metre;
     const Polygon mark = {

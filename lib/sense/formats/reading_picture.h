@@ -12,45 +12,45 @@ namespace ispace {
 
 // Readings as PNG pictures for people. Equal input gives equal bytes.
 
-/// Which depths have the colours at the ends of a scale, in metres; equal steps of depth are equal
-/// steps of colour in between, and what lies beyond an end has its colour. Either may be greater.
+/// Depths of the colours at the ends of a scale, in metres. Colour is linear in depth between them
+/// and constant beyond; either may be greater.
 struct DepthSpectrum {
     double warm = 0, cold = 1;
 };
 
-/// Depths in colours, with a legend: near is warm, far is cold, no return is black. The scale spans
-/// the ranger's limits (of an ambiguous one: 0 to its ambiguity), so pictures of one device
-/// compare, unless there is a spectrum.
+/// Draws depths in colours, with a legend: near is warm, far is cold, no return is black. Without a
+/// spectrum, the scale spans the ranger's limits (of an ambiguous one: 0 to its ambiguity), so that
+/// pictures of one device are comparable.
 std::string colorDepthPng(const Sensor& sensor, const DepthFrame& frame,
                           std::optional<DepthSpectrum> spectrum = std::nullopt);
 
-/// The returns of a scan as points on a polar grid (thesis fig. 3.24): the sensor at the centre,
-/// bearing 0 upwards, labelled rings at round distances, a spoke every 30 degrees, the field of
-/// view shaded up to max_range. `pixels` wide and high.
+/// Draws the returns of a scan as points on a polar grid (thesis fig. 3.24): the sensor at the
+/// centre, bearing 0 upwards, labelled rings at round distances, a spoke every 30 degrees, the
+/// field of view shaded up to max_range. `pixels` wide and high.
 std::string obstacleMapPng(const Sensor& sensor, const Scan& scan, int pixels);
 
-/// `id (model), frame k`, followed by tilt and roll unless they are 0.
+/// Returns `id (model), frame k`, followed by tilt and roll unless they are 0.
 std::string pictureTitle(std::string_view id, std::string_view model, std::string_view kind,
                          int frame, const Pose3& pose);
-/// A round number of metres with its unit: "0.25 m".
+/// Formats a round number of metres with its unit: "0.25 m".
 std::string metres(double value);
-/// To a tenth of a degree, with a typographic minus sign: "−7.5°".
+/// Formats to a tenth of a degree, with a typographic minus sign: "−7.5°".
 std::string degrees(Angle angle);
 
-/// Depths as a 16-bit grey PNG in units of 1 / per_metre (1000: millimetres), rounded. 0 means no
-/// return, or a depth that does not fit 16 bits.
+/// Writes depths as a 16-bit grey PNG in units of 1 / per_metre (1000: millimetres), rounded. 0
+/// means no return, or a depth outside 16 bits.
 std::string depthPng(int columns, int rows, const std::vector<float>& depths, double per_metre);
 
-/// How a lens bends, in the words of ROS' camera_info: `plumb_bob` (k1 k2 p1 p2 k3), `equidistant`
-/// (k1 k2 k3 k4), or OpenCV's `omnidir` (four zeros, with Camera::mirror as xi).
+/// Lens distortion by the model names of ROS' camera_info: `plumb_bob` (k1 k2 p1 p2 k3),
+/// `equidistant` (k1 k2 k3 k4), or OpenCV's `omnidir` (four zeros, with Camera::mirror as xi).
 struct LensModel {
     std::string_view name;
-    std::span<const double> coefficients;  ///< of the camera
+    std::span<const double> coefficients;  ///< stored in the camera
 };
 LensModel lensModelOf(const Camera& camera);
 
-/// ROS camera_info as YAML, which applyCalibration() reads: size, matrices and distortion. Pixel
-/// centres are whole numbers, so cx of a ranger is (columns - 1) / 2. A mirror has OpenCV's model
+/// Writes ROS camera_info as YAML, which applyCalibration() reads: size, matrices and distortion.
+/// Pixel centres are integers, so cx of a ranger is (columns - 1) / 2. A mirror has OpenCV's model
 /// `omnidir` with `xi`. \pre a ranger is a pinhole
 std::string cameraInfoYaml(const Ranger& ranger, std::string_view name);
 std::string cameraInfoYaml(const Camera& camera, std::string_view name);

@@ -22,13 +22,13 @@ std::string scanHeaderLine(const History& history, std::uint64_t seed) {
     json.beginObject().key("schema").value("ispace-scan/1");
     json.key("history").value(history);
     json.key("seed");
-    // Every seed of 64 bits, unsigned; the writer's integers are signed.
+    // Seeds are unsigned 64-bit integers; the writer's integers are signed.
     return json.take() + std::to_string(seed) + "}\n";
 }
 
 namespace {
 
-/// Appends values to a line of JSON, of which `out` has the beginning.
+/// Appends values to a line of JSON that begins in `out`.
 struct JsonValue {
     std::string& out;
     JsonWriter& json;
@@ -128,7 +128,7 @@ void putFinite(TextTail& tail, float value) {
     if (std::isfinite(value)) tail.put(value);
 }
 
-/// The fields of a row that is a whole reading.
+/// Writes the fields of a row that holds a whole reading.
 struct CsvValue {
     std::string& out;
 
@@ -141,7 +141,7 @@ struct CsvValue {
     void operator()(const Value& /*value*/) const {}
 };
 
-/// A row for each element, with its floats and its point.
+/// Appends a row for each element, with its floats and its point.
 void appendElements(std::string& out, const ReadingView& reading, const std::string& prefix,
                     const float* point) {
     const Sensor& sensor = reading.sensor;
@@ -257,7 +257,7 @@ void appendCarmenLine(std::string& out, std::size_t number, const Sensor& sensor
     out += " 0";
     appendCarmenPose(out, scan.pose.position.onFloor(), scan.pose.heading + middle);
     appendCarmenPose(out, robot.position, robot.heading);
-    // Neither speeds nor safety distances are known of a scan.
+    // Speeds and safety distances of a scan are unknown.
     out += " 0 0 0 0 0";
     appendCarmenNumber(out, scan.time);
     out += " sim";

@@ -14,8 +14,8 @@ namespace ispace {
 
 namespace {
 
-/// Common Data Representation, version 1: numbers stand at multiples of their size, counted from
-/// behind the four bytes that name the encoding.
+/// Writes Common Data Representation, version 1: numbers are aligned to multiples of their size,
+/// counted from the end of the four bytes that name the encoding.
 class CdrWriter {
   public:
     CdrWriter() : out_("\0\1\0\0", kBegin) {}
@@ -39,14 +39,14 @@ class CdrWriter {
         put(static_cast<std::uint32_t>(header.nanoseconds % kSecond));
         return put(header.frame);
     }
-    /// As many as the type says.
+    /// Writes a fixed number of values, known from the type.
     template <typename Number>
     CdrWriter& array(std::span<const Number> values) {
         align(sizeof(Number));
         out_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
         return *this;
     }
-    /// As many as there are.
+    /// Writes a count and its values.
     template <typename Number>
     CdrWriter& sequence(std::span<const Number> values) {
         count(values.size());
@@ -92,7 +92,7 @@ std::string infoMessage(const RosHeader& header, const Intrinsics& info) {
     out.array(std::span<const double>(std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
     out.array(
         std::span<const double>(std::array<double, 12>{fx, 0, cx, 0, 0, fy, cy, 0, 0, 0, 1, 0}));
-    // All of the picture: no binning, no part of it.
+    // The whole picture: no binning, no region of interest.
     for (int i = 0; i < 2 + 4; ++i) out.count(0);
     return out.put(false).take();
 }
@@ -148,9 +148,9 @@ std::string pointCloudMessage(const RosHeader& header, const PointCloud& cloud) 
         out.put(name).put(offset).put(kFloat32).count(1);
         offset += sizeof(float);
     }
-    out.put(false).count(kPoint).count(kPoint * cloud.width);  // not big-endian
+    out.put(false).count(kPoint).count(kPoint * cloud.width);  // little-endian
     out.bytes({reinterpret_cast<const char*>(cloud.xyz.data()), cloud.xyz.size() * sizeof(float)});
-    return out.put(false).take();  // some points may be missing
+    return out.put(false).take();  // points may be missing
 }
 
 std::string depthImageMessage(const RosHeader& header, const Ranger& ranger,
@@ -211,8 +211,8 @@ std::string odometryMessage(const RosHeader& header, std::string_view child, con
 
 namespace {
 
-/// Definitions of ROS 2's common_interfaces, without their comments. Types of another package are
-/// written with it, those that a type contains stand before it.
+/// Definitions of ROS 2's common_interfaces, without their comments. Types of other packages are
+/// prefixed with the package; contained types precede their users.
 struct Definition {
     std::string_view name;  ///< as other definitions refer to it
     std::string_view text;
@@ -240,7 +240,7 @@ constexpr Definition kParts[] = {
      "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify\n"},
 };
 
-/// In the order of RosType.
+/// Sorted as RosType.
 constexpr Definition kTypes[] = {
     {"tf2_msgs/msg/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
     {"sensor_msgs/msg/LaserScan",
@@ -264,10 +264,10 @@ constexpr Definition kTypes[] = {
      "geometry_msgs/TwistWithCovariance twist\n"},
 };
 
-/// A type and all that it contains, as bags have it.
+/// Returns a type and all types that it contains, as bags store it.
 std::string wholeText(const Definition& type) {
     std::string own(type.text), out = own;
-    // Parts stand behind what they are made of.
+    // In reverse, as contained types precede their users in kParts.
     for (auto part = std::rbegin(kParts); part != std::rend(kParts); ++part) {
         if (own.find(part->name) == std::string::npos) continue;
         own += part->text;

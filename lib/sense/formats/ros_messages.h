@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Messages of ROS 2 in CDR, the encoding that its bags and Foxglove read; little-endian.
+// Writes messages of ROS 2 in CDR, the encoding that its bags and Foxglove read; little-endian.
 #pragma once
 
 #include <cstdint>
@@ -28,49 +28,51 @@ enum class RosType : std::uint16_t {
     Odometry
 };
 
-/// Their definitions with all they contain (`ros2msg`).
+/// Returns their definitions with all contained types (`ros2msg`).
 std::vector<McapSchema> rosSchemas();
 
-/// A name that topics and frames of ROS may have: letters, digits and single underscores, a letter
-/// first. `camera-2/left` is camera_2_left.
+/// Converts an id to a valid name of ROS topics and frames: letters, digits and single underscores,
+/// a letter first. `camera-2/left` becomes camera_2_left.
 std::string rosName(std::string_view id);
 
-/// When and in which frame something was measured.
+/// Time and frame of a measurement.
 struct RosHeader {
     std::uint64_t nanoseconds = 0;
     std::string_view frame;
 };
 
-/// A frame in that of the header.
+/// Pose of a frame in the header's frame.
 struct RosTransform {
     RosHeader header;
     std::string_view child;
     Pose3 pose;
-    bool is_optical = false;  ///< turned further: x to the right, y down, z ahead
+    bool is_optical = false;  ///< rotated further: x right, y down, z ahead
 };
 
 std::string transformsMessage(std::span<const RosTransform> transforms);
-/// \param time_increment seconds from beam to beam; the header has the time of beam 0
+/// Writes a scan. \param time_increment seconds from beam to beam; the header has the time of beam
+/// 0
 std::string laserScanMessage(const RosHeader& header, const Laser& laser, double time_increment,
                              std::span<const float> ranges);
 std::string pointCloudMessage(const RosHeader& header, const PointCloud& cloud);
-/// Depths in metres as 32FC1 (REP 118); no return is NaN.
+/// Writes depths in metres as 32FC1 (REP 118); no return is NaN.
 std::string depthImageMessage(const RosHeader& header, const Ranger& ranger,
                               std::span<const float> depths);
-/// \param format "png" or "jpeg"
+/// Writes a picture. \param format "png" or "jpeg"
 std::string compressedImageMessage(const RosHeader& header, std::string_view format,
                                    std::string_view bytes);
-/// \pre a pinhole
+/// Writes the intrinsics of a ranger. \pre a pinhole
 std::string cameraInfoMessage(const RosHeader& header, const Ranger& ranger);
-/// \pre no mirror, for which ROS has no model
+/// Writes the intrinsics of a camera. \pre not a mirror, for which ROS has no model
 std::string cameraInfoMessage(const RosHeader& header, const Camera& camera);
 std::string pointMessage(const RosHeader& header, Point3 point);
-/// How something moves, seen from itself: ahead and to the left in m/s, and its turn a second.
+/// Velocity in the body's frame: ahead and to the left in m/s, and the rate of turn in radians a
+/// second.
 struct RosTwist {
     double forward = 0, left = 0;
     Angle turn;
 };
-/// Where `child` believes to be in the frame of the header. Covariances are 0: unknown.
+/// Writes the odometry pose of `child` in the header's frame. Covariances are 0: unknown.
 std::string odometryMessage(const RosHeader& header, std::string_view child, const Pose2& pose,
                             const RosTwist& twist);
 
