@@ -67,7 +67,7 @@ Color turboColor(double share) {
 Color sequentialColor(int level, int levels) {
     constexpr std::array<std::uint32_t, 5> kStops = {0xBFD8EC, 0x94C1DF, 0x62A3CF, 0x347FBA,
                                                      0x174F8C};
-    // Few levels keep to the light half, where lines and labels on top stay readable.
+    // Schemes of few levels stay in the light half, on which lines and labels are readable.
     const double top = std::min(1.0, 0.25 * levels);
     const double share =
         levels <= 1 ? 0.25 : top * (std::clamp(level, 1, levels) - 1) / (levels - 1);

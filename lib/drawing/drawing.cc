@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures as PNG and PDF, by the module that links Cairo.
+// Stores the shapes of pictures, and writes PNG and PDF by the module that links Cairo.
 #include "drawing/drawing.h"
 
 #include <tbb/global_control.h>
@@ -50,7 +50,7 @@ void Picture::pushView(const PageView& view) {
 }
 
 void Picture::pushClip(std::span<const Polygon> inside) {
-    // Nothing shows through an empty clip.
+    // An empty clip hides all shapes.
     const Polygon nowhere = {{-1, -1}};
     push(Kind::Group, {}, inside.empty() ? std::span(&nowhere, 1) : inside);
 }
@@ -88,7 +88,7 @@ void Picture::pop() {
 }
 
 Point2 Picture::toPage(Point2 p) const {
-    // Cairo counts in 24.8 fixed point: what lies far off the page is brought near it.
+    // Cairo counts in 24.8 fixed point: points far off the page are moved towards it.
     constexpr double kFar = 1e6;
     const Point2 page = views_.empty() ? p : views_.back() * p;
     return {std::clamp(page.x, -kFar, kFar), std::clamp(page.y, -kFar, kFar)};
@@ -105,7 +105,7 @@ std::pair<std::uint32_t, std::uint32_t> Picture::add(std::span<const Polygon> cu
 }
 
 void Picture::add(Kind kind, std::pair<std::uint32_t, std::uint32_t> range, Inks inks) {
-    // Neighbours are mostly of one style.
+    // Adjacent shapes mostly have equal styles.
     const std::size_t known = list_.inks.size();
     const bool again = inks.size() <= known &&
                        std::equal(inks.begin(), inks.end(),
@@ -281,7 +281,7 @@ std::vector<Segment2> hatchOf(const Hatch& hatch, const Picture& picture,
     return hatchLines(hatch, visibleBox(picture, shape));
 }
 
-/// How many bands are worth their threads: each is as large as the picture while it is drawn.
+/// Returns the number of bands drawn in parallel: each needs the memory of the whole picture.
 int bandsAtOnce(const Picture& picture) {
     constexpr std::size_t kManyPoints = 10'000, kMost = 4;
     constexpr double kMostPixels = 16e6;
@@ -293,7 +293,7 @@ int bandsAtOnce(const Picture& picture) {
     return static_cast<int>(std::min(threads, kMost));
 }
 
-/// Points of shapes that show in several bands, once for each band but one.
+/// Counts the points of shapes in several bands, once for each band but one.
 std::size_t pointsAgain(const Picture& picture, const std::vector<Rows>& bands) {
     const DisplayList& list = picture.list();
     const auto band_of = [&](double y) {
@@ -319,7 +319,8 @@ std::size_t pointsAgain(const Picture& picture, const std::vector<Rows>& bands) 
     return again;
 }
 
-/// Bands with about as many points each; one where these would draw much of the same.
+/// Splits the picture into bands with similar numbers of points; one band if most shapes span
+/// several.
 std::vector<Rows> bandsOf(const Picture& picture, int count) {
     const int height = static_cast<int>(std::lround(picture.height()));
     if (count < 2) return {{0, height}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/drawing: one retained picture with PNG, SVG and PDF behind it. Uses raster; a module links
-// Cairo.
+// lib/drawing: a retained picture, and its writers for PNG, SVG and PDF. Uses raster; a module
+// links Cairo.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace ispace {
 
 enum class Align { Left, Center, Right };
 
-/// How a line of text is set; sizes are in page units, whatever the view.
+/// Style of a line of text; sizes are in page units, independent of the view.
 struct TextStyle {
     double size = 12;  ///< of the font: about 1.2 times a capital's height plus its descent
     bool bold = false;
@@ -31,37 +31,37 @@ struct TextStyle {
     std::optional<Color> halo = {};  ///< a rim of this colour keeps text readable on lines
 };
 
-/// Length of the text as Picture::text sets it, in page units. Control characters and bad UTF-8
-/// show as '?', here and in all text.
+/// Computes the width of the text as Picture::text draws it, in page units. Here and in all text,
+/// '?' replaces control characters and invalid UTF-8.
 double textWidth(std::string_view text, const TextStyle& style);
 
-/// The text, or its beginning and an ellipsis if it is longer than `width` page units.
+/// Returns the text, cut and with an ellipsis if it is wider than `width` page units.
 std::string fitText(std::string_view text, double width, const TextStyle& style);
 
-/// The pixels of a picture, opaque, from the upper left corner row by row.
+/// The pixels of a picture, opaque, row by row from the upper left corner.
 struct Image {
     int width = 0, height = 0;
     std::vector<std::uint32_t> pixels;  ///< 0xRRGGBB
 
-    /// \pre the place lies in the picture
+    /// Returns a pixel. \pre it lies in the picture
     [[nodiscard]] std::uint32_t at(int x, int y) const {
         return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                       static_cast<std::size_t>(x)];
     }
 };
 
-/// Decodes a PNG, e.g. to check a drawing; transparency counts as black.
-/// \throws FormatError if the bytes are no whole PNG
+/// Decodes a PNG, e.g. to check a drawing; transparent pixels become black.
+/// \throws FormatError if the bytes are not a complete PNG
 Image decodePng(std::string_view bytes);
 std::string encodePng(const Image& image);
 
 enum class PictureFormat { Png, Svg, Pdf };
-/// Its suffix, and its name on the command line.
+/// Returns the suffix of a format, which is its name on the command line.
 constexpr std::string_view nameOf(PictureFormat format) {
     return format == PictureFormat::Png ? "png" : format == PictureFormat::Svg ? "svg" : "pdf";
 }
 
-/// A line's style; widths and dashes are in page units, whatever the view.
+/// Style of a line; widths and dashes are in page units, independent of the view.
 struct Stroke {
     Color color;
     double width = 1;
@@ -70,12 +70,12 @@ struct Stroke {
     friend bool operator==(const Stroke&, const Stroke&) = default;
 };
 
-/// Parallel lines across an area; lengths are in page units, whatever the view. Those of one
-/// spacing and direction go through the page's origin (shifted by `offset`), so that areas fit
-/// together.
+/// Parallel lines across an area; lengths are in page units, independent of the view. Lines of one
+/// spacing and direction are aligned to the page's origin (shifted by `offset`), so that adjacent
+/// areas match.
 struct Hatch {
     Color color;
-    double spacing = 8;  ///< from the middle of a line to that of the next, at least 0.5
+    double spacing = 8;  ///< between the middles of adjacent lines, at least 0.5
     double width = 1;    ///< of a line
     double offset = 0;   ///< to the left of the direction
     Angle direction = Angle::degrees(45);
@@ -83,9 +83,9 @@ struct Hatch {
     friend bool operator==(const Hatch&, const Hatch&) = default;
 };
 
-/// What a shape is drawn with: a colour fills it.
+/// Paint of a shape; a colour fills it.
 using Ink = std::variant<Color, Hatch, Stroke>;
-/// Drawn in this order, e.g. a fill and its outline, or a wide pale line below a fine one.
+/// Applied in this order, e.g. a fill and its outline, or a wide pale line below a fine one.
 using Inks = std::initializer_list<Ink>;
 
 /// Maps metres with y up to page units with y down: `world_anchor` lies on `page_anchor`.
@@ -99,18 +99,18 @@ struct PageView {
     }
 };
 
-/// A page's unit on paper and screen. A PNG has a pixel a unit.
+/// The page unit on paper and screen. A PNG has a pixel a unit.
 enum class PageUnit {
     Pixel,       ///< px in SVG, points in PDF
     Millimetre,  ///< in SVG and PDF, which print to scale
 };
 
-/// The shapes of a picture in the order of drawing, in page units, as its writers read them.
+/// The shapes of a picture in drawing order, in page units, as its writers read them.
 struct DisplayList {
     enum class Kind : std::uint8_t {
-        Layer,  ///< begins, clipped by curves first..last if there are any; the next name
+        Layer,  ///< begins, clipped by curves first..last if there are any; has the next name
         Group,  ///< begins, likewise
-        End,    ///< of the innermost layer or group
+        End,    ///< ends the innermost layer or group
         Area,   ///< closed curves first..last, filled by the even-odd rule
         Lines,  ///< open curves first..last
         Arc,    ///< `first` in arcs
@@ -125,7 +125,7 @@ struct DisplayList {
     struct Name {
         std::string id, title;  ///< a layer has its name as title
     };
-    /// A circle, or a sector of it, counter-clockwise as seen.
+    /// A circle or sector, counter-clockwise as seen.
     struct Arc {
         Point2 center;
         double radius = 0;
@@ -146,14 +146,15 @@ struct DisplayList {
 
     std::vector<Shape> shapes = {};
     std::vector<Point2> points = {};
-    std::vector<std::uint32_t> ends = {0};  ///< of each curve in points; the first is no curve
+    std::vector<std::uint32_t> ends = {
+        0};  ///< of each curve in points; the first element is a sentinel
     std::vector<Ink> inks = {};
     std::vector<Name> names = {};  ///< of layers and groups, in order
     std::vector<Arc> arcs = {};
     std::vector<Text> texts = {};
     std::vector<Raster> images = {};
 
-    /// \param index from Shape::first up to Shape::last
+    /// Returns a curve. \param index from Shape::first up to Shape::last
     [[nodiscard]] std::span<const Point2> curve(std::uint32_t index) const {
         return std::span(points).subspan(ends[index], ends[index + 1] - ends[index]);
     }
@@ -162,69 +163,69 @@ struct DisplayList {
     }
 };
 
-/// A white page with shapes in named layers, retained until it is written, in any format.
+/// A white page with shapes in named layers, stored until it is written in any format.
 ///
-/// The page's origin is its upper left corner, y down. Places and radii are in the units of the
-/// innermost view (without one, of the page); angles turn counter-clockwise as seen, from +x.
-/// Nothing depends on the date or the machine: equal calls give equal bytes. Some 100 bytes a shape
+/// The page's origin is its upper left corner, y down. Positions and radii are in the units of the
+/// innermost view (of the page without one); angles are counter-clockwise as seen, from +x.
+/// Independent of date and machine: equal calls give equal bytes. Memory: about 100 bytes a shape
 /// and 16 a vertex.
 class Picture {
   public:
-    /// Longest side of a page, in page units.
+    /// Maximum side of a page, in page units.
     static constexpr double kMaxSide = 30000;
 
-    /// \throws UsageError unless both sides are in 1..kMaxSide
+    /// Creates an empty page. \throws UsageError unless both sides are in 1..kMaxSide
     Picture(double width, double height, PageUnit unit = PageUnit::Pixel);
 
     [[nodiscard]] double width() const { return width_; }
     [[nodiscard]] double height() const { return height_; }
     [[nodiscard]] PageUnit unit() const { return unit_; }
 
-    /// What SVG says about the picture: a title, and a sentence or two.
+    /// Sets the title and description of the SVG.
     void describe(std::string title, std::string description);
     [[nodiscard]] const std::string& title() const { return title_; }
     [[nodiscard]] const std::string& description() const { return description_; }
 
-    // What is pushed ends with its pop(). Views replace each other (they do not multiply), clips
-    // (by the even-odd rule) add up.
+    // pop() ends a push. Views replace each other (they are not multiplied), clips (by the even-odd
+    // rule) intersect.
     void pushView(const PageView& view);
     void pushClip(std::span<const Polygon> inside);
     void pushClip(const Polygon& inside) { pushClip(std::span(&inside, 1)); }
-    /// A layer of SVG, as Inkscape knows them, clipped if there are curves; the first word of its
-    /// name makes its id. Empty ones are left out.
+    /// Begins an SVG layer, in Inkscape's convention, clipped if there are curves; its id is the
+    /// first word of its name. Empty layers are skipped.
     void pushLayer(std::string_view name, std::span<const Polygon> clip = {});
-    /// An element of SVG: its id (characters XML forbids there become `_`, and names that are taken
-    /// get a number) or "", and a title that viewers show beside the pointer.
+    /// Begins an SVG group with an id (`_` replaces characters that XML forbids, used ids get a
+    /// number) or "", and a title that viewers show as a tooltip.
     void pushGroup(std::string_view id, std::string_view title);
-    /// \pre a push is open
+    /// Ends the last push. \pre a push is open
     void pop();
-    /// From the units of the innermost view to the page's.
+    /// Converts from the units of the innermost view to the page's.
     [[nodiscard]] Point2 toPage(Point2 p) const;
 
-    /// The area of closed curves by the even-odd rule: curves that meet leave no seam, holes stay
-    /// free.
+    /// Adds the area of closed curves by the even-odd rule: curves that meet leave no seam, holes
+    /// stay empty.
     void area(std::span<const Polygon> curves, Inks inks);
     void area(const Polygon& curve, Inks inks) { area(std::span(&curve, 1), inks); }
-    /// Lines from point to point; a line without length is a dot.
+    /// Adds lines from point to point; a line of length 0 is a dot.
     void lines(std::span<const std::vector<Point2>> chains, Inks inks);
     void lines(const std::vector<Point2>& chain, Inks inks) { lines(std::span(&chain, 1), inks); }
-    /// Segments; those that share an end are joined.
+    /// Adds segments; segments that share an end are joined.
     void lines(std::span<const Segment2> segments, Inks inks);
     void line(Point2 a, Point2 b, const Stroke& stroke);
     void circle(Point2 center, double radius, Inks inks);
-    /// Counter-clockwise from `from` to `to`, with both radii.
+    /// Adds a sector, counter-clockwise from `from` to `to`, with both radii.
     void sector(Point2 center, double radius, Angle from, Angle to, Inks inks);
 
-    /// Pixels as rectangles of this size, without a seam or a blend; `corner` is the upper left
-    /// one. Sharp in PNG where corner and size are whole page units.
+    /// Adds pixels as rectangles of this size, without seams or blending; `corner` is the upper
+    /// left one. Sharp in PNG if corner and size are integer page units.
     void image(Point2 corner, Image image, double pixel_width, double pixel_height);
 
-    /// One line of text; `anchor` lies on its base line, at the side or middle that align names.
-    /// In SVG and PDF it can be searched and copied.
+    /// Adds a line of text; `anchor` lies on its base line, at the side or middle that align names.
+    /// SVG and PDF store it as text for searching and copying.
     void text(Point2 anchor, std::string_view text, const TextStyle& style);
 
     [[nodiscard]] const DisplayList& list() const { return list_; }
-    /// The file's bytes. \pre every push has its pop
+    /// Returns the file's bytes. \pre every push has its pop
     [[nodiscard]] std::string write(PictureFormat format) const;
 
   private:
@@ -245,31 +246,33 @@ class Picture {
     std::vector<Pushed> pushed_;
 };
 
-// The writers, for lib/drawing only.
+// The writers, private to lib/drawing.
 std::string writePng(const Picture& picture);
 std::string writePdf(const Picture& picture);
 std::string writeSvg(const Picture& picture);
 
-/// The lines of a hatch across a box, as from and to.
+/// Computes the lines of a hatch across a box.
 std::vector<Segment2> hatchLines(const Hatch& hatch, const Box2& box);
-/// What shows of the curves first..last: their bounds within the page.
+/// Returns the bounds of the visible part of curves first..last, clipped to the page.
 Box2 visibleBox(const Picture& picture, const DisplayList::Shape& shape);
 
-/// 1, 2 or 5 times a power of ten, at least `least`. \pre least > 0
+/// Returns the least of 1, 2 or 5 times a power of ten that is at least `least`. \pre least > 0
 double roundStep(double least);
 
-/// What printers reach of an A3 sheet, in millimetres.
+/// Printable area of an A3 sheet, in millimetres.
 constexpr double kPaperLong = 400, kPaperShort = 277;
-/// Denominator of the largest usual scale of plans (1, 2, 5, 10, 20, 25, 50, 100, 200, 250, …) that
-/// is at least `least`.
+/// Returns the denominator of the largest usual scale of plans (1, 2, 5, 10, 20, 25, 50, 100, 200,
+/// 250, …) that is at least `least`.
 double usualScale(double least);
 
-/// A bar of round length in black and white pieces, at most `most` page units long, with its length
-/// and more text; `corner` is its lower left end on the page, `em` the size of text.
+/// Draws a scale bar of round length in black and white pieces, at most `most` page units long,
+/// with its length and further text; `corner` is its lower left end on the page, `em` the text
+/// size.
 void drawScaleBar(Picture& picture, Point2 corner, double most, double page_per_metre, double em,
                   const std::string& more = "");
 
-/// The pixels that write(PictureFormat::Png) encodes, for films. \pre every push has its pop
+/// Returns the pixels that write(PictureFormat::Png) encodes, for films. \pre every push has its
+/// pop
 Image rasterOf(const Picture& picture);
 
 }  // namespace ispace

@@ -19,10 +19,10 @@ namespace {
 
 constexpr int kMetres = 6;     // $INSUNITS
 constexpr int kByLayer = 256;  // colour of entities
-constexpr int kWhite = 7;      // a layer's colour for readers that know only the old palette
+constexpr int kWhite = 7;      // a layer's colour for readers that support only the old palette
 constexpr int kClosed = 1;
 
-/// dxflib's writer, but into a string and with every digit that a double needs.
+/// dxflib's writer with output to a string, and doubles with all digits.
 class StringWriter : public DL_WriterA {
   public:
     StringWriter() : DL_WriterA("/dev/null", DL_VERSION_2000) {}
@@ -55,10 +55,10 @@ int trueColor(const Color& color) {
     return (part(color.red) << 16) | (part(color.green) << 8) | part(color.blue);
 }
 
-/// What entities say of themselves: all but the layer as the layer has it.
+/// Returns an entity's attributes: all but the layer as the layer defines them.
 DL_Attributes on(const std::string& layer) { return {layer, kByLayer, -1, "BYLAYER", 1}; }
 
-/// tan(sweep / 4) of an edge: what polylines know of arcs.
+/// Returns tan(sweep / 4) of an edge, by which polylines store arcs.
 double bulgeOf(const CurveEdge& edge) {
     if (!edge.isArc()) return 0;
     const Vec2 from = edge.from - edge.center, to = edge.to - edge.center;

@@ -11,19 +11,19 @@
 
 namespace ispace {
 
-/// A layer of a drawing; colours are of layers, not of things.
+/// A layer of a drawing; it defines the colour of its entities.
 struct DxfLayer {
     std::string name;
     Color color;
 };
 
-/// What a flat thing is from the side, in metres: elevation and thickness, in the words of DXF.
+/// Vertical extent of a flat entity in metres: elevation and thickness, in DXF's terms.
 struct DxfExtrusion {
     double bottom = 0, height = 0;
 };
 
 /// Writes a drawing in ASCII DXF (AutoCAD 2000) through dxflib: metres ($INSUNITS 6), coordinates
-/// in shortest form. Things lie on one of the layers, called by name. Equal calls give equal bytes.
+/// in shortest form. Entities refer to their layer by name. Equal calls give equal bytes.
 class DxfWriter {
   public:
     explicit DxfWriter(const std::vector<DxfLayer>& layers);
@@ -32,19 +32,19 @@ class DxfWriter {
     DxfWriter& operator=(const DxfWriter&) = delete;
 
     void line(const std::string& layer, const Segment2& segment);
-    /// A polyline, drawn `width` metres wide; a closed one does not repeat its first point.
+    /// Writes a polyline, `width` metres wide; a closed one does not repeat its first point.
     void path(const std::string& layer, const std::vector<Point2>& points, bool closed,
               double width = 0, DxfExtrusion upright = {});
-    /// A closed polyline with true arcs.
+    /// Writes a closed polyline with true arcs.
     void curve(const std::string& layer, const Curve& curve);
     void circle(const std::string& layer, Point2 center, double radius, DxfExtrusion upright = {});
-    /// A solid filling, holes left out.
+    /// Writes a solid filling without the holes.
     void area(const std::string& layer, const Region& region);
-    /// One line of text, `height` metres high, beginning at a place. Control characters become
-    /// blanks.
+    /// Writes a line of text, `height` metres high, that begins at `place`. Blanks replace control
+    /// characters.
     void text(const std::string& layer, Point2 place, const std::string& text, double height);
 
-    /// The file. Nothing more may be written.
+    /// Returns the file. No further entity may be written.
     std::string finish();
 
   private:

@@ -5,8 +5,9 @@
 
 namespace ispace {
 
-/// What two PNGs differ in: size, or more than one pixel in five hundred that is another colour by
-/// more than another release of a library shades its rims; "" if nothing.
+/// Compares two PNGs and returns their difference: size, or more than one pixel in five hundred
+/// with a colour that differs by more than the antialiasing of another library release; "" if they
+/// agree.
 std::string pictureDifference(const std::string& expected_png, const std::string& actual_png);
 
 }  // namespace ispace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures as SVG. A writer of its own: Cairo's knows neither layers nor ids nor titles, which are
-// what one takes a plan into a drawing program for, and writes text as outlines.
+// Writes pictures as SVG. Cairo's SVG writer does not support layers, ids and titles, which drawing
+// programs require, and converts text to outlines.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,7 +43,7 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
-/// Names that XML takes: letters, digits, `_ - .`, none twice.
+/// Creates unique XML names: letters, digits, `_ - .`.
 class XmlIds {
   public:
     std::string take(std::string_view wanted) {
@@ -69,7 +69,8 @@ class SvgWriter {
     explicit SvgWriter(const Picture& picture)
         : picture_(picture),
           list_(picture.list()),
-          // A ten-thousandth of a millimetre of paper is enough, and a thousandth of a pixel.
+          // A precision of a ten-thousandth of a millimetre on paper, and of a thousandth of a
+          // pixel, is enough.
           fineness_(picture.unit() == PageUnit::Millimetre ? 1e4 : 1e3) {}
 
     std::string write() {
@@ -105,7 +106,7 @@ class SvgWriter {
         out_ += " fill=\"#ffffff\"/>\n";
     }
 
-    /// No element takes the id of a layer, wherever it stands.
+    /// Reserves the ids of all layers, so that elements before them do not take these ids.
     void takeLayerIds() {
         std::size_t index = 0;
         for (const DisplayList::Shape& shape : list_.shapes) {
@@ -155,7 +156,7 @@ class SvgWriter {
             out_.append("<title>").append(escaped(name.title)).append("</title>");
     }
 
-    /// Equal clips are written once. \return its id
+    /// Writes equal clips once. \return its id
     std::string addClip(const DisplayList::Shape& shape) {
         std::string data = dataOf(shape);
         if (const auto known = clips_.find(data); known != clips_.end()) return known->second;
@@ -194,7 +195,7 @@ class SvgWriter {
         return data;
     }
 
-    /// One element where that shows the same: a fill with an outline above it.
+    /// Writes a single element if it looks the same: a fill with an outline above it.
     void addPath(const DisplayList::Shape& shape) {
         const std::span<const Ink> inks = list_.inksOf(shape);
         for (std::size_t i = 0; i < inks.size(); ++i) {

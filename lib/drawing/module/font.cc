@@ -9,7 +9,7 @@
 #include <string>
 #include FT_FREETYPE_H
 
-// The assembler copies the files, which CMake finds, into the program.
+// The assembler embeds the files, which CMake finds, in the program.
 // NOLINTNEXTLINE(hicpp-no-assembler)
 asm(R"(
     .pushsection .rodata

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A module of its own: linked into the programs, Cairo, with those of X11 and what else it draws
-// in, would cost 1.7 ms at each start, and the fonts 1.4 MB in each program.
+// Draws with Cairo, in a separately loaded module: linked into the programs, Cairo and the
+// libraries that it requires, such as X11's, would cost 1.7 ms at each start, and the fonts 1.4 MB
+// in each program.
 #include <cairo-pdf.h>
 #include <cairo.h>
 #include <sys/mman.h>
@@ -39,8 +40,8 @@ void check(cairo_status_t status) {
     throw std::logic_error(std::string("cairo: ") + cairo_status_to_string(status));
 }
 
-/// Cairo crashes in its rasteriser when memory runs out: what it may want has to be there before.
-/// It costs two microseconds or three, as long as a small thing takes to be drawn.
+/// Cairo's rasteriser crashes if memory runs out, so the required memory is allocated beforehand as
+/// a test. It takes two or three microseconds, as long as drawing a small shape.
 void mustHaveMemory() {
     constexpr std::size_t kMax = std::size_t{8} << 20U;
     void* const memory = ::mmap(nullptr, kMax, PROT_READ | PROT_WRITE,
@@ -49,7 +50,7 @@ void mustHaveMemory() {
     ::munmap(memory, kMax);
 }
 
-/// Sets the font, independent of what the machine's settings prefer.
+/// Sets the font, independent of the machine's settings.
 void selectFont(cairo_t* context, const TextStyle& style) {
     cairo_set_font_face(context, fontFace(style.bold));
     cairo_set_font_size(context, style.size);
@@ -91,8 +92,8 @@ class Painter {
           owner_(cairo_create(surface), cairo_destroy),
           context_(owner_.get()) {}
 
-    /// What shows in none of these rows is left out: its page unit is the pixel. Cairo would round
-    /// a little differently if it had to clip.
+    /// Skips shapes outside these rows; the page unit is the pixel. With a clip, Cairo would round
+    /// slightly differently.
     void keepTo(Rows rows) {
         if (rows.first > 0) first_ = rows.first;
         if (rows.beyond < picture_.height()) beyond_ = rows.beyond;
@@ -140,7 +141,7 @@ class Painter {
         }
     }
 
-    /// False if it lies above or below the rows.
+    /// False if the shape lies above or below the rows.
     [[nodiscard]] bool mayShow(const DisplayList::Shape& shape) const {
         if (first_ == -kAll && beyond_ == kAll) return true;
         double low = kAll, high = -kAll;
@@ -188,7 +189,8 @@ class Painter {
         cairo_set_source_rgba(context_, color.red, color.green, color.blue, color.alpha);
     }
 
-    /// For small shapes, of which there may be many, now and then: Cairo keeps nothing of them.
+    /// Tests memory now and then for small shapes, of which there may be many: Cairo frees their
+    /// memory.
     void needMemory(const DisplayList::Shape& shape) {
         constexpr std::size_t kPointsOfArc = 128;
         if (shape.kind == Kind::Arc)
@@ -202,7 +204,7 @@ class Painter {
         mustHaveMemory();
     }
 
-    // Each leaves the path as it is.
+    // Each keeps the path.
     void apply(Color color, const DisplayList::Shape& shape) {
         use(color);
         needMemory(shape);
@@ -264,7 +266,7 @@ class Painter {
         cairo_restore(context_);
     }
 
-    static constexpr std::size_t kMany = 1024;  // points, for which memory was there
+    static constexpr std::size_t kMany = 1024;  // points drawn between two tests of memory
     static constexpr double kAll = 1e9;         // rows
 
     const Picture& picture_;
@@ -273,7 +275,7 @@ class Painter {
     Context owner_;
     cairo_t* context_;
     double first_ = -kAll, beyond_ = kAll;  ///< rows that are drawn
-    std::size_t unchecked_ = kMany;         ///< points drawn since there was memory
+    std::size_t unchecked_ = kMany;         ///< points drawn since the last test of memory
 };
 
 double widthOf(const std::string& text, const TextStyle& style) {
@@ -300,7 +302,7 @@ Image pixelsOf(const Picture& picture, HatchOf& hatch_of, Rows rows) {
     painter.keepTo(rows);
     painter.paint();
     cairo_surface_flush(surface.get());
-    for (std::uint32_t& pixel : image.pixels) pixel &= 0xFFFFFFU;  // the rest is undefined
+    for (std::uint32_t& pixel : image.pixels) pixel &= 0xFFFFFFU;  // the upper byte is undefined
     return image;
 }
 

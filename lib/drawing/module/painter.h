@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What lib/drawing and the module that links Cairo say to each other.
+// Interface between lib/drawing and the module that links Cairo.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace ispace {
 
-/// The lines of a hatch across what shows of a shape.
+/// Returns the lines of a hatch across the visible part of a shape.
 using HatchOf = std::vector<Segment2>(const Hatch& hatch, const Picture& picture,
                                       const DisplayList::Shape& shape);
 
@@ -18,12 +18,13 @@ struct Rows {
     int first = 0, beyond = 0;
 };
 
-/// The functions of the module. They throw what the standard library has: std::bad_alloc, and
-/// others for what cannot be.
+/// Functions of the module. They throw exceptions of the standard library: std::bad_alloc, and
+/// others for impossible requests.
 struct Painting {
-    /// \pre the text is printable
+    /// Computes a width in page units. \pre the text is printable
     double (*text_width)(const std::string& text, const TextStyle& style);
-    /// Of the whole page, of which these rows are drawn and others may be in part.
+    /// Draws these rows of a page; the image has the size of the whole page, its other rows may be
+    /// incomplete.
     Image (*pixels)(const Picture& picture, HatchOf& hatch_of, Rows rows);
     std::string (*pdf)(const Picture& picture, HatchOf& hatch_of);
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands in the room of a plan, and what hangs from its ceiling.
+// Computes colours, lines, areas and footprints of elements for plans.
 #include "drawing/plan/elements.h"
 
 #include <tbb/blocked_range.h>
@@ -27,7 +27,7 @@ namespace ispace {
 
 namespace {
 
-/// IEC 61966-2-1.
+/// Gamma of IEC 61966-2-1.
 double encoded(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
@@ -50,7 +50,7 @@ std::vector<std::vector<Point2>> chained(const std::vector<Segment2>& segments) 
 
 std::vector<ElementLines> elementLinesOf(const Environment& environment) {
     const std::vector<Element>& elements = environment.elements();
-    Diagnostics findings;  // stays empty: the environment would not be there
+    Diagnostics findings;  // stays empty, as the environment was read
     std::vector<ElementLines> result(elements.size());
     WallPlan plan;
     for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -91,19 +91,19 @@ std::vector<Polygon> inscribedSolids(const Slice& slice) {
 
 namespace {
 
-/// Turned corners of bodies are round-off apart where they are meant to be the same; nobody sees
-/// a micrometre of what lies below a board.
+/// Equal corners of bodies differ by round-off after rotation; a micrometre below a board is
+/// invisible.
 constexpr double kUnseen = 1e-6;
 
-/// Triangles that are united exactly, which takes some milliseconds.
+/// Maximum number of triangles that are united exactly, which takes some milliseconds.
 constexpr std::size_t kMaxExact = 200;
 /// Cells along the longer side of a larger mesh.
 constexpr int kCells = 500;
 
-/// A convex polygon and what lies at most kUnseen outside.
+/// A convex polygon, widened by kUnseen.
 class Cover {
   public:
-    /// \pre the polygon is convex
+    /// Computes the half-planes. \pre the polygon is convex
     explicit Cover(const Polygon& convex) {
         sides_.reserve(convex.size());
         forEachEdge(convex, [this](const Segment2& edge) {
@@ -122,7 +122,7 @@ class Cover {
     struct Side {
         Point2 from;
         Vec2 along;
-        double least;  ///< product with the way to what is held
+        double least;  ///< minimum cross product with the offset of an enclosed point
     };
 
     [[nodiscard]] bool holds(Point2 p) const {
@@ -145,7 +145,7 @@ std::vector<Polygon> trianglesAbove(const Mesh& mesh) {
     return triangles;
 }
 
-/// Cells that triangles touch, with an empty rim of one.
+/// Returns the cells that triangles touch, with an empty rim of one cell.
 MapCells cellsUnder(const std::vector<Polygon>& triangles, const Grid& grid) {
     MapCells cells(grid.columns, grid.rows);
     const auto insert = [&](std::int64_t column, std::int64_t row) {
@@ -156,7 +156,7 @@ MapCells cellsUnder(const std::vector<Polygon>& triangles, const Grid& grid) {
     for (const Polygon& triangle : triangles) {
         for (const RowRun& run : runsWithin(grid, std::span(&triangle, 1)))
             cells.insertRun(run.row, run.first, run.last);
-        // What is thinner than a cell shows by its edges.
+        // Parts thinner than a cell are found by their edges.
         crossings.clear();
         forEachEdge(triangle, [&](const Segment2& e) { appendCrossings(e, grid, crossings); });
         for (const CellPair& pair : crossings) insert(pair.near_column, pair.near_row);
@@ -194,7 +194,7 @@ std::vector<Polygon> silhouette(const Mesh& mesh) {
 
 namespace {
 
-/// What a round prism becomes.
+/// The polygon that replaces a round prism.
 enum class Rounds { Inscribed, OfSameArea };
 
 std::vector<OverheadPart> partsWith(Rounds rounds, const Body& body) {
@@ -238,7 +238,8 @@ std::vector<OverheadPart> partsFromAbove(const Body& body) {
 std::vector<Region> footprintOf(const Body& body) {
     std::vector<OverheadPart> parts = partsWith(Rounds::OfSameArea, body);
     std::erase_if(parts, [](const OverheadPart& part) { return part.hidden; });
-    // A board below a smaller thing of the same body is not hidden, but covers.
+    // A convex part that encloses all others in plan is the whole footprint, even below smaller
+    // parts.
     for (const OverheadPart& part : parts) {
         if (part.curves.size() != 1 || !isConvex(part.curves.front())) continue;
         const Cover cover(part.curves.front());
@@ -250,7 +251,8 @@ std::vector<Region> footprintOf(const Body& body) {
     std::vector<Polygon> solids;
     for (OverheadPart& part : parts)
         for (Region& region : regionsOf(std::move(part.curves)))
-            solids.push_back(std::move(region.outline));  // holes of meshes are lost under others
+            solids.push_back(
+                std::move(region.outline));  // holes of meshes are dropped below others
     return unite(solids);
 }
 
@@ -271,7 +273,7 @@ std::vector<Region> regionsOf(std::vector<Polygon> curves) {
             holes.push_back(std::move(curve));
     }
     for (Polygon& hole : holes) {
-        // Of the outlines around it the smallest; that of an island within it is not around it.
+        // The smallest outline around the hole; an island within the hole is not around it.
         const Box2 box = bounds(hole);
         const double area = -signedArea(hole);
         Piece* best = nullptr;
@@ -297,7 +299,7 @@ namespace {
 
 using namespace palette;
 
-/// What begins above people's heads is drawn as what hangs.
+/// Bodies that begin above this height, over people's heads, are drawn as overhead.
 constexpr double kOverhead = 1.9;
 
 double areaOf(const OverheadPart& part) {
@@ -316,7 +318,7 @@ std::vector<PlanDrawing::Thing> PlanDrawing::thingsOf(const Environment& environ
         if (type == RecordType::Infra || type == RecordType::Other)
             things.push_back({&element, {}, {}, kInfinity, -kInfinity});
     }
-    constexpr std::size_t kFew = 64;  // are done before another thread would begin
+    constexpr std::size_t kFew = 64;  // completed before another thread would start
     const auto look_at = [](Thing& thing) {
         thing.parts = partsFromAbove(thing.element->body);
         double largest = -1;
@@ -366,7 +368,7 @@ void PlanDrawing::drawThings() {
 }
 
 void PlanDrawing::drawThing(const Thing& thing) {
-    // A pen that leaves small things their colour.
+    // A pen that leaves the colour of small things visible.
     const double side = std::min(thing.box.width(), thing.box.depth());
     const double width = std::clamp(0.05 * side / metres(1), 0.045, 0.07);
     for (const OverheadPart& part : thing.parts) {
@@ -375,7 +377,7 @@ void PlanDrawing::drawThing(const Thing& thing) {
         picture_.area(part.curves,
                       {mixed(color, kWhite, 0.3), pen(mixed(color, kInk, 0.6).faded(1), width)});
     }
-    // Feet and panels below a board, as plans have hidden edges.
+    // Feet and panels below a board, drawn as hidden edges.
     for (const OverheadPart& part : thing.parts) {
         const Color edge = mixed(displayColor(part.material), kInk, 0.5).faded(0.55);
         if (part.hidden) picture_.area(part.curves, {pen(edge, 0.04, {0.2, 0.15})});
@@ -386,7 +388,7 @@ void PlanDrawing::drawNeutralThing(const Thing& thing) {
     for (const bool at_cut : {false, true})
         for (const OverheadPart& part : thing.parts) {
             if (standsAt(part.bottom, part.top, style_.cut) != at_cut) continue;
-            // What does not stand in the way lets the floor's colour through.
+            // Things that are not cut are translucent over the floor.
             if (at_cut)
                 picture_.area(part.curves, {kSolid, pen(kSolidEdge, 0.0625)});
             else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elements as drawings, GeoJSON and maps show them: colours, lines, areas and footprints.
+// Colours, lines, areas and footprints of elements, for drawings, GeoJSON and maps.
 #pragma once
 
 #include <cstddef>
@@ -18,47 +18,48 @@ struct OverheadPart {
     std::vector<Polygon> curves;  ///< by the even-odd rule
     double bottom = 0, top = 0;
     Material material = Material::Wood;
-    bool hidden = false;  ///< another part of the body is above all of it
+    bool hidden = false;  ///< another part of the body covers it from above
 };
 
-/// Prisms and meshes of a body, lower ones first; no sheets, no plates. Parts below one convex part
-/// are marked hidden, within a micrometre.
+/// Returns the prisms and meshes of a body, sorted by height, lower ones first; skips sheets and
+/// plates. Marks parts below a convex part as hidden, within a micrometre.
 std::vector<OverheadPart> partsFromAbove(const Body& body);
 
-/// The floor that triangles cover, by the even-odd rule. Exact (see unite) for few triangles; for
-/// larger meshes the outline of cells, a 500th of the longer side, smoothed by half a cell.
-/// O(triangles + cells).
+/// Computes the floor area below triangles, by the even-odd rule. Exact (see unite) for few
+/// triangles; for larger meshes the outline of cells, a 500th of the longer side, smoothed by half
+/// a cell. O(triangles + cells).
 std::vector<Polygon> silhouette(const Mesh& mesh);
 
-/// The floor that prisms and meshes of a body cover, in disjoint pieces. A single part keeps its
-/// holes; if several parts count, none above all others, holes of meshes are dropped. Round prisms
-/// have the area of their curve.
+/// Computes the floor area below prisms and meshes of a body, in disjoint pieces. A single part
+/// keeps its holes; with several visible parts, holes of meshes are dropped. Round prisms have the
+/// area of their curve.
 std::vector<Region> footprintOf(const Body& body);
 
-/// Disjoint pieces of the area that curves bound, outlines counter-clockwise and holes clockwise,
-/// that touch at points only. O(curves^2).
+/// Returns disjoint pieces of the area that curves bound, outlines counter-clockwise and holes
+/// clockwise, that touch at points only. O(curves^2).
 std::vector<Region> regionsOf(std::vector<Polygon> curves);
 
-/// The colour of a material in sRGB, with its opacity.
+/// Returns the colour of a material in sRGB, with its opacity.
 Color displayColor(Material material);
 
-/// What a plan draws of an element as lines: mid-lines of walls, and where doors and windows are.
+/// The lines of an element on a plan: mid-lines of walls, doors and windows.
 struct ElementLines {
-    std::vector<std::vector<Point2>> chains;  ///< closed ones end where they begin; none: no lines
-    double thickness = 0;                     ///< of the wall, or through it, in metres
-    double bottom = 0, top = 0;               ///< of a door or window
+    std::vector<std::vector<Point2>>
+        chains;                  ///< closed ones repeat the first point; empty: no lines
+    double thickness = 0;        ///< of the wall that it is or lies in, in metres
+    double bottom = 0, top = 0;  ///< of a door or window
 };
 
-/// Of each element. O(n log n).
+/// Computes the lines of each element. O(n log n).
 std::vector<ElementLines> elementLinesOf(const Environment& environment);
 
-/// Area of a `floor` record.
+/// Returns the area of a `floor` record.
 Polygon floorOutline(const Record& record);
 
-/// Segments joined where one begins at the end of the one before.
+/// Joins segments into chains if one begins at the end of another.
 std::vector<std::vector<Point2>> chained(const std::vector<Segment2>& segments);
 
-/// The solids of a slice, round ones inscribed in their curves, as in bands and meshes.
+/// Returns the solids of a slice, round ones inscribed in their curves, as in bands and meshes.
 std::vector<Polygon> inscribedSolids(const Slice& slice);
 
 }  // namespace ispace

@@ -18,10 +18,10 @@ namespace {
 
 using namespace palette;
 
-/// A point of an option stays this far from the room's edges, in metres, if it lies so.
+/// Minimum distance of an option's point from the room's edges, in metres, if possible.
 constexpr double kClear = 0.02;
 
-/// The rooms of each storey together, in the order in which storeys come; the largest first.
+/// Sorts the rooms by storey, in the order of storeys, and by area, the largest first.
 std::vector<const FoundRoom*> inOrder(const FoundRooms& found) {
     std::vector<std::string> storeys;
     for (const FoundRoom& room : found.rooms)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is placed on a plan: sensors with what they face, tags, mats, gates, robots, people; names.
+// Draws placed records on a plan: sensors with their fields of view, tags, mats, gates, robots,
+// people; and names.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +28,7 @@ Box2 boxAround(Point2 p, double half_width, double half_height) {
     return {{p.x - half_width, p.y - half_height}, {p.x + half_width, p.y + half_height}};
 }
 
-/// The mark's body about the origin, y up.
+/// Fills the mark's body about the origin, y up.
 void fillBody(Picture& picture, SensorSign sign, double radius, Color color, double rim = 0) {
     Polygon curve;
     if (sign == SensorSign::Disc) {
@@ -64,7 +65,8 @@ BearingSpan bearingsOf(const Scene& scene, const PlacedRecord& placed) {
 }
 
 std::optional<Angle> headingOf(const Pose3& pose) {
-    constexpr double kSteep = 0.02;  // of a direction's level part: no more than a degree
+    constexpr double kSteep =
+        0.02;  // horizontal part of a direction: at most a degree from vertical
     const Vec3 forward = pose.beam(Angle());
     if (length(Vec2{forward.x, forward.y}) <= kSteep) return std::nullopt;
     return directionOf(forward.x, forward.y);
@@ -119,7 +121,7 @@ std::optional<Point2> LabelPlacer::placeLabel(Point2 page, Angle heading, double
     constexpr std::array<double, 8> kTurns = {180, 135, -135, 90, -90, 45, -45, 0};
     const double half_width = width / 2 + 0.15 * em_, half_height = 0.55 * size;
     std::optional<Point2> best;
-    double least = crowd ? 1 : 100;  // of places that are worse than no label
+    double least = crowd ? 1 : 100;  // cost above which the label is skipped
     for (std::size_t i = 0; i < kTurns.size(); ++i) {
         const Vec2 away = unitVector(heading + Angle::degrees(kTurns[i]));
         const Point2 middle{page.x + away.x * (0.6 * em_ + half_width),
@@ -151,7 +153,7 @@ namespace {
 
 using namespace palette;
 
-/// Radius of a sensor's mark, in sizes of text.
+/// Radius of a sensor's mark, in text sizes.
 constexpr double kMark = 0.3;
 
 bool looksAside(const Record& record, const Pose3& pose) {
@@ -181,7 +183,7 @@ void drawRobot(Picture& picture, const Pose2& pose, const RobotModel& model, con
                  {kRobot});
 }
 
-/// Shoulders, head, nose.
+/// Draws shoulders, head, nose.
 void drawPerson(Picture& picture, const Pose2& pose, double tall, const Stroke& edge) {
     picture.area(ellipse(pose.position, 0.14 * tall, 0.27 * tall, pose.heading),
                  {mixed(kPerson, kWhite, 0.4), edge});
@@ -217,7 +219,7 @@ void PlanDrawing::drawRobots() {
         const Pose2 pose = levelPose(placed);
         const Color color = isPerson(record) ? kPerson : kRobot;
         picture_.pushGroup(id, id + ": " + (isPerson(record) ? "person" : "robot"));
-        if (record.has("path")) {  // where it goes by itself
+        if (record.has("path")) {  // autonomous mover
             std::vector<Point2> way{pose.position};
             for (const Tuple& point : record.list("path")) way.push_back({point[0], point[1]});
             picture_.lines(way, {pen(color.faded(0.7), 0.07, {0.3, 0.3})});
@@ -281,7 +283,7 @@ void PlanDrawing::drawNames() {
     std::size_t zones = 0;
     for (const Element& element : scene_.environment.elements())
         if (element.record.keyword() == "zone") drawZoneName(element, zones++);
-    // In the middle of things that have room.
+    // In the middle of things with enough space.
     const TextStyle style{0.7 * style_.em, false, Align::Center, kInk, kWhite.faded(0.85)};
     for (const Thing& thing : things_) {
         const Point2 middle = thing.box.center();
@@ -294,8 +296,8 @@ void PlanDrawing::drawNames() {
     picture_.pop();
 }
 
-/// Its id in the lower left corner of what the plan shows of it, moved in where it would run over
-/// the edge.
+/// Writes the zone's id in the lower left corner of its visible part, shifted inwards if it would
+/// cross the edge.
 void PlanDrawing::drawZoneName(const Element& element, std::size_t index) {
     const Box2 zone = bounds(zoneOutline(element.record));
     const Box2& box = style_.box;
@@ -315,7 +317,7 @@ void PlanDrawing::drawZoneName(const Element& element, std::size_t index) {
 }
 
 void PlanDrawing::drawPlacedNames() {
-    constexpr std::size_t kMaxNames = 500;  // more are no use on one page
+    constexpr std::size_t kMaxNames = 500;  // more are unreadable on one page
     if (scene_.placed.size() > kMaxNames) return;
     const Box2 page{{0, 0}, {picture_.width(), picture_.height()}};
     LabelPlacer places(page, style_.em);

@@ -16,14 +16,14 @@ using namespace palette;
 
 constexpr int kMinWidth = 200, kMaxWidth = 12000;
 
-/// Around the plan, in sizes of text: coordinates on the left and below, then the bar of scale.
+/// Margins around the plan, in text sizes: coordinates on the left and below, then the scale bar.
 constexpr double kLeft = 3.4, kRight = 1.6, kBottom = 4.6, kTop = 1.4, kTitle = 2.4;
-/// A mere strip of a room still gets room for marks and names.
+/// Even a very narrow room leaves space for marks and names.
 constexpr double kMinHeight = 5;
-/// Most height of a picture's plan, of its width.
+/// Maximum height of a picture's plan, as a multiple of its width.
 constexpr double kTall = 1.4;
 
-/// Text of a plan on paper, in millimetres.
+/// Text size of a plan on paper, in millimetres.
 constexpr double kPaperText = 2.8;
 
 struct Page {
@@ -32,7 +32,7 @@ struct Page {
     [[nodiscard]] double metres(double ems) const { return ems * style.em / style.view.scale; }
 };
 
-/// Lays the plan on a page, with `scale` page units a metre.
+/// Computes the layout of a page, with `scale` page units a metre.
 Page layOut(const Box2& box, double em, double scale, bool with_title, double least_width) {
     const double plan_width = scale * box.width(), plan_height = scale * box.depth();
     const double inner = std::max(plan_width, least_width - (kLeft + kRight) * em);
@@ -57,11 +57,11 @@ Page layOutScreen(const Box2& box, const PlanOptions& options) {
     const double inner = options.width - (kLeft + kRight) * em;
     const double scale = std::min(inner / box.width(), kTall * options.width / box.depth());
     Page page = layOut(box, em, scale, !options.title.empty(), options.width);
-    page.width = options.width;  // without what rounding adds
+    page.width = options.width;  // without rounding errors
     return page;
 }
 
-/// Denominator of the largest usual scale at which the plan fits on the paper.
+/// Returns the denominator of the largest usual scale at which the plan fits on the paper.
 double paperScale(const Box2& box) {
     const double inner_long = kPaperLong - (kLeft + kRight) * kPaperText;
     const double inner_short = kPaperShort - (kTop + kTitle + kBottom) * kPaperText;
@@ -70,9 +70,9 @@ double paperScale(const Box2& box) {
     return usualScale(1000 * std::max(longer / inner_long, shorter / inner_short));
 }
 
-/// Metres between lines: 1, unless lines would lie too near each other, or none in sight.
+/// Returns metres between grid lines: 1, unless lines would be too dense, or all outside the plan.
 double gridStep(const Page& page) {
-    constexpr double kNearest = 0.7, kMaxDistance = 25;  // in sizes of text
+    constexpr double kNearest = 0.7, kMaxDistance = 25;  // in text sizes
     if (page.metres(kNearest) > 1) return roundStep(page.metres(kNearest));
     if (page.metres(kMaxDistance) < 1) return std::min(1.0, roundStep(page.metres(4)));
     return 1;
@@ -81,19 +81,19 @@ double gridStep(const Page& page) {
 /// The multiples of a step along a side of the plan, in metres.
 struct Ticks {
     double step;
-    double label_every;  ///< each so-manieth has a label
+    double label_every;  ///< every `label_every`-th tick has a label
     std::vector<double> multiples = {};
 
-    /// Labels `width` sizes of text wide stay apart.
+    /// Labels that are `width` text sizes wide do not touch.
     Ticks(const Page& page, double low, double high, double width)
         : step(gridStep(page)), label_every(std::max(1.0, roundStep(page.metres(width) / step))) {
-        // Counted: far from the origin a multiple may be too large to grow by 1.
+        // Counted: far from the origin, adding 1 may not change a multiple.
         const double first = std::ceil(low / step - 1e-9), last = std::floor(high / step + 1e-9);
         const auto count = static_cast<int>(std::min(last - first, 10000.0));
         for (int i = 0; i <= count; ++i) multiples.push_back(first + i);
     }
     [[nodiscard]] bool hasLabel(double k) const { return std::fmod(std::abs(k), label_every) == 0; }
-    /// Without round-off.
+    /// Formats a multiple without round-off.
     [[nodiscard]] std::string label(double k) const {
         const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
         return formatFixed(k * step, decimals);
@@ -118,7 +118,7 @@ void drawGrid(Picture& picture, PlanDrawing& plan, const Page& page) {
     picture.pop();
 }
 
-/// Coordinates, the plan's edge, the bar of scale with what is said beside it, the title.
+/// Draws coordinates, the plan's edge, the scale bar with its text, and the title.
 void drawFrame(Picture& picture, const Page& page, const std::string& title,
                const std::vector<std::string>& notes) {
     const Box2& box = page.style.box;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/drawing/plan: the plan of a scene, its view from above as shapes of a picture. Uses layout,
-// draw, raster.
+// lib/drawing/plan: the plan of a scene, its view from above as shapes of a picture. Uses scene,
+// drawing, raster.
 #pragma once
 
 #include <cstddef>
@@ -20,58 +20,61 @@ namespace ispace {
 
 struct PlanOptions {
     PictureFormat format = PictureFormat::Png;
-    std::optional<double> slice = {};  ///< only the obstacle map at this height, in metres
+    std::optional<double> slice = {};  ///< draws only the obstacle map at this height, in metres
     int width = 1200;                  ///< of a PNG, in pixels
-    std::string title;                 ///< e.g. base name of ENV; "" for none
-    /// Rooms of an import: those not kept are faint, with area and --inside point; gaps that were
-    /// closed are marked. Null: none; not used with `slice`.
+    std::string title;                 ///< e.g. base name of ENV; "" for no title
+    /// Rooms of an import: rooms that were not kept are faint, with area and --inside point; closed
+    /// gaps are marked. Null: not an import; ignored with `slice`.
     const FoundRooms* found = nullptr;
 };
 
-/// The scene from above, as a plan: floor, zones, walls (cut as plans are, with their thickness),
-/// doors, windows, things in the colours of their materials, sensors with what they face, robots,
-/// people, names, a grid of 1 m (coarser where that would be a grey area) and its coordinates, a
-/// bar of scale. Walls' lines without thickness are drawn with a pen.
+/// Draws the scene from above, as a plan: floor, zones, walls (cut, with their thickness), doors,
+/// windows, things in the colours of their materials, sensors with their fields of view, robots,
+/// people, names, a grid of 1 m (coarser if it would be too dense) with coordinates, a scale bar.
+/// Walls without thickness are drawn as lines.
 ///
-/// With `slice` the obstacle map at that height in the same frame: free floor, solids, sheets.
+/// With `slice` draws the obstacle map at that height in the same frame: free floor, solids,
+/// sheets.
 ///
 /// SVG and PDF: to scale, on paper of A3 or less at the largest usual scale that fits (or smaller
-/// scales for plans of a town), in millimetres. SVG has a layer a type, as Inkscape knows them, and
-/// every element is a group with its id and a title. Equal scenes give equal bytes. O(n log n).
-/// \throws UsageError for a width that cannot be laid out (200 to 12000)
+/// scales for plans of a town), in millimetres. SVG has a layer for each type, in Inkscape's
+/// convention, and each element is a group with its id and a title. Equal scenes give equal bytes.
+/// O(n log n).
+/// \throws UsageError for a width outside 200 to 12000
 std::string drawPlan(const Scene& scene, const PlanOptions& options);
 
 /// Mark of a sensor: a body by its kind, and an arrow if it faces sideways.
 struct SensorMark {
     SensorSign sign = SensorSign::Disc;
-    std::optional<Angle> heading = {};  ///< as seen, y up; none: straight up or down
+    std::optional<Angle> heading = {};  ///< as seen, y up; empty: straight up or down
     Color color = palette::kInk;
     bool hollow = false;
 };
 
-/// The bearings that a placed sensor shows on a plan.
+/// Returns the bearings that a placed sensor shows on a plan.
 BearingSpan bearingsOf(const Scene& scene, const PlacedRecord& placed);
 
-/// The horizontal direction of a pose, if it has one.
+/// Returns the horizontal direction of a pose; empty if it is vertical.
 std::optional<Angle> headingOf(const Pose3& pose);
 
-/// Draws it at a place of the page.
+/// Draws a mark at a point of the page.
 void drawSensorMark(Picture& picture, Point2 page, const SensorMark& mark, double radius);
 
-/// Places signs and labels where they cover little, in page units.
+/// Finds positions of signs and labels where they cover little, in page units.
 class LabelPlacer {
   public:
     LabelPlacer(const Box2& frame, double em) : frame_(frame), em_(em) {}
 
-    /// A mark and its arrow, which nothing should cover.
+    /// Adds a mark and its arrow, which labels should not cover.
     void addMark(Point2 page, std::optional<Angle> heading);
-    /// Place for a sign of this radius: its own, or the next one around it that is free.
+    /// Finds the position of a sign of this radius: at the point, or the nearest free one around
+    /// it.
     Point2 placeSign(Point2 page, double radius);
-    /// Middle of the label of a mark, or nothing where it would cover another label, or another
-    /// mark in a crowd. Of the places around the mark, those behind the heading come first.
+    /// Finds the middle of a mark's label; empty if it would cover another label, or another mark
+    /// in a crowd. Of the positions around the mark, those behind the heading are preferred.
     std::optional<Point2> placeLabel(Point2 page, Angle heading, double width, double size,
                                      bool crowd);
-    /// True if nothing else lies in the box, which is then taken.
+    /// Reserves a box and returns true if it is free.
     bool take(const Box2& box);
 
   private:
@@ -82,44 +85,44 @@ class LabelPlacer {
     std::vector<Box2> marks_, labels_;
 };
 
-/// How a plan is drawn, and where on its page.
+/// Style of a plan, and its position on the page.
 struct PlanStyle {
     PageView view = {};
-    double em = 10;    ///< size of text, page units
+    double em = 10;    ///< text size, page units
     Box2 box = {};     ///< the part shown, metres
-    double cut = 1.2;  ///< walls are cut at this height: lower ones are seen from above
-    /// Below an overlay: things in two greys, dark where they stand at the cut, else pale and
+    double cut = 1.2;  ///< height at which walls are cut: lower ones are seen from above
+    /// Below an overlay: draws things in two greys, dark if they are cut, else pale and
     /// translucent; no coverings, no fills of zones.
     bool neutral = false;
 };
 
-/// The plan of a scene, drawn layer by layer in this order; an overlay lies between two of them. A
-/// new thing to draw is one function here, for all pictures.
+/// Draws the plan of a scene layer by layer, in this order; an overlay lies between two layers. A
+/// new kind of thing requires one function here, for all pictures.
 class PlanDrawing {
   public:
     PlanDrawing(Picture& picture, const Scene& scene, const PlanStyle& style);
 
-    /// Rooms of an import that are not kept, without their words.
+    /// Draws rooms of an import that were not kept, without text.
     void drawOtherRooms(const FoundRooms& found);
-    /// Indoor floor with its coverings, holes of it that are no room.
+    /// Draws indoor floor with its coverings, and the holes in it that are not rooms.
     void drawFloor();
     void drawZones();
-    /// A sector about each sensor that faces sideways, with its bearings but not its range, which
-    /// is mostly longer than the plan.
+    /// Draws a sector about each sensor that faces sideways, with its bearings but not its range,
+    /// which mostly exceeds the plan.
     void drawFieldsOfView();
-    /// Things in the room, higher ones on top.
+    /// Draws things in the room, higher ones on top.
     void drawThings();
     void drawWalls();
     void drawOpenings();
-    /// Things above people's heads, dashed. (A neutral plan shows them among the others.)
+    /// Draws things above people's heads, dashed. (A neutral plan draws them with the others.)
     void drawOverhead();
     void drawRobots();
     void drawSensors();
-    /// Names of zones, of things with enough space, and of all that is placed.
+    /// Writes names of zones, of things with enough space, and of all placed records.
     void drawNames();
-    /// Areas and --inside points of rooms that are not kept, and gaps that were closed.
+    /// Writes areas and --inside points of rooms that were not kept, and marks closed gaps.
     void drawOtherRoomsWords(const FoundRooms& found);
-    // Instead, the map at a height: free floor, then solids and sheets.
+    // The map at a height, instead of the layers above: free floor, then solids and sheets.
     void drawFreeFloor(double height);
     void drawObstacles(double height);
 
@@ -130,7 +133,7 @@ class PlanDrawing {
         std::vector<OverheadPart> parts;
         Box2 box;
         double bottom = 0, top = 0;
-        double height = 0;  ///< of its largest part, by which things are laid over each other
+        double height = 0;  ///< of its largest part; sorts things
     };
     [[nodiscard]] static std::vector<Thing> thingsOf(const Environment& environment);
     [[nodiscard]] static std::string thingTitle(const Thing& thing);
@@ -142,18 +145,19 @@ class PlanDrawing {
     void drawOpening(const Element& element, const ElementLines& lines);
     void drawPlacedNames();
 
-    /// A pen so many sizes of text wide.
+    /// Returns a pen with a width in text sizes.
     [[nodiscard]] Stroke pen(Color color, double width, std::vector<double> dashes = {}) const;
     [[nodiscard]] double metres(double ems) const { return ems * style_.em / style_.view.scale; }
 
     Picture& picture_;
     const Scene& scene_;
     PlanStyle style_;
-    std::vector<Thing> things_;  ///< the lowest first
-    double wall_pen_ = 0;        ///< of walls that are lines, in sizes of text
+    std::vector<Thing> things_;  ///< sorted by height, the lowest first
+    double wall_pen_ = 0;        ///< of walls that are lines, in text sizes
 };
 
-/// A layer of the plan while it lives: in metres, cut at the plan's box or at these curves.
+/// Opens a layer of the plan for its lifetime: in metres, clipped to the plan's box or to these
+/// curves.
 class PlanLayer {
   public:
     PlanLayer(PlanDrawing& plan, std::string_view name);
@@ -166,13 +170,13 @@ class PlanLayer {
     Picture& picture_;
 };
 
-/// The area a plan shows: the limits with walls' thickness, and what stands near them.
+/// Returns the area that a plan shows: the limits with walls' thickness, and bodies near them.
 Box2 planBox(const Scene& scene);
 
-/// Holes of the indoor region that are not rooms, as curves by the even-odd rule.
+/// Returns holes of the indoor region that are not rooms, as curves by the even-odd rule.
 std::vector<Polygon> outsideOf(const Regions& indoor);
 
-/// A room's own walls count as walls, not as things in it.
+/// True for walls and `space` records, which do not count as things in a room.
 bool isWall(const Element& element);
 bool standsAt(double bottom, double top, double height);
 

@@ -19,13 +19,13 @@ namespace {
 
 using Kind = DisplayList::Kind;
 
-/// Of the picture that pens are chosen for, in pixels.
+/// Size of the picture for which pens are chosen, in pixels.
 constexpr double kWidth = 1000, kText = 12;
 
 double toMillimetre(double metres) { return std::round(metres * 1000) / 1000; }
 double toHundredth(double pixels) { return std::round(pixels * 100) / 100; }
 
-/// Transcribes a picture's shapes, back in metres.
+/// Converts a picture's shapes back to metres.
 class ShapeWriter {
   public:
     ShapeWriter(JsonWriter& json, const DisplayList& list, const PageView& view)
@@ -63,7 +63,7 @@ class ShapeWriter {
                 break;
             case Kind::Text:
             case Kind::Image:
-                break;  // the plan's fixed part has none
+                break;  // absent from the plan's fixed part
         }
     }
 
@@ -90,7 +90,7 @@ class ShapeWriter {
         addInks(shape);
     }
 
-    /// Ends the shape, too.
+    /// Writes the inks, and ends the shape.
     void addInks(const DisplayList::Shape& shape) {
         json_.key("inks").beginArray();
         for (const Ink& ink : list_.inksOf(shape)) {
@@ -145,10 +145,10 @@ namespace {
 
 using namespace palette;
 
-/// Of marks and names, metres.
+/// Sizes of marks and names, metres.
 constexpr double kMark = 0.06, kArrow = 0.3, kDxfText = 0.15;
 
-/// Width that a shut door is drawn with, metres; an open one is a line without.
+/// Width of the line of a shut door, metres; an open one is a line of width 0.
 constexpr double kLeaf = 0.04;
 
 /// The last point of a closed chain repeats the first.
@@ -159,7 +159,7 @@ void addChain(DxfWriter& out, const char* layer, std::vector<Point2> chain, doub
     out.path(layer, chain, closed, width, upright);
 }
 
-/// Each prism and mesh by its outline, those below others, too.
+/// Writes the outline of each prism and mesh, including hidden ones.
 void addObject(DxfWriter& out, const Body& body) {
     for (const Prism& prism : body.prisms) {
         const DxfExtrusion upright{prism.bottom, prism.top - prism.bottom};
@@ -178,12 +178,12 @@ void addObject(DxfWriter& out, const Body& body) {
             out.path("objects", ring, true, 0, {part.bottom, part.top - part.bottom});
 }
 
-/// Where a name stands in an area: its middle.
+/// Writes a name in the middle of an area.
 void addName(DxfWriter& out, const Polygon& outline, const std::string& id) {
     out.text("names", bounds(outline).center(), id, kDxfText);
 }
 
-/// A sector about a sensor, or a circle if it sees all around; no farther than the plan is wide.
+/// Writes a sector about a sensor, or a circle if it sees all around, clamped to the plan's width.
 void addView(DxfWriter& out, const Scene& scene, const PlacedRecord& placed) {
     const BearingSpan span = bearingsOf(scene, placed);
     const std::optional<Angle> heading = headingOf(placed.pose);
@@ -199,7 +199,7 @@ void addView(DxfWriter& out, const Scene& scene, const PlacedRecord& placed) {
     const auto rim = [&](double share) {
         return center + radius * unitVector(*heading + span.from + share * sweep);
     };
-    // An edge of a curve is a half turn at most.
+    // An edge of a curve is at most a half turn.
     out.curve("views", {{center, rim(0)},
                         {rim(0), rim(0.5), radius, center},
                         {rim(0.5), rim(1), radius, center},

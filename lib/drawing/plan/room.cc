@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The room of a plan: floor, zones, walls, doors and windows.
+// Draws the room of a plan: floor, zones, walls, doors and windows.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -31,7 +31,7 @@ std::string titleOf(const Element& element) {
     return title;
 }
 
-/// A covering: its colour, and squares of another in one path.
+/// Draws a covering: its colour, and a pattern of squares in another colour as one path.
 void drawCovering(Picture& picture, const Element& element, const Stroke& edge) {
     picture.pushGroup(element.id, titleOf(element));
     picture.area(floorOutline(element.record),
@@ -43,7 +43,8 @@ void drawCovering(Picture& picture, const Element& element, const Stroke& edge) 
     picture.pop();
 }
 
-/// In sizes of text; finer where walls are made of short pieces, as in maps that robots made.
+/// Returns a pen in text sizes; finer if walls consist of short pieces, as in maps that robots
+/// made.
 double wallPen(const Environment& environment, double em_metres) {
     double sum = 0;
     for (const Segment2& wall : environment.wallLines()) sum += distance(wall.a, wall.b);
@@ -51,7 +52,7 @@ double wallPen(const Environment& environment, double em_metres) {
     return std::clamp(0.1 * mean / em_metres, 0.06, 0.16);
 }
 
-/// A line through the opening as wide as its wall, or as the pen of sheets.
+/// Returns a line through the opening as wide as its wall, or as the pen of sheets.
 std::vector<Point2> gapOf(const Segment2& line, double width) {
     const Vec2 across = width / 2 / distance(line.a, line.b) * perpendicular(line.b - line.a);
     return {line.a - across, line.b - across, line.b + across, line.a + across};
@@ -64,7 +65,7 @@ PlanLayer::PlanLayer(PlanDrawing& plan, std::string_view name) : PlanLayer(plan,
 PlanLayer::PlanLayer(PlanDrawing& plan, std::string_view name, std::span<const Polygon> clip)
     : picture_(plan.picture_) {
     picture_.pushView(plan.style_.view);
-    const double rim = plan.metres(0.5);  // pens on the edge are drawn whole
+    const double rim = plan.metres(0.5);  // pens on the edge are not cut
     const Box2& box = plan.style_.box;
     const Point2 low = box.low - Vec2{rim, rim}, high = box.high + Vec2{rim, rim};
     const Polygon frame = {low, {high.x, low.y}, high, {low.x, high.y}};
@@ -88,7 +89,7 @@ bool standsAt(double bottom, double top, double height) {
 Box2 planBox(const Scene& scene) {
     const Environment& environment = scene.environment;
     Box2 box = environment.limits();
-    // What stands far outside does not make the room small.
+    // Bodies far outside are skipped: they would shrink the room on the page.
     const double near = 0.5 + 0.1 * std::max(box.width(), box.depth());
     const Box2 reach{{box.low.x - near, box.low.y - near}, {box.high.x + near, box.high.y + near}};
     const auto add = [&](Point2 p) {
@@ -111,7 +112,7 @@ std::vector<Polygon> outsideOf(const Regions& indoor) {
     std::vector<Polygon> outside;
     for (const Region& part : indoor.parts)
         for (const Polygon& hole : part.holes) {
-            // Other rooms in it are no outside; what lies in their holes, those add.
+            // Subtracts rooms within the hole; the outer loop adds the holes of these rooms.
             std::vector<Polygon> rooms;
             for (std::size_t i = 0; i < indoor.parts.size(); ++i)
                 if (&indoor.parts[i] != &part && locate(hole, middles[i]) == Side::Inside)
@@ -177,7 +178,7 @@ void PlanDrawing::drawWalls() {
             drawWall(element);
 }
 
-/// What is lower than the cut first, then what is cut; what is higher as a dashed line.
+/// Draws the part below the cut first, then the cut part; the part above as a dashed line.
 void PlanDrawing::drawWall(const Element& element) {
     const double cut = style_.cut;
     const bool neutral = style_.neutral;
@@ -213,15 +214,15 @@ void PlanDrawing::drawOpenings() {
     if (std::none_of(elements.begin(), elements.end(), isOpening)) return;
     const std::vector<ElementLines> lines = elementLinesOf(scene_.environment);
     for (std::size_t i = 0; i < elements.size(); ++i)
-        // Below an overlay what lies above or below the cut is no opening.
+        // Below an overlay, openings are drawn only at the height of the cut.
         if (isOpening(elements[i]) &&
             (!style_.neutral || standsAt(lines[i].bottom, lines[i].top, style_.cut)))
             drawOpening(elements[i], lines[i]);
 }
 
-/// Of a window frame and pane; of a door the leaf, open or in its frame, and the way it swings:
-/// about the beginning of the opening, to the left of its wall. Which way is ours; records do not
-/// say.
+/// Draws a window's frame and pane; a door's leaf, open or in its frame, and its swing: about the
+/// start of the opening, to the left of its wall. The side is arbitrary, since records do not store
+/// it.
 void PlanDrawing::drawOpening(const Element& element, const ElementLines& lines) {
     picture_.pushGroup(element.id, titleOf(element));
     const double width = std::max(lines.thickness, metres(2 * wall_pen_));
