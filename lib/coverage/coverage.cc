@@ -346,8 +346,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
                 coverage.target = makeTarget(environment, options.cells, options.height);
                 report.free_area = totalArea(level->freeFloor());
                 if (options.exact) floor = floorCurvesOf(environment, level->freeFloor());
-                static_cast<void>(
-                    scene.digest());  // computed here, in parallel with the views, and cached
+                static_cast<void>(scene.digest());  // cached, in parallel with the views
             });
     coverage.sets = setsOf(coverage.sensors, grid);
 

@@ -99,9 +99,9 @@ constexpr double kMinPiece = 1e-4;
 /// Compares this layout with another one of the same room.
 struct Comparison {
     std::string name;
-    Metric coverage;                ///< of the other layout
-    Metric gained = {}, lost = {};  ///< indoor area that only this layout sees, and that only the
-                                    ///< other one sees, m2
+    Metric coverage;  ///< of the other layout
+    /// Indoor area that only this layout sees, and that only the other one sees, m2.
+    Metric gained = {}, lost = {};
 };
 
 /// The metrics that `coverage` reports as text and JSON.
@@ -117,9 +117,9 @@ struct CoverageReport {
     Metric overlap;                         ///< area seen by two sensors or more, m2; indoor or not
     Metric coverage;                        ///< eq. (4.7), fraction of the indoor region
     Metric free_coverage;                   ///< share of the free floor
-    std::vector<double>
-        redundancy;  ///< [k]: share of indoor cells seen by exactly k sensors (all ultrasonic
-                     ///< receivers count as one); all 0 without indoor cells
+    /// [k]: share of indoor cells seen by exactly k sensors (all ultrasonic receivers count as
+    /// one); all 0 without indoor cells.
+    std::vector<double> redundancy;
     std::optional<std::vector<double>> redundancy_exact;
     std::vector<ZoneMetrics> zones;  ///< in the order of the zones' records
     /// Number of connected pieces of the covered indoor floor (thesis 4.1 f) and the share of the

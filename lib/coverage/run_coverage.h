@@ -43,8 +43,8 @@ struct SeenWay {
 /// A point at which sight of a mover was lost.
 struct TrackLoss {
     std::size_t who = 0;
-    double begin = 0,
-           duration = 0;  ///< seconds; until the end of the run if sight was not restored
+    /// Seconds; until the end of the run if sight was not restored.
+    double begin = 0, duration = 0;
     Point2 place;
 };
 

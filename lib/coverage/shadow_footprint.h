@@ -103,7 +103,7 @@ void follow(Place place, double begin, double end, Curve& curve) {
 ///
 /// A laser that scans in one tilted plane covers the floor below or above the visible part of that
 /// plane, above the floor (`height` does not count). The closed form is unknown for swept lasers,
-/// and for cameras whose tangential distortion ends their field of view within the picture.
+/// and for cameras if tangential distortion ends their field of view within the picture.
 ///
 /// The environment is required only during construction; copies share their data. Thread-safe.
 class ShadowCaster {
@@ -111,9 +111,9 @@ class ShadowCaster {
     explicit ShadowCaster(const Environment& environment);
 
     /// Computes the exact region: disjoint curves with the seen floor on their left. Conics are
-    /// approximated within kChordError (less closely for receivers and spherical rangers whose
-    /// range exceeds some hundred times their height above the plane). Empty curves: no floor is
-    /// seen; no value: unknown. O(n log n) in the triangles near the field of view and the
+    /// approximated within kChordError (less closely for receivers and spherical rangers if
+    /// their range exceeds some hundred times their height above the plane). Empty curves: no floor
+    /// is seen; no value: unknown. O(n log n) in the triangles near the field of view and the
     /// crossings of their shadows. \throws FormatError for shadows with tens of millions of
     /// crossings
     [[nodiscard]] std::optional<std::vector<Curve>> regionSeen(const Sensor& sensor,

@@ -146,8 +146,7 @@ struct DisplayList {
 
     std::vector<Shape> shapes = {};
     std::vector<Point2> points = {};
-    std::vector<std::uint32_t> ends = {
-        0};  ///< of each curve in points; the first element is a sentinel
+    std::vector<std::uint32_t> ends = {0};  ///< of each curve in points, after a sentinel
     std::vector<Ink> inks = {};
     std::vector<Name> names = {};  ///< of layers and groups, in order
     std::vector<Arc> arcs = {};

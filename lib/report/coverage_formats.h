@@ -82,8 +82,7 @@ struct CoverageProduct {
 struct CoverageFormat {
     std::string_view name;                      ///< as --to accepts it
     std::optional<PictureFormat> picture = {};  ///< set for maps, which have further options
-    double square_cell =
-        0;  ///< the format requires square cells, of this edge by default; 0: any cells
+    double square_cell = 0;  ///< default edge of the square cells that it requires; 0: any cells
     std::string_view suffix = name;       ///< of its files, without dot
     const char* beside_suffix = nullptr;  ///< of a file beside the product, named after it
     bool takes_speeds = false;

@@ -251,8 +251,7 @@ std::vector<Region> footprintOf(const Body& body) {
     std::vector<Polygon> solids;
     for (OverheadPart& part : parts)
         for (Region& region : regionsOf(std::move(part.curves)))
-            solids.push_back(
-                std::move(region.outline));  // holes of meshes are dropped below others
+            solids.push_back(std::move(region.outline));  // drops holes of meshes
     return unite(solids);
 }
 

@@ -42,12 +42,11 @@ std::vector<Region> regionsOf(std::vector<Polygon> curves);
 /// Returns the colour of a material in sRGB, with its opacity.
 Color displayColor(Material material);
 
-/// The lines of an element on a plan: mid-lines of walls, doors and windows.
+/// The lines of an element on a plan, if it has any: mid-lines of walls, doors and windows.
 struct ElementLines {
-    std::vector<std::vector<Point2>>
-        chains;                  ///< closed ones repeat the first point; empty: no lines
-    double thickness = 0;        ///< of the wall that it is or lies in, in metres
-    double bottom = 0, top = 0;  ///< of a door or window
+    std::vector<std::vector<Point2>> chains;  ///< closed ones repeat the first point
+    double thickness = 0;                     ///< of the wall that it is or lies in, in metres
+    double bottom = 0, top = 0;               ///< of a door or window
 };
 
 /// Computes the lines of each element. O(n log n).

@@ -65,8 +65,7 @@ BearingSpan bearingsOf(const Scene& scene, const PlacedRecord& placed) {
 }
 
 std::optional<Angle> headingOf(const Pose3& pose) {
-    constexpr double kSteep =
-        0.02;  // horizontal part of a direction: at most a degree from vertical
+    constexpr double kSteep = 0.02;  // horizontal part, about a degree from vertical
     const Vec3 forward = pose.beam(Angle());
     if (length(Vec2{forward.x, forward.y}) <= kSteep) return std::nullopt;
     return directionOf(forward.x, forward.y);

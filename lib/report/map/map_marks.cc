@@ -19,10 +19,9 @@ constexpr std::size_t kCrowd = 40;  // number of sensors above which marks and l
 /// True for receivers, which cover floor only as one set.
 bool countsInSet(const SensorView& view) { return view.isPartial(); }
 
-constexpr std::size_t kManySensors =
-    2 * kSeriesColors;  // number of sensors above which lines are finer
+constexpr std::size_t kManySensors = 2 * kSeriesColors;  // above it, lines are finer
 
-/// Draws the contours of a sensor's or a set's view.
+/// Returns the contours of a sensor's or a set's view.
 template <typename View>
 std::vector<Polygon> contoursOf(const MapPicture& map, const View& view) {
     if (view.region) return drawable(map, *view.region);
@@ -31,8 +30,7 @@ std::vector<Polygon> contoursOf(const MapPicture& map, const View& view) {
 
 void drawContours(Picture& picture, const MapPicture& map, const std::vector<Polygon>& curves,
                   const Stroke& line) {
-    constexpr std::size_t kMaxBands =
-        12;  // soft rims help with few views, and hide floor with many
+    constexpr std::size_t kMaxBands = 12;  // soft rims of more views would hide floor
     const bool plain = map.other == nullptr && map.options.color != MapColor::Sensor;
     if (plain && map.coverage.sets.size() <= kMaxBands) {
         const Box2& limits = map.limits();

@@ -132,7 +132,7 @@ void drawTrace(Picture& picture, const MapPicture& map, const Box2& frame);
 /// The elements on the plan of a map, in the order of the legend.
 struct MapContents {
     bool walls = false;     ///< wall lines or bodies
-    bool openings = false;  ///< their parts above or below the target's height
+    bool openings = false;  ///< parts of openings off the target's height
     bool doors = false;
     bool glass = false;
     bool solids = false;   ///< objects that stand at the target's height

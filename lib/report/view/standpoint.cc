@@ -16,8 +16,7 @@ namespace {
 const Angle kQuarter = Angle::degrees(90);
 // Default direction of the viewer in Central and Orbit: south-west, well above the walls.
 const Angle kAzimuth = Angle::degrees(-120), kElevation = Angle::degrees(42);
-constexpr double kMargin =
-    0.05;  // around the contents of a picture, as a share of it, on each side
+constexpr double kMargin = 0.05;  // around the contents of a picture, as a share of it
 
 Camera pinhole(PictureSize size, Angle fov_across) {
     Camera camera;
