@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/coverage: cells, areas, coverage and its map. Uses sense, drawing and below; TBB inside.
-// Returns covered floor as regions for vector formats: exact if they are known (see
-// withArcAreas()), else outlines of cells.
+// lib/coverage: cells, areas and coverage of sensors. Uses sense and below; TBB inside.
 #pragma once
 
 #include <cstdint>
@@ -218,11 +216,12 @@ std::optional<double> coveredShare(const CellSet& covered, const CellSet& target
 std::uint32_t maxMultiplicity(const Coverage& coverage,
                               const std::vector<std::uint32_t>& cell_times);
 
-/// Returns the view of one sensor as regions.
+/// Returns the view of one sensor as regions for vector formats: exact if known (see
+/// withArcAreas()), else outlines of cells.
 std::vector<Region> viewRegions(const SensorView& view, const Grid& grid);
 
-/// Returns the indoor floor seen by exactly `times` sensors; 0: the unseen. \param cell_times
-/// timesSeen()
+/// Returns the indoor floor seen by exactly `times` sensors, as viewRegions() does; 0: the unseen.
+/// \param cell_times timesSeen()
 std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
                            const std::vector<std::uint32_t>& cell_times);
 
