@@ -158,7 +158,7 @@ class CalibrationReader {
     const std::string& name_;
 };
 
-/// What a calibration says; written beside one it is said twice.
+/// Keys that a calibration file sets; a record that gives one beside `calibration` repeats it.
 constexpr std::array<const char*, 9> kCalibrated = {"fov", "focal", "sensor", "fx",          "fy",
                                                     "cx",  "cy",    "mirror", "coefficients"};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is written of a room: the table of formats, and the writers behind it. A new format is a
-// writer and a row in exporters.cc.
+// Writers of room formats, and the table of these formats. A new format is a writer and a row in
+// exporters.cc.
 #pragma once
 
 #include <cstdint>
@@ -19,21 +19,22 @@
 
 namespace ispace {
 
-/// What a writer may need besides the scene.
+/// Options of the writers, besides the scene.
 struct ExportOptions {
     std::optional<double> slice;       ///< the obstacle map at this height instead of the room
     std::optional<double> resolution;  ///< metres a cell of a ROS map; default 0.05
     int width = 1200;                  ///< pixels of a PNG
-    std::string title;                 ///< of drawings; "" for none
-    std::string beside;  ///< how the product names the file beside it; "": there is none
+    std::string title;                 ///< of drawings; "": untitled
+    std::string
+        beside;  ///< name of the companion file in the product; "": the format has no companion
     std::vector<std::string> zones = {};  ///< to keep out of, as readZone() reads them
     const FoundRooms* found = nullptr;    ///< rooms of the import, for drawings; may be null
 };
 
-/// A product, and the file that stands beside it; "" where none is needed.
+/// A product and its companion file; `beside` is "" if the product is self-contained.
 struct ExportedFiles {
     std::string product, beside;
-    /// What the format has no words for: a sentence for people, "" where nothing is lost.
+    /// Lists elements that the format cannot represent, as a sentence for messages; "" if complete.
     std::string left_out = "";
 };
 
@@ -41,32 +42,33 @@ struct ExportedFiles {
 struct ExportFormat {
     std::string_view name;  ///< as --to takes it
     std::string_view
-        suffix;             ///< of its files, without dot; one that an earlier row has is no choice
-    std::string_view help;  ///< for the manual, whole sentences
-    std::string_view binary = "";  ///< how messages call what no terminal shows; "" for text
+        suffix;  ///< of its files, without dot; if two formats share one, the first row gets it
+    std::string_view help;         ///< for the manual, whole sentences
+    std::string_view binary = "";  ///< name of a binary format in messages; "" for text
     bool takes_slice = false;
-    bool takes_zones = false;  ///< and needs them
+    bool takes_zones = false;  ///< requires them, too
     bool draws_rooms = false;  ///< also those that an import did not keep
-    /// Records are written as they are, without a scene: the other writer is null.
+    /// Writes the records as given, without a scene; `write` is null then.
     std::string (*write_records)(Document&& document) = nullptr;
     ExportedFiles (*write)(const Scene&, const Document&, const ExportOptions&) = nullptr;
-    /// The same of a product that may be large and stands alone, piece by piece; null: as a whole.
+    /// Writes a large product without companion piece by piece; null: use `write`.
     void (*write_to)(const Scene&, const Document&, const ByteSink&) = nullptr;
-    /// A file that stands beside the product and is named after it.
-    std::string_view beside_suffix = "";  ///< ".pgm"; "" for none
+    /// Suffix of the companion file, which shares the product's base name.
+    std::string_view beside_suffix = "";  ///< ".pgm"; "": the format has no companion
     std::string_view beside_role = "";    ///< for messages: "materials"
     bool needs_beside = false;            ///< so that a stream cannot hold the product
-    bool beside_as_needed = false;        ///< some products need none
-    std::string_view naming_hint = "";    ///< what a name that does not fit is answered with
+    bool beside_as_needed = false;        ///< not every product has a companion
+    std::string_view naming_hint = "";    ///< hint for an output name that lacks the suffix
 };
 
-/// All formats, in the order of `--to`; the first that can hold what is asked for is the default.
+/// Returns all formats, in the order of `--to`; the default is the first that can represent the
+/// requested content.
 std::span<const ExportFormat> exportFormats();
 
-/// \pre exportFormats() has one of this name
+/// Returns the row of a format. \pre exportFormats() has one of this name
 const ExportFormat& exportFormat(std::string_view name);
 
-/// The plan as a GeoJSON FeatureCollection (RFC 7946) in metres, as its foreign member
+/// Writes the plan as a GeoJSON FeatureCollection (RFC 7946) in metres, as its foreign member
 /// `"coordinate_system": "local-metres"` says; outlines counter-clockwise, holes clockwise, doubles
 /// in shortest form.
 ///
@@ -80,8 +82,8 @@ const ExportFormat& exportFormat(std::string_view name);
 /// Polygons, each with the `id` of its element.
 std::string writeGeoJson(const Scene& scene, std::optional<double> slice_height);
 
-/// The scene as Wavefront OBJ: metres, y up as most programs read it (x, z, -y of the room, as
-/// writeGlb() has it), which the first line says; one object `o` per element, placed sensor, robot
+/// Writes the scene as Wavefront OBJ: metres, y up as most programs read it (x, z, -y of the room,
+/// like writeGlb()), which the first line says; one object `o` per element, placed sensor, robot
 /// and person, named by its id, and the floor; faces by material, with a normal each,
 /// counter-clockwise seen from outside. Coordinates are the shortest decimals that read back as the
 /// same doubles.
@@ -93,51 +95,53 @@ std::string writeGeoJson(const Scene& scene, std::optional<double> slice_height)
 ExportedFiles writeObj(const Scene& scene, const std::string& mtl_name);
 
 struct ModelNode;
-/// Nodes as Wavefront OBJ without materials, z up as Gazebo reads it.
+/// Writes nodes as Wavefront OBJ without materials, z up as Gazebo reads it.
 std::string objOf(const std::vector<ModelNode>& nodes);
 
-/// The scene as binary STL: metres, z up, all elements, placed sensors, robots, people and the
-/// floor in one surface; 80 bytes of header, a count, then per triangle its unit normal, three
+/// Writes the scene as binary STL: metres, z up, all elements, placed sensors, robots, people and
+/// the floor in one surface; 80 bytes of header, a count, then per triangle its unit normal, three
 /// corners (counter-clockwise seen from outside; 32-bit floats, little-endian) and two bytes 0.
 ///
 /// Sheets (walls without thickness, panes, floors) are single surfaces. Triangles without area in
 /// floats are left out. Equal scenes give equal bytes. O(triangles).
 std::string writeStl(const Scene& scene);
 
-/// The scene as a world of SDF 1.9 (Gazebo): a static model for each element, in the frame of its
-/// record if that has a place, with boxes, cylinders and polylines; a ground plane; and static
-/// models of sensors, robots and people. Sensors work if SDF knows their kind, see addSdfSensor();
-/// those on a robot are in its link. Walls without thickness are kSheetThickness thick.
+/// Writes the scene as a world of SDF 1.9 (Gazebo): a static model for each element, in the frame
+/// of its record if that has a position, with boxes, cylinders and polylines; a ground plane; and
+/// static models of sensors, robots and people. Sensors work if SDF knows their kind, see
+/// addSdfSensor(); those on a robot are in its link. Walls without thickness are kSheetThickness
+/// thick.
 ///
-/// Meshes of files are parts of an OBJ beside the world. Sensors that SDF does not know stand
-/// there as bodies; mats, gates and zones are left out; ExportedFiles::left_out counts both. Equal
+/// Mesh files are merged into one OBJ beside the world. Sensors that SDF does not know are exported
+/// as bodies only; mats, gates and zones are left out; ExportedFiles::left_out counts both. Equal
 /// scenes give equal bytes. \param title names the world, up to its first dot \param mesh_name the
-/// OBJ, as the world names it \throws UsageError if there are meshes and that is empty
+/// OBJ, as the world names it \throws UsageError if there are meshes and mesh_name is empty
 ExportedFiles writeSdf(const Scene& scene, const std::string& title, const std::string& mesh_name);
 
-/// The room as an IFC4 building of one storey: lines of walls as IfcWall with IfcOpeningElement and
-/// the IfcDoor or IfcWindow in it, rooms and zones as IfcSpace, furniture, pillars and other
-/// things, sensors as IfcSensor and IfcAudioVisualAppliance with the property set `ispace_Sensor`.
+/// Writes the room as an IFC4 building of one storey: lines of walls as IfcWall with
+/// IfcOpeningElement and the IfcDoor or IfcWindow in it, rooms and zones as IfcSpace, furniture,
+/// pillars and other things, sensors as IfcSensor and IfcAudioVisualAppliance with the property set
+/// `ispace_Sensor`.
 ///
-/// A room is the indoor region without the walls that have a thickness; walls without one become
-/// 5 mm thick. GUIDs are hashes of the scene's digest, the class and the id. What moves
-/// is left out: ExportedFiles::left_out counts it. Equal scenes and titles give equal bytes.
-/// O(n log n) for n walls and openings. \param title names the project
+/// A room is the indoor region without the walls that have a thickness; walls without one become 5
+/// mm thick. GUIDs are hashes of the scene's digest, the class and the id. Movers are left out:
+/// ExportedFiles::left_out counts them. Equal scenes and titles give equal bytes. O(n log n) for n
+/// walls and openings. \param title names the project
 ExportedFiles writeIfc(const Scene& scene, const std::string& title);
 
-/// The placed sensors as URDF: a link each, named by its id, with a fixed joint from `world` or
-/// from the link of the robot or person that carries it, whose own joint from `world` is floating.
-/// Frames have x forward and z up; cameras and rangers with a lens have a second one, ID_optical,
-/// with z forward and x right (REP 103).
+/// Writes the placed sensors as URDF: a link each, named by its id, with a fixed joint from `world`
+/// or from the link of the robot or person that carries it. The joint of that link from `world` is
+/// floating. Frames have x forward and z up; cameras and rangers with a lens have a second one,
+/// ID_optical, with z forward and x right (REP 103).
 std::string writeUrdf(const Scene& scene, const std::string& title);
 
 /// Cells of a map along a side, and in all.
 constexpr int kMaxMapSide = 30'000;
 constexpr std::int64_t kMaxMapCells = 400'000'000;
 
-/// The obstacle map at a height, as ROS' map_server reads and writes it: map.yaml, and beside it
-/// the picture (P5, 254 free, 0 occupied, 205 unknown). Cell edges lie on multiples of the
-/// resolution, with a rim of unknown cells; only the room is on it.
+/// Writes the obstacle map at a height, as ROS' map_server reads and writes it: map.yaml, and
+/// beside it the picture (P5, 254 free, 0 occupied, 205 unknown). Cell edges lie on multiples of
+/// the resolution, with a rim of unknown cells; only the room is on it.
 ///
 /// A cell is free if its middle lies on the free floor (strictly inside the indoor region, in no
 /// solid). Thin walls are kept: where a sheet or the edge of a solid passes between neighbouring
@@ -152,24 +156,27 @@ constexpr std::int64_t kMaxMapCells = 400'000'000;
 ExportedFiles writeRosMap(const Scene& scene, double height, double resolution,
                           const std::string& image_name);
 
-/// The cells of a ROS map: over the box with a rim, their edges on multiples of the resolution.
+/// Returns the cells of a ROS map: over the box with a rim, their edges on multiples of the
+/// resolution.
 /// \throws UsageError as writeRosMap()
 Grid rosMapCells(const Box2& box, double resolution);
 
-/// A mask for Nav2's keep-out filter, with the cells of writeRosMap(): those whose middle lies in
-/// one of the zones or on its edge, and at least the one in whose middle a small zone lies.
+/// Writes a mask for Nav2's keep-out filter, with the cells of writeRosMap(). Cells with their
+/// centre in a zone or on its edge are marked; a zone too small for that marks the cell around its
+/// centre.
 /// \throws UsageError as readZone() and writeRosMap(), and for a zone beside the map
 ExportedFiles writeKeepoutMask(const Scene& scene, const std::vector<std::string>& zones,
                                double resolution, const std::string& image_name);
 
-/// The file that `path` names, relative to its folder; nothing if it does not exist. \param
-/// anywhere false: it must lie in that folder, or in one of `others` (relative to it), or below,
-/// links followed \throws FormatError for `path` if the file may not lie there or is not regular
+/// Opens the file that `path` names, relative to its folder; std::nullopt if it does not exist.
+/// \param anywhere false: it must lie in that folder, or in one of `others` (relative to it), or
+/// below, links followed
+/// \throws FormatError for `path` if the file may not lie there or is not regular
 std::optional<RegularFile> openSideFile(const std::string& path, const std::string& name,
                                         bool anywhere, std::span<const std::string> others = {});
 
-/// The path that openSideFile() opens: `name` is relative to the folder of `path`, for "-" to the
-/// current one.
+/// Returns the path that openSideFile() opens: `name` is relative to the folder of `path`, for "-"
+/// to the current one.
 std::string sideFilePath(const std::string& path, const std::string& name);
 
 }  // namespace ispace

@@ -20,7 +20,7 @@ namespace ispace {
 
 namespace {
 
-/// A frame that is nowhere on Earth, in the words that GDAL reads (WKT 1).
+/// A coordinate system without a position on Earth, in WKT 1 as GDAL reads it.
 constexpr std::string_view kRoomFrame =
     R"(LOCAL_CS["room",UNIT["metre",1],AXIS["x",EAST],AXIS["y",NORTH]])";
 
@@ -83,7 +83,7 @@ void FeatureWriter::beginGeometry(std::string_view type) {
     json_.key("type").value(type).key("coordinates");
 }
 
-/// The first place comes again at the end.
+/// RFC 7946 requires the first position again at the end.
 void FeatureWriter::addRing(const Polygon& ring, bool counter_clockwise) {
     const bool turn = (signedArea(ring) > 0) != counter_clockwise;
     json_.beginArray();
@@ -100,8 +100,8 @@ std::string_view typeName(RecordType type) {
     return kNames[static_cast<std::size_t>(type)];
 }
 
-/// The values of a record, written or default, except its id, its place and those `known`
-/// otherwise; in the units of files (metres, degrees).
+/// Writes the values of a record, given or default, except its id, its position and `known` keys,
+/// which the caller writes; in the units of files (metres, degrees).
 void addValues(JsonWriter& json, const Record& record,
                std::initializer_list<std::string_view> known) {
     for (const KeySpec& key : record.schema().keys) {
@@ -114,7 +114,7 @@ void addValues(JsonWriter& json, const Record& record,
     }
 }
 
-/// Lowest and highest point of a body; nothing for bodies that have none.
+/// Lowest and highest point of a body; empty for elements without a body.
 struct Extent {
     double bottom = std::numeric_limits<double>::infinity(), top = -bottom;
     void add(double low, double high) {

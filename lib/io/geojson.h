@@ -11,26 +11,26 @@
 namespace ispace {
 
 /// Writes a GeoJSON FeatureCollection (RFC 7946) in metres of the plan, as its foreign member
-/// `"coordinate_system": "local-metres"` says, and `crs` of GeoJSON 2008 to GDAL and QGIS. Features
-/// come one behind another: begin, more properties through json(), a geometry, and the next.
-/// Outlines counter-clockwise, holes clockwise.
+/// `"coordinate_system": "local-metres"` says, and `crs` of GeoJSON 2008 to GDAL and QGIS. Each
+/// feature is written by begin(), more properties through json(), and a geometry. Outlines
+/// counter-clockwise, holes clockwise.
 class FeatureWriter {
   public:
     FeatureWriter();
-    /// For foreign members before beginFeatures(), and for properties after begin().
+    /// Writer of foreign members before beginFeatures(), and of properties after begin().
     JsonWriter& json() { return json_; }
     void beginFeatures() { json_.key("features").beginArray(); }
 
-    /// Properties id, keyword and type.
+    /// Begins a feature and writes its properties id, keyword and type.
     JsonWriter& begin(std::string_view id, std::string_view keyword, std::string_view type);
     void endAsPoint(Point2 p);
-    /// One chain, or several.
+    /// Writes one chain, or several.
     void endAsLines(const std::vector<std::vector<Point2>>& chains);
-    /// One piece, or several.
+    /// Writes one piece, or several.
     void endAsArea(const std::vector<Region>& pieces);
     void endAsNothing();
 
-    /// The file's text.
+    /// Returns the file's text.
     std::string finish();
 
   private:

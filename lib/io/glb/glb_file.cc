@@ -16,7 +16,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF data are copied as they are");
 
-// glTF's numbers for component types and for what a view is used for.
+// glTF's codes of component types and of buffer view targets.
 constexpr int kFloat = 5126, kUnsignedInt = 5125;
 constexpr int kVertices = 34962, kElements = 34963;
 constexpr int kTriangles = 4;
@@ -65,7 +65,7 @@ Eigen::Quaterniond rotationOf(const Pose3& pose) {
 GlbSurface surfaceOf(const Mesh& mesh, Point3 origin) {
     GlbSurface surface;
     surface.indices.reserve(3 * mesh.triangles.size());
-    // What each vertex of the mesh has become so far, one for each normal: a chain of results.
+    // Vertices created so far from each vertex of the mesh, one per normal, as a linked list.
     constexpr std::uint32_t kNone = 0xffffffff;
     std::vector<std::uint32_t> first(mesh.vertices.size(), kNone), next;
     const auto result = [&](std::uint32_t vertex, const Vector& position, const Vector& normal) {
@@ -134,7 +134,7 @@ int GlbBuilder::addAccessor(int view, std::size_t offset, std::size_t count, con
     if (offset > 0) json.key("byteOffset").value(offset);
     json.key("componentType").value(type == kScalar ? kUnsignedInt : kFloat);
     json.key("count").value(count).key("type").value(type);
-    // What else positions have follows: the object stays open.
+    // The caller adds more members: the object stays open.
     return accessors_++;
 }
 

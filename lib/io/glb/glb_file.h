@@ -22,25 +22,25 @@
 
 namespace ispace {
 
-/// The two chunks of a binary glTF 2.0 file that matter.
+/// The chunks of a binary glTF 2.0 file that readers need.
 struct GlbChunks {
     std::string_view json;    ///< never empty
-    std::string_view binary;  ///< empty if there is none
+    std::string_view binary;  ///< empty if the chunk is missing
 };
 
-/// Takes the container apart; every length is checked against what is there. The parts point into
-/// `bytes`. \throws FormatError \pre isGlb(bytes)
+/// Splits the container into chunks and checks every length against the available bytes. The chunks
+/// point into `bytes`. \throws FormatError \pre isGlb(bytes)
 GlbChunks glbChunks(std::string_view bytes, const std::string& name);
 
 /// Writes the container: JSON, and the parts one after another as its binary data.
 /// \throws FormatError for more than 2 GiB, which some readers take for a negative length
 std::string glbContainer(std::string_view json, std::span<const std::string_view> parts);
-/// The same piece by piece, of JSON in pieces, each of which is let go of once it is written.
+/// Writes the container piece by piece; each piece of JSON is freed once it is written.
 /// \throws FormatError as above, before anything is written
 void writeGlbContainer(std::vector<std::string> json, std::span<const std::string_view> parts,
                        const ByteSink& sink);
 
-/// glTF's (X, Y, Z) are our (x, z, -y).
+/// Converts a vector to glTF's axes: its (X, Y, Z) are our (x, z, -y).
 std::array<double, 3> gltfAxes(Vec3 v);
 
 /// Rz(heading) Ry(-tilt) Rx(roll) in glTF's axes.
@@ -52,18 +52,20 @@ struct GlbSurface {
     using Vector = std::array<float, 3>;
     std::vector<Vector> positions, normals;
     std::vector<std::uint32_t> indices;
-    std::vector<std::array<float, 2>> places = {};  ///< on a picture, of each vertex; empty: none
+    std::vector<std::array<float, 2>> places =
+        {};  ///< texture coordinates of each vertex; empty: untextured
 };
 
-/// The mesh about `origin`. Slivers that floats cannot tell from a line are left out.
+/// Converts the mesh to floats relative to `origin`; skips slivers that floats cannot tell from a
+/// line.
 GlbSurface surfaceOf(const Mesh& mesh, Point3 origin);
 
 /// A node of the file.
 struct GlbNode {
     std::string name;
-    std::string keyword;  ///< in its extras; "" for none
-    int mesh = -1;        ///< index as of GlbBuilder; -1 for none
-    /// Where its mesh stands, in glTF's axes; none: where the whole room does.
+    std::string keyword;  ///< in its extras; "" omits it
+    int mesh = -1;        ///< index as of GlbBuilder; -1: no mesh
+    /// Pose of its mesh in glTF's axes; null: that of the whole room.
     struct Frame {
         std::array<double, 3> translation{};
         Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
@@ -72,7 +74,7 @@ struct GlbNode {
     std::unique_ptr<const Frame> frame;
 };
 
-/// Items one after another, in blocks: it grows without moving them.
+/// A sequence stored in blocks: it grows without moving its items.
 template <typename T>
 class Blocks {
   public:
@@ -100,31 +102,32 @@ class Blocks {
     std::size_t size_ = 0;
 };
 
-/// Collects nodes, meshes and data of a file, and writes it. The JSON begins with what readers of
-/// the records need.
+/// Collects nodes, meshes and data of a file, and writes it. The JSON begins with the members that
+/// record readers need.
 class GlbBuilder {
   public:
     struct Primitive {
-        int positions = 0, normals = -1, places = -1, indices = 0;  ///< accessors; -1 for none
+        int positions = 0, normals = -1, places = -1, indices = 0;  ///< accessors; -1: absent
         int material = 0;
     };
 
-    /// Materials are made when first used. \return its index
+    /// Creates a material on first use. \return its index
     int material(Material material, bool double_sided);
-    /// A material with a picture (PNG) on it, whose places are 0,0 at its upper left corner and 1,1
-    /// at the lower right one; beyond them its edges go on. \return its index \pre the picture
-    /// stays as it is until finish(), and is the only one
+    /// Creates a material with a picture (PNG) as texture: coordinates are 0,0 at its upper left
+    /// corner and 1,1 at the lower right one; beyond these its edge pixels repeat. \return its
+    /// index
+    /// \pre the picture is valid until finish(), and is the only one
     int pictureMaterial(std::string_view name, std::string_view png);
-    /// \pre the surface has triangles; it stays as it is until finish() if it has places
+    /// \pre the surface has triangles; with texture coordinates it is valid until finish()
     Primitive add(const GlbSurface& surface, int material);
-    /// The mesh of a file, in views of its own, once for all of equal digest.
-    /// \pre it has triangles, and stays as it is until finish()
+    /// Stores the mesh of a file in separate views, once per digest.
+    /// \pre it has triangles and is valid until finish()
     Primitive add(const TriangleMesh& mesh, int material);
     /// \return its index \pre there are primitives
     int addMesh(std::string_view name, const std::vector<Primitive>& primitives);
     void addNode(const GlbNode& node);
 
-    /// Writes the whole file. All nodes stand in a node `room` at this place, in glTF's axes.
+    /// Writes the whole file. All nodes are children of a node `room` at `origin`, in glTF's axes.
     /// \throws FormatError as writeGlbContainer does
     void finish(std::string_view records, const std::array<double, 3>& origin,
                 const ByteSink& sink);
@@ -134,7 +137,7 @@ class GlbBuilder {
     enum View : int { kRecords, kPositions, kNormals, kIndices, kFiles };
     struct ViewSpec {
         std::vector<std::string_view> data;  ///< in pieces
-        int stride = 0;                      ///< bytes; 0: none is given
+        int stride = 0;                      ///< bytes; 0 omits it
         int target = 0;                      ///< how glTF uses it; 0: not at all
     };
     struct FileMesh {
@@ -143,7 +146,7 @@ class GlbBuilder {
         Primitive primitive;
     };
 
-    /// The items of a list in the file. What is full is put aside.
+    /// The items of a list in the file. Full blocks are moved to `full`.
     struct Section {
         JsonWriter json;
         std::vector<std::string> full;
@@ -168,7 +171,7 @@ class GlbBuilder {
     std::map<std::pair<Material, bool>, int> materials_;
     Section materials_json_, meshes_json_, accessors_json_, nodes_json_;
     int material_count_ = 0, meshes_ = 0, accessors_ = 0, nodes_ = 0;
-    int picture_view_ = -1;  ///< of the picture; -1 for none
+    int picture_view_ = -1;  ///< buffer view of the picture; -1: no picture
 };
 
 }  // namespace ispace

@@ -52,7 +52,7 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
     /// Stands for a value that is no whole number from 0 on: beyond any file.
     static constexpr std::uint64_t kWrong = std::numeric_limits<std::uint64_t>::max();
 
-    /// False for JSON with errors in what was read of it.
+    /// Reads the JSON. \return false if the part that was parsed has errors
     bool read(std::string_view json) {
         return nlohmann::json::sax_parse(json.begin(), json.end(), this) || isComplete();
     }
@@ -147,7 +147,7 @@ class DataInMemory final : public GlbData {
     std::string_view bytes_;
 };
 
-/// A file that has records, and what its buffer views hold.
+/// A file with records, and the contents of its buffer views.
 class Glb {
   public:
     /// \param json as much of it as says where the records are
@@ -160,7 +160,7 @@ class Glb {
                                " of its chunk");
     }
 
-    /// False if what was given of the JSON has errors or is too little.
+    /// Returns false if the given part of the JSON has errors or is too short.
     [[nodiscard]] bool isSound() const { return is_sound_; }
     [[nodiscard]] bool hasRecords() const { return finder_.records.has_value(); }
     [[nodiscard]] std::string_view records() {
@@ -214,7 +214,7 @@ class Glb {
         if (!out.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
     }
 
-    /// Null if the file has none of this digest.
+    /// Returns the mesh with this digest; null if the file lacks it.
     std::shared_ptr<const TriangleMesh> meshOf(const std::string& digest) {
         const auto file =
             std::find_if(finder_.files.begin(), finder_.files.end(),
@@ -270,7 +270,7 @@ class FileRanges {
         : file_(std::move(file)), name_(std::move(name)) {}
     [[nodiscard]] std::uint64_t size() const { return file_.size; }
     [[nodiscard]] const std::string& name() const { return name_; }
-    /// What there is of a range. \throws std::system_error
+    /// Reads a range, up to the end of the file. \throws std::system_error
     [[nodiscard]] std::string read(std::uint64_t offset, std::size_t length) const {
         std::string bytes(offset < size() ? std::min<std::uint64_t>(length, size() - offset) : 0,
                           '\0');
@@ -279,7 +279,7 @@ class FileRanges {
                                           static_cast<off_t>(offset + done));
             if (count < 0 && errno == EINTR) continue;
             if (count < 0) throw std::system_error(errno, std::generic_category(), name_);
-            if (count == 0) bytes.resize(done);  // somebody has cut it
+            if (count == 0) bytes.resize(done);  // truncated meanwhile
             done += static_cast<std::size_t>(count);
         }
         return bytes;
@@ -290,7 +290,7 @@ class FileRanges {
     std::string name_;
 };
 
-/// Where the data of a file are that is JSON and binary data and nothing else.
+/// Byte ranges of the JSON and binary chunks in a file with just these two.
 struct GlbSpan {
     std::uint64_t json_end = 0, binary = 0, binary_size = 0;
 };
@@ -331,7 +331,7 @@ class DataInFile final : public GlbData {
   private:
     FileRanges file_;
     std::uint64_t offset_, size_;
-    std::deque<std::string> parts_;  // what was read, each staying where it is
+    std::deque<std::string> parts_;  // bytes read so far; a deque keeps their addresses
 };
 
 }  // namespace
@@ -358,7 +358,7 @@ std::optional<Document> readGlbFile(const std::string& file, const Schemas& sche
     if (!mayBeRead(file) || !std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
     FileRanges ranges(openRegular(file), file);
     if (!isGlb(ranges.read(0, kGlbHead))) return std::nullopt;
-    // The JSON of ours begins with what is wanted; a mesh of a file takes some hundred bytes.
+    // Files of ours begin with the records; a mesh of a file takes some hundred bytes.
     constexpr std::size_t kBeginning = 1 << 16;
     const std::string head = ranges.read(0, kBeginning);
     const auto span = spanOf(ranges, head);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/io: file formats of others, and the compiled form. Uses plan and what is below it.
+// Reads the compiled form: binary glTF with records.
 #pragma once
 
 #include <optional>
@@ -11,21 +11,21 @@
 
 namespace ispace {
 
-/// True if the bytes begin as a binary glTF does.
+/// Returns true if the bytes begin with the header of a binary glTF file.
 bool isGlb(std::string_view bytes);
 
-/// False for a sound binary glTF file without our records: a mesh of another program. True for
-/// damaged files, which readGlb() explains. \pre isGlb(bytes)
+/// Returns false for a sound binary glTF file without our records, i.e. a mesh of another program;
+/// true for damaged files, whose errors readGlb() reports. \pre isGlb(bytes)
 bool glbHasRecords(std::string_view bytes);
 
-/// The records of a compiled file, meshes loaded, bit by bit as they were. The JSON is streamed, no
-/// further than needed; what is only drawn is not read. O(records + meshes). \throws FormatError
-/// for truncated, foreign ("no ispace records") or damaged files
+/// Reads the records of a compiled file, bit by bit as written, with their meshes loaded. Parses
+/// the JSON only as far as needed and skips data that is only drawn. O(records + meshes).
+/// \throws FormatError for truncated, foreign ("no ispace records") or damaged files
 Document readGlb(std::string_view bytes, const std::string& name, const Schemas& schemas);
 
-/// The same of a file, of which only what is needed is read: its beginning, and the views of the
-/// records and of the meshes that they name. Nothing where it is no regular file, no sound binary
-/// glTF or has no records of ours, which readers of all its bytes tell.
+/// Reads the same from a file, but only its beginning and the views of the records and of the
+/// meshes that they name. Returns std::nullopt if it is not a regular file, not a sound binary glTF
+/// file or has no records of ours; readGlb() reports the reason.
 /// \throws FormatError as readGlb; std::system_error
 std::optional<Document> readGlbFile(const std::string& file, const Schemas& schemas);
 

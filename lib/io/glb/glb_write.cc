@@ -68,8 +68,8 @@ std::vector<ModelNode> placedNodes(const Scene& scene, bool with_views) {
 
 namespace {
 
-/// Plans whose middle is further from the origin than this, in metres, are drawn about their
-/// middle: near it floats tell a hundredth of a millimetre apart.
+/// Plans with their centre further from the origin than this, in metres, are stored relative to the
+/// centre: near it floats resolve a hundredth of a millimetre.
 constexpr double kFar = 100;
 
 /// Where the mesh has its origin: ours, or for plans far away their middle, on whole metres.
@@ -87,18 +87,18 @@ Eigen::Quaterniond gltfFromFile(const std::string& up) {
     return turnAbout(0, Angle::degrees(-90));
 }
 
-/// Triangles and what they are made of.
+/// Triangles and their material.
 struct PreparedSurface {
     GlbSurface surface;
     Material material;
     bool open;
 };
 
-/// What can be made of an element before its turn to be added has come.
+/// The part of an element that is computed in parallel, before it is added in order.
 struct Prepared {
     bool stands = false;                         ///< furniture, of which equal ones share a mesh
-    std::string shape = {};                      ///< of furniture: what its mesh depends on
-    std::vector<PreparedSurface> surfaces = {};  ///< of what is fixed
+    std::string shape = {};                      ///< of furniture: the key of its shared mesh
+    std::vector<PreparedSurface> surfaces = {};  ///< of fixed elements
 };
 
 std::vector<PreparedSurface> surfacesOf(const std::vector<Mesh>& meshes, Point3 origin) {
@@ -109,7 +109,7 @@ std::vector<PreparedSurface> surfacesOf(const std::vector<Mesh>& meshes, Point3 
     return surfaces;
 }
 
-/// The record of furniture without id and place, but for its height above the floor.
+/// Returns the record of furniture without id and position, but with its height above the floor.
 std::string shapeText(const Record& record) {
     std::string text = record.keyword();
     record.forEachWritten([&text](const KeySpec& key, const Value& value) {
@@ -143,7 +143,7 @@ class GlbScene {
     GlbScene(GlbBuilder& builder, Point3 origin, const FloorPicture* picture)
         : builder_(builder), origin_(origin), picture_(picture) {}
 
-    /// \param prepared what prepare() made of it
+    /// \param prepared the result of prepare()
     void add(const Element& element, const Prepared& prepared) {
         if (prepared.stands)
             addStanding(element, prepared.shape);
@@ -167,7 +167,7 @@ class GlbScene {
     using Figure = std::vector<std::tuple<Material, std::vector<std::array<double, 3>>,
                                           std::vector<std::array<std::uint32_t, 3>>>>;
 
-    /// Adds a mesh of these. \return its index, -1 if it shows nothing
+    /// Adds a mesh of these surfaces. \return its index, -1 if no triangle remains
     int meshOf(const std::string& name, const std::vector<PreparedSurface>& surfaces) {
         Primitives primitives;
         for (const auto& [surface, material, open] : surfaces)
@@ -176,7 +176,7 @@ class GlbScene {
         return primitives.empty() ? -1 : builder_.addMesh(name, primitives);
     }
 
-    /// A thing whose mesh is in the world.
+    /// Adds an element whose mesh is in the world frame.
     void addFixed(const ModelNode& node) {
         addNode(node.id, node.keyword, meshOf(node.id, surfacesOf(node.meshes, origin_)));
     }
@@ -214,7 +214,7 @@ class GlbScene {
         addNode(node.id, node.keyword, place->second, *node.pose);
     }
 
-    /// Furniture: things whose records differ only in id and place share a mesh.
+    /// Adds furniture: elements whose records differ only in id and position share a mesh.
     void addStanding(const Element& element, const std::string& shape) {
         const Record& record = element.record;
         const auto [place, is_new] = shapes_.try_emplace(shape, -1);
@@ -238,8 +238,8 @@ class GlbScene {
         builder_.addNode({id, keyword, mesh, std::make_unique<const GlbNode::Frame>(frame)});
     }
 
-    /// A mesh of a file: its own numbers, in a frame that makes them the body. Nobody knows which
-    /// side of its triangles is outside, so both are drawn.
+    /// Adds a mesh of a file: its own coordinates, and a node that maps them to the body. The outer
+    /// side of its triangles is unknown, so both are drawn.
     void addFile(const Element& element) {
         if (element.body.meshes.empty()) return;
         const Record& record = element.record;
@@ -265,7 +265,7 @@ class GlbScene {
     const FloorPicture* picture_;
     GlbSurface floor_;  // until the file is written
     std::map<Figure, int> figures_;
-    std::unordered_map<std::string, int> shapes_;  // by their records without id and place
+    std::unordered_map<std::string, int> shapes_;  // mesh indices by shapeText()
     std::map<std::string, int> files_;
 };
 

@@ -20,29 +20,30 @@ namespace ispace {
 struct ModelNode {
     std::string id;
     std::string keyword;        ///< "" for the floor of the indoor region, whose id is "floor"
-    std::optional<Pose3> pose;  ///< frame of the meshes; none: they are in the world's
+    std::optional<Pose3> pose;  ///< frame of the meshes; if empty, the world frame
     std::vector<Mesh> meshes;   ///< one a material; never empty, each with triangles
-    const Element* element = nullptr;  ///< of the scene; none: the floor, or what is placed
+    const Element* element =
+        nullptr;  ///< of the scene; null for the floor and for placed sensors, robots and people
 };
 
-/// Elements in the order of their records, the floor behind them, then what is placed: sensors,
-/// robots, people. Elements without a body (zones, inside points) are left out.
-/// The nodes point into the scene.
+/// Builds nodes of all elements in the order of their records, then of the floor, then of placed
+/// sensors, robots and people. Skips elements without a body (zones, inside points). The nodes
+/// point into the scene.
 std::vector<ModelNode> modelOf(const Scene& scene);
-/// The nodes of modelOf() that come of no element: the floor, and what is placed. `with_views`:
-/// sensors with their fields of view.
+/// Builds the nodes of modelOf() that come from no element: the floor, sensors, robots and people.
+/// \param with_views adds the sensors' fields of view
 std::vector<ModelNode> placedNodes(const Scene& scene, bool with_views = false);
-/// The node of an element; its meshes are empty if there is nothing to show.
+/// Builds the node of an element; its meshes are empty for an element without visible body.
 ModelNode nodeOf(const Element& element);
 
-/// Frame of a node's meshes.
+/// Returns the frame of a node's meshes.
 inline Frame3 frameOf(const ModelNode& node) { return node.pose ? Frame3(*node.pose) : Frame3(); }
 inline Point3 inWorld(const Frame3& frame, Point3 p) {
     return frame.origin + frame * (p - Point3());
 }
 
-/// Unit normal of the face, counter-clockwise seen from its tip; the null vector if the corners
-/// lie on a line as far as doubles tell.
+/// Returns the unit normal of the face, counter-clockwise seen from its tip; the null vector if the
+/// corners are collinear up to rounding.
 inline Vec3 faceNormal(const std::array<Point3, 3>& corners) {
     const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     const double size = length(normal);
@@ -56,19 +57,19 @@ struct FloorPicture {
     std::string png;
 };
 
-/// The compiled form: binary glTF 2.0, one named node per element (and sensor body), shared
-/// materials with colours, normals, metres, +Y up; the records of `document` as canonical text
-/// with magic and history in a buffer view of their own whose index is `extras.ispace` of the
-/// top level. Equal input gives equal bytes.
+/// Writes the compiled form: binary glTF 2.0, one named node per element (and sensor body), shared
+/// materials with colours, normals, metres, +Y up; the records of `document` as canonical text with
+/// magic and history in a separate buffer view, named by `extras.ispace` of the top level. Equal
+/// input gives equal bytes.
 ///
-/// The contents of mesh files are stored once each, in the file's own numbers: nodes turn, scale
-/// and move them. `extras.ispace_meshes` names digest, positions (3 floats a vertex) and indices
-/// (3 uint32 a triangle) of each by their buffer views; records find theirs by `digest`.
-/// \param picture laid on the floor of the indoor region instead of its colour; null for none
+/// Each mesh file is stored once, in its original coordinates: nodes rotate, scale and translate
+/// it. `extras.ispace_meshes` names digest, positions (3 floats a vertex) and indices (3 uint32 a
+/// triangle) of each by their buffer views; records find theirs by `digest`.
+/// \param picture laid on the floor of the indoor region instead of its colour; may be null
 /// \throws FormatError for a model of more than 2 GiB
 std::string writeGlb(const Scene& scene, const Document& document,
                      const FloorPicture* picture = nullptr);
-/// The same piece by piece: nobody holds the file as a whole.
+/// Writes the same file piece by piece, without holding it in memory.
 void writeGlb(const Scene& scene, const Document& document, const ByteSink& sink,
               const FloorPicture* picture = nullptr);
 

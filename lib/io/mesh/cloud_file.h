@@ -12,19 +12,20 @@
 
 namespace ispace {
 
-/// True for PCD, LAS, and PLY without faces.
+/// Returns true for PCD, LAS, and PLY without faces.
 bool isPointCloud(std::string_view bytes);
 
 /// The points of a file that isPointCloud(): PCD 0.7 (ascii, binary, binary_compressed), PLY 1.0
-/// (ascii, either byte order, no lists before or among the vertices) and LAS 1.0 to 1.4. Places
-/// are those of the file, in doubles. The bytes must outlive it.
+/// (ascii, either byte order, no lists before or among the vertices) and LAS 1.0 to 1.4.
+/// Coordinates are those of the file, as doubles. The bytes must outlive it.
 class CloudFile {
   public:
-    /// Reads the header; decompresses the points where they are. \param name for messages
+    /// Reads the header and decompresses the points if necessary. \param name for messages
     /// \throws FormatError: damaged, cut off, no x y z, compressed LAS (LAZ)
     CloudFile(std::string_view bytes, const std::string& name);
 
-    /// Calls visit(Point3) for each point but those with a coordinate that is no number. O(points)
+    /// Calls visit(Point3) for each point but those with a coordinate that is not finite or no
+    /// number. O(points)
     /// \throws FormatError with the line, for text
     template <typename Visit>
     void forEach(Visit visit) const {
@@ -34,9 +35,9 @@ class CloudFile {
     }
 
   private:
-    /// Where a coordinate stands in binary points.
+    /// Offset and format of a coordinate in binary points.
     struct Coordinate {
-        char kind = 0;  ///< f, u or i, as its bytes are; 0: there is none
+        char kind = 0;  ///< f, u or i, as its bytes are; 0: missing
         std::size_t size = 0, first = 0, step = 0;
         std::size_t column = 0;  ///< in text
         double scale = 1, offset = 0;

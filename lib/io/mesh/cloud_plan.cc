@@ -23,15 +23,17 @@ namespace ispace {
 
 namespace {
 
-constexpr double kCell = 0.05;        // metres, unless the user says otherwise
-constexpr double kMostCells = 25e6;   // of the grid in which points are counted
-constexpr double kCellsPerUnit = 4;   // of Budget
-constexpr int kRim = 3;               // cells around, so that the outside is connected
-constexpr int kManyPoints = 10;       // in half of the cells: then a single one is a stray
-constexpr int kMinThing = 3;          // cells; smaller ones are noise
-constexpr double kBelowTop = 0.15;    // metres: what ends so far below the upper height is no wall
-constexpr double kFloorNoise = 0.1;   // metres above the floor
-constexpr double kStands = 0.25;      // metres: what begins below stands on the floor
+constexpr double kCell = 0.05;       // metres, unless the user says otherwise
+constexpr double kMostCells = 25e6;  // of the grid in which points are counted
+constexpr double kCellsPerUnit = 4;  // of Budget
+constexpr int kRim = 3;              // cells around, so that the outside is connected
+constexpr int kManyPoints = 10;      // in half of the cells: then a single one is a stray
+constexpr int kMinThing = 3;         // cells; smaller ones are noise
+constexpr double kBelowTop =
+    0.15;  // metres: points that end so far below the upper height are no wall
+constexpr double kFloorNoise = 0.1;  // metres above the floor
+constexpr double kStands =
+    0.25;  // metres: an island with points below this height stands on the floor
 constexpr double kFloorShare = 0.01;  // of all points lie lower than the floor
 constexpr double kRoundShare = 0.92;  // of its rectangle that a round thing fills at most
 constexpr int kHeadings = 90;         // of rectangles that are tried
@@ -56,7 +58,7 @@ struct CountedCell {
     float highest = -HUGE_VALF;
 };
 
-/// What stands in a room, seen from above.
+/// An island of points in a room, seen from above.
 struct CloudThing {
     Point2 middle;
     Angle heading;
@@ -87,7 +89,7 @@ class CloudPlan {
                      out_);
     }
 
-    /// Adds the things whose middle lies in one of the rooms that were written.
+    /// Adds the islands with their centre in one of the imported rooms.
     void addThings(const std::vector<Polygon>& rooms, ImportRecords& out) const {
         for (const CloudThing& thing : things_)
             if (std::any_of(rooms.begin(), rooms.end(), [&](const Polygon& room) {
@@ -267,8 +269,8 @@ class CloudPlan {
                                  wholeMicrometres(height)});
     }
 
-    /// The least width of gaps that encloses half of what can be enclosed. \throws FormatError if
-    /// no width encloses a room
+    /// Finds the least width of gaps that encloses half of the largest area any width encloses.
+    /// \throws FormatError if no width encloses a room
     [[nodiscard]] double gapsToClose(const MapCells& occupied) const {
         const MapCells free = complement(occupied);
         std::array<double, kGaps.size()> areas{};

@@ -35,8 +35,8 @@ bool edgesMeet(const Polygon& a, const Polygon& b) {
     return meet;
 }
 
-/// Unites solids whose edges meet, as walls that run into each other. One inside another stays, as
-/// furniture in a room modelled by its inner surface.
+/// Unites solids whose edges meet, such as walls that run into each other. Keeps a solid inside
+/// another, e.g. furniture in a room modelled by its inner surface.
 class Joiner {
   public:
     explicit Joiner(std::vector<Polygon> solids) : solids_(std::move(solids)) {
@@ -49,7 +49,7 @@ class Joiner {
         for (std::size_t i = 0; i < solids_.size(); ++i)
             groups[rootOf(i)].push_back(std::move(solids_[i]));
         std::vector<Polygon> outlines;
-        // Even single ones: a cavity joined to its outline by a seam becomes a curve of its own.
+        // Even single ones: a cavity joined to its outline by a seam becomes a separate curve.
         for (const auto& [root, group] : groups)
             for (Region& region : unite(group)) {
                 outlines.push_back(std::move(region.outline));
@@ -167,7 +167,7 @@ Document readMeshWalls(const std::string& operand, const ImportOptions& options,
                               heights.text() + "; are --slice-walls, --units and --up right?");
     }
     ImportOptions plan = straightened(options);
-    plan.wall_layers.clear();  // a mesh has none
+    plan.wall_layers.clear();  // a mesh has no layers
     plan.door_layers.clear();
     plan.window_layers.clear();
     ImportRecords out(schemas, operand, options);

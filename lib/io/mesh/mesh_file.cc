@@ -61,7 +61,7 @@ class MeshLoader {
         }
     }
 
-    /// The place of a finding already names an operand.
+    /// A finding already names the operand and the line.
     void addFinding(const Record& record, const std::string& path, const std::string& what) {
         const bool is_operand = path == operand_ && what.starts_with(": ");
         findings_.add(record.finding(

@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-/// How a mesh file is read.
+/// Options for reading a mesh file.
 struct MeshOptions {
     /// auto: rotated so that z points up, glTF from y, COLLADA and OBJ from the axis they name, OBJ
     /// in a comment; without one, and in other formats, z points up. x, y or z: the upward axis,
@@ -22,27 +22,29 @@ struct MeshOptions {
 };
 
 /// Reads the triangles of a file: OBJ, STL, PLY, COLLADA, glTF, GLB and IFC, by content, else by
-/// suffix. All parts are placed by their nodes, polygons triangulated, equal vertices joined;
+/// suffix. All parts are transformed by their nodes, polygons triangulated, equal vertices merged;
 /// points, lines and triangles without area are dropped. COLLADA and IFC come in metres, others in
-/// their own units. A separate program, `lib/ispace/read-mesh`, parses the bytes with bounds on
-/// memory and time and without rights; a file that makes it crash, grow or hang is an ordinary bad
-/// file. \param side_files what the file names is appended: buffers of glTF; materials of OBJ that
-/// exist,
-///        though their content is not read
-/// \throws FormatError: nothing of the above, no triangles, NaN, more than kMaxMesh…, a side file
-///         where none may be; std::system_error if the file cannot be opened
+/// their own units.
+///
+/// A separate program, `lib/ispace/read-mesh`, parses the bytes with bounds on memory and time and
+/// without rights; a file that makes it crash, grow or hang is an ordinary bad file.
+/// \param side_files receives the paths that the file names: buffers of glTF; existing material
+/// files of OBJ, though their content is not read
+/// \throws FormatError: another format, no triangles, NaN, more than kMaxMesh…, a side file outside
+/// the permitted folders; std::system_error if the file cannot be opened
 std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const MeshOptions& options,
                                              std::vector<std::string>* side_files = nullptr);
 
 /// Loads the file of each `mesh` record that has no content yet, each file once, and adds its path
 /// and those of the files it names to Document::sources. Paths are relative to the operand's folder
-/// (for "-" the current one). \throws FormatError with findings at the records: no such file, bad
-/// files, a content other than
-///         `digest` says
+/// (for "-" the current one).
+/// \throws FormatError with findings at the records: no such file, bad files, a content that
+/// differs from `digest`
 void loadMeshes(Document& document, const std::string& operand);
 
-/// A document of one `mesh` record that names the operand, not loaded; its id comes from the file's
-/// name. \throws FormatError for "-": records need a name, and other files may belong to it
+/// Returns a document of one `mesh` record that names the operand, not loaded; its id comes from
+/// the file's name. \throws FormatError for "-": records need a name, and other files may belong to
+/// it
 Document meshDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
 

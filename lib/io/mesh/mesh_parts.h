@@ -29,46 +29,46 @@ constexpr std::array<MeshSuffix, 6> kMeshSuffixes{{{".obj", MeshFormat::Obj},
                                                    {".gltf", MeshFormat::Gltf},
                                                    {".glb", MeshFormat::Glb}}};
 
-/// OBJ, STL, PLY or COLLADA by content; nothing for other bytes.
+/// Recognises OBJ, STL, PLY or COLLADA by content; std::nullopt for other bytes.
 std::optional<MeshFormat> meshFormatOf(std::string_view bytes);
 
-/// The axis of OBJ that a comment before the first vertex says points up ("y up", "z-up"): "y" or
-/// "z"; nothing without one.
+/// Finds the upward axis, "y" or "z", in a comment of OBJ before the first vertex ("y up", "z-up");
+/// std::nullopt if there is no such comment.
 std::optional<std::string> objUpComment(std::string_view bytes);
 
-/// The axis of OBJ that points up, "y" or "z", which the format does not say: objUpComment(); else
-/// y, as most programs write it, unless the extent is that of a room or building with z upwards:
-/// less high than wide, over 4 m2 or more.
-/// \param metres of one of its numbers
+/// Returns the upward axis of OBJ, "y" or "z", which the format does not define: objUpComment();
+/// else y, as most programs write it, unless the extent is that of a room or building with z
+/// upwards: less high than wide, over 4 m2 or more.
+/// \param metres length of its unit
 std::string objUpAxis(std::string_view bytes, double metres);
 
-/// True if the bytes are OBJ, STL, PLY or COLLADA.
+/// Returns true if the bytes are OBJ, STL, PLY or COLLADA.
 bool isMeshFile(std::string_view bytes);
 
-/// True for `chair.obj` and the like, in any case.
+/// Returns true for `chair.obj` and the like, in any case.
 bool hasMeshSuffix(const std::string& operand);
 
-/// In lower case: ".obj".
+/// Returns the suffix in lower case: ".obj".
 std::string meshSuffix(const std::string& path);
 
-/// For suffixes of meshes that are not read, what they are and how to convert them: "a .3ds mesh:
-/// …"; "" for others.
+/// Returns the name and the converter of a known mesh format that is not read, e.g. "a .3ds mesh:
+/// …"; "" for other suffixes.
 std::string foreignMesh(const std::string& path);
 
-/// Limits of one file; more is refused.
+/// Limits of one file; larger files are rejected.
 constexpr std::size_t kMaxMeshTriangles = 50'000'000;
 constexpr std::size_t kMaxMeshNodes = 1'000'000;  ///< each instance counts
 constexpr std::size_t kMaxMeshNodeDepth = 1000;
 
-/// Limits of lib/ispace/read-mesh for files of so many bytes in all: 1 GB of memory and 20 s at
-/// least, and never more than three quarters of the memory there is beyond that.
+/// Limits of lib/ispace/read-mesh for files of this total size: at least 1 GB of memory and 20 s;
+/// above 1 GB at most three quarters of the machine's memory.
 ConfinedLimits meshLimits(std::size_t file_bytes, bool is_building);
 
 std::string packedMesh(const TriangleMesh& mesh);
 
-/// Reads a packed mesh and trusts nothing: on return indices are valid and vertices finite.
+/// Reads a packed mesh and validates it: on return indices are valid and vertices finite.
 /// \param path the mesh, for messages
-/// \throws FormatError: the bytes are not what packedMesh writes
+/// \throws FormatError: bytes that packedMesh() did not write
 TriangleMesh unpackedMesh(std::string_view bytes, const std::string& path);
 
 }  // namespace ispace

@@ -49,7 +49,7 @@ std::size_t HandedFile::Read(void* to, std::size_t size, std::size_t count) {
 
 aiReturn HandedFile::Seek(std::size_t offset, aiOrigin origin) {
     const std::size_t base = origin == aiOrigin_CUR ? at_ : origin == aiOrigin_END ? size_ : 0;
-    // Offsets backwards come as what wraps around.
+    // assimp passes negative offsets as unsigned values that wrap around.
     const auto place = static_cast<std::int64_t>(base + offset);
     if (place < 0) return aiReturn_FAILURE;
     at_ = static_cast<std::size_t>(place);

@@ -9,7 +9,7 @@
 
 namespace ispace {
 
-/// An open file of a size that was told, for assimp.
+/// An open file of known size, for assimp.
 class HandedFile : public Assimp::IOStream {
   public:
     /// \param owned closed at the end
@@ -31,7 +31,7 @@ class HandedFile : public Assimp::IOStream {
     bool owned_;
 };
 
-/// All that assimp may open: the mesh, and files handed over by the parent.
+/// All files that assimp may open: the mesh, and files handed over by the parent.
 class HandedFiles : public Assimp::IOSystem {
   public:
     /// \param size of the mesh, which is open as standard input

@@ -21,14 +21,14 @@ namespace ispace {
 
 namespace {
 
-/// Nothing that a format knows is nested so deep.
+/// Limit of JSON nesting; valid files are far below.
 constexpr std::size_t kMaxJson = 500;
 
 [[noreturn]] void fail(const std::string& message) {
     throw std::runtime_error("bad mesh file: " + message);
 }
 
-/// Nodes and what hangs on them, each time it does.
+/// Nodes and their descendants, counted once per instance.
 class NodeGraph {
   public:
     using Node = std::uint32_t;
@@ -117,7 +117,7 @@ void checkPlyHeader(std::string_view bytes) {
 }
 
 /// Finds `children` of the members of the list `nodes` of glTF 2, and counts how deep it nests.
-/// What is wrong otherwise assimp finds.
+/// assimp reports other errors.
 class GltfNodes : public nlohmann::json_sax<nlohmann::json> {
   public:
     void check() const {
@@ -174,8 +174,8 @@ class GltfNodes : public nlohmann::json_sax<nlohmann::json> {
 };
 
 void checkGltf(std::string_view json) {
-    // What names are made of plays no part here, and assimp takes any bytes; some writers fill a
-    // chunk up with zeros.
+    // Encoding errors in names do not matter here, and assimp accepts any bytes; some writers fill
+    // a chunk up with zeros.
     std::string text(json.substr(0, json.find_last_not_of('\0') + 1));
     for (char& c : text)
         if (static_cast<unsigned char>(c) >= 0x80) c = '?';
@@ -195,7 +195,7 @@ std::uint32_t wordAt(std::string_view bytes, std::size_t at) {
 void checkGlb(std::string_view bytes) {
     constexpr std::size_t kHeader = 12, kChunk = 8;
     if (bytes.size() < kHeader + kChunk) fail("a GLB file that ends in its header");
-    // Version 1 has the length of its JSON in the same place.
+    // Version 1 stores the length of its JSON at the same offset.
     const std::uint32_t json = wordAt(bytes, kHeader);
     if (json > bytes.size() - kHeader - kChunk)
         fail("JSON of " + std::to_string(json) + " bytes in " + std::to_string(bytes.size()) +
@@ -211,7 +211,7 @@ struct Tag {
 
     [[nodiscard]] bool isEmpty() const { return attributes.ends_with('/'); }
 
-    /// Its value as it is written, or "".
+    /// Returns its value as written, or "".
     [[nodiscard]] std::string_view attribute(std::string_view key) const {
         for (std::string_view rest = attributes;;) {
             const std::size_t equals = rest.find('=');
@@ -283,7 +283,7 @@ class Tags {
     std::string_view rest_;
 };
 
-/// All nodes and visual scenes of COLLADA, below each other as they are and as they are instanced.
+/// All nodes and visual scenes of COLLADA, with their direct and instanced children.
 class ColladaNodes {
   public:
     explicit ColladaNodes(std::string_view xml) {

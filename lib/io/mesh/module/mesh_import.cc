@@ -61,7 +61,8 @@ constexpr std::size_t kMeshCornersPerUnit = 8;
 
 [[noreturn]] void fail(const std::string& message) { throw std::runtime_error(message); }
 
-/// What assimp says, without the name of the file, which every message has, and the full stop.
+/// Returns assimp's message without the name of the file, which every message has, and the full
+/// stop.
 std::string assimpsWords(std::string words, const std::string& path) {
     words = words.substr(0, kMaxWords);
     for (const std::string& part : {" of file \"" + path + '"', " for " + path})
@@ -155,7 +156,7 @@ class Gatherer {
         for (unsigned i = 0; i < node.mNumMeshes; ++i) add(mesh, partOf(node, i), world_from_node);
     }
 
-    /// What a sensor looks at, in a model of ours.
+    /// Returns true for a field of view in one of our models.
     [[nodiscard]] bool isView(const aiMesh& part) const {
         aiString name;
         return part.mMaterialIndex < scene_.mNumMaterials &&
@@ -187,7 +188,7 @@ class Gatherer {
         const aiVector3D p = world_from_mesh * local;
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
             fail("bad mesh file: a vertex that is no place (NaN or infinity)");
-        // Adding 0 makes 0 of -0, so that equal places have equal bytes.
+        // Adding 0 turns -0 into 0, so that equal points have equal bytes.
         return turn_y_up_ ? Vertex{p.x + 0, -p.z + 0, p.y + 0} : Vertex{p.x + 0, p.y + 0, p.z + 0};
     }
 
@@ -195,8 +196,8 @@ class Gatherer {
     bool turn_y_up_;
 };
 
-/// Vertices come in the order of their first use by a triangle; those that none uses are dropped.
-/// \param standing for each vertex the one to use in its place, or nothing: itself
+/// Sorts vertices by their first use in a triangle and removes unused ones.
+/// \param standing for each vertex its replacement; empty: all vertices keep themselves
 void renumber(TriangleMesh& mesh, const std::vector<std::uint32_t>& standing = {}) {
     constexpr std::uint32_t kNone = UINT32_MAX;
     std::vector<std::uint32_t> index(mesh.vertices.size(), kNone);
@@ -243,8 +244,8 @@ std::string suffixOf(MeshFormat format) {
     return std::string(known->suffix.substr(1));
 }
 
-/// Leaves the importers for this suffix alone, two for glTF: assimp tries the others on what those
-/// refuse.
+/// Keeps only the importers for this suffix, two for glTF: assimp would try the others on files
+/// that these reject.
 void leaveOnly(const std::string& suffix, Assimp::Importer& importer) {
     for (std::size_t i = importer.GetImporterCount(); i > 0; --i) {
         Assimp::BaseImporter* const one = importer.GetImporter(i - 1);
@@ -287,7 +288,7 @@ namespace {
 
 using namespace ispace;
 
-/// What the bytes tell before assimp has them.
+/// Properties of a mesh file found before assimp reads it.
 struct MeshHead {
     MeshFormat format;
     std::optional<std::string> obj_up;

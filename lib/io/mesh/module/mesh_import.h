@@ -11,18 +11,18 @@
 
 namespace ispace {
 
-/// By content, else by suffix (".obj", lower case).
-/// \throws std::runtime_error if neither tells
+/// Finds the format by content, else by suffix (".obj", lower case).
+/// \throws std::runtime_error if neither is known
 MeshFormat meshFormat(std::string_view bytes, const std::string& suffix);
 
-/// Checks beforehand what crashes or hangs assimp 5.2, or what it trusts: headers of PLY, chunks of
-/// GLB, and nodes of glTF and COLLADA that form circles or are too deep or too many. \throws
-/// std::runtime_error
+/// Rejects files that crash or hang assimp 5.2, or whose sizes it would trust: bad headers of PLY,
+/// bad chunks of GLB, and nodes of glTF and COLLADA that form circles or are too deep or too many.
+/// \throws std::runtime_error
 void checkMesh(MeshFormat format, std::string_view bytes);
 
 /// Reads the mesh on standard input with assimp, as loadMesh says. \param size in bytes
-/// \param up the upward axis, or auto \param obj_up what objUpComment() finds, of OBJ
-/// \throws std::runtime_error with what is wrong with the file
+/// \param up the upward axis, or auto \param obj_up the result of objUpComment(), for OBJ
+/// \throws std::runtime_error with the error of the file
 TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up,
                         const std::optional<std::string>& obj_up = {});
 
