@@ -25,8 +25,7 @@ struct ExportOptions {
     std::optional<double> resolution;  ///< metres a cell of a ROS map; default 0.05
     int width = 1200;                  ///< pixels of a PNG
     std::string title;                 ///< of drawings; "": untitled
-    std::string
-        beside;  ///< name of the companion file in the product; "": the format has no companion
+    std::string beside;  ///< the companion file, as the product names it; "": no companion
     std::vector<std::string> zones = {};  ///< to keep out of, as readZone() reads them
     const FoundRooms* found = nullptr;    ///< rooms of the import, for drawings; may be null
 };
@@ -40,9 +39,8 @@ struct ExportedFiles {
 
 /// A format of envc: one row of exportFormats().
 struct ExportFormat {
-    std::string_view name;  ///< as --to takes it
-    std::string_view
-        suffix;  ///< of its files, without dot; if two formats share one, the first row gets it
+    std::string_view name;         ///< as --to takes it
+    std::string_view suffix;       ///< of its files, without dot; the first row with it owns it
     std::string_view help;         ///< for the manual, whole sentences
     std::string_view binary = "";  ///< name of a binary format in messages; "" for text
     bool takes_slice = false;

@@ -64,7 +64,7 @@ bool isRecordLine(std::string_view line, const Schemas& schemas) {
     return equals != 0 && equals < rest.find_first_of(" \t:{[\"'");
 }
 
-/// First bytes of known files that are not read, and what they are.
+/// Magic bytes of known formats that are not read, and descriptions of these.
 constexpr std::pair<std::string_view, const char*> kForeign[] = {
     {"%PDF-",
      "a PDF: if it was drawn, not scanned, convert it to SVG, for example with `pdftocairo -svg "
@@ -90,7 +90,7 @@ constexpr std::pair<std::string_view, const char*> kForeign[] = {
     {"\x1f\x8b", "compressed with gzip: unpack it with `gunzip` (a .svgz becomes .svg)"},
 };
 
-/// What a well-known foreign file is and how to convert it; "" for others.
+/// Returns the name and the converter of a well-known foreign format; "" for other bytes.
 std::string foreignFile(std::string_view bytes) {
     if (bytes.starts_with("AutoCAD Binary DXF"))
         return "binary DXF: save it as ASCII DXF, for example with LibreCAD or FreeCAD";
@@ -108,7 +108,7 @@ std::string foreignJson(std::string_view bytes) {
     return "";
 }
 
-/// What is to be read, and how.
+/// An input and the options for reading it.
 struct Source {
     std::string_view bytes;  ///< without a byte order mark
     const std::string& operand;
@@ -154,7 +154,7 @@ Document readUpright(const Source& source) {
 }
 constexpr auto* kReadMesh = readUpright<meshDocument>;
 constexpr auto* kReadWalls = readUpright<readMeshWalls>;
-/// A mesh that is cut into walls is a plan; a model of ours stays what it is.
+/// Returns true for a mesh that is cut into walls, which is a plan; a model of ours never is.
 bool isCutMesh(const Source& source) {
     if (!source.options.slice_walls || isPointCloud(source.bytes)) return false;
     const bool is_mesh = (isGlb(source.bytes) && !glbHasRecords(source.bytes)) ||
@@ -208,7 +208,7 @@ const InputFormat* findFormat(std::span<const InputFormat> formats, const Source
     return found == formats.end() ? nullptr : &*found;
 }
 
-/// The format of the source, or nothing with `refuse(line, message)` called where it is none.
+/// Returns the format of the source; calls `refuse(line, message)` if there is none.
 template <typename Refuse>
 const InputFormat* formatOf(const Source& source, Refuse refuse) {
     const std::string_view bytes = source.bytes;

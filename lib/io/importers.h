@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One importer per foreign format: how the format is recognised, and what becomes of it. Their
-// table is in input.cc.
+// One importer per foreign format: how the format is recognised, and which records it becomes.
+// importers.cc holds their table.
 #pragma once
 
 #include <cstddef>
@@ -23,94 +23,94 @@ constexpr double kFarthestPlan = 900'000;
 
 /// Which of the closed regions of a plan or map are imported.
 enum class RoomChoice {
-    Largest,  ///< the largest that is no outside and no hollow of a wall
-    All,      ///< every room that is closed in itself
+    Largest,  ///< the largest that is neither the outside nor a hollow wall
+    All,      ///< every closed room
 };
 
-/// What an import has to say besides its document.
+/// Messages of an import besides its document.
 struct ImportReport {
-    std::vector<std::string> choices;  ///< "FILE: note: …", that people have to know of
+    std::vector<std::string> choices;  ///< "FILE: note: …", always shown
     std::vector<Diagnostic> doubts;    ///< warnings that only a check reports
     bool has_storeys = false;          ///< an input is a building with storeys
 
     void addChoice(const std::string& operand, const std::string& sentence);
 };
 
-/// How plans, maps and meshes that somebody else made become records.
+/// Options for importing plans, maps and meshes of other programs.
 struct ImportOptions {
     double wall_height = 2.5;   ///< metres, of walls in plans without heights
     double wall_thickness = 0;  ///< metres, of lines in plans; 0: the line is the face
     RoomChoice rooms = RoomChoice::Largest;
-    std::vector<Point2> inside;         ///< points in the rooms to keep; they win over `rooms`
+    std::vector<Point2> inside;         ///< points in the rooms to keep; override `rooms`
     std::vector<Point2> known_inside;   ///< the same, from `inside` records of other inputs
     std::vector<Segment2> known_walls;  ///< walls that edits or other inputs add
     std::optional<double> close_gaps;   ///< metres up to which gaps between walls are closed;
                                         ///< default: the least that encloses a room
-    std::optional<double> reachable;    ///< radius of a disc that has to reach the floor
+    std::optional<double> reachable;    ///< radius of a disc that must be able to reach the floor
     std::optional<double> resolution;   ///< metres per pixel of a picture without map.yaml
     Pose2 origin;                       ///< of the lower left corner of such a picture
     std::optional<double> slice_walls;  ///< height at which a mesh of a building is cut into walls
-    std::optional<double> slice_top;    ///< of points: those from slice_walls up to here are walls
-    std::optional<double> snap;      ///< metres within which ends of lines are joined; default: the
-                                     ///< importer's own
-    std::optional<double> simplify;  ///< metres outlines may move; default: the importer's own
-    std::optional<double> clean;     ///< metres: what is smaller on a map is noise; 0: nothing;
-                                     ///< default: kNoiseWidth, or 0 where `simplify` is 0
+    std::optional<double> slice_top;    ///< points from slice_walls up to this height are walls
+    std::optional<double> snap;  ///< metres within which ends of lines are joined; default depends
+                                 ///< on the importer
+    std::optional<double> simplify;   ///< metres outlines may move; default depends on the importer
+    std::optional<double> clean;      ///< metres: smaller features of a map are noise; 0 keeps all;
+                                      ///< default: kNoiseWidth, or 0 if `simplify` is 0
     std::string unknown = "unknown";  ///< or "free": shade 205 of a map, see OccupancyRule
     std::string storey;               ///< of a building, by name or number; "": see readIfc
-    std::string units;                ///< m, cm, mm, inch or foot; "": as the file says
+    std::string units;                ///< m, cm, mm, inch or foot; "": from the file
     std::optional<double> width_is;   ///< metres from a drawing's leftmost to its rightmost wall;
-                                      ///< wins over what the file says
+                                      ///< overrides the unit of the file
     std::string up = "auto";          ///< a mesh's upward axis: auto, x, y or z
     std::vector<std::string> wall_layers;    ///< globs; empty: every layer not named otherwise
-    std::vector<std::string> door_layers;    ///< globs; default none
-    std::vector<std::string> window_layers;  ///< globs; default none
+    std::vector<std::string> door_layers;    ///< globs; default: no layer
+    std::vector<std::string> window_layers;  ///< globs; default: no layer
     std::vector<std::string> model_folders;  ///< of SDF, see SdfFiles; relative to the current one
     bool points = false;                     ///< points of an ARIA map become obstacles
     std::optional<std::uint64_t> max_work;   ///< of --max-work, see Budget; default: by the size
     IncludeFiles includes = IncludeFiles::InFolder;  ///< of YAML
-    FoundRooms* found = nullptr;     ///< takes the rooms of plans, kept or not; null: not asked for
+    FoundRooms* found = nullptr;     ///< receives the rooms of plans, kept or not; may be null
     ImportReport* report = nullptr;  ///< null: choices are notes, doubts are dropped
-    bool load_files = true;          ///< false: records keep the files they name unread
+    bool load_files = true;          ///< false: the files that records name are not read
 };
 
-/// Reads any environment or layout, recognised by content: GLB, `#env`, `#3dm`,
-/// YAML, ROS map YAML, pictures, HouseExpo JSON, ARIA and MovingAI maps, ASCII DXF, SVG, IFC, and
-/// meshes, also GLB without our records, which become a `mesh` record. What content does not tell
-/// is a mesh if its suffix says so. `operand` is a file name or "-". Loads the files that records
-/// name unless ImportOptions::load_files is false. \throws FormatError (also: empty input, or no
-/// format we know, with a hint), std::system_error
+/// Reads any environment or layout, recognised by content: GLB, `#env`, `#3dm`, YAML, ROS map YAML,
+/// pictures, HouseExpo JSON, ARIA and MovingAI maps, ASCII DXF, SVG, IFC, and meshes, also GLB
+/// without our records, which become a `mesh` record. Content that fits no format is a mesh if its
+/// suffix says so. `operand` is a file name or "-". Loads the files that records name unless
+/// ImportOptions::load_files is false.
+/// \throws FormatError (also: empty input, or an unknown format, with a hint), std::system_error
 Document readDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
 
-/// True if the bytes are a plan, map or drawing. Its importer chooses rooms, so it must know the
-/// walls and inside points of other inputs and edits beforehand (ImportOptions).
+/// Returns true if the bytes are a plan, map or drawing. Its importer chooses rooms, so it requires
+/// the walls and inside points of other inputs and edits beforehand (ImportOptions).
 bool isPlan(std::string_view bytes, const std::string& operand, const ImportOptions& options,
             const Schemas& schemas);
 
-/// The same as readDocument() for bytes already read.
+/// Reads a document like readDocument(), from bytes already read.
 Document parseDocument(std::string_view bytes, const std::string& operand,
                        const ImportOptions& options, const Schemas& schemas);
 
-/// Reads what records name and do not hold yet: loadMeshes() and loadCalibrations().
+/// Reads the files that records name and have not loaded yet: loadMeshes() and loadCalibrations().
 void loadFiles(Document& document, const std::string& operand);
 
-/// Refuses a file as a whole, or because of one line of it. \throws FormatError
+/// Rejects a file as a whole, or because of one line of it. \throws FormatError
 [[noreturn]] void failFile(const std::string& name, const std::string& message, int line = 0);
 
-/// True if the first line is `2D-Map`.
+/// Returns true if the first line is `2D-Map`.
 bool isAriaMap(std::string_view bytes);
 
 /// Reads a map of ARIA and MobileSim: the LINES, in millimetres, become walls: lines that meet end
-/// to end are one fence, points within ImportOptions::snap (default 5 mm) are one. Kept are the
-/// lines that bound or lie in the region around Home, else the largest one, with an `inside` point,
-/// Home if it lies there. If nothing is enclosed all lines are kept.
+/// to end are one fence, points within ImportOptions::snap (default 5 mm) are one. Keeps the lines
+/// that bound or lie in the region around Home, else the largest one, with an `inside` point, Home
+/// if it lies there. If no region is enclosed, all lines are kept.
 ///
-/// Forbidden areas become zones, `forbidden-NAME` or `forbidden`; forbidden lines and other
-/// cairns are counted in Document::notes. With ImportOptions::points the points of DATA become
-/// cubes on a grid of 0.05 m, as high as the walls, except those within 0.1 m of a line, whose
-/// echoes they are. \throws FormatError with the line: truncated, no number where one is due, no
-/// lines
+/// Forbidden areas become zones, `forbidden-NAME` or `forbidden`; forbidden lines and other cairns
+/// are counted in Document::notes. With ImportOptions::points the points of DATA become cubes on a
+/// grid of 0.05 m, as high as the walls, except points within 0.1 m of a line, which are echoes of
+/// it.
+/// \throws FormatError with the line: truncated, no number where one is due, no lines
 Document readAriaMap(std::string_view bytes, const std::string& name, const ImportOptions& options,
                      const Schemas& schemas);
 
@@ -121,10 +121,10 @@ Document readAriaMap(std::string_view bytes, const std::string& name, const Impo
 Document readBarePicture(std::string_view bytes, const std::string& name,
                          const ImportOptions& options, const Schemas& schemas);
 
-/// True for a grid map of MovingAI's benchmarks: the first line is `type` and a word.
+/// Returns true for a grid map of MovingAI's benchmarks: the first line is `type` and a word.
 bool isGridMap(std::string_view bytes);
 
-/// Reads such a map (`type octile`): cells of `.` and `G` (ground) and `S` (swamp, which can be
+/// Reads a grid map (`type octile`): cells of `.` and `G` (ground) and `S` (swamp, which can be
 /// walked) are free; `@` and `O` (out of bounds), `T` (trees) and `W` (water, which cannot be
 /// entered from ground) are not. Cells are ImportOptions::resolution wide, by default 1 m, and kept
 /// exactly unless ImportOptions::simplify or clean is given.
@@ -132,23 +132,23 @@ bool isGridMap(std::string_view bytes);
 Document readGridMap(std::string_view bytes, const std::string& name, const ImportOptions& options,
                      const Schemas& schemas);
 
-/// True if the bytes begin like a JSON object or list.
+/// Returns true if the bytes begin like a JSON object or list.
 bool isJson(std::string_view bytes);
 
-/// Reads a floor plan of the HouseExpo data set: JSON with `verts`, the outline in metres, inner
-/// walls walked around; and as our extension `holes`, a list of such rings: pillars, and walls
-/// that stand free.
+/// Reads a floor plan of the HouseExpo data set: JSON with `verts`, the outline in metres, which
+/// also runs around inner walls; and as our extension `holes`, a list of such rings: pillars and
+/// free-standing walls.
 ///
 /// The largest region within the outline and outside of the holes becomes the room: its outline
 /// and its holes are closed fences, with an `inside` point clear of walls. Repeated vertices,
 /// either orientation, and rings that touch or cross are fine. Vertices move by at most
 /// ImportOptions::simplify (default not at all); those within ImportOptions::snap (default 0) of
 /// each other become one. The boxes of `room_category` become zones: `kitchen`, `kitchen-2`.
-/// \throws FormatError with the place in the JSON
+/// \throws FormatError with the position in the JSON
 Document readHouseExpo(std::string_view json, const std::string& name, const ImportOptions& options,
                        const Schemas& schemas);
 
-/// True if the bytes begin like ASCII DXF: a section, perhaps behind comments.
+/// Returns true if the bytes begin like ASCII DXF: a section, perhaps behind comments.
 bool isDxf(std::string_view bytes);
 
 /// Reads a plan from ASCII DXF: LINE, LWPOLYLINE and POLYLINE with bulges, ARC, CIRCLE, ELLIPSE
@@ -156,27 +156,27 @@ bool isDxf(std::string_view bytes);
 /// else of `$INSUNITS`.
 ///
 /// - Layers: globs of door_layers and window_layers name those with symbols, wall_layers those with
-/// walls (default: all others). Other layers are left out, and so are layers that are off or
-/// frozen. Case does not matter.
+/// walls (default: all others). Skips other layers and layers that are off or frozen. Case does not
+/// matter.
 /// - Points within ImportOptions::snap (default 5 mm) of each other become one, and ends that close
 /// to another line end on it; lines drawn twice count once; lines that meet end to end become one
 /// fence of the options' height and thickness. Arcs become straight pieces within 1 mm (radii to 10
 /// km). With ImportOptions::simplify lines lose points, see simplifiedPaths().
-/// - Doors (open=yes) and windows, see findOpenings(): across a gap they come with a wall that
-/// closes it.
+/// - Doors (open=yes) and windows, see findOpenings(): in a gap they come with a wall that closes
+/// it.
 /// - Only the largest enclosed region is kept, with rooms joined by doors: the lines that bound it
-/// or lie in it, and an `inside` point. If nothing is enclosed everything is kept.
-/// - A drawing with the layers of dxfRoomLayers(), if no layer is named, comes back as the room
-/// that writeDxf() drew: all walls with their thickness and height, openings with theirs, doors
-/// with a width shut, solids by addDrawnThings().
+/// or lie in it, and an `inside` point. If no region is enclosed, all lines are kept.
+/// - A drawing with the layers of dxfRoomLayers(), if no option names layers, is read back as the
+/// room that writeDxf() drew: all walls with their thickness and height, openings with theirs,
+/// doors with a width shut, solids by addDrawnThings().
 ///
-/// What is left out is counted in Document::notes.
-/// \throws FormatError: damaged, no unit, no line on the layers, places beyond 900 km, more than
-///         ImportOptions::max_work
+/// Document::notes counts the skipped elements.
+/// \throws FormatError: damaged, no unit, no line on the layers, coordinates beyond 900 km, more
+/// than ImportOptions::max_work
 Document readDxf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas);
 
-/// True for XML whose root is `svg`, as far as its beginning tells.
+/// Returns true for XML with the root `svg`, see xmlRootName().
 bool isSvg(std::string_view bytes);
 
 /// Reads a plan from SVG: path, line, polyline, polygon, rect, circle and ellipse, in groups and
@@ -192,13 +192,13 @@ bool isSvg(std::string_view bytes);
 ///   so are definitions, text, pictures, and a rectangle as the page's background.
 /// - Curves become straight pieces within 1 mm.
 ///
-/// See readDxf for what becomes of the lines. Neither documents nor entities are fetched.
-/// \throws FormatError with the line: damaged, no size, no line on the layers of walls, places
-///         beyond 900 km, elements nested too deep, more than ImportOptions::max_work
+/// readDxf() documents the further processing of lines. Neither documents nor entities are fetched.
+/// \throws FormatError with the line: damaged, no size, no line on the layers of walls, coordinates
+/// beyond 900 km, elements nested too deep, more than ImportOptions::max_work
 Document readSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas);
 
-/// True for XML whose root is `sdf`, as far as its beginning tells.
+/// Returns true for XML with the root `sdf`, see xmlRootName().
 bool isSdf(std::string_view bytes);
 
 /// Reads a world of SDF (Gazebo), or a model: the shapes of readSdfShapes().
@@ -210,27 +210,27 @@ bool isSdf(std::string_view bytes);
 /// - Meshes become `mesh` records if their files are there (see SdfFiles), and are else left out
 /// with a warning. Where boxes and polylines enclose no room, or with ImportOptions::slice_walls,
 /// those that bound one are cut into walls, see wallsAmong().
-/// - Planes and slabs of floor, what leans, and every other shape are left out, with a note.
-/// \throws FormatError as readSdfShapes(), and if there is nothing in it
+/// - Planes, slabs of floor, tilted shapes and all others are skipped, with a note.
+/// \throws FormatError as readSdfShapes(), and if no shape is left
 Document readSdf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas);
 
-/// True if the bytes are YAML with the top-level keys `image` and `resolution`.
+/// Returns true if the bytes are YAML with the top-level keys `image` and `resolution`.
 bool isRosMap(std::string_view bytes);
 
 /// Reads a ROS map (map_server's map.yaml and its picture, see parsePicture); see writeCellMap()
-/// for the result. Shade 205 is unknown whatever `free_thresh` says, which is told where it
-/// matters, or free where ImportOptions::unknown says so. \param name the map.yaml; `image` is
-/// relative to its folder (for "-" to the current one) \throws FormatError with place in YAML or
-/// image, std::system_error for a missing image
+/// for the result. Shade 205 is unknown regardless of `free_thresh`, with a note if the two
+/// disagree, or free if ImportOptions::unknown says so. \param name the map.yaml; `image` is
+/// relative to its folder (for "-" to the current one) \throws FormatError with the position in
+/// YAML or image, std::system_error for a missing image
 Document readRosMap(std::string_view yaml, const std::string& name, const ImportOptions& options,
                     const Schemas& schemas);
 
 /// Reads the plan in the cut through a mesh of a room or building at ImportOptions::slice_walls, a
 /// height after `units` and `up`: cuts become walls, solids that meet become one, and the room is
 /// chosen as in readDxf(). Lines are simplified by at most a millimetre unless
-/// ImportOptions::simplify says otherwise. \throws FormatError: nothing stands at this height, and
-/// as meshDocument and loadMesh
+/// ImportOptions::simplify says otherwise. \throws FormatError if the mesh does not reach this
+/// height, and as meshDocument and loadMesh
 Document readMeshWalls(const std::string& operand, const ImportOptions& options,
                        const Schemas& schemas);
 
@@ -242,21 +242,21 @@ Document readMeshWalls(const std::string& operand, const ImportOptions& options,
 Document readPointCloud(std::string_view bytes, const std::string& name,
                         const ImportOptions& options, const Schemas& schemas);
 
-/// True for the text of a STEP file with a schema of IFC.
+/// Returns true for the text of a STEP file with a schema of IFC.
 bool isIfc(std::string_view bytes);
 
-/// Reads a storey of an IFC building (2x3, 4 or 4.3), see chosenStorey(), in a process of its own.
+/// Reads a storey of an IFC building (2x3, 4 or 4.3), see chosenStorey(), in a separate process.
 ///
 /// - Walls, curtain walls, plates and members are cut 1 m above the floor, or at
 /// ImportOptions::slice_walls (the building's own height). Their faces become closed fences, so
 /// that rooms are as wide as they are; holes in walls with their doors and windows become doors and
 /// windows through both faces.
-/// - Spaces become zones, and the rooms that hold them are kept; without any the room is chosen as
-/// in readDxf().
+/// - Spaces become zones, and the rooms that hold them are kept; without spaces the room is chosen
+/// as in readDxf().
 /// - Columns become pillars, furniture, fixtures and stairs boxes and cylinders.
 ///
-/// Geometry that cannot be read is told in a warning. \throws FormatError: cut off, no such storey,
-/// and as readBuilding()
+/// Warnings count the geometry that is not read. \throws FormatError: cut off, no such storey, and
+/// as readBuilding()
 Document readIfc(std::string_view bytes, const std::string& operand, const ImportOptions& options,
                  const Schemas& schemas);
 

@@ -22,8 +22,7 @@ struct ModelNode {
     std::string keyword;        ///< "" for the floor of the indoor region, whose id is "floor"
     std::optional<Pose3> pose;  ///< frame of the meshes; if empty, the world frame
     std::vector<Mesh> meshes;   ///< one a material; never empty, each with triangles
-    const Element* element =
-        nullptr;  ///< of the scene; null for the floor and for placed sensors, robots and people
+    const Element* element = nullptr;  ///< of the scene; null: floor, sensor, robot or person
 };
 
 /// Builds nodes of all elements in the order of their records, then of the floor, then of placed

@@ -51,7 +51,7 @@ struct ForbiddenArea {
     Point2 a, b;  // opposite corners before turning
 };
 
-/// What the map says, in metres.
+/// The contents of the map, in metres.
 struct AriaMap {
     std::vector<PlanPath> lines;
     std::vector<Point2> points;
@@ -105,7 +105,7 @@ class AriaReader {
                  ", wanted a number");
         return *value;
     }
-    /// A place in the file's millimetres.
+    /// Reads a point in the file's millimetres.
     [[nodiscard]] Point2 place(std::size_t word) const {
         const Point2 p{number(word) / 1000, number(word + 1) / 1000};
         if (std::max(std::abs(p.x), std::abs(p.y)) > kFarthestPlan)

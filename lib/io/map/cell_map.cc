@@ -182,7 +182,7 @@ class CellMapImport {
         addFound(outlined, inside, pieces[piece].border > 0, true);
     }
 
-    /// The floor of a room, and a point in its widest place.
+    /// The floor of a room, and a point in its widest part.
     struct Outlined {
         Region floor;
         Point2 within;
@@ -198,8 +198,8 @@ class CellMapImport {
                    {room.floor}});
     }
 
-    /// Hands over the other rooms, each as a point in it would choose it. With gaps closed these
-    /// are the rooms that then end before the border, and the others as they are without.
+    /// Reports the other rooms, each as it would be if a point in it chose it: rooms that closed
+    /// gaps enclose with these gaps closed, the others without.
     void handOver(const CellPieces& open) {
         std::vector<std::pair<const CellPieces*, std::size_t>> rooms;
         const std::optional<MapCells> closed =
@@ -297,8 +297,8 @@ class CellMapImport {
         return cells;
     }
 
-    /// Cells within two of an added wall. Nothing moves there, so that added walls still meet those
-    /// of the map.
+    /// Cells within two of an added wall. Cleaning moves no edge there, so that added walls still
+    /// meet those of the map.
     [[nodiscard]] std::optional<MapCells> besideBarriers(const MapRoom& room) const {
         if (!barrier_) return std::nullopt;
         return grown(cutOf(*barrier_, room.floor, room.offset), 2);
@@ -358,7 +358,7 @@ class CellMapImport {
         Region region = vectorised(room.floor, tolerance, rigid ? &*rigid : nullptr);
         const CellIndex widest = widestPlace(room.floor);
         const Point2 middle{widest.x + 0.5, widest.y + 0.5};
-        // Simplification may have removed the widest place.
+        // Simplification may have removed the widest part.
         const Point2 within =
             region.locate(middle) == Side::Inside ? middle : interiorPoint(region);
         const auto moved = [&](Point2 p) {
@@ -403,7 +403,7 @@ class CellMapImport {
     std::optional<MapCells> barrier_;  ///< under walls that were added
     std::vector<Choice> choices_;
     Box2 extent_;                  ///< of the rooms written
-    std::vector<CellIndex> kept_;  ///< places in them, if all rooms are asked for
+    std::vector<CellIndex> kept_;  ///< cells in them, if the caller requires all rooms
 };
 
 }  // namespace

@@ -13,65 +13,64 @@
 
 namespace ispace {
 
-/// A map of square cells. Free and occupied are sets of the same size; what is in neither is
-/// unknown.
+/// A map of square cells. Free and occupied are sets of the same size; all other cells are unknown.
 struct CellMap {
     MapCells free, occupied;
     double resolution = 0;  ///< metres a cell
     Pose2 map_from_grid;    ///< the lower left corner of the cells
     int wall_depth = 0;     ///< cells by which the faces of walls lie within occupied ones
 
-    /// Places in cells, cell (x, y) being the square from (x, y) to (x + 1, y + 1), in the map's
-    /// metres, and back.
+    /// Maps points in cells, cell (x, y) being the square from (x, y) to (x + 1, y + 1), to the
+    /// map's metres, and back.
     [[nodiscard]] Point2 inMap(Point2 cells) const;
     [[nodiscard]] Point2 inCells(Point2 point) const;
-    /// The cell of a point, which may lie outside the grid.
+    /// Returns the cell of a point, which may lie outside the grid.
     [[nodiscard]] CellIndex placeOf(Point2 point) const;
     [[nodiscard]] Point2 middleOf(CellIndex place) const {
         return inMap({place.x + 0.5, place.y + 0.5});
     }
-    /// In square metres.
+    /// Converts a number of cells to square metres.
     [[nodiscard]] double area(std::size_t cells) const {
         return static_cast<double>(cells) * resolution * resolution;
     }
 };
 
-/// Refuses maps of more than 10 km. \throws FormatError
+/// Rejects maps of more than 10 km. \throws FormatError
 void checkCellMap(int width, int height, double resolution, const std::string& file);
 
-/// How messages name the source of a map.
+/// The source of a map, for messages.
 struct CellMapSource {
     std::string file;             ///< named in errors
-    std::string hint_if_no_free;  ///< advice where no cell is free
+    std::string hint_if_no_free;  ///< advice if no cell is free
 };
 
 /// Writes the rooms of a map: free regions (4-connected; unknown is not free), outlines and holes
 /// as closed fences, each with an `inside` point.
 ///
-/// 1. ImportOptions::known_walls stand in the floor while rooms are chosen; the floor under them
-///    and a cell beyond comes back, so that they are the border. Openings to the picture's border
-///    of at most `close_gaps` are closed (gapCells()).
-/// 2. The rooms are the regions with the points of `inside` and `known_inside`; without any the
-///    likeliest one (likeliestRoom()) or, with RoomChoice::All, all that are closed.
+/// 1. ImportOptions::known_walls split the floor while rooms are chosen; then the floor under them
+/// and a cell beyond is restored, so that they are the border. Openings to the picture's border of
+/// at most `close_gaps` are closed (gapCells()).
+/// 2. The rooms are the regions with the points of `inside` and `known_inside`; without points the
+/// likeliest one (likeliestRoom()) or, with RoomChoice::All, all that are closed.
 /// 3. Noise smaller than `clean` is removed (cleanRoom()).
-/// 4. With `reachable` the floor is what a disc of that radius reaches.
+/// 4. With `reachable` the floor is the part that a disc of that radius reaches.
 /// 5. Outlines follow the cells' edges, simplified by at most `simplify` (default one cell: slanted
 ///    walls become straight lines through their stairs; two where the map is noisy).
 ///
 /// The `inside` records of a room are the points of `inside` that chose it, else one far from the
-/// outline; rooms that only points of `known_inside` chose have theirs elsewhere.
+/// outline; rooms chosen only by `known_inside` already have a record in another input.
 ///
-/// Warns where less than half of the free cells is kept that are not outside, where a room leaves
-/// the picture, and of sizes that are no building's; notes tell what was closed and cleaned.
+/// Warns if less than half of the indoor free cells is kept, if a room leaves the picture, and of
+/// unlikely sizes of a building; notes report closed gaps and cleaning.
 /// \throws FormatError if no cell is free, for a point that is not on free floor, and for a disc
-/// that fits nowhere
+/// that does not fit
 void writeCellMap(const CellMap& map, const CellMapSource& source, const ImportOptions& options,
                   ImportRecords& out);
 
-/// Messages about the rooms that writeCellMap() chose.
+/// Reports about the rooms that writeCellMap() chose.
 
 /// Reports free cells that are not kept: a warning if they are more than half of the indoor cells
-/// and nobody chose the rooms, else a note.
+/// and no point chose the rooms, else a note.
 void reportDroppedCells(const CellMap& map, const CellPieces& pieces,
                         const std::vector<std::size_t>& rooms, const ImportOptions& options,
                         ImportRecords& out);
@@ -81,12 +80,12 @@ void reportDroppedCells(const CellMap& map, const CellPieces& pieces,
 /// separate a room from it.
 void warnOfBorder(const CellMap& map, const MapRoom& room, double border_share, ImportRecords& out);
 
-/// Notes what cleaning removed from all rooms, of so many cells before; warns where
-/// spikes were more than a hundredth of them.
+/// Reports the cells that cleaning removed, of `cells` in all rooms; warns if spikes were more than
+/// a hundredth of them.
 void reportCleaning(const CellMap& map, const Cleaning& cleaning, std::size_t cells,
                     ImportRecords& out);
 
-/// Notes the gaps closed beside the rooms.
+/// Reports the gaps closed beside the rooms.
 void reportClosedGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
                       const std::vector<std::size_t>& rooms, double widest, ImportRecords& out);
 

@@ -201,9 +201,9 @@ void reportClosedGaps(const CellMap& map, const MapCells& cut, const CellPieces&
 
 namespace {
 
-/// Pixels less opaque than this show what is behind them.
+/// Pixels with a lower opacity show the background.
 constexpr std::uint8_t kOpaque = 128;
-/// What map_server writes for unknown, of 255.
+/// Shade that map_server writes for unknown, of 255.
 constexpr int kUnknown = 205;
 
 /// The picture with its transparent pixels unknown.
@@ -228,7 +228,7 @@ class GridMapReader {
         if (const std::string_view type = header("type"); type != "octile")
             fail("found type " + excerpt(type) + ", wanted `type octile`");
         const int height = count("height"), width = count("width");
-        // Each cell takes a byte, so the file bounds what is allocated.
+        // Each cell takes a byte, so the file size bounds the allocation.
         if (std::int64_t{width} * height > static_cast<std::int64_t>(size_))
             fail("truncated: " + std::to_string(size_) + " bytes do not hold " +
                  std::to_string(width) + " x " + std::to_string(height) + " cells");

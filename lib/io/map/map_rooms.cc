@@ -83,7 +83,8 @@ class WideningFlood {
         for (int y = 0; y < free_.height(); ++y)
             for (int x = 0; x < free_.width(); ++x)
                 if (before[free_.index(x, y)] != Nobody) pushAround({x, y}, kNoDistance);
-        // Ways only get narrower. What finds a cell first comes the widest way, so it owns it.
+        // Widths only fall along a way, so the first visit of a cell comes by the widest way and
+        // owns it.
         for (std::size_t width = open_.size(); width-- > 0;)
             for (std::size_t i = 0; i < open_[width].size(); ++i)
                 pushAround(open_[width][i], static_cast<int>(width));
@@ -112,7 +113,7 @@ class WideningFlood {
 }  // namespace
 
 MapCells barrierCells(const std::vector<Segment2>& lines, int width, int height) {
-    // Middles of cells are whole numbers in the grid, places in cells are not.
+    // Cell centres are integers in the grid, points in cells are not.
     const Grid grid{
         {{0, 0}, {static_cast<double>(width), static_cast<double>(height)}}, width, height};
     std::vector<CellPair> pairs;
@@ -190,7 +191,7 @@ MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<C
     }
     const int steps = static_cast<int>(std::ceil(radius));
     for (const CellIndex place : from) {
-        // The nearest middle whose disc covers the place.
+        // The nearest centre with a disc that covers the point.
         std::optional<std::size_t> nearest;
         double least = reach;
         for (int v = -steps; v <= steps; ++v)
@@ -211,8 +212,8 @@ namespace {
 constexpr int kMaxBump = 3;  ///< cells
 constexpr int kFlank = 6;    ///< cells
 
-/// Fills slits of unknown between rays: from their tips, as long as a cell has floor on three
-/// sides and what else is around it hangs together. So no line that parts floor opens.
+/// Fills slits of unknown between rays from their tips, while a cell has floor on three sides and
+/// its other neighbours are connected. So no line that separates floor is broken.
 class SlitFilling {
   public:
     explicit SlitFilling(MapRoom& room) : room_(room) {}

@@ -16,7 +16,7 @@ constexpr double kOutsideShare = 0.5;
 /// Minimum area (square metres) and width (metres) of a room.
 constexpr double kMinRoomArea = 1, kMinRoomWidth = 0.5;
 
-/// The piece of the free cells that is most likely the room; none if there is no piece.
+/// Finds the piece of the free cells that is most likely the room; std::nullopt without pieces.
 ///
 /// Pieces below 1 m2 that are small against the largest one, below 1/16 of it, are no rooms. A
 /// piece at the picture's border, along a share f of it, is probably the outside or open to it: it
@@ -25,27 +25,25 @@ constexpr double kMinRoomArea = 1, kMinRoomWidth = 0.5;
 /// house does not beat the house.
 std::optional<std::size_t> likeliestRoom(const CellPieces& pieces, double resolution);
 
-/// The pieces that are closed rooms: away from the picture's border, at least kMinRoomArea large
-/// and kMinRoomWidth wide somewhere; and the likeliest one. In piece order. O(cells)
+/// Returns the pieces that are closed rooms: away from the picture's border, at least kMinRoomArea
+/// large and at some point kMinRoomWidth wide; and the likeliest one. In piece order. O(cells)
 std::vector<std::size_t> closedRooms(const MapCells& cells, const CellPieces& pieces,
                                      double resolution);
 
-/// The cells that wall lines pass through: no step between side neighbours crosses a line.
+/// Returns the cells that wall lines cross: no step between side neighbours crosses a line.
 /// \param lines in cells, cell (x, y) being the square from (x, y) to (x + 1, y + 1)
 MapCells barrierCells(const std::vector<Segment2>& lines, int width, int height);
 
-/// Free cells to remove so that openings to the grid's border of at most `width` cells, give or
-/// take one, are closed. Floor that a disc of that diameter cannot enter belongs to the side that
-/// reaches it by the widest way, so an opening is cut where it is narrowest; openings between
-/// inner rooms stay.
-/// O(cells + width squared).
+/// Finds the free cells to remove so that openings to the grid's border of at most `width` cells,
+/// give or take one, are closed. Floor that a disc of that diameter cannot enter belongs to the
+/// side that reaches it by the widest way, so an opening is cut where it is narrowest; openings
+/// between inner rooms stay. O(cells + width squared).
 MapCells gapCells(const MapCells& free, double width);
 
-/// The cells that a disc can sweep without leaving the set, moving between side neighbours, from
-/// where it covers one of `from`; without any, from the largest area it fits into.
-/// Empty if the disc fits nowhere (there).
-/// \param radius in cells: the disc's centre stays at least this far from the
-/// edge of the set
+/// Returns the cells that a disc can sweep without leaving the set, moving between side neighbours,
+/// from any position where it covers one of `from`; if `from` is empty, from the largest area it
+/// fits into. Empty if the disc fits into none of these.
+/// \param radius in cells: the disc's centre stays at least this far from the edge of the set
 MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<CellIndex>& from);
 
 /// A room of a map, cut out with at least one row and column of other cells around it.
@@ -57,7 +55,7 @@ struct MapRoom {
 /// Metres; smaller features of a robot's map are noise of its sensor.
 constexpr double kNoiseWidth = 0.5;
 
-/// What cleanRoom() did, in pieces and cells.
+/// Counts of removed pieces and of their cells, by kind.
 struct Cleaning {
     std::size_t specks = 0, speck_cells = 0;
     std::size_t spikes = 0, spike_cells = 0;
@@ -71,23 +69,22 @@ struct Cleaning {
 
 /// Removes a robot map's noise from a room, features that are also small in metres:
 ///
-/// - Specks become floor: islands of one or two occupied cells, or as many as chance joins where
-///   single ones are as frequent as on this map; islands that hold no occupied cell, pinholes
-///   between rays, of up to eight. None is wider than `width`; legs of tables stay from three cells
-///   on.
-/// - Spikes go: strips of floor that are one cell wide, or up to `width` where no occupied cell is
-///   near, and what is connected only through them, unless that is a room (kMinRoomArea,
-///   kMinRoomWidth) or holds one of `keep`. Strips that connect rooms stay.
+/// - Specks become floor: islands of one or two occupied cells, or as many as chance joins if
+/// single ones are as frequent as on this map; islands without occupied cells, pinholes between
+/// rays, of up to eight. All are at most `width` wide; legs of tables stay from three cells on.
+/// - Spikes are removed: strips of floor that are one cell wide, or up to `width` if no occupied
+/// cell is near, and floor connected only through them, unless that is a room (kMinRoomArea,
+/// kMinRoomWidth) or holds one of `keep`. Strips that connect rooms stay.
 /// - Slits of unknown between rays, one cell wide and with a dead end, become floor.
-/// - Bumps of straight walls, one cell deep and up to three long, become flat; corners keep
-///   their places.
-/// With cells of 0.3 times the width or more nothing is done. The result is connected by sides.
-/// O(cells). \param resolution, width metres: of a cell, and below which features are noise
+/// - Bumps of straight walls, one cell deep and up to three long, become flat; corners do not move.
+/// Cells of 0.3 times the width or more are not cleaned. The result is connected by sides.
+/// O(cells).
+/// \param resolution, width metres: of a cell, and below which features are noise
 Cleaning cleanRoom(MapRoom& room, double resolution, double width,
                    const std::vector<CellIndex>& keep);
 
-/// Removes strips of floor that are one cell wide, or at most `width` metres where no occupied cell
-/// is near, with what is connected only through them; see cleanRoom(). O(cells)
+/// Removes strips of floor that are one cell wide, or at most `width` metres if no occupied cell is
+/// near, and floor connected only through them; see cleanRoom(). O(cells)
 void removeSpikes(MapRoom& room, double resolution, double width,
                   const std::vector<CellIndex>& keep, Cleaning& done);
 

@@ -18,7 +18,7 @@ struct RosMap {
     Point2 origin = {};                    ///< lower left corner of the picture
     double occupied = 0.65, free = 0.196;  ///< thresholds of darkness
 };
-/// The lines of a map.yaml.
+/// Writes the lines of a map.yaml.
 std::string rosMapYaml(const RosMap& map);
 
 /// A filter of Nav2's costmaps (nav2_costmap_2d/costmap_filters).
@@ -26,15 +26,15 @@ struct Nav2Filter {
     std::string_view plugin;  ///< "nav2_costmap_2d::KeepoutFilter"
     std::string_view name;    ///< of its topics: "keepout"
     int type = 0;             ///< in CostmapFilterInfo: 0 keep-out, 1 speed in per cent
-    /// What a value v of the mask means: base + multiplier * v.
+    /// A mask value v means base + multiplier * v.
     double base = 0, multiplier = 1;
-    std::string_view meaning;  ///< of the values, for people, a line
+    std::string_view meaning;  ///< of the values, for messages, a line
 };
 
-/// 100 is a place to keep out of, 0 is free.
+/// 100 keeps robots out, 0 is free.
 extern const Nav2Filter kKeepoutFilter;
-/// Full speed less v per cent; 0 is no limit. So a limit of 0 % cannot be said: Nav2 takes it for
-/// none.
+/// Full speed less v per cent; 0 means unlimited. So the mask cannot express a limit of 0 %, which
+/// Nav2 reads as unlimited.
 extern const Nav2Filter kSpeedFilter;
 
 /// Values from 0 to 100 of square cells.
@@ -45,8 +45,8 @@ struct Nav2Mask {
     std::vector<std::uint8_t> values;  ///< by index of the cell
 };
 
-/// A map.yaml that Nav2's map_server reads (`mode: scale`, from which it gets the values back as
-/// they are), with the parameters of the filter as a comment, and its picture (P5).
+/// A map.yaml that Nav2's map_server reads (`mode: scale`, which restores the values exactly), with
+/// the parameters of the filter as a comment, and its picture (P5).
 struct Nav2MaskFiles {
     std::string map, picture;
 };

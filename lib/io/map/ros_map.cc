@@ -32,7 +32,7 @@ namespace {
 /// A millimetre a cell: below it the numbers are no metres.
 constexpr double kFinestResolution = 0.001;
 
-/// What map.yaml says.
+/// The keys of map.yaml.
 struct MapHeader {
     std::string image;
     int image_line = 0, image_column = 0;  ///< where it is named

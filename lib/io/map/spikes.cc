@@ -44,7 +44,7 @@ class Strips {
         });
     }
 
-    /// Marks what stays: rooms, the pieces with the places of `keep`, the strips that join them,
+    /// Marks pieces to keep: rooms, pieces that hold cells of `keep`, the strips that join them,
     /// and strips that are bumps.
     void choose(double resolution, const std::vector<CellIndex>& keep) {
         markRooms(resolution, keep);
@@ -59,7 +59,7 @@ class Strips {
         }
     }
 
-    /// What does not stay leaves the floor.
+    /// Removes the unmarked pieces from the floor.
     void apply(MapCells& floor, Cleaning& done) const {
         const auto erase = [&](const CellPieces& pieces, std::size_t offset) {
             for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -122,8 +122,8 @@ class Strips {
         return is_wide_[piece];
     }
 
-    /// A tree over all nodes, the fewest steps from the start, without the branches that lead to
-    /// nothing that stays.
+    /// Builds a tree over all nodes, by fewest steps from the start, and prunes branches without a
+    /// marked node.
     void markWays(std::size_t start) {
         if (start >= stays_.size()) return;
         std::vector<std::size_t> parent(stays_.size(), stays_.size());

@@ -34,7 +34,7 @@ std::string joined(const std::string& folder, std::string_view path) {
     return (fs::path(folder) / path).lexically_normal().string();
 }
 
-/// What stands behind the last `/models/`: the path below a folder of models.
+/// Returns the path below a folder of models: the part after the last `/models/`.
 std::string_view behindModels(std::string_view uri) {
     constexpr std::string_view kModels = "/models/";
     const std::size_t at = uri.rfind(kModels);
@@ -173,7 +173,7 @@ std::string SdfFiles::read(pugi::xml_node user, const std::string& path) {
     return readAll(file);
 }
 
-/// The file of a model whose folder or file this is: the latest that its model.config names.
+/// Returns the file of a model, given its folder or file: the latest that its model.config names.
 std::optional<std::string> SdfFiles::modelFile(pugi::xml_node include, const std::string& path) {
     std::error_code ignored;
     if (!fs::is_directory(sideFilePath(name(), path), ignored))

@@ -17,8 +17,8 @@
 
 namespace ispace {
 
-/// A file of XML in UTF-8, parsed, with the line of each node. Neither entities nor other documents
-/// are fetched. Not movable: its nodes point into it.
+/// A parsed XML file in UTF-8, with the line of each node. Neither entities nor other documents are
+/// fetched. Not movable: its nodes point into it.
 class XmlFile {
   public:
     /// \param name for messages, as the user named it \throws FormatError with the line: bad XML
@@ -27,9 +27,9 @@ class XmlFile {
     XmlFile& operator=(const XmlFile&) = delete;
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    /// The outermost element.
+    /// Returns the outermost element.
     [[nodiscard]] pugi::xml_node root() const { return document_.document_element(); }
-    /// 1-based. O(log lines) \pre the node is of this file
+    /// Returns the 1-based line of a node. O(log lines) \pre the node is of this file
     [[nodiscard]] int lineOf(pugi::xml_node node) const { return lineAt(node.offset_debug()); }
     /// \throws FormatError at the line of the node
     [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;
@@ -42,14 +42,15 @@ class XmlFile {
     std::vector<std::ptrdiff_t> line_ends_;
 };
 
-/// A world in SDF and the files that it names: models and meshes. They lie, links followed, below
-/// one of its folders of models: its own one, `models` there and beside it, and those given.
+/// A world in SDF and the files that it names: models and meshes. They must lie, links followed,
+/// below one of its folders of models: the world's folder, `models` in and beside it, and
+/// `model_folders`.
 ///
 /// The name in `model://NAME/…` and `package://NAME/…` is that of a folder in one of these, in this
-/// order, or beside the model that says so; or the world's own folder or package. `file://` leads
+/// order, or beside the model that names it; or the world's own folder or package. `file://` leads
 /// to a file by its path, relative to the file that holds it or to one of the folders. Other paths
-/// are relative to the file that holds them. Of a model on Fuel only the name counts: nothing is
-/// fetched.
+/// are relative to the file that holds them. A URI of Fuel counts as the model's name: the library
+/// never downloads.
 class SdfFiles {
   public:
     /// \param model_folders relative to the current one \param max_work see Budget
@@ -59,35 +60,36 @@ class SdfFiles {
 
     [[nodiscard]] pugi::xml_node root() const { return files_.front()->xml.root(); }
 
-    /// Reads what the includes of a world or model put in it.
-    /// \throws FormatError with the line: some are not there, which one error names together, hold
-    ///         no model, light or actor, or include themselves, and as spend()
+    /// Reads the files that a world or model includes.
+    /// \throws FormatError with the line: missing files, which one error lists together, files
+    /// without a model, light or actor, files that include themselves, and as spend()
     void loadIncludes(pugi::xml_node parent);
-    /// The model, light or actor of such an include. Nothing for the sun and the ground plane of
-    /// Gazebo where they are not found: neither stands in a room. \pre loadIncludes(its parent)
+    /// Returns the included model, light or actor. Null for Gazebo's sun and ground plane if they
+    /// are missing: neither is part of a room. \pre loadIncludes(its parent)
     [[nodiscard]] pugi::xml_node included(pugi::xml_node include) const;
 
     /// Files read besides the world, each once, as opened.
     [[nodiscard]] const std::vector<std::string>& sources() const { return sources_; }
-    /// The file that a node names, relative to the folder of the world; nothing if it is not there.
+    /// Finds the file that a node names, relative to the folder of the world; std::nullopt if
+    /// missing.
     [[nodiscard]] std::optional<std::string> fileNamed(pugi::xml_node node,
                                                        std::string_view uri) const;
     [[nodiscard]] int lineOf(pugi::xml_node node) const { return fileOf(node).xml.lineOf(node); }
-    /// Takes units of work that a node makes, see Budget. Each file is parsed anew wherever it is
-    /// included, and costs by its size. \throws FormatError at the node if there are not so many
+    /// Takes units of work for a node, see Budget. Each file is parsed anew for each include, and
+    /// costs by its size. \throws FormatError at the node if fewer units are left
     void spend(pugi::xml_node node, std::size_t units);
     /// \throws FormatError at the node's line of its file
     [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const {
         fileOf(node).xml.fail(node, message);
     }
 
-    /// All numbers of a text. \throws FormatError unless there are `count`
+    /// Parses all numbers of a text. \throws FormatError unless there are `count`
     [[nodiscard]] std::vector<double> numbersOf(pugi::xml_node node, std::string_view text,
                                                 std::size_t count) const;
-    /// The same of a child.
+    /// Parses all numbers of a child's text.
     [[nodiscard]] std::vector<double> numbersIn(pugi::xml_node parent, const char* key,
                                                 std::size_t count) const;
-    /// A number above 0.
+    /// Parses a number above 0.
     [[nodiscard]] double lengthIn(pugi::xml_node parent, const char* key) const;
 
   private:
@@ -98,7 +100,8 @@ class SdfFiles {
         const File* includer = nullptr;
     };
     [[nodiscard]] const File& fileOf(pugi::xml_node node) const;
-    /// Paths relative to the folder of the world that a URI may mean, the likeliest first.
+    /// Returns the paths that a URI may mean, relative to the folder of the world, the likeliest
+    /// first.
     [[nodiscard]] std::vector<std::string> pathsOf(pugi::xml_node node, std::string_view uri) const;
     [[nodiscard]] bool isThere(const std::string& path) const;
     std::optional<std::string> modelFile(pugi::xml_node include, const std::string& path);
@@ -118,35 +121,37 @@ class SdfFiles {
     Budget budget_;
 };
 
-/// A world or model of SDF: what its children's poses may be relative to.
+/// A world or model of SDF, and the children that poses in it can refer to.
 struct SdfScope {
     pugi::xml_node node;  ///< of a model included, in its own file
-    /// With a pose, by name; models that are included by their `include`.
+    /// Children with a pose, by name; for included models, their `include`.
     std::unordered_map<std::string_view, pugi::xml_node> children = {};
-    std::vector<pugi::xml_node> merged = {};  ///< includes whose children count as its own
+    std::vector<pugi::xml_node> merged =
+        {};  ///< includes whose children count as children of this scope
 };
 
-/// Poses of SDF 1.0 to 1.11, each in the scope's own frame: nested models, frames, `relative_to`,
-/// `attached_to`, `placement_frame`, and includes with their own pose. O(1) for each pose, as none
-/// is resolved twice.
+/// Computes poses of SDF 1.0 to 1.11, each in the scope's own frame: nested models, frames,
+/// `relative_to`, `attached_to`, `placement_frame`, and includes with a pose. Each pose is resolved
+/// once, in O(1).
 ///
-/// All throw FormatError with the line: numbers that are none, frames that are not there or depend
-/// on each other, and what SdfFiles throws.
+/// All functions throw FormatError with the line: malformed numbers, frames that are missing or
+/// depend on each other, and the errors of SdfFiles.
 class SdfFrames {
   public:
     using Transform = Eigen::Isometry3d;
 
     explicit SdfFrames(SdfFiles& files) : files_(files) {}
 
-    /// Of a world, a `model`, or an `include` with one.
+    /// Returns the scope of a world, a `model`, or an `include` with one.
     const SdfScope& scopeOf(pugi::xml_node node);
-    /// The frame of a link, joint, frame, model or include in the scope. \param length of the chain
+    /// Computes the frame of a link, joint, frame, model or include in the scope. \param length of
+    /// the chain
     /// of frames that led to it
     const Transform& frameOf(pugi::xml_node node, const SdfScope& scope, int length = 0);
-    /// The frame that an attribute of `user` names; "": the scope's own.
+    /// Computes the frame that an attribute of `user` names; "": the scope's own.
     Transform frameCalled(std::string_view name, const SdfScope& scope, pugi::xml_node user,
                           int length = 0);
-    /// What a `pose` in the node says, in whatever frame.
+    /// Parses the `pose` in the node, regardless of its frame.
     [[nodiscard]] Transform poseIn(pugi::xml_node node) const;
     [[nodiscard]] std::string_view nameOf(pugi::xml_node node) const;
 

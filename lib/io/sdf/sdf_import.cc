@@ -80,7 +80,8 @@ class SdfImporter {
             blocks_.push_back(*block);
     }
 
-    /// What is extruded from the floor is a closed fence: nothing in it is room.
+    /// Adds a shape extruded from the floor as a closed fence, which excludes its inside from the
+    /// room.
     void addPolyline(const SdfShape& shape, const SdfPolyline& polyline) {
         const Eigen::Isometry3d& pose = shape.world_from_shape;
         const double bottom = pose.translation().z();
@@ -210,7 +211,7 @@ class SdfImporter {
         return std::move(trial.rooms);
     }
 
-    /// Walls of the rooms that are meant, and what closes them.
+    /// Chooses the rooms, their walls and the lines that close these.
     void chooseRoom() {
         const std::vector<Segment2> lines = ownLines();
         if (lines.empty()) return;
@@ -283,7 +284,7 @@ class SdfImporter {
         std::string model;
     };
 
-    /// A box is a wall, what is cut from a mesh are fences.
+    /// Adds a box as a wall, the cut of a mesh as fences.
     void addWall(const SdfWall& wall) {
         for (const PlanPath& path : wall.paths) {
             const std::string id = out_.freeId(wall.model, "wall");
@@ -336,7 +337,7 @@ class SdfImporter {
     ImportRecords& out_;
     std::vector<SdfWall> walls_;
     std::set<std::size_t> is_cut_;  // shapes that are walls now
-    std::optional<Trial> uncut_;    // rooms of the walls as they are: no mesh is cut
+    std::optional<Trial> uncut_;    // rooms of the boxes and polylines, without meshes
     std::vector<Fence> fences_;
     std::vector<SdfBlock> blocks_;
     std::map<std::string, std::size_t> missing_;

@@ -15,12 +15,12 @@
 
 namespace ispace {
 
-/// How far from the floor, in metres, what stands on it may begin.
+/// Bodies that stand on the floor may begin this far from it, in metres.
 constexpr double kMaxFoot = 0.1;
 
-/// True for an axis, of length 1, that points up or down.
+/// Returns true for an axis, of length 1, that points up or down.
 bool isUpright(const Eigen::Vector3d& axis);
-/// The direction on the floor, without the rounding of poses.
+/// Returns the direction on the floor, without the rounding of poses.
 Angle headingOf(const Eigen::Vector3d& axis);
 Point2 floorOf(const Eigen::Vector3d& place);
 
@@ -35,7 +35,7 @@ struct SdfBlock {
     int line = 0;  ///< of the file
 };
 
-/// A box or cylinder as a block; nothing for one that leans.
+/// Converts a box or cylinder to a block; std::nullopt if it is tilted.
 std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfBox& box);
 std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfCylinder& cylinder);
 
@@ -47,16 +47,17 @@ struct SdfWall {
     int line = 0;  ///< of the file
 };
 
-/// True for a box with the form of a wall: at most 0.5 m thick, three times as long and twice as
-/// high. It stands on the floor, or reaches through the height of a cut.
+/// Returns true for a box with the form of a wall: at most 0.5 m thick, three times as long and
+/// twice as high. It stands on the floor, or reaches through the height of a cut.
 bool isWall(const SdfBlock& block, std::optional<double> cut);
 SdfWall wallOf(const SdfBlock& block);
-/// Moves the end of a mid-line along it onto that of another wall in whose thickness it ends: boxes
-/// meet at their faces, rooms at mid-lines. \pre each wall is one straight piece
+/// Moves the end of a mid-line along it onto the mid-line of another wall if it ends within that
+/// wall's thickness: boxes meet at their faces, rooms at mid-lines.
+/// \pre each wall is one straight piece
 void joinEnds(std::vector<SdfWall>& walls);
 
-/// The upward axis of a mesh file as a `mesh` record has it: Gazebo takes COLLADA and OBJ as
-/// they are, whatever axis those name.
+/// Returns the upward axis of a mesh file for its `mesh` record: Gazebo takes COLLADA and OBJ
+/// unrotated, whatever axis those name.
 std::string sdfMeshUp(const std::string& file);
 
 /// A mesh of a world, cut into lines.
@@ -65,14 +66,14 @@ struct SdfMeshCut {
     SdfWall wall;
 };
 
-/// Cuts the meshes that are there at a height of the world; those that do not reach it are left
-/// out, and so are bad files. \param name the world's file \throws std::system_error as loadMesh
+/// Cuts the available meshes at a height of the world; skips those that do not reach it, and bad
+/// files. \param name the world's file \throws std::system_error as loadMesh
 std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::string& name,
                                   double height, const Schemas& schemas);
 
-/// The cuts that are walls, others being things in the room: the one that, with other walls of the
-/// world, encloses half of the world's extent; else those at the edge of the room that all enclose
-/// together; else all. \param choose the rooms among lines
+/// Returns the cuts that are walls; others are objects in the room. Prefers the cut that, with
+/// other walls of the world, encloses half of the world's extent; then those at the edge of the
+/// room that all enclose together; then all. \param choose the rooms among lines
 std::vector<SdfMeshCut> wallsAmong(
     std::vector<SdfMeshCut> cuts, std::span<const Segment2> others,
     const std::function<PlanRooms(std::span<const Segment2>)>& choose);

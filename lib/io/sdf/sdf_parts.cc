@@ -233,7 +233,7 @@ void addSdfParts(pugi::xml_node link, const std::vector<SdfPart>& parts,
 
 namespace {
 
-/// What libsdformat accepts as a horizontal field of view, in radians, and as a far plane.
+/// Bounds of libsdformat for a horizontal field of view, in radians, and for a far plane.
 constexpr double kMinFov = 0.1, kMaxFov = 6.283186, kMinFar = 0.1;
 /// A picture needs a near plane.
 constexpr double kNear = 0.01;
@@ -312,7 +312,7 @@ bool isTopic(std::string_view name) {
     });
 }
 
-/// Adds a sensor of any kind; each function returns false for what SDF does not know.
+/// Adds a sensor of any kind; each function returns false for kinds that SDF lacks.
 class SensorWriter {
   public:
     SensorWriter(pugi::xml_node link, const std::string& name, const Pose3& pose)

@@ -16,57 +16,57 @@
 
 namespace ispace {
 
-/// A shape that SDF has a word for, upright, in the frame of a model.
+/// An upright shape of SDF in the frame of a model.
 struct SdfPart {
     enum class Shape { Box, Cylinder, Ball, Polyline, Mesh };
     Shape shape = Shape::Box;
-    Point3 place;   ///< middle of a box, cylinder or ball; of a polyline its foot, in the origin
+    Point3 place;   ///< centre of a box, cylinder or ball; foot of a polyline, at the origin
     Angle heading;  ///< of a box
     double length = 0, width = 0, height = 0;  ///< of a box
     double radius = 0;                         ///< of a cylinder or ball
     Polygon outline = {};                      ///< of a polyline, counter-clockwise
-    std::string mesh = {};                     ///< name of the part of the file beside the world
+    std::string mesh = {};                     ///< name of the part in the file beside the world
     Material material = Material::Wood;
-    bool is_solid = true;  ///< things run into it; patterns on the floor are only drawn
+    bool is_solid = true;  ///< collides; patterns on the floor are only drawn
 };
 
-/// Walls without thickness are boxes this thick, in metres: there is no other word for them.
+/// SDF has no sheets: walls without thickness become boxes this thick, in metres.
 constexpr double kSheetThickness = 0.002;
 
-/// The parts of an element in the frame of its model, at `frame` and the height `bottom`:
+/// Converts an element to parts in the frame of its model, at `frame` and the height `bottom`:
 /// rectangles become boxes, circles cylinders, other footprints polylines, meshes of files the part
 /// `mesh` of the file beside the world. \param is_framed boxes lie along the frame if they can;
 /// else along their longer side
 std::vector<SdfPart> sdfParts(const Body& body, const Pose2& frame, double bottom, bool is_framed,
                               const std::string& mesh);
 
-/// An element's frame, that of its record if it has a place, and the parts in it.
+/// An element's frame, that of its record if it has a position, and the parts in it.
 struct FramedSdfParts {
     Pose3 frame;
     std::vector<SdfPart> parts;
 };
 FramedSdfParts sdfParts(const Element& element);
 
-/// A part of a standing person.
+/// Converts a part of a standing person.
 SdfPart sdfPart(const BodyPart& part);
 
 /// Adds collision and visual of each part to a link. \param mesh_file beside the world
-/// \param names of the link's children: no two may be equal, whatever they are
+/// \param names of the link's children, which must be unique across types
 void addSdfParts(pugi::xml_node link, const std::vector<SdfPart>& parts,
                  const std::string& mesh_file, XmlNames& names);
 
 /// Adds colours to a visual.
 void addSdfMaterial(pugi::xml_node visual, Material material);
 
-/// Bodies of sensors carry this visibility flag, and cameras mask it out: none sees itself or
-/// another.
+/// Bodies of sensors carry this visibility flag, and cameras mask it out: sensors see neither
+/// themselves nor each other.
 constexpr std::uint32_t kSensorBodies = 2;
 
 /// Adds the sensor to a link, with the fields of view, samples, ranges, rates and noise that SDF
-/// has words for: gpu_lidar for lasers and spherical rangers, depth_camera for other rangers,
-/// camera, or wideanglecamera for a fisheye. A sweep is its first scan. Noise that grows with
-/// distance is that at half the maximum range, and a camera's that of mid-grey.
-/// \return false, with nothing added, for what SDF does not know: ultrasound, tags, mirrors
+/// supports: gpu_lidar for lasers and spherical rangers, depth_camera for other rangers, camera, or
+/// wideanglecamera for a fisheye. A sweep is its first scan. Noise that grows with distance is that
+/// at half the maximum range, and a camera's that of mid-grey.
+/// \return false, leaving the link unchanged, for kinds that SDF lacks: ultrasound, tags, mirrors
 bool addSdfSensor(pugi::xml_node link, const std::string& name, const SensorModel& model,
                   const Pose3& link_from_sensor);
 

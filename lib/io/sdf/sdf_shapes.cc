@@ -39,10 +39,10 @@ class SdfReader {
     }
 
   private:
-    /// What is around a link.
+    /// The context of a link.
     struct Around {
         std::string model = "";  // the outermost one
-        int line = 0;            // of the outermost include; 0: there is none
+        int line = 0;            // of the outermost include; 0: not included
         int depth = 0;
     };
 

@@ -17,7 +17,7 @@
 
 namespace ispace {
 
-/// Shapes of SDF, in their own frames: middle in the origin, z along a cylinder and out of a
+/// Shapes of SDF, in their own frames: centre in the origin, z along a cylinder and out of a
 /// polyline's plane.
 struct SdfBox {
     std::array<double, 3> size{};  ///< along x, y and z
@@ -31,7 +31,7 @@ struct SdfPolyline {
 };
 struct SdfMesh {
     std::string uri;
-    std::optional<std::string> file;  ///< relative to the world's folder; nothing if it is missing
+    std::optional<std::string> file;  ///< relative to the world's folder; empty if it is missing
     std::array<double, 3> scale{1, 1, 1};
 };
 
@@ -39,24 +39,24 @@ struct SdfShape {
     std::variant<SdfBox, SdfCylinder, SdfPolyline, SdfMesh> shape;
     Eigen::Isometry3d world_from_shape;
     std::string model;  ///< name of the outermost model
-    int line = 0;       ///< of the world; of what is included, that of the `include`
+    int line = 0;       ///< of the world; for included shapes, that of the `include`
 };
 
 /// The shapes of a world, or of a model without one.
 struct SdfWorld {
     std::vector<SdfShape> shapes;
-    std::map<std::string, std::size_t> left_out;  ///< by what they are
-    std::vector<std::string> sources;             ///< files read besides it, as opened
+    std::map<std::string, std::size_t> left_out;  ///< by type or reason
+    std::vector<std::string> sources;             ///< other files read, as opened
 };
 
-/// Reads the collision shapes of all links, or where a link has none its visuals that every sensor
+/// Reads the collision shapes of all links, or the visuals of links without any that every sensor
 /// sees (without `visibility_flags`), in the world and in the models that it includes, with the
 /// poses of SdfFrames. Entities are not resolved.
 /// \param name the world's file \param model_folders see SdfFiles
 /// \param max_work see Budget
-/// \throws FormatError with the line: bad XML, no world and no model, numbers that are none, frames
-///         that are not there or depend on each other, models nested too deep, includes that are
-///         not there or include themselves, more work than the budget has
+/// \throws FormatError with the line: bad XML, no world and no model, malformed numbers, frames
+/// that are missing or depend on each other, models nested too deep, includes that are missing or
+/// include themselves, more work than the budget has
 SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
                        std::span<const std::string> model_folders,
                        std::optional<std::uint64_t> max_work);

@@ -26,7 +26,7 @@ namespace {
 constexpr double kUpright = 1e-6;   // of a unit vector, how far an axis may lean
 constexpr double kRoundTurn = 1e9;  // steps a degree
 
-// What makes a wall of a box: metres, and shares of its thickness.
+// Limits of a box that counts as a wall: metres, and multiples of its thickness.
 constexpr double kThickestWall = 0.5, kMinLength = 3, kMinHeight = 2;
 /// How far beyond the face of a wall another one may end that is meant to meet it.
 constexpr double kLooseEnd = 0.02;
@@ -155,7 +155,7 @@ SdfWall wallOf(const SdfBlock& block) {
 
 namespace {
 
-/// A wall's line, and what decides how far its ends may move.
+/// A wall's line, and the limits for moving its ends.
 struct BoxLine {
     Segment2 line;
     double thickness = 0;

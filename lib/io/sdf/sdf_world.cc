@@ -19,10 +19,10 @@ namespace ispace {
 
 namespace {
 
-/// The floor reaches this far beyond the walls, in metres, so that what falls out lands on it.
+/// The floor extends this far beyond the walls, in metres, so that falling bodies land on it.
 constexpr double kFloorRim = 1;
 
-/// What Gazebo needs to step a world, show it, and run the sensors in it.
+/// Plugins that Gazebo requires to step a world, show it, and run the sensors in it.
 constexpr std::pair<const char*, const char*> kPlugins[] = {
     {"gz-sim-physics-system", "gz::sim::systems::Physics"},
     {"gz-sim-user-commands-system", "gz::sim::systems::UserCommands"},

@@ -134,7 +134,7 @@ class UrdfWriter {
         joint.append_child("child").append_attribute("link").set_value(child.c_str());
     }
 
-    /// What a link looks like; materials are defined where they are first used.
+    /// Adds a link's appearance; materials are defined at their first use.
     pugi::xml_node addVisual(pugi::xml_node link, Point3 middle, Material material) {
         pugi::xml_node visual = link.append_child("visual");
         setOrigin(visual, middle, "0 0 0");
@@ -161,7 +161,7 @@ class UrdfWriter {
             lengthsText({radius}).c_str());
     }
 
-    /// A robot or a person: somebody else tells where it is once it moves.
+    /// Adds a robot or a person; another program publishes its pose once it moves.
     void addCarrier(const PlacedRecord& placed) {
         const std::string name = names_.take(idOf(placed));
         carriers_[{keywordOf(placed), placed.index}] = name;

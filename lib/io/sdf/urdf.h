@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the writers of SDF and URDF share: both say poses, boxes and cylinders in XML.
+// Shared by the writers of SDF and URDF: poses, boxes and cylinders in XML.
 #pragma once
 
 #include <array>
@@ -16,30 +16,30 @@
 
 namespace ispace {
 
-/// Makes names from ids: neither format may have two that are equal, or `world`; SDF reserves `::`
-/// and names within double underscores, too.
+/// Creates names from ids. Both formats require unique names other than `world`; SDF also reserves
+/// `::` and names within double underscores.
 class XmlNames {
   public:
-    /// \param reserved names that the file has already
+    /// \param reserved names already in the file
     explicit XmlNames(std::set<std::string> reserved = {"world"}) : taken_(std::move(reserved)) {}
-    /// The id, changed as little as possible.
+    /// Returns the id, changed as little as possible.
     std::string take(std::string_view id);
 
   private:
     std::set<std::string> taken_;
 };
 
-/// Lengths to a nanometre and angles to a thousandth of a nanoradian, with blanks between: what
-/// is left of computed values is rounding.
+/// Writes lengths to a nanometre and angles to a thousandth of a nanoradian, separated by blanks:
+/// further digits of computed values are rounding.
 std::string lengthsText(std::initializer_list<double> metres);
 std::string radiansText(Angle angle);
-/// Roll, pitch and yaw as both formats have them: Rz(yaw) Ry(pitch) Rx(roll), pitch down.
+/// Writes roll, pitch and yaw as both formats define them: Rz(yaw) Ry(pitch) Rx(roll), pitch down.
 std::string anglesText(const Pose3& pose);
 
 /// Adds an element with text in it.
 pugi::xml_node addText(pugi::xml_node parent, const char* name, const std::string& text);
 
-/// The file's text, indented.
+/// Returns the file's text, indented.
 std::string xmlText(const pugi::xml_document& document);
 
 /// An upright box around meshes, in their frame.
