@@ -158,7 +158,7 @@ class CalibrationReader {
     const std::string& name_;
 };
 
-/// Keys that a calibration file sets; a record that gives one beside `calibration` repeats it.
+/// Keys that a calibration file sets; a record with `calibration` must not contain them.
 constexpr std::array<const char*, 9> kCalibrated = {"fov", "focal", "sensor", "fx",          "fy",
                                                     "cx",  "cy",    "mirror", "coefficients"};
 

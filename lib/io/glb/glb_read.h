@@ -15,7 +15,7 @@ namespace ispace {
 bool isGlb(std::string_view bytes);
 
 /// Returns false for a sound binary glTF file without our records, i.e. a mesh of another program;
-/// true for damaged files, whose errors readGlb() reports. \pre isGlb(bytes)
+/// true for damaged files; readGlb() reports their errors. \pre isGlb(bytes)
 bool glbHasRecords(std::string_view bytes);
 
 /// Reads the records of a compiled file, bit by bit as written, with their meshes loaded. Parses

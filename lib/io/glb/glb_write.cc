@@ -176,7 +176,7 @@ class GlbScene {
         return primitives.empty() ? -1 : builder_.addMesh(name, primitives);
     }
 
-    /// Adds an element whose mesh is in the world frame.
+    /// Adds an element with its mesh in the world frame.
     void addFixed(const ModelNode& node) {
         addNode(node.id, node.keyword, meshOf(node.id, surfacesOf(node.meshes, origin_)));
     }
@@ -214,7 +214,7 @@ class GlbScene {
         addNode(node.id, node.keyword, place->second, *node.pose);
     }
 
-    /// Adds furniture: elements whose records differ only in id and position share a mesh.
+    /// Adds furniture: records that differ only in id and position share a mesh.
     void addStanding(const Element& element, const std::string& shape) {
         const Record& record = element.record;
         const auto [place, is_new] = shapes_.try_emplace(shape, -1);

@@ -19,9 +19,9 @@ namespace ispace {
 /// One named thing of a model as triangles, for the writers of GLB, OBJ and STL.
 struct ModelNode {
     std::string id;
-    std::string keyword;        ///< "" for the floor of the indoor region, whose id is "floor"
-    std::optional<Pose3> pose;  ///< frame of the meshes; if empty, the world frame
-    std::vector<Mesh> meshes;   ///< one a material; never empty, each with triangles
+    std::string keyword;               ///< "" for the floor of the indoor region (id "floor")
+    std::optional<Pose3> pose;         ///< frame of the meshes; if empty, the world frame
+    std::vector<Mesh> meshes;          ///< one a material; never empty, each with triangles
     const Element* element = nullptr;  ///< of the scene; null: floor, sensor, robot or person
 };
 

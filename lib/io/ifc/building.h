@@ -14,7 +14,7 @@
 namespace ispace {
 
 /// The cut through one product, in metres. Each part is the area that `curves` bound (even-odd)
-/// without that of the `removed` ones; sheets are lines of surfaces without thickness.
+/// minus that of the `removed` ones; sheets are lines of surfaces without thickness.
 struct BuildingSection {
     struct Part {
         std::vector<Polygon> curves, removed;
@@ -35,11 +35,11 @@ struct BuildingBox {
 };
 
 struct BuildingStorey {
-    std::string name;                                 ///< "" if it has none
+    std::string name;                                 ///< "" if unnamed
     std::string building;                             ///< name of the building it belongs to
     double elevation = 0;                             ///< of its floor
     double cut = 0;                                   ///< height of the sections of walls
-    std::uint64_t walls = 0, doors = 0, windows = 0;  ///< that the file says belong to it
+    std::uint64_t walls = 0, doors = 0, windows = 0;  ///< that the file assigns to it
 };
 
 /// An area that the file states for a space.
@@ -68,8 +68,8 @@ struct BuildingWall {
 struct BuildingOpening {
     enum class Kind : std::uint8_t { Door, Window, Hole };
     Kind kind = Kind::Door;
-    bool has_hole = false;  ///< false: the box is that of the door or window itself
-    BuildingBox box;        ///< the length lies along the wall where the file says so
+    bool has_hole = false;  ///< false: the box is that of the door or window
+    BuildingBox box;        ///< the length lies along the wall if the file gives its direction
 };
 
 /// Furniture, fixtures, stairs and the like.
@@ -79,7 +79,7 @@ struct BuildingThing {
     std::vector<BuildingBox> boxes;
 };
 
-/// A building as far as plans of its storeys go: in metres, z up, as it stands in its own
+/// The parts of a building that plans of its storeys require: in metres, z up, in the building's
 /// coordinates. Storeys rise, and so do their cuts.
 struct Building {
     std::vector<BuildingStorey> storeys;
@@ -87,25 +87,25 @@ struct Building {
     std::vector<BuildingWall> walls;  ///< one for each storey and product
     std::vector<BuildingOpening> openings;
     std::vector<BuildingThing> things;
-    std::map<std::string, std::uint64_t> unread;  ///< parts of geometry that are not read, by type
+    std::map<std::string, std::uint64_t> unread;  ///< skipped parts of geometry, by type
 };
 
-/// The first storey that is cut at the same height, which has the sections of walls for all of
-/// them: storeys of several buildings are often level. O(log storeys)
+/// Returns the first storey that is cut at the same height, which stores the sections of walls for
+/// all of them: storeys of several buildings are often level. O(log storeys)
 std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey);
 
 /// Reads a building of IFC2x3, IFC4 or IFC4.3.
 /// \param slice a height at which the highest storey below is cut, instead of 1 m above its floor
-/// \throws std::runtime_error for a file without products, and what is too large
+/// \throws std::runtime_error for a file without products, and for too large ones
 Building readBuilding(std::string_view bytes, std::optional<double> slice);
 
 std::string packedBuilding(const Building& building);
-/// Trusts nothing: on return numbers are finite and indices valid. \throws std::runtime_error for
-/// other bytes than packedBuilding() writes
+/// Reads a packed building and validates it: on return numbers are finite and indices valid.
+/// \throws std::runtime_error for bytes that packedBuilding() did not write
 Building unpackedBuilding(std::string_view bytes);
 
-/// readBuilding() in lib/ispace/read-mesh, confined as meshes are: bounds on memory and time, no
-/// files, no rights. \param name of the file, for messages \throws FormatError
+/// Runs readBuilding() in lib/ispace/read-mesh, confined as meshes are: bounds on memory and time,
+/// no files, no rights. \param name of the file, for messages \throws FormatError
 Building readBuildingInChild(std::string_view bytes, const std::string& name,
                              std::optional<double> slice);
 

@@ -181,7 +181,7 @@ class BuildingReader {
         return found->second;
     }
 
-    /// A section for each storey whose plane it meets, whichever it belongs to.
+    /// Adds a section for each storey plane that the wall crosses, regardless of its own storey.
     void addWall(StepId id, bool is_column) {
         const Product product = productOf(id);
         const IfcHeights heights = heightsOf(product.shape);
@@ -198,7 +198,7 @@ class BuildingReader {
             const auto box = boxAround(product.shape, product.axis());
             if (wall.section.empty() || !box) continue;
             wall.box = *box;
-            // What leans, as rafters, is no column.
+            // Tilted members such as rafters are no columns.
             if (is_column && std::max(box->length, box->width) > kMaxColumn) continue;
             out_.walls.push_back(std::move(wall));
         }

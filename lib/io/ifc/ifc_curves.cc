@@ -135,7 +135,7 @@ std::vector<Point3> ifcArc(const IfcFrame& frame, double half_x, double half_y, 
     const double radius = std::max({half_x, half_y, kIfcChordError});
     const double fine = std::numbers::pi / std::acos(1 - kIfcChordError / radius / 2);
     const double a_turn = std::clamp(fine, kMinCount, kMost);
-    // Of quarters, so that boxes around circles are as large as they are.
+    // Whole pieces per quarter, so that boxes around circles have the right size.
     const double quarters = std::ceil(a_turn / 4);
     const auto count = static_cast<int>(
         std::ceil(std::min(std::abs(to - from), kTurn) / kTurn * 4 * quarters - 1e-9));
@@ -200,7 +200,7 @@ class SizedProfile {
     SizedProfile(const IfcFrames& frames, const StepInstance& profile)
         : frames_(frames), profile_(profile), frame_(frames.axes(profile[2].reference())) {}
 
-    /// Nothing for types that are no such shape.
+    /// Returns the boundary; empty for other types.
     [[nodiscard]] IfcArea area() const {
         const std::string_view type = profile_.type;
         if (type == "IFCRECTANGLEPROFILEDEF" || type == "IFCROUNDEDRECTANGLEPROFILEDEF")

@@ -13,69 +13,70 @@
 
 namespace ispace {
 
-/// Geometry that is not read, by the name of its type.
+/// Reports geometry that is not read, by the name of its type.
 class UnreadGeometry : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// References may be nested this deep; deeper ones, and loops, are UnreadGeometry.
+/// Maximum depth of references; UnreadGeometry is thrown for deeper ones and loops.
 constexpr int kMaxIfcDepth = 300;
 
 inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Vec3 operator-(Vec3 v) { return {-v.x, -v.y, -v.z}; }
-/// Null for the null vector.
+/// Returns the unit vector; null for the null vector.
 Vec3 unitOf(Vec3 v);
 
-/// An affine map from local coordinates to those around them, in metres. Axes are unit vectors but
-/// for scaled and mirrored maps.
+/// An affine map from local to enclosing coordinates, in metres. Axes are unit vectors except for
+/// scaled and mirrored maps.
 struct IfcFrame {
     Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
     Point3 origin;
 
     [[nodiscard]] Vec3 turned(Vec3 v) const { return v.x * x + v.y * y + v.z * z; }
     [[nodiscard]] Point3 at(Point3 p) const { return origin + turned({p.x, p.y, p.z}); }
-    /// Inner coordinates to those around this frame.
+    /// Composes two frames: maps inner coordinates to those around this frame.
     [[nodiscard]] IfcFrame operator*(const IfcFrame& inner) const {
         return {turned(inner.x), turned(inner.y), turned(inner.z), at(inner.origin)};
     }
 };
 
-/// Factors of the units that the project assigns: 1 where it assigns none.
+/// Factors of the units that the project assigns; 1 for unassigned ones.
 struct IfcUnits {
     double length = 1;  ///< metres
     double area = 1;    ///< square metres
     double angle = 1;   ///< radians
 };
 
-/// Reads IfcUnitAssignment of the first project. Broken units count as 1.
+/// Reads IfcUnitAssignment of the first project. Malformed units count as 1.
 IfcUnits readIfcUnits(const StepFile& file);
 
-/// Points, directions, axes and placements of an IFC file, in metres and radians.
+/// Reads points, directions, axes and placements of an IFC file, in metres and radians.
 ///
-/// All throw UnreadGeometry for chains and loops deeper than kMaxIfcDepth and for numbers that are
-/// missing; placements that are missing are the identity.
+/// All throw UnreadGeometry for chains and loops deeper than kMaxIfcDepth and for missing numbers;
+/// missing placements are the identity.
 class IfcFrames {
   public:
     explicit IfcFrames(const StepFile& file) : file_(file), units_(readIfcUnits(file)) {}
 
     [[nodiscard]] const StepFile& file() const { return file_; }
     [[nodiscard]] const IfcUnits& units() const { return units_; }
-    /// A length of the file in metres. \throws UnreadGeometry if it is no finite number
+    /// Converts a length of the file to metres. \throws UnreadGeometry if it is no finite number
     [[nodiscard]] double length(const StepValue& value) const;
-    /// The same where a missing value means `standard`.
+    /// Converts a length; a missing value means `standard`.
     [[nodiscard]] double length(const StepValue& value, double standard) const;
-    /// IfcCartesianPoint of two or three coordinates.
+    /// Reads an IfcCartesianPoint of two or three coordinates.
     [[nodiscard]] Point3 point(StepId id) const;
-    /// A list of two or three coordinates.
+    /// Reads a list of two or three coordinates.
     [[nodiscard]] Point3 coordinates(const StepValue& list) const;
-    /// IfcDirection, not normalised. \param standard where the id is 0
+    /// Reads an IfcDirection, not normalised. \param standard returned if the id is 0
     [[nodiscard]] Vec3 direction(StepId id, Vec3 standard) const;
-    /// IfcAxis2Placement2D or 3D; id 0: the identity.
+    /// Reads an IfcAxis2Placement2D or 3D; id 0: the identity.
     [[nodiscard]] IfcFrame axes(StepId id) const;
-    /// IfcCartesianTransformationOperator2D or 3D, also non-uniform.
+    /// Reads an IfcCartesianTransformationOperator2D or 3D, also non-uniform.
     [[nodiscard]] IfcFrame transformation(StepId id) const;
-    /// IfcLocalPlacement and all it is relative to. O(1) on average, each is resolved once.
+    /// Computes an IfcLocalPlacement from the chain it is relative to. O(1) on average: each is
+    /// stored.
     [[nodiscard]] IfcFrame placement(StepId id, int depth = 0);
 
   private:
@@ -84,22 +85,23 @@ class IfcFrames {
     std::unordered_map<StepId, IfcFrame> placements_;
 };
 
-/// How the elements of a building belong together, by its IfcRel… instances.
+/// The relations between a building's elements, from its IfcRel… instances.
 class IfcTree {
   public:
     explicit IfcTree(const StepFile& file);
 
-    /// The nearest instance of this type above, by aggregation, containment, holes and fillings; 0
-    /// if there is none. Loops end.
+    /// Finds the nearest ancestor of this type, by aggregation, containment, holes and fillings; 0
+    /// if there is none, also in loops.
     [[nodiscard]] StepId above(StepId id, std::string_view type) const;
-    /// Its name, or "".
+    /// Returns the ancestor's name, or "".
     [[nodiscard]] std::string nameAbove(StepId id, std::string_view type) const;
-    /// The element that a hole is in; 0 if the file does not say.
+    /// Returns the element with this hole; 0 if the file does not say.
     [[nodiscard]] StepId hostOf(StepId hole) const;
-    /// The door or window in a hole, or 0.
+    /// Returns the door or window in a hole, or 0.
     [[nodiscard]] StepId fillerOf(StepId hole) const;
     [[nodiscard]] bool fillsHole(StepId door) const { return filled_.contains(door); }
-    /// Areas of a space in quantities and properties, in the file's unit: those of its floor first.
+    /// Reads the areas of a space in quantities and properties, in the file's unit: floor areas
+    /// first.
     [[nodiscard]] std::vector<StatedArea> areasOf(StepId space) const;
 
   private:

@@ -7,9 +7,10 @@
 
 namespace ispace {
 
-/// The surfaces of all products of an IFC file but its spaces and holes, in metres where they
-/// stand: for `mesh` records. What half-spaces and holes take away is left whole, and geometry that
-/// is not read is missing. \throws std::runtime_error for more than kMaxMeshTriangles
+/// Reads the surfaces of all products of an IFC file but its spaces and holes, in metres in the
+/// building's coordinates: for `mesh` records. Half-spaces and holes are not subtracted;
+/// unsupported geometry is skipped.
+/// \throws std::runtime_error for more than kMaxMeshTriangles
 TriangleMesh ifcMesh(std::string_view bytes);
 
 }  // namespace ispace

@@ -129,8 +129,8 @@ class EdgeJoiner {
     std::vector<bool> used_;
 };
 
-/// What lies on the side of the line a x + b y + c > 0 (Sutherland and Hodgman): edges along the
-/// line may run to and fro, which no area minds.
+/// Clips to the side of the line a x + b y + c > 0 (Sutherland and Hodgman): edges along the line
+/// may run to and fro, which leaves the area unchanged.
 void clip(std::vector<Polygon>& curves, double a, double b, double c) {
     for (Polygon& curve : curves) {
         Polygon kept;
@@ -145,7 +145,7 @@ void clip(std::vector<Polygon>& curves, double a, double b, double c) {
     std::erase_if(curves, [](const Polygon& curve) { return curve.size() < 3; });
 }
 
-/// Keeps what lies away from (sign 1) or in (sign -1) a half-space.
+/// Clips to the outside (sign 1) or inside (sign -1) of a half-space.
 void clip(std::vector<Polygon>& curves, const IfcCut::HalfSpace& space, double height,
           double sign) {
     constexpr double kLevel = 1e-9;

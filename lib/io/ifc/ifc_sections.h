@@ -10,19 +10,20 @@
 
 namespace ispace {
 
-/// Lowest and highest corner of a shape, whatever is cut off it; low above high if it has none.
+/// Lowest and highest corner of a shape, ignoring its cuts; low above high if it has no corners.
 struct IfcHeights {
     double low = 0, high = -1;
     [[nodiscard]] bool empty() const { return low > high; }
 };
 IfcHeights heightsOf(const IfcShape& shape);
 
-/// The cut through a shape at a height: curves that close within 2 cm are areas, others sheets.
+/// Computes the cut through a shape at a height: curves that close within 2 cm are areas, others
+/// sheets.
 /// O(corners + k log k) for k edges that are cut.
 BuildingSection sectionOf(const IfcShape& shape, double height);
 
-/// The box around a shape, upright, turned as tightly as its plan allows, or along `preferred`
-/// where that takes no more than 2 % more floor. Nothing for a shape without extent.
+/// Computes the upright box around a shape with the smallest floor area, or along `preferred` if
+/// its floor is at most 2 % larger. std::nullopt for a shape without extent.
 std::optional<BuildingBox> boxAround(const IfcShape& shape, Vec2 preferred);
 
 }  // namespace ispace

@@ -16,7 +16,7 @@
 
 namespace ispace {
 
-/// Plane faces in space, each of one or more loops (even-odd). Nothing says that they close.
+/// Plane faces in space, each of one or more loops (even-odd), not necessarily closed.
 struct IfcFaces {
     std::vector<Point3> corners;
     std::vector<std::uint32_t> loop_ends;  ///< index behind the last corner of each loop
@@ -27,12 +27,12 @@ struct IfcFaces {
     void move(const IfcFrame& frame);
 };
 
-/// What is taken away from a solid: a half-space, what a closed surface encloses, or what lies in
-/// both.
+/// A volume subtracted from a solid: a half-space, the inside of a closed surface, or their
+/// intersection.
 struct IfcCut {
     struct HalfSpace {
         Point3 at;    ///< on its plane
-        Vec3 normal;  ///< away from what is taken away
+        Vec3 normal;  ///< out of the subtracted half
     };
     std::optional<HalfSpace> half_space;
     std::optional<IfcFaces> limit;
@@ -50,13 +50,13 @@ class IfcShapes {
   public:
     explicit IfcShapes(const IfcFrames& frames) : frames_(frames), budget_(frames.file().bytes()) {}
 
-    /// The body of a product in its own frame: of its IfcProductDefinitionShape the representation
-    /// `Body`, else another one with solids; where there is none, its footprint, 2.5 m high, or its
-    /// box. Parts that are not read are counted.
-    /// \throws std::runtime_error for more than kMaxCorners, and where mapped shapes come to more
-    /// work than Budget has for a file of this size
+    /// Reads the body of a product in its own frame: from its IfcProductDefinitionShape the
+    /// representation `Body`, else another one with solids; if there is none, its footprint, 2.5 m
+    /// high, or its box. Counts unsupported parts.
+    /// \throws std::runtime_error for more than kMaxCorners, and if mapped shapes require more work
+    /// than Budget allows for a file of this size
     IfcShape shapeOf(StepId definition);
-    /// Parts not read, by type.
+    /// Returns the numbers of unsupported parts, by type.
     [[nodiscard]] const std::map<std::string, std::size_t>& unread() const { return unread_; }
 
     static constexpr std::size_t kMaxCorners = 20'000'000;  ///< of a shape
@@ -77,7 +77,7 @@ class IfcShapes {
     std::size_t kept_ = 0;  // corners in mapped_
 };
 
-/// Faces of an item that is no boolean result and not mapped. \throws UnreadGeometry
+/// Reads the faces of an item that is no boolean result and not mapped. \throws UnreadGeometry
 IfcFaces ifcFaces(const IfcFrames& frames, const StepInstance& item);
 
 }  // namespace ispace

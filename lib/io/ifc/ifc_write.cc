@@ -101,7 +101,7 @@ constexpr double kOpeningRim = 0.01;
 /// Coverings of the floor are this thick, in metres.
 constexpr double kCovering = 0.001;
 
-/// The IFC classes of what stands in a room; other records are proxies.
+/// The IFC classes of furniture and fixtures; other records are proxies.
 struct IfcClass {
     std::string_view keyword, type, kind;
 };
@@ -388,7 +388,7 @@ class RoomWriter {
             ++left_out_[record.keyword()];
             return;
         }
-        // Mats and gates are sensors, too; what others look for is none.
+        // Mats and gates are sensors, too; passive targets of other sensors, such as tags, are not.
         const bool perceives = kind == nullptr || kind->perceives;
         const std::string& id = scene_.ids[placed.record];
         const IfcClass row = classOf(record.keyword(), perceives ? "IFCSENSOR" : kProxy);

@@ -10,10 +10,10 @@
 
 namespace ispace {
 
-/// Walls without thickness become this thick, in metres: no reader takes their faces for one.
+/// Walls without thickness become this thick, in metres: readers do not recognise single faces.
 constexpr double kThinWall = 0.005;
 
-/// Walls before anything is cut into them.
+/// Walls before any opening is cut.
 struct WholeWalls {
     WallPlan plan;
     std::vector<Opening> openings;
@@ -22,9 +22,9 @@ struct WholeWalls {
 
     /// O(n log n) for n walls and openings.
     explicit WholeWalls(const std::vector<Element>& elements);
-    /// True if the line has a body where the opening is: of lines upon each other one has.
+    /// Returns true if the line has a body at the opening: of coincident lines only one has.
     [[nodiscard]] bool stands(const OpeningCut& cut) const;
-    /// Footprints of walls that have a thickness and stand on the floor.
+    /// Returns footprints of walls that have a thickness and stand on the floor.
     [[nodiscard]] std::vector<Polygon> footprints() const;
 };
 

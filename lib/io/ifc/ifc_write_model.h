@@ -18,14 +18,14 @@
 
 namespace ispace {
 
-/// A string in quotes: `'` and `\` doubled, everything beyond ASCII as \X2\ or \X4\.
+/// Quotes a string: `'` and `\` doubled, everything beyond ASCII as \X2\ or \X4\.
 /// \pre text is UTF-8
 std::string stepText(std::string_view text);
-/// A real number, rounded to 1e-12: "2.5", "6.", "1.E-05". \pre |value| < 1e12
+/// Writes a real number below 1e12 in size, rounded to 1e-12: "2.5", "6.", "1.E-05".
 std::string stepReal(double value);
-/// "(a,b,c)"
+/// Writes "(a,b,c)".
 std::string stepList(std::span<const std::string> items);
-/// 22 digits of base 64, as IFC writes a GUID: the first 128 bits of the seed's sha256.
+/// Computes a GUID as IFC writes it, 22 digits of base 64: the first 128 bits of the seed's sha256.
 std::string ifcGuid(std::string_view seed);
 
 /// A typed value of a property: {"Height", "IFCLENGTHMEASURE(2.3)"}.
@@ -41,24 +41,25 @@ class IfcModel {
   public:
     using Id = std::size_t;
 
-    /// Begins with units and the context of bodies. \param seed part of all GUIDs
+    /// Creates a file with units and the context of bodies. \param seed part of all GUIDs
     explicit IfcModel(std::string seed);
 
-    /// \param arguments as they are written: see stepText() and the like
+    /// Adds an instance. \param arguments as text: see stepText() and the like
     Id add(std::string_view type, std::span<const std::string> arguments);
     Id add(std::string_view type, std::initializer_list<std::string> arguments) {
         return add(type, std::span(arguments.begin(), arguments.size()));
     }
-    /// An instance with GlobalId, OwnerHistory, Name and Description. The GUID is the hash of seed,
-    /// type and key. \param name "" for none
+    /// Adds an instance with GlobalId, OwnerHistory, Name and Description. The GUID is the hash of
+    /// seed, type and key. \param name may be ""
     Id addRooted(std::string_view type, std::string_view key, std::string_view name,
                  std::initializer_list<std::string> others);
 
-    /// A frame in that of another placement, or in the world's.
+    /// Adds a frame relative to another placement, or to the world.
     Id addPlacement(std::optional<Id> parent, const Pose3& pose);
-    /// The shape of parts, meshes of files left out, and of meshes; "$" if there are neither.
+    /// Adds the shape of meshes and parts, except parts from mesh files; returns "$" if it is
+    /// empty.
     std::string addShape(std::span<const SdfPart> parts, std::span<const Mesh> meshes);
-    /// The shape of a region from the floor up.
+    /// Adds the shape of a region from the floor up.
     std::string addShape(const Region& region, double height);
 
     void addProperties(Id object, std::string_view key, std::string_view set,
@@ -66,12 +67,12 @@ class IfcModel {
     void addQuantities(Id object, std::string_view key, std::string_view set,
                        std::initializer_list<IfcQuantity> quantities);
 
-    /// Arguments of the project.
+    /// Returns arguments of the project.
     [[nodiscard]] std::string contexts() const { return stepList({{ref(context_)}}); }
     [[nodiscard]] std::string units() const { return ref(units_); }
 
     static std::string ref(Id id) { return '#' + std::to_string(id); }
-    /// The whole file. \param name of it
+    /// Writes the whole file. \param name of it
     [[nodiscard]] std::string finish(std::string_view name) const;
 
   private:

@@ -9,8 +9,8 @@
 
 namespace ispace {
 
-/// Writes the records of a storey: walls, doors, windows, zones, things and inside points. \throws
-/// FormatError (without a file) if it has neither walls nor spaces
+/// Writes the records of a storey: walls, doors, windows, zones, furniture and inside points.
+/// \throws FormatError (without a file) if it has neither walls nor spaces
 void writeStorey(const Building& building, std::size_t storey, const ImportOptions& options,
                  ImportRecords& out);
 

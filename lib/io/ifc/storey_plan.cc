@@ -183,7 +183,7 @@ std::vector<Region> united(std::span<const Layer> layers) {
     return Overlay(layers).regions([](const LayerLabel& label) { return label.count > 0; });
 }
 
-/// The parts of a section, each without what is removed from it.
+/// Returns the parts of a section, each minus its removed area.
 std::vector<std::vector<Polygon>> partsOf(const BuildingSection& section) {
     std::vector<std::vector<Polygon>> parts;
     for (const BuildingSection::Part& part : section.parts) {
@@ -260,7 +260,7 @@ void letMeet(std::vector<Piece>& pieces) {
             }
 }
 
-/// True if the box touches one of the edges, or lies in what they bound.
+/// Returns true if the box touches one of the edges, or lies inside their outline.
 bool touches(const BuildingBox& box, std::span<const Segment2> edges, const NearSegments& search) {
     const Vec2 u = box.length / 2 * box.along, v = box.width / 2 * perpendicular(box.along);
     const Polygon corners{box.center - u - v, box.center + u - v, box.center + u + v,
@@ -274,7 +274,7 @@ bool touches(const BuildingBox& box, std::span<const Segment2> edges, const Near
     return touch;
 }
 
-/// Rounds corners to whole micrometres and takes out what then leads there and back.
+/// Rounds corners to whole micrometres and removes spikes that this creates.
 void tidy(Polygon& curve) {
     Polygon kept;
     const auto drop_spike = [&kept] {

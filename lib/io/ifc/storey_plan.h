@@ -13,12 +13,12 @@
 
 namespace ispace {
 
-/// The area of a section.
+/// Computes the area of a section.
 std::vector<Region> areaOf(const BuildingSection& section);
 
 /// Walls of a storey, in the building's coordinates, on whole micrometres.
 struct StoreyWalls {
-    std::vector<Region> solids;  ///< walls that meet are one
+    std::vector<Region> solids;  ///< walls that meet are merged
     std::vector<Segment2> sheets;
     std::vector<BuildingBox> columns;  ///< that touch no wall
     double top = 0;                    ///< of most of them, by length
@@ -27,30 +27,30 @@ struct StoreyWalls {
 /// Joins the walls of a storey: corners within 2 mm of another wall move onto it.
 StoreyWalls wallsOf(const Building& building, std::size_t storey);
 
-/// An opening where it lies in the walls.
+/// An opening in the walls.
 struct StoreyOpening {
     std::size_t opening = 0;           ///< index in Building::openings
     Segment2 line;                     ///< in a face of the wall, or across a gap in the walls
-    std::optional<std::size_t> curve;  ///< of which the face is a part, see WallFaces; none: a gap
+    std::optional<std::size_t> curve;  ///< index of the face's curve, see WallFaces; empty: a gap
     double depth = 0;                  ///< from this face to the farthest it goes through, metres
-    std::vector<Segment2> others;      ///< the parts of these faces that it takes away
+    std::vector<Segment2> others;      ///< the parts of the other faces that it removes
     [[nodiscard]] std::vector<Segment2> reveals() const;
 };
 
-/// Takes holes out of the walls, whose faces are not straight there.
+/// Subtracts holes from the walls where their faces are not straight.
 void carve(StoreyWalls& walls, std::span<const BuildingBox> holes);
 
 /// Finds the faces of walls that openings go through.
 class WallFaces {
   public:
-    /// Outlines and holes of the solids, in order, count as curves 0, 1, 2 ...
+    /// Numbers outlines and holes of the solids, in order, as curves 0, 1, 2 ...
     explicit WallFaces(const StoreyWalls& walls);
 
-    /// Where a box lies in the walls: through their faces along one of its sides, else across a
-    /// gap between ends of walls; a door or window that stands free is a wall itself. Nothing if
-    /// there is none of these, or less than 0.3 m of it.
+    /// Finds the position of a box in the walls: through their faces along one of its sides, else
+    /// across a gap between ends of walls; a free-standing door or window is a wall itself. Returns
+    /// std::nullopt otherwise, or for an opening below 0.3 m.
     /// \param is_hole the box is that of a hole, which goes through all faces in it; else that of a
-    /// door or window itself, around which the nearest faces within 0.5 m are taken
+    /// door or window itself, which takes the nearest faces within 0.5 m
     [[nodiscard]] std::optional<StoreyOpening> find(const BuildingBox& box, bool is_hole) const;
 
   private:

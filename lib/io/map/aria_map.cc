@@ -185,7 +185,7 @@ std::vector<Cells> cellsOf(const std::vector<Point2>& points) {
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     std::vector<Cells> blocks;
-    std::map<Cell, std::size_t> open;  // block whose top run spans these columns
+    std::map<Cell, std::size_t> open;  // block with a top run over these columns
     for (std::size_t i = 0; i < cells.size();) {
         const auto [row, left] = cells[i];
         std::int64_t right = left;

@@ -35,7 +35,7 @@ bool edgesMeet(const Polygon& a, const Polygon& b) {
     return meet;
 }
 
-/// Unites solids whose edges meet, such as walls that run into each other. Keeps a solid inside
+/// Unites solids that meet at edges, such as walls that run into each other. Keeps a solid inside
 /// another, e.g. furniture in a room modelled by its inner surface.
 class Joiner {
   public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves of drawings, and how they lie in the plan.
+// Curves of drawings, and their straight pieces in the plan.
 #pragma once
 
 #include <array>
@@ -26,15 +26,15 @@ struct Affine {
     [[nodiscard]] Affine operator*(const Affine& inner) const {
         return {*this * inner.x, *this * inner.y, *this * inner.origin + origin};
     }
-    /// No length grows by more.
+    /// Returns an upper bound of the factor by which lengths grow.
     [[nodiscard]] double largestScale() const { return std::hypot(length(x), length(y)); }
 };
 
-/// How far straight pieces may be off their curve, in metres.
+/// Maximum distance of straight pieces from their curve, in metres.
 constexpr double kCurveSagitta = 0.001;
 
-/// Number of straight pieces of an arc of `sweep` radians: within kCurveSagitta for radii to
-/// 10 km, none longer than an eighth of the circle.
+/// Returns the number of straight pieces for an arc of `sweep` radians: within kCurveSagitta for
+/// radii to 10 km, each at most an eighth of the circle.
 int arcPieces(double sweep, double radius);
 
 /// A cubic Bézier curve in metres.
@@ -47,19 +47,19 @@ void appendCubic(const CubicCurve& curve, Polygon& points);
 /// A B-spline in metres, rational where weights differ.
 struct SplineCurve {
     int degree = 3;
-    std::vector<double> knots;  ///< controls.size() + degree + 1, none below the one before
+    std::vector<double> knots;  ///< controls.size() + degree + 1, non-decreasing
     std::vector<Point2> controls;
-    std::vector<double> weights;  ///< one a control, above 0; empty: all the same
+    std::vector<double> weights;  ///< one a control, above 0; empty: all equal
 };
 
-/// What is wrong with the numbers of a spline, or "".
+/// Returns the error in the numbers of a spline, or "".
 std::string splineFault(const SplineCurve& spline);
 
-/// Points along the spline whose straight pieces are within kCurveSagitta of it; stops after
-/// `most`. \pre splineFault() is ""
+/// Returns points along the spline; their straight pieces are within kCurveSagitta of it. Stops
+/// after `most`. \pre splineFault() is ""
 Polygon splinePoints(const SplineCurve& spline, std::size_t most);
 
-/// The centre if the curve is practically an arc of a circle, as drawing programs write them.
+/// Finds the centre if the curve approximates an arc of a circle, as drawing programs write them.
 std::optional<Point2> arcCenter(const CubicCurve& curve);
 
 }  // namespace ispace

@@ -22,7 +22,7 @@ constexpr double kLikelyPlan = 3, kUnlikelyPlan = 300;
 /// Metres; other drawings have another unit than they say.
 constexpr double kMinPlan = 1, kMaxPlan = 2000;
 
-/// Rooms whose areas differ by a smaller share are the same one.
+/// Rooms with areas that differ by a smaller share count as the same.
 constexpr double kSameRoom = 0.01;
 
 /// Drawings with more lines of walls are not read again for a message.

@@ -14,12 +14,12 @@
 
 namespace ispace {
 
-/// A drawing that can be read again, so that messages tell the effect of other options.
+/// A drawing that can be imported again, so that messages can report the effect of other options.
 struct DrawingSource {
     std::string unit;            ///< for messages: "mm"
     double metres_per_unit = 1;  ///< of the drawing's coordinates
-    /// The floor that an import with other options keeps, in square metres; null: these messages
-    /// are left out. \throws FormatError as the import does
+    /// Computes the floor area of an import with other options, in square metres; null omits these
+    /// messages. \throws FormatError as the import does
     std::function<double(const ImportOptions&)> area = {};
 };
 
@@ -27,34 +27,35 @@ struct DrawingSource {
 constexpr const char* kScaleHint =
     "say its unit, for example with --units cm, or how wide it is, with --width-is 8.3m";
 
-/// "a unit of the drawing is 3.5 mm".
+/// Returns "a unit of the drawing is 3.5 mm".
 std::string unitText(double metres_per_unit);
 
-/// Metres per unit by which the lines of walls, from the leftmost to the rightmost one, are `width`
-/// metres wide. \param read the lines of walls at metres per unit
+/// Computes the metres per unit for which the lines of walls, from the leftmost to the rightmost
+/// one, are `width` metres wide. \param read returns the lines of walls at metres per unit
 /// \throws FormatError: lines without width
 double metresPerUnit(double width, const std::string& name,
                      const std::function<std::vector<PlanPath>(double)>& read);
 
-/// "; with --units m it would be 7.855 m wide and have 57.3 m2 of floor": the first unit in which
-/// a drawing of this extent (metres) is as large as a building; "" if there is none.
+/// Returns "; with --units m it would be 7.855 m wide and have 57.3 m2 of floor": the first unit in
+/// which a drawing of this extent (metres) is as large as a building; "" if no unit fits.
 std::string otherUnitHint(double extent, const DrawingSource& drawing,
                           const ImportOptions& options);
 
-/// Refuses a drawing below 1 m or above 2 km unless the options say its scale.
+/// Rejects a drawing below 1 m or above 2 km unless the options give its scale.
 /// \throws FormatError
 void checkScale(double extent, const DrawingSource& drawing, const std::string& name,
                 const ImportOptions& options);
 
-/// True if one of the globs matches the name of a layer; ASCII letters match in either case.
+/// Returns true if one of the globs matches the name of a layer; ASCII letters match in either
+/// case.
 bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer);
 
-/// True if a word of the name of a layer, block or group says wall in one of a dozen languages
-/// (A-WALL, Außenwände, murs_ext, PAREDES), and none says that it holds hatching, text, doors or
+/// Returns true if a word of the name of a layer, block or group means wall in one of a dozen
+/// languages (A-WALL, Außenwände, murs_ext, PAREDES), and no word means hatching, text, doors or
 /// windows of them.
 bool isWallName(std::string_view name);
 
-/// Warns if walls from these layers, blocks and groups alone would give another room.
+/// Warns if walls from these layers, blocks and groups alone would enclose another room.
 /// \param names with their numbers of lines \param area of the room that was taken
 void warnOfWallNames(const std::map<std::string, std::size_t>& names, double area,
                      const DrawingSource& drawing, const ImportOptions& options,

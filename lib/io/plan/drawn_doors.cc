@@ -73,7 +73,7 @@ class DoorFinder {
         return std::atan2(cross(a, b), dot(a, b)) * 180 / std::numbers::pi;
     }
 
-    /// Those of one path, whose first piece has this index.
+    /// Finds the runs of one path. \param first index of its first piece
     void findRuns(const PlanPath& path, std::size_t first) {
         const std::size_t count = path.pieceCount();
         if (count < kMinPieces) return;

@@ -89,7 +89,8 @@ class Expander {
         return named == blocks_.rend() ? layer : **named;
     }
 
-    /// The layer, or the innermost block around, that is called walls; "" if none is.
+    /// Returns the layer, or the innermost enclosing block, with a name of walls; "" if there is
+    /// none.
     [[nodiscard]] std::string wallsAround(const std::string& layer) {
         if (isCalledWalls(layer)) return layer;
         const auto walls =
@@ -167,7 +168,7 @@ class Expander {
         }
     }
 
-    /// What lies between a vertex and the next one.
+    /// Adds the line or arc between a vertex and the next one.
     void addPiece(const DxfEntity& entity, const DxfPolyline::Vertex& from, Point2 to,
                   const Affine& frame) {
         PlanChord chord{{frame * from.at, frame * to}, {}};
@@ -192,7 +193,7 @@ class Expander {
     }
 
     void addArc(const DxfEntity& entity, const DxfArc& arc, const Affine& frame) {
-        if (arc.radius == 0) return;  // shows nothing, like a line without length
+        if (arc.radius == 0) return;  // invisible, like a line without length
         if (!(arc.radius > 0)) fail(entity, "a radius of " + formatDouble(arc.radius));
         const bool full = arc.from == Angle() && arc.to == Angle::degrees(360);
         double degrees = std::fmod(arc.to.degrees() - arc.from.degrees(), 360);

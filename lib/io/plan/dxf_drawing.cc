@@ -35,7 +35,7 @@ class GroupReader {
     GroupReader(std::string_view bytes, const std::string& name)
         : lines_(bytes.substr(0, bytes.find_last_not_of(" \t\r\n") + 1)), name_(name) {}
 
-    /// Nothing at the end of the file.
+    /// Reads the next group; std::nullopt at the end of the file.
     std::optional<Group> next() {
         const auto code = lines_.next();
         if (!code) return std::nullopt;
@@ -81,7 +81,7 @@ struct Kind;
 
 /// The groups of one entity.
 struct Entity {
-    const Kind* kind = nullptr;  // null: none, or one that is passed over
+    const Kind* kind = nullptr;  // null: no entity, or a skipped one
     int line = 0;
     std::string_view layer;
     std::optional<std::string_view> name;
@@ -121,11 +121,11 @@ struct Entity {
     }
 };
 
-/// What is kept of an entity.
+/// The fields of an entity that its shape requires.
 struct Kind {
     std::string_view name;
     std::vector<int> required, optional;
-    DxfShape (*shape)(const Entity&) = nullptr;  // null: draws nothing by itself
+    DxfShape (*shape)(const Entity&) = nullptr;  // null: draws no line by itself
     bool upright_only = true;  // its coordinates lie in the plane that its normal tells
 };
 
@@ -323,7 +323,7 @@ class DxfReader {
         if (group.code == 42) vertex.bulge = real(group);
     }
 
-    /// +1 or -1, or nothing where the entity does not lie in the plan's plane.
+    /// +1 or -1; std::nullopt if the entity is not in the plan's plane.
     [[nodiscard]] std::optional<int> side() const {
         const double x = entity_.number(210), y = entity_.number(220);
         const double z = entity_.number(230, 1);

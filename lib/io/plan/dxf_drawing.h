@@ -43,7 +43,7 @@ struct DxfEllipse {
 /// A spline by its control points; its numbers are sound, see splineFault().
 using DxfSpline = SplineCurve;
 
-/// A block inserted somewhere, perhaps repeated in a grid.
+/// An inserted block, perhaps repeated in a grid.
 struct DxfInsert {
     std::string block;
     Point2 at;
@@ -69,7 +69,7 @@ struct DxfBlock {
 
 /// A DXF file, in its own units.
 struct DxfDrawing {
-    int units = 0;                        ///< $INSUNITS; 0: none
+    int units = 0;                        ///< $INSUNITS; 0: unitless
     std::set<std::string> layers;         ///< in its table
     std::set<std::string> hidden_layers;  ///< off or frozen
     std::map<std::string, DxfBlock> blocks;
@@ -78,19 +78,19 @@ struct DxfDrawing {
     std::map<int, DrawnSize> sizes;  ///< of polylines and circles that have any, by their lines
 };
 
-/// True for a drawing with the layers on which writeDxf() draws a room, see dxfRoomLayers().
+/// Returns true for a drawing with the layers on which writeDxf() draws a room, see
+/// dxfRoomLayers().
 bool isDrawnRoom(const DxfDrawing& drawing);
 
-/// Adds what is on other layers of such a drawing than those of walls and openings: of `objects`
+/// Adds the shapes on other layers of such a drawing than those of walls and openings: of `objects`
 /// that have a height rectangles as cubes, circles and ellipses as cylinders, others as cubes
 /// around them, with a note; `zones`, and rectangles of `floors`. \param sizes in metres
 void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& sizes,
                     double metres_per_unit, ImportRecords& out);
 
-/// Reads ASCII DXF. Counts in the file are not believed, and only numbers that are needed are
-/// read.
-/// \throws FormatError with its line: no group code, a number that is none, a missing coordinate,
-///         an end before `EOF`
+/// Reads ASCII DXF. Ignores counts in the file, and parses only the numbers it
+/// needs. \throws FormatError with its line: no group code, a malformed number,
+/// a missing coordinate, an end before `EOF`
 DxfDrawing readDrawing(std::string_view bytes, const std::string& name);
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drawings that writeDxf() made, or whose layers are called as there.
+// Reads drawings that writeDxf() made, or that use its layer names.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>

@@ -28,7 +28,7 @@ struct Box {
     std::array<double, 4> corners;  // x, y of two opposite corners
 };
 
-/// What the JSON says.
+/// The members of the JSON object that are imported.
 struct HousePlan {
     bool has_outline = false;
     Polygon outline;
@@ -67,7 +67,7 @@ class CountingIterator {
     const char** farthest_;
 };
 
-/// Receives the JSON piece by piece: only what is wanted is kept, and depth is a counter.
+/// Parses the JSON as a stream: stores only the members of HousePlan, and counts the depth.
 class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
   public:
     HousePlanHandler(std::string_view bytes, const std::string& name)
@@ -150,7 +150,7 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
     bool fail(const std::string& found, const std::string& wanted) {
         const std::string_view before(bytes_.data(), static_cast<std::size_t>(at_ - bytes_.data()));
         const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-        const std::size_t start = before.find_last_of('\n') + 1;  // 0 where there is none
+        const std::size_t start = before.find_last_of('\n') + 1;  // 0 in the first line
         finding_ = Diagnostic{displayName(name_), static_cast<int>(line),
                               static_cast<int>(std::max<std::size_t>(1, before.size() - start)),
                               wanted.empty() ? found : found + ", " + wanted};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plans drawn as lines on layers: what DXF, SVG and cut meshes have in common.
+// Plans drawn as lines on layers, from DXF, SVG and cut meshes.
 #pragma once
 
 #include <array>
@@ -33,13 +33,13 @@ struct PlanShape {
     std::string layer;
     bool is_guess = false;  ///< a door found among walls: its chord runs from the closed door to
                             ///< the end of the leaf
-    std::string walls_in = {};  ///< the name of walls around it, see isWallName(); "": none
+    std::string walls_in = {};  ///< the wall name around it, see isWallName(); "": unnamed
 };
 
 /// A door or a window of a drawing.
 struct PlanOpening {
     Segment2 line;                    ///< ends on walls, or at ends of walls
-    std::optional<std::size_t> wall;  ///< the wall piece it lies on; none: it closes a gap
+    std::optional<std::size_t> wall;  ///< the wall piece it lies on; empty: it closes a gap
     bool is_window = false;
     int drawn_on = 0;  ///< line of the file
 };
@@ -47,39 +47,39 @@ struct PlanOpening {
 /// The openings found.
 struct PlanOpenings {
     std::vector<PlanOpening> openings;
-    std::size_t unused = 0;  ///< symbols that span nothing
+    std::size_t unused = 0;  ///< symbols without an opening
 };
 
-/// What a drawing tells of a line besides its course, in metres.
+/// Measures of a line in a drawing besides its course, in metres.
 struct DrawnSize {
-    double width = 0;               ///< of the line as it is drawn
+    double width = 0;               ///< of the line as drawn
     double bottom = 0, height = 0;  ///< elevation and thickness
 };
 
-/// Finds the openings that symbols of doors and windows mean, doors first.
+/// Finds the openings that symbols of doors and windows represent, doors first.
 ///
-/// A straight piece is an opening where both of its ends are at walls (within 0.1 m): across a gap,
-/// or along one wall. An arc is the swing of a leaf, hinged at its centre: the opening runs from
-/// there to the end of the arc that is at a wall, and lines to the other end are the leaf; two arcs
-/// that meet off the walls are a double door, from hinge to hinge. Openings are 0.4 m wide or more;
-/// none is found twice, and none overlaps another on its wall. Swings that are a guess open only
-/// from the hinge to the closed door, and nothing where both that and the leaf lie on walls, as the
-/// sides of a shower do. Where a drawing with such swings marks the ends of three doors by short
-/// lines across their wall, two more of these, 0.4 m to 1.3 m apart, are a doorway.
+/// A straight piece is an opening if both of its ends are at walls (within 0.1 m): across a gap, or
+/// along one wall. An arc is the swing of a leaf, hinged at its centre: the opening runs from there
+/// to the end of the arc that is at a wall, and lines to the other end are the leaf; two arcs that
+/// meet off the walls are a double door, from hinge to hinge. Openings are 0.4 m wide or more; each
+/// is found once, and openings on a wall never overlap. Swings that are a guess open only from the
+/// hinge to the closed door; they are skipped if both that and the leaf lie on walls, like the
+/// sides of a shower. If a drawing with such swings marks the ends of three doors by short lines
+/// across their wall, two more of these, 0.4 m to 1.3 m apart, are a doorway.
 PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
                           std::span<const Segment2> walls);
 
 /// Doors that a drawing shows among its walls.
 struct DrawnDoors {
     std::vector<PlanShape> swings;  ///< one for each leaf
-    std::vector<PlanPath> walls;    ///< without leaves and swings; empty where there is no door
+    std::vector<PlanPath> walls;    ///< without leaves and swings; empty if there is no door
 };
 
 /// Finds doors drawn as a leaf and its swing: a curve that bends one way, and a straight line of
-/// 0.4 m to 1.5 m from the hinge to that curve. The curve's other end and its middle lie as far
-/// from the hinge (within 12 %), 5 to 110 degrees from the leaf; it need be no circle about the
-/// hinge. A leaf drawn as a closed outline counts as one. Where lines lead to both ends of the
-/// curve, the leaf is the one that ends freely. O(n log n).
+/// 0.4 m to 1.5 m from the hinge to that curve. The curve's other end and its middle have the same
+/// distance from the hinge (within 12 %), 5 to 110 degrees from the leaf; it need not be a circle
+/// about the hinge. A leaf drawn as a closed outline counts as one. If lines lead to both ends of
+/// the curve, the leaf is the one with a free end. O(n log n).
 DrawnDoors takeDrawnDoors(const std::vector<PlanPath>& walls);
 
 /// Sorts the shapes of a drawing into walls, doors and windows by their layers.
@@ -88,8 +88,9 @@ class LayerSorter {
     struct Sorted {
         std::vector<PlanPath> walls;
         std::vector<PlanShape> doors, windows;
-        /// Of a drawing of ours, whose walls are right as drawn, by their lines in the file: widths
-        /// are the thickness of walls, and 0 for open doors. Walls are neither joined nor left out.
+        /// For a drawing of writeDxf() with correct walls, sizes by lines of the file:
+        /// widths are the thickness of walls, and 0 for open doors. Walls are neither joined nor
+        /// left out.
         std::optional<std::map<int, DrawnSize>> sizes = {};
     };
 
@@ -97,20 +98,20 @@ class LayerSorter {
     LayerSorter(std::set<std::string> hidden, const ImportOptions& options)
         : hidden_(std::move(hidden)), options_(options) {}
 
-    /// True for layers of walls, doors and windows.
+    /// Returns true for layers of walls, doors and windows.
     [[nodiscard]] bool isUsed(const std::string& layer);
-    /// True if an option names layers like this; blocks and groups so named are layers, too.
+    /// Returns true if an option names such layers; blocks and groups so named count as layers.
     [[nodiscard]] bool isNamed(const std::string& name) const;
     [[nodiscard]] bool isHidden(const std::string& layer) const {
         return hidden_.count(layer) != 0;
     }
     Sorted sort(std::vector<PlanShape> shapes);
-    /// Notes what each layer was taken for.
+    /// Notes the use of each layer.
     void note(ImportRecords& out) const;
-    /// All layers with lines, for a message.
+    /// Returns all layers with lines, for a message.
     [[nodiscard]] std::string all() const;
-    /// Names of walls, with their numbers of lines, where lines that have none were taken for
-    /// walls, too, because no option says otherwise.
+    /// Returns names of walls, with their numbers of lines, if lines without a name became walls,
+    /// too, because no option says otherwise.
     [[nodiscard]] std::map<std::string, std::size_t> unusedWallNames() const;
 
   private:
@@ -124,21 +125,21 @@ class LayerSorter {
     std::map<std::string, std::size_t> wall_names_;  // with their lines; "": lines without one
 };
 
-/// Writes the plan that sorted shapes are, see readDxf: walls, doors and windows of the largest
-/// region. Of drawings doors among the walls close no room, see takeDrawnDoors(), a scale that no
-/// building has is refused, see checkScale(), and names of walls are pointed out.
+/// Writes the plan of sorted shapes, see readDxf: walls, doors and windows of the largest region.
+/// For drawings, doors among the walls close no room, see takeDrawnDoors(); impossible scales of a
+/// building are rejected, see checkScale(); and unused names of walls are reported.
 /// \param drawing null for cuts through meshes
-/// \return the floor that is kept, in square metres
+/// \return the floor area kept, in square metres
 /// \throws FormatError: no line on the layers of walls
 double writeLinePlan(const LayerSorter::Sorted& shapes, const LayerSorter& sorter,
                      const std::string& name, const ImportOptions& options,
                      const DrawingSource* drawing, ImportRecords& out);
 
-/// Sorts the shapes of a drawing without hidden layers, and writes them. \return the floor kept
+/// Sorts the shapes of a drawing without hidden layers, and writes them. \return as above
 double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,
                      const ImportOptions& options, ImportRecords& out);
 
-/// "WALLS (24), 0 (3) and 2 more".
+/// Returns "WALLS (24), 0 (3) and 2 more".
 std::string listText(const std::map<std::string, std::size_t>& counts);
 
 }  // namespace ispace

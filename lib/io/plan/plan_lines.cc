@@ -45,7 +45,7 @@ std::vector<std::size_t> NearSegments::near(const Box2& box, double reach) const
 
 namespace {
 
-/// Points are whole micrometres: a smaller reach finds nothing.
+/// Points are whole micrometres: a smaller reach joins no points.
 constexpr double kMinSnap = 1e-6;
 
 struct PointHash {
@@ -192,7 +192,7 @@ void append(PlanPath& path, const PlanPath& next) {
         points.insert(points.end(), next.points.rbegin() + 1, next.points.rend());
 }
 
-/// The ends of open paths by their places.
+/// Finds the ends of open paths by their positions.
 class Joiner {
   public:
     explicit Joiner(const std::vector<PlanPath>& paths) : paths_(paths), used_(paths.size()) {

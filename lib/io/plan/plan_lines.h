@@ -11,14 +11,14 @@
 
 namespace ispace {
 
-/// Finds segments near a place, however unevenly they are spread. O(n log n) to build.
+/// Finds segments near a point, however unevenly they are spread. O(n log n) to build.
 class NearSegments {
   public:
     explicit NearSegments(std::span<const Segment2> segments);
 
-    /// Ascending indices of segments, among them all those within `reach` of p.
+    /// Returns ascending indices of segments, among them all those within `reach` of p.
     [[nodiscard]] std::vector<std::size_t> near(Point2 p, double reach) const;
-    /// The same for all those within `reach` of the box.
+    /// Returns the same for the segments within `reach` of the box.
     [[nodiscard]] std::vector<std::size_t> near(const Box2& box, double reach) const;
 
   private:
@@ -38,7 +38,7 @@ struct PlanPath {
     friend bool operator==(const PlanPath&, const PlanPath&) = default;
 };
 
-/// Points of drawings closer than this are one, in metres, unless ImportOptions::snap says
+/// Points of drawings closer than this are merged, in metres, unless ImportOptions::snap says
 /// otherwise.
 constexpr double kDefaultSnap = 0.005;
 
@@ -53,32 +53,32 @@ struct LexLess {
     bool operator()(Point2 a, Point2 b) const { return lexLess(a, b); }
 };
 
-/// Rounds points to whole micrometres and joins what was meant to meet: points within `snap` of an
-/// earlier one move onto it, then ends of open paths within `snap` of another path onto that.
-/// Equal neighbours are merged, and paths without two different points dropped. Below a micrometre
-/// `snap` joins only equal points. O(n log n) unless most lines lie in one place.
+/// Rounds points to whole micrometres and joins near ones: points within `snap` of an earlier one
+/// move onto it, then ends of open paths within `snap` of another path onto that. Equal neighbours
+/// are merged, and paths without two different points dropped. Below a micrometre `snap` joins only
+/// equal points. O(n log n) unless most lines crowd around one point.
 std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap);
 
-/// The paths, followed by a short one from each loose end to the nearest point of another line
-/// within `reach`. Nothing moves, and bridges cross nothing. O(n log n).
+/// Returns the paths, followed by a short one from each loose end to the nearest point of another
+/// line within `reach`. Points do not move, and bridges cross no line. O(n log n).
 std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach);
 
-/// Turns lines as people draw them into walls: points within 5 mm (or `snap`, if less) become one,
-/// loose ends are bridged within `snap`, and repeated pieces dropped.
+/// Converts hand-drawn lines to walls: points within 5 mm (or `snap`, if less) become one, loose
+/// ends are bridged within `snap`, and repeated pieces dropped.
 std::vector<PlanPath> normalisedLines(const std::vector<PlanPath>& paths, double snap);
 
-/// All pieces of all paths, in order.
+/// Returns all pieces of all paths, in order.
 std::vector<Segment2> pathPieces(const std::vector<PlanPath>& paths);
 
-/// The paths without the pieces whose `keep` is false (in the order of pathPieces()); one path may
-/// become several.
+/// Returns the paths without the pieces whose `keep` is false (in the order of pathPieces()); one
+/// path may become several.
 std::vector<PlanPath> withPieces(const std::vector<PlanPath>& paths, const std::vector<bool>& keep);
 
-/// Without pieces that an earlier one repeats, in either direction.
+/// Removes pieces that repeat an earlier one, in either direction.
 std::vector<PlanPath> withoutRepeats(const std::vector<PlanPath>& paths);
 
 /// Joins open paths where exactly two ends meet, so that a room drawn line by line is one closed
-/// path, in the place and with the `line` of its first part. O(n log n).
+/// path, at the index and with the `line` of its first part. O(n log n).
 std::vector<PlanPath> joinedAtEnds(const std::vector<PlanPath>& paths);
 
 /// Simplifies paths by at most `tolerance` metres, between joints by Douglas and Peucker. Joints

@@ -84,7 +84,8 @@ class Walls {
     [[nodiscard]] const Segment2& operator[](std::size_t i) const { return walls_[i]; }
     [[nodiscard]] std::size_t size() const { return walls_.size(); }
 
-    /// The wall piece that a jamb crosses in its middle; none if the piece is no jamb.
+    /// Finds the wall piece that a jamb crosses in its middle; std::nullopt if the piece is no
+    /// jamb.
     [[nodiscard]] std::optional<std::size_t> wallAcross(std::size_t jamb) const {
         const auto [a, b] = walls_[jamb];
         const double length_of_it = distance(a, b);

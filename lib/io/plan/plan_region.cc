@@ -33,7 +33,7 @@ constexpr double kMinRoom = 0.5, kWallShare = 12;
 constexpr double kClear = 0.05;
 constexpr int kClearSteps = 12;
 
-/// Where lines that bound nothing are tested: not at the ends, which often lie on walls.
+/// Points at which lines within a face are tested: not the ends, which often lie on walls.
 constexpr std::array<double, 3> kSharesInside{0.01, 0.501, 0.99};
 
 /// Walls cross a few others; hatching and terrain cross hundreds.
@@ -46,8 +46,8 @@ bool contains(const Box2& box, Point2 p) {
 
 Point2 middleOf(const Segment2& s) { return s.a + 0.5 * (s.b - s.a); }
 
-/// Tells for many points which of several disjoint regions holds them: the one above the nearest
-/// edge below. O(n) to build; a point takes as long as it is far from that edge.
+/// Finds for many points which of several disjoint regions holds them: the one above the nearest
+/// edge below. O(n) to build; the time for a point grows with its distance from that edge.
 class RegionLocator {
   public:
     explicit RegionLocator(const std::vector<Region>& regions)
@@ -62,7 +62,7 @@ class RegionLocator {
                     nearest = edge;
             return nearest && nearest->y >= bottom;
         });
-        // What an edge bounds lies to its left.
+        // The region that an edge bounds lies to its left.
         if (!nearest || !nearest->heads_right) return std::nullopt;
         return owners_[nearest->index];
     }

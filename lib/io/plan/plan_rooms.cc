@@ -24,7 +24,8 @@ constexpr std::array kDoorways{0.4, 0.7, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5};
 /// Drawings with more lines or faces are tried only once: many crossing lines take long enough.
 constexpr std::size_t kMaxLinesTried = 10'000, kMaxFacesTried = 1'000;
 
-/// A room below this share of the drawing's extent, or of what could be enclosed, is uncertain.
+/// A room below this share of the drawing's extent, or of the largest enclosable area, is
+/// uncertain.
 constexpr double kSmallShare = 0.5;
 
 /// Wider gaps are doorways, between corners of thick walls, too.
@@ -100,8 +101,8 @@ class RoomChooser {
         bool is_whole = false;  ///< every requested point is in a room
     };
 
-    /// Points choose among the rooms that there are without them; only if one of these lies in
-    /// none, gaps are closed for the points' sake.
+    /// Inside points choose among the rooms that are enclosed without them; only if one lies
+    /// outside all of these, gaps are closed for the points' sake.
     Attempt chosen() {
         const std::vector<Point2> points = std::exchange(points_, {});
         Attempt best = likeliest();

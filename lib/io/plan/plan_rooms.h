@@ -12,7 +12,7 @@
 
 namespace ispace {
 
-/// The part of a plan that is imported: one face of its lines, or several that doors join.
+/// The imported part of a plan: one face of its lines, or several that doors join.
 struct PlanRegion {
     std::vector<Region> rooms;  ///< the largest first
     Point2 inside;              ///< a point of the first, clear of its walls
@@ -42,21 +42,21 @@ class PlanFaces {
     /// from the outside
     explicit PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> doors = {},
                        std::span<const Segment2> closings = {});
-    /// The same from welded pieces, with the first `closing_pieces` of the closings.
+    /// Builds the faces from welded pieces, with the first `closing_pieces` of the closings.
     PlanFaces(const Pieces& pieces, std::span<const Segment2> doors, std::size_t closing_pieces);
 
     [[nodiscard]] const std::vector<Region>& faces() const { return faces_; }
-    /// By falling area.
+    /// Returns the groups by falling area.
     [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
-    /// The group that holds the point strictly inside one of its faces.
+    /// Finds the group that holds the point strictly inside one of its faces.
     [[nodiscard]] const Group* groupAt(Point2 p) const;
-    /// True if nothing wider than a wall fits into any of its faces: the space between the two
-    /// lines of a wall.
+    /// Returns true if all its faces are at most as wide as a wall: the space between the two lines
+    /// of a wall.
     [[nodiscard]] bool isHollow(const Group& group) const;
-    /// Corners of the solid between the two lines of a wall, as seen from the floor.
+    /// Returns corners of the solid between the two lines of a wall, as seen from the floor.
     [[nodiscard]] std::vector<Point2> wallCorners() const;
     [[nodiscard]] PlanRegion region(const Group& group) const;
-    /// The part of the region's boundary that lies on closings alone.
+    /// Returns the part of the region's boundary that lies on closings alone.
     [[nodiscard]] std::vector<Segment2> closedBy(const PlanRegion& region) const;
 
   private:
@@ -69,47 +69,48 @@ class PlanFaces {
     std::vector<Region> faces_;
     std::vector<Box2> boxes_;
     std::vector<Group> groups_;
-    double thinnest_ = 0;  // radius of the disc that fits into a room
+    double thinnest_ = 0;  // radius of the smallest disc that must fit into a room
 };
 
-/// A point of the face away from its edges and from lines within it.
+/// Finds a point of the face away from its edges and from lines within it.
 Point2 clearPoint(const Region& face, std::span<const Segment2> lines);
 
-/// Whether each line bounds a room of the regions, or lies in one with its middle or an end.
+/// Computes whether each line bounds a room of the regions, or lies in one with its middle or an
+/// end.
 std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const Segment2> lines);
 
-/// True if the lines cross so often that finding their faces would take hours, as in no plan.
-/// An estimate from a sample, the same one at every call.
+/// Returns true if the lines cross so often that finding their faces would take hours, which no
+/// real plan reaches. Estimates from a deterministic sample.
 bool crossTooOften(std::span<const Segment2> lines);
 
-/// The floor that a disc sweeps when it moves from `start` without crossing a wall, as pieces of
-/// `rooms` with rounded corners; the radius is met within 1 %. Empty if the disc does not fit at
-/// `start`. \param walls what the disc must not cross, among them the rooms' boundaries; doors left
-/// out
+/// Computes the floor that a disc sweeps when it moves from `start` without crossing a wall, as
+/// pieces of `rooms` with rounded corners; the radius is met within 1 %. Empty if the disc does not
+/// fit at `start`. \param walls lines that the disc must not cross, among them the rooms'
+/// boundaries, without doors
 std::vector<Region> reachedFloor(std::span<const Region> rooms, std::span<const Segment2> walls,
                                  Point2 start, double radius);
 
-/// The lines without the parts that passages cover, as doors cover walls.
+/// Returns the lines without the parts that passages cover, as doors cover walls.
 std::vector<Segment2> withoutPassages(std::span<const Segment2> lines,
                                       std::span<const Segment2> passages);
 
 /// A plan of lines before its rooms are chosen.
 struct PlanWalls {
-    std::vector<Segment2> lines;  ///< of walls, with what closes the gaps of doors and windows
-    std::vector<Segment2> doors;  ///< that join rooms: among the lines, or on them
-    std::optional<Point2> home;   ///< a place in the room that the plan names
-    /// False for an enclosed point that is not floor, as in a hole; may be empty.
+    std::vector<Segment2> lines;  ///< of walls, with those that close the gaps of doors and windows
+    std::vector<Segment2> doors;  ///< between rooms: among the lines, or on them
+    std::optional<Point2> home;   ///< a point in the room that the plan names
+    /// Returns false for an enclosed point that is not floor, as in a hole; may be empty.
     std::function<bool(Point2)> is_floor = {};
-    /// Advice for a plan of an unlikely extent (metres); may be empty.
+    /// Returns advice for a plan of an unlikely extent (metres); may be empty.
     std::function<std::string(double)> unit_hint = {};
 };
 
-/// What is imported of a plan.
+/// The imported rooms of a plan.
 struct PlanRooms {
-    std::vector<PlanRegion> regions;  ///< empty: nothing is enclosed
+    std::vector<PlanRegion> regions;  ///< empty: no room is enclosed
     std::vector<Segment2> closing;    ///< lines that close gaps in their walls
-    std::vector<Region> reached;      ///< floor that a disc reaches, if wanted
-    bool writes_inside = true;        ///< false: inside points come from elsewhere
+    std::vector<Region> reached;      ///< floor that a disc reaches, if requested
+    bool writes_inside = true;        ///< false: another input has the inside points
 
     [[nodiscard]] double area() const;
 };
@@ -122,15 +123,15 @@ struct PlanRooms {
 /// largest, or all.
 ///
 /// With ImportOptions::close_gaps, gaps up to that width between loose ends of walls, and between
-/// corners of walls drawn as two lines, are closed where they separate a room from the outside.
+/// corners of walls drawn as two lines, are closed if they separate a room from the outside.
 /// Without it they are closed as needed: up to 0.2 m if that encloses twice as much, or the home,
-/// and up to 2.5 m if nothing is enclosed otherwise; the smallest width tried wins that encloses
+/// and up to 2.5 m if narrower gaps enclose no room; the smallest width tried wins that encloses
 /// half of the best. Points choose among the rooms that are enclosed without them; only if one lies
-/// in none of these, gaps are closed for its sake. Warnings tell closed gaps, rooms that are small
-/// in their drawing, and drawings of less than 2 m or more than 2 km.
+/// outside all of these, gaps are closed for its sake. Warnings report closed gaps, rooms that are
+/// small in their drawing, and drawings of less than 2 m or more than 2 km.
 PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out);
 
-/// Adds lines that close gaps as fences, and the inside points; with PlanRooms::reached only its
+/// Writes lines that close gaps as fences, and the inside points; with PlanRooms::reached only its
 /// outlines, and the importer writes no walls.
 void writeRooms(const PlanRooms& rooms, const ImportOptions& options, ImportRecords& out);
 

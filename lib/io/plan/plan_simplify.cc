@@ -112,8 +112,8 @@ class Simplifier {
             [&](std::size_t i) { points.push_back(point(i)); });
     }
 
-    /// True if nothing else lies between the run and the line that would replace it, or on that
-    /// line.
+    /// Returns true if no other line lies between the run and the line that would replace it, or on
+    /// that line.
     [[nodiscard]] bool isFree(std::size_t from, std::size_t to) const {
         const Segment2 line{point(from), point(to)};
         if (line.a == line.b) return false;

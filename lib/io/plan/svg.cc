@@ -27,12 +27,12 @@ namespace ispace {
 
 namespace {
 
-/// What a drawing in SVG shows.
+/// The contents of an SVG file that an import uses.
 struct SvgDrawing {
     std::vector<PlanShape> shapes;
     std::string scale;  ///< length of a unit and its source, for a note
     double metres_per_unit = 0;
-    std::map<std::string, std::size_t> left_out;  ///< elements, by what they are
+    std::map<std::string, std::size_t> left_out;  ///< elements, by type or reason
 };
 
 constexpr int kDeepest = 200;  // elements in elements, by `use` or not
@@ -59,7 +59,7 @@ double metresOf(const std::string& unit) {
     throw SvgError("unknown unit " + unit);
 }
 
-/// What is around an element.
+/// The context of an element.
 struct Around {
     Affine frame;
     SvgStyle style;
@@ -70,7 +70,7 @@ struct Around {
 
 class SvgReader {
   public:
-    /// \param metres_per_unit none: as the options or the drawing's size say
+    /// \param metres_per_unit if empty, from the options or the drawing's size
     SvgReader(std::string_view bytes, const std::string& name, const ImportOptions& options,
               std::optional<double> metres_per_unit = {})
         : file_(bytes, name),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For lib/io only: the small languages in SVG's attributes, and what attributes of elements mean.
+// Parsers of SVG's attributes, and the style and names of elements. For lib/io only.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace ispace {
 
-/// What is wrong in an attribute; readSvg adds the place.
+/// An error in an attribute; readSvg adds the position.
 struct SvgError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -31,7 +31,7 @@ struct SvgLine {
 struct SvgCubic {
     Point2 control1, control2, to;
 };
-/// center + cos(t) major + sin(t) minor for t from `from` to `from + sweep`, in radians.
+/// Points center + cos(t) major + sin(t) minor for t from `from` to `from + sweep`, in radians.
 struct SvgArc {
     Point2 center;
     Vec2 major, minor;
@@ -46,42 +46,43 @@ struct SvgSubpath {
     bool closed = false;
 };
 
-/// The data of a `path`: M L H V C S Q T A Z, absolute and relative. \throws SvgError
+/// Parses the data of a `path`: M L H V C S Q T A Z, absolute and relative. \throws SvgError
 std::vector<SvgSubpath> parseSvgPath(std::string_view data);
 
-/// Numbers separated by blanks and commas. \throws SvgError
+/// Parses numbers separated by blanks and commas. \throws SvgError
 std::vector<double> parseSvgNumbers(std::string_view text);
 
-/// The value of `transform`. \throws SvgError
+/// Parses the value of `transform`. \throws SvgError
 Affine parseSvgTransform(std::string_view text);
 
-/// A length: a number with mm, cm, in, pt, pc, Q, px or nothing; in metres, at 96 pixels an inch,
-/// or nothing for percentages and sizes of fonts. \throws SvgError where there is no number
+/// Parses a length, a number with mm, cm, in, pt, pc, Q, px or no unit; in metres, at 96 pixels an
+/// inch. Returns std::nullopt for percentages and units of font size. \throws SvgError for other
+/// text
 std::optional<double> parseSvgMetres(std::string_view text);
 
-/// True for a length on paper: with a unit that is not px.
+/// Returns true for a length on paper: with a unit that is not px.
 bool isSvgPhysical(std::string_view length);
 
-/// The whole ellipse, as one closed path.
+/// Returns the whole ellipse, as one closed path.
 SvgSubpath svgEllipse(Point2 center, double radius_x, double radius_y);
 
-/// The rectangle, its corners rounded. \pre all are at least 0
+/// Returns the rectangle, its corners rounded. \pre all are at least 0
 SvgSubpath svgRectangle(Point2 corner, double width, double height, double radius_x,
                         double radius_y);
 
-/// Properties that decide what is visible, as an element or a rule states them.
+/// Properties that decide the visibility of lines, as an element or a rule sets them.
 enum class SvgProperty : std::size_t { Display, Visibility, Fill, Stroke };
 class SvgProperties {
   public:
-    /// "" if unset.
+    /// Returns the value; "" if unset.
     std::string_view operator[](SvgProperty key) const {
         return values_[static_cast<std::size_t>(key)];
     }
-    /// Reads `a: b; c: d`; the last one of a key counts. O(length)
+    /// Parses `a: b; c: d`; the last declaration of a key wins. O(length)
     void declare(std::string_view declarations);
-    /// Takes those that are unset here.
+    /// Copies values that are unset here.
     void addWeaker(const SvgProperties& others);
-    /// Takes those that are set there.
+    /// Copies values that are set in `others`.
     void addStronger(const SvgProperties& others);
     void setIfUnset(SvgProperty key, std::string_view value) {
         std::string_view& own = values_[static_cast<std::size_t>(key)];
@@ -93,10 +94,10 @@ class SvgProperties {
     std::array<std::string_view, kNames.size()> values_;
 };
 
-/// What is visible of an element, with what it inherits.
+/// The visible parts of an element, including inherited properties.
 struct SvgStyle {
     bool visible = true;
-    bool no_fill = false, no_stroke = false;  ///< said explicitly: unset means drawn
+    bool no_fill = false, no_stroke = false;  ///< set explicitly: unset means drawn
     bool has_stroke = false;
 };
 
@@ -105,8 +106,8 @@ class SvgSheet {
   public:
     /// Adds the rules of a style element, ignoring other selectors. O(length)
     void add(std::string_view css);
-    /// Sets what `properties` leave open by these rules. Ids win over classes, these over names,
-    /// later rules over earlier ones.
+    /// Sets the unset `properties` by these rules. Ids win over classes, these over names, later
+    /// rules over earlier ones.
     void apply(pugi::xml_node node, SvgProperties& properties) const;
 
   private:
@@ -114,40 +115,41 @@ class SvgSheet {
     std::unordered_map<std::string, SvgProperties> rules_;  // by selector, views of the texts
 };
 
-/// Without the prefix of a name space.
+/// Returns the name without the prefix of a namespace.
 std::string_view svgName(pugi::xml_node node);
 
-/// Those of an element: from `style`, else rules, else attributes. Views of the document.
+/// Returns the properties of an element: from `style`, else rules, else attributes. Views of the
+/// document.
 SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet);
 
-/// The style of an element with these properties within one of this style.
+/// Computes the style of an element with these properties within one of this style.
 SvgStyle svgStyle(SvgStyle style, const SvgProperties& properties);
 
-/// Names that an element has or inherits, as they stand in the file; null: none.
+/// Names that an element has or inherits, verbatim; null: unnamed.
 struct SvgNames {
-    const char* option = nullptr;  ///< one that an option gives, of the innermost element
-    const char* walls = nullptr;   ///< one that is called walls, see isWallName(); the innermost
+    const char* option = nullptr;  ///< named by an option, of the innermost element
+    const char* walls = nullptr;   ///< the innermost wall name, see isWallName()
     const char* layer = nullptr;   ///< of the innermost Inkscape layer
     const char* group = nullptr;   ///< of the outermost group
 
-    /// Those of an element with its own names within one with these.
+    /// Merges the names of an element, `own`, into those of its parent.
     [[nodiscard]] SvgNames with(const SvgNames& own) const;
-    /// The layer of a plan's line, see readSvg; "(none)" without any.
+    /// Returns the layer of a plan's line, see readSvg; "(none)" if unnamed.
     [[nodiscard]] const char* planLayer() const;
 };
 
-/// What an element says of itself, wherever it is used. Views of the document and the sheet.
+/// The attributes of an element, independent of its uses. Views of the document and the sheet.
 struct SvgElement {
-    std::size_t units = 0;  ///< of work that its other attributes make each time it is drawn
+    std::size_t units = 0;  ///< of work for its other attributes at each use
     SvgProperties properties;
     Affine transform;
     SvgNames names;
 };
 
-/// O(length of the element and its selectors) \throws SvgError
+/// Parses an element. O(length of the element and its selectors) \throws SvgError
 SvgElement readSvgElement(pugi::xml_node node, const SvgSheet& sheet, const ImportOptions& options);
 
-/// An attribute in the element's own coordinates; lengths with units come in pixels.
+/// Parses an attribute in the element's own coordinates; lengths with units come in pixels.
 /// \throws SvgError
 double svgNumber(pugi::xml_node node, const char* key, double standard = 0);
 
@@ -156,10 +158,10 @@ struct SvgBox {
     double x = 0, y = 0, width = 0, height = 0;
 };
 
-/// The attribute viewBox. \throws SvgError
+/// Parses the attribute viewBox. \throws SvgError
 std::optional<SvgBox> svgViewBox(pugi::xml_node node);
 
-/// What path, line, polyline, polygon, rect, circle and ellipse draw. \throws SvgError
+/// Converts path, line, polyline, polygon, rect, circle and ellipse to paths. \throws SvgError
 std::vector<SvgSubpath> svgPaths(pugi::xml_node node, std::string_view kind);
 
 }  // namespace ispace

@@ -152,7 +152,7 @@ class PathParser {
             case 'M':
                 at_ = point();
                 paths_.push_back({at_, {}, false});
-                command_ = 'L';  // what follows are lines
+                command_ = 'L';  // further pairs are lines
                 control_ = at_;
                 return;
             case 'L':

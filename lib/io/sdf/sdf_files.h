@@ -127,7 +127,7 @@ struct SdfScope {
     /// Children with a pose, by name; for included models, their `include`.
     std::unordered_map<std::string_view, pugi::xml_node> children = {};
     std::vector<pugi::xml_node> merged =
-        {};  ///< includes whose children count as children of this scope
+        {};  ///< includes with children that count as children of this scope
 };
 
 /// Computes poses of SDF 1.0 to 1.11, each in the scope's own frame: nested models, frames,

@@ -174,8 +174,8 @@ class GltfNodes : public nlohmann::json_sax<nlohmann::json> {
 };
 
 void checkGltf(std::string_view json) {
-    // Encoding errors in names do not matter here, and assimp accepts any bytes; some writers fill
-    // a chunk up with zeros.
+    // Names do not affect the nesting, and assimp accepts any bytes in them: replace non-ASCII
+    // ones. Some writers pad the chunk with zeros.
     std::string text(json.substr(0, json.find_last_not_of('\0') + 1));
     for (char& c : text)
         if (static_cast<unsigned char>(c) >= 0x80) c = '?';
