@@ -22,10 +22,10 @@ namespace ispace {
 
 namespace {
 
-/// Calibrations have some hundred bytes; OpenCV may list the corners that it found.
+/// A calibration takes some hundred bytes, more if OpenCV lists the corners it found.
 constexpr std::size_t kMaxCalibration = std::size_t{16} << 20U;
 
-/// Reads one file; the first thing that is wrong is thrown.
+/// Reads one calibration file; throws the first error found.
 class CalibrationReader {
   public:
     CalibrationReader(const YAML::Node& root, const std::string& name) : root_(root), name_(name) {}
@@ -39,7 +39,7 @@ class CalibrationReader {
         const double fx = k[0], fy = k[4], cx = k[2], cy = k[5];
         if (!(fx > 0 && fy > 0))
             fail(find({"camera_matrix", "K", "k"}), "the focal lengths must be above 0");
-        // A picture of another size than the calibrated one.
+        // The record's picture has another size than the calibrated one.
         double wide = 1, high = 1;
         if (camera.has("pixels")) {
             wide = camera.tuple("pixels")[0] / size[0];
@@ -83,7 +83,7 @@ class CalibrationReader {
         return numberOf(node, *names.begin(), least, most);
     }
 
-    /// The numbers of a list, or of the `data` of a matrix. \param count 0: any
+    /// Reads the numbers of a list, or of the `data` of a matrix. \param count 0: any
     [[nodiscard]] std::vector<double> matrix(std::initializer_list<const char*> names,
                                              std::size_t count) const {
         constexpr double kMaxSize = 1e7;
@@ -105,7 +105,7 @@ class CalibrationReader {
         return values;
     }
 
-    /// "pinhole", "fisheye" or "omni".
+    /// Returns "pinhole", "fisheye" or "omni".
     [[nodiscard]] std::string lensOf(const Record& camera) const {
         if (const YAML::Node node = root_["distortion_model"]) {
             const std::string model = node.IsScalar() ? node.Scalar() : "";

@@ -16,14 +16,14 @@ namespace ispace {
 
 namespace {
 
-/// ASCII only, whatever the locale.
+/// ASCII only, regardless of the locale.
 bool isIdCharacter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
 }
 
 char lowerCase(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// Letters of Latin-1 with marks, U+00C0 to U+00FF in UTF-8, without them: "Küche" is "Kueche".
+/// Letters of Latin-1 with diacritics, U+00C0 to U+00FF in UTF-8, transcribed: "Küche" is "Kueche".
 std::string withPlainLetters(std::string_view text) {
     constexpr std::array<const char*, 32> kPlain{
         "a", "a", "a", "a", "ae", "a", "ae", "c", "e", "e", "e", "e", "i",  "i", "i",  "i",
@@ -118,7 +118,7 @@ void ImportRecords::zone(const std::string& id, Point2 middle, Angle heading, do
 Record& ImportRecords::zone(const std::string& id, const Region& area) {
     Polygon path = area.outline;
     for (const Polygon& hole : area.holes) {
-        // There and back between the two corners that are nearest to each other.
+        // The seam joins the two nearest corners.
         std::size_t at = 0, from = 0;
         for (std::size_t i = 0; i < path.size(); ++i)
             for (std::size_t k = 0; k < hole.size(); ++k)
@@ -237,7 +237,7 @@ RecordedScan scanOf(const json& line) {
 
 }  // namespace
 
-/// The next line that is whole.
+/// Returns the next complete line.
 std::optional<std::string_view> RecordedScans::nextLine() {
     std::size_t seen = begin_;
     while (true) {

@@ -44,7 +44,7 @@ struct Line {
     int number = 0;
 };
 
-/// The first line that holds more than blanks and a comment, from its first word on.
+/// Finds the first line that holds more than blanks and a comment, from its first word on.
 Line firstLine(std::string_view bytes) {
     LineReader lines(bytes);
     while (const auto line = lines.next())
@@ -53,7 +53,8 @@ Line firstLine(std::string_view bytes) {
     return {};
 }
 
-/// True for `desk at=2,3` and for a known keyword alone: records that lack their magic line.
+/// Returns true for `desk at=2,3` and for a known keyword alone: records that lack their magic
+/// line.
 bool isRecordLine(std::string_view line, const Schemas& schemas) {
     const std::string_view first = line.substr(0, line.find_first_of(kBlanks));
     if (first.find_first_of(":-{[") != std::string_view::npos) return false;  // YAML
@@ -101,7 +102,7 @@ std::string foreignFile(std::string_view bytes) {
     return "";
 }
 
-/// Names foreign JSON, which would pass as YAML.
+/// Names foreign JSON, which would parse as YAML.
 std::string foreignJson(std::string_view bytes) {
     if (bytes.find("\"FeatureCollection\"") != std::string_view::npos)
         return "GeoJSON, which is written but not read";
@@ -192,7 +193,7 @@ constexpr InputFormat kFormatsByMagic[] = {
     {false, holdsBytes<isMeshFile>, kReadMesh},
 };
 
-/// Formats recognised within plain text; the last takes everything.
+/// Formats recognised within plain text; the last accepts any text.
 constexpr InputFormat kFormatsOfText[] = {
     {true, isHouseExpo, importPlan<readHouseExpo>},
     {true, holdsBytes<isRosMap>, importPlan<readRosMap>},

@@ -44,7 +44,7 @@ void writeList(JsonWriter& json, const List& list) {
     json.endArray();
 }
 
-/// Begins an item of a section of the file, and with the first one the array that this is.
+/// Begins an item of a section of the file; the first item also begins the section's array.
 JsonWriter& item(JsonWriter& section, int count) {
     if (count == 0) section.beginArray();
     return section;
@@ -282,7 +282,7 @@ void GlbBuilder::writeScene(JsonWriter& json, const std::array<double, 3>& origi
 
 namespace {
 
-/// The sections of a file with one picture: its cells stay sharp near by.
+/// Writes the sections of a file with one picture: its pixels stay sharp when magnified.
 std::string picturesText(int view) {
     JsonWriter json;
     json.beginObject();
@@ -391,7 +391,7 @@ GlbChunks glbChunks(std::string_view bytes, const std::string& name) {
         if (size > length - at)
             failFile(name, "damaged: a chunk of " + std::to_string(size) + " bytes where " +
                                std::to_string(length - at) + " are left");
-        // Chunks of other kinds are extensions, to be passed over.
+        // Chunks of other types are extensions; skip them.
         if (index == 0 && type == kJsonChunk) chunks.json = bytes.substr(at, size);
         if (index == 1 && type == kBinaryChunk) chunks.binary = bytes.substr(at, size);
         at += size;

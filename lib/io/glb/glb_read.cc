@@ -31,15 +31,15 @@ namespace ispace {
 
 namespace {
 
-/// Picks the few numbers we need from glTF's JSON as it streams by: extras and bufferViews of the
-/// top level. There is no tree and no recursion, so neither size nor nesting of a hostile file
-/// matters; parsing stops once both are known.
+/// Extracts extras and bufferViews of the top level from glTF's JSON as it streams by. It builds no
+/// tree and does not recurse, so neither size nor nesting of a hostile file matters; parsing stops
+/// once both are known.
 class Finder : public nlohmann::json_sax<nlohmann::json> {
   public:
     struct View {
         std::uint64_t buffer = 0, offset = 0, length = 0;
     };
-    /// The content of a file, by the views that hold it.
+    /// The mesh of a file, by the buffer views that hold it.
     struct FileMesh {
         std::string digest;
         std::uint64_t positions = kWrong, indices = kWrong;
@@ -49,7 +49,7 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
     std::vector<View> views;
     std::size_t error_position = 0;
 
-    /// Stands for a value that is no whole number from 0 on: beyond any file.
+    /// Replaces a value that is not a whole number from 0 on: beyond any file.
     static constexpr std::uint64_t kWrong = std::numeric_limits<std::uint64_t>::max();
 
     /// Reads the JSON. \return false if the part that was parsed has errors
@@ -95,7 +95,7 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
 
   private:
     [[nodiscard]] bool isComplete() const { return records && has_views_; }
-    /// In an object of the list extras.ispace_meshes.
+    /// True in an object of the list extras.ispace_meshes.
     [[nodiscard]] bool inFileMesh() const {
         return depth_ == 4 && section_ == "extras" && member_ == "ispace_meshes";
     }
@@ -114,7 +114,7 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
         return true;
     }
 
-    /// False once everything is there.
+    /// Returns false once all values are found, to stop the parser.
     bool close() {
         --depth_;
         if (depth_ == 1 && section_ == "bufferViews") has_views_ = true;
@@ -126,12 +126,12 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
     bool has_views_ = false;
 };
 
-/// Where the binary data of a file are.
+/// The binary data of a file.
 class GlbData {
   public:
     virtual ~GlbData() = default;
     [[nodiscard]] virtual std::uint64_t size() const = 0;
-    /// \pre the range lies within; the result stays as long as this
+    /// \pre the range lies within; the result is valid as long as this object
     [[nodiscard]] virtual std::string_view read(std::uint64_t offset, std::size_t length) = 0;
 };
 
@@ -150,7 +150,7 @@ class DataInMemory final : public GlbData {
 /// A file with records, and the contents of its buffer views.
 class Glb {
   public:
-    /// \param json as much of it as says where the records are
+    /// \param json a prefix that holds the positions of the records
     Glb(std::string_view json, std::unique_ptr<GlbData> data, const std::string& name)
         : name_(name), data_(std::move(data)), is_sound_(finder_.read(json)) {}
     Glb(const GlbChunks& chunks, const std::string& name)
@@ -167,7 +167,7 @@ class Glb {
         return viewOf(*finder_.records, "extras.ispace", "the records lie");
     }
 
-    /// Gives records of files the content that is in this one.
+    /// Sets the content of file records from the meshes stored in this file.
     void attachMeshes(std::vector<Record>& records) {
         for (Record& record : records) {
             if (record.keyword() != "mesh") continue;
@@ -207,7 +207,7 @@ class Glb {
         if (bytes.size() % sizeof out[0] != 0)
             failFile(name_, "damaged: " + std::to_string(bytes.size()) +
                                 " bytes of a mesh, wanted 12 each for points and triangles");
-        // Else a file could have many times its size of meshes.
+        // Otherwise views could overlap, and meshes take many times the file's size.
         taken_ += bytes.size();
         if (taken_ > data_->size()) failFile(name_, "damaged: its meshes overlap");
         out.resize(bytes.size() / sizeof out[0]);
@@ -243,7 +243,7 @@ class Glb {
     std::unique_ptr<GlbData> data_;
     bool is_sound_;
     std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
-    std::size_t taken_ = 0;  ///< bytes of meshes that were read
+    std::size_t taken_ = 0;  ///< bytes of meshes read
 };
 
 }  // namespace
@@ -340,7 +340,7 @@ bool glbHasRecords(std::string_view bytes) {
     try {
         return glbOf(bytes, "").hasRecords();
     } catch (const FormatError&) {
-        return true;  // for readGlb to explain
+        return true;  // readGlb() reports the error
     }
 }
 

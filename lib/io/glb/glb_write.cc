@@ -26,7 +26,7 @@ namespace ispace {
 
 namespace {
 
-/// Adds the node if it has anything to show.
+/// Adds the node unless its meshes are empty.
 void addNode(std::vector<ModelNode>& nodes, ModelNode node) {
     std::erase_if(node.meshes, [](const Mesh& mesh) { return mesh.triangles.empty(); });
     if (!node.meshes.empty()) nodes.push_back(std::move(node));
@@ -72,14 +72,15 @@ namespace {
 /// centre: near it floats resolve a hundredth of a millimetre.
 constexpr double kFar = 100;
 
-/// Where the mesh has its origin: ours, or for plans far away their middle, on whole metres.
+/// Returns the origin of the mesh: the world's, or for distant plans their centre, rounded to
+/// metres.
 Point3 meshOrigin(const Box2& limits) {
     const Point2 middle = limits.center();
     if (std::abs(middle.x) <= kFar && std::abs(middle.y) <= kFar) return {};
     return {std::round(middle.x), std::round(middle.y), 0};
 }
 
-/// From the axes of a file to glTF's: (x, z, -y) of z-up, the same of y-up, (y, x, -z) of x-up.
+/// Maps the axes of a file to glTF's: (x, z, -y) for z-up, unchanged for y-up, (y, x, -z) for x-up.
 Eigen::Quaterniond gltfFromFile(const std::string& up) {
     if (up == "y") return Eigen::Quaterniond::Identity();
     // A half turn about X + Y.
@@ -96,7 +97,7 @@ struct PreparedSurface {
 
 /// The part of an element that is computed in parallel, before it is added in order.
 struct Prepared {
-    bool stands = false;                         ///< furniture, of which equal ones share a mesh
+    bool stands = false;                         ///< furniture; equal pieces share a mesh
     std::string shape = {};                      ///< of furniture: the key of its shared mesh
     std::vector<PreparedSurface> surfaces = {};  ///< of fixed elements
 };
@@ -163,7 +164,7 @@ class GlbScene {
 
   private:
     using Primitives = std::vector<GlbBuilder::Primitive>;
-    /// All that makes a body, to find equal ones; bodies are small.
+    /// Returns the bytes of a body as a key for equal ones; bodies are small.
     using Figure = std::vector<std::tuple<Material, std::vector<std::array<double, 3>>,
                                           std::vector<std::array<std::uint32_t, 3>>>>;
 
@@ -185,7 +186,7 @@ class GlbScene {
         if (mesh >= 0) builder_.addNode({id, keyword, mesh, nullptr});
     }
 
-    /// The floor of the indoor region with the picture on it.
+    /// Adds the floor of the indoor region with the picture on it.
     void addFloor(const ModelNode& node) {
         floor_ = surfaceOf(node.meshes.front(), origin_);
         if (floor_.indices.empty()) return;
@@ -200,7 +201,7 @@ class GlbScene {
         builder_.addNode({node.id, node.keyword, mesh, nullptr});
     }
 
-    /// A thing that stands somewhere; equal ones share a mesh.
+    /// Adds a placed element; equal ones share a mesh.
     void addPlaced(const ModelNode& node) {
         Figure figure;
         for (const Mesh& mesh : node.meshes) {
@@ -231,7 +232,7 @@ class GlbScene {
         return surfacesOf(meshesOf(bodyOf(record), Surfaces::Drawn), Point3());
     }
 
-    /// With a mesh in the frame of a pose, if it shows something.
+    /// Adds a node with a mesh in the frame of a pose, unless the mesh is empty.
     void addNode(const std::string& id, const std::string& keyword, int mesh, const Pose3& pose) {
         if (mesh < 0) return;
         const GlbNode::Frame frame{gltfAxes(pose.position - origin_), rotationOf(pose)};
@@ -263,13 +264,13 @@ class GlbScene {
     GlbBuilder& builder_;
     Point3 origin_;
     const FloorPicture* picture_;
-    GlbSurface floor_;  // until the file is written
+    GlbSurface floor_;  // valid until the file is written
     std::map<Figure, int> figures_;
     std::unordered_map<std::string, int> shapes_;  // mesh indices by shapeText()
     std::map<std::string, int> files_;
 };
 
-/// The records as text; those of loaded files say which content is theirs.
+/// Writes the records as text; records of loaded files name their content by digest.
 std::string recordsText(const Document& document) {
     const auto is_loaded = [](const Record& record) { return record.mesh() != nullptr; };
     if (std::none_of(document.records.begin(), document.records.end(), is_loaded))
@@ -280,7 +281,7 @@ std::string recordsText(const Document& document) {
     return writeRecordText(compiled);
 }
 
-/// Their nodes, in order; triangles are made by several threads if there are many.
+/// Builds their nodes, in order, triangulating in parallel if there are many.
 void addElements(const std::vector<Element>& elements, Point3 origin, GlbScene& nodes) {
     if (elements.size() < kManyRecords) {
         for (const Element& element : elements) nodes.add(element, prepare(element, origin));

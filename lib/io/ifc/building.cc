@@ -44,7 +44,7 @@ class Packer {
     std::string bytes_;
 };
 
-/// Takes them back. \throws std::runtime_error
+/// Reads these values. \throws std::runtime_error
 class Unpacker {
   public:
     explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
@@ -85,7 +85,7 @@ class Unpacker {
             get(counts[name]);
         }
     }
-    /// Of things of a byte or more.
+    /// Reads a count of items that take at least a byte each.
     std::uint64_t count() {
         std::uint64_t count = 0;
         get(count);

@@ -15,10 +15,10 @@ namespace ispace {
 namespace {
 
 constexpr double kAboveFloor = 1;      // metres, of sections: over most sills, under most lintels
-constexpr double kMinSpace = 1.2;      // metres: lower ones are no rooms
+constexpr double kMinSpace = 1.2;      // metres: lower spaces are no rooms
 constexpr double kMaxColumn = 2.5;     // metres
-constexpr std::size_t kMaxBoxes = 40;  // of one thing
-constexpr double kLooseBox = 1.3;      // a thing's box takes so much more floor than its parts'
+constexpr std::size_t kMaxBoxes = 40;  // of one element
+constexpr double kLooseBox = 1.3;      // share of its parts' floor that a box may take
 
 constexpr std::array<std::string_view, 7> kWalls{
     "IFCWALL",        "IFCWALLSTANDARDCASE",  "IFCWALLELEMENTEDCASE",  "IFCPLATE",
@@ -84,7 +84,7 @@ class BuildingReader {
             for (const StepId id : file_.ofType(type)) visit(id);
     }
 
-    /// With its shape where it stands; counted where its placement cannot be read.
+    /// Reads a shape in the building's coordinates; counts it as unread if its placement is bad.
     Product productOf(StepId id) {
         Product product{file_.read(id), {}, {}};
         try {
@@ -146,7 +146,8 @@ class BuildingReader {
         }
     }
 
-    /// Of a file without storeys: its floor is where most of its doors, else its walls, begin.
+    /// Creates the storey of a file without any: its floor is where most of its doors, else its
+    /// walls, begin.
     BuildingStorey wholeBuilding() {
         std::vector<double> feet;
         const auto add = [&](StepId id) {
@@ -161,7 +162,7 @@ class BuildingReader {
         std::nth_element(feet.begin(), feet.begin() + static_cast<std::ptrdiff_t>(feet.size() / 2),
                          feet.end());
         storey.elevation = feet[feet.size() / 2];
-        out_.unread.clear();  // they are read again
+        out_.unread.clear();  // the second pass counts them again
         return storey;
     }
 
@@ -262,7 +263,7 @@ class BuildingReader {
                    true, axisOf(filler == 0 ? host : filler));
     }
 
-    /// Of a door or window that fills no hole.
+    /// Adds a door or window that fills no hole.
     void addFiller(StepId id) {
         if (!tree_.fillsHole(id)) addOpening(id, kindOf(file_.typeOf(id)), false, axisOf(id));
     }

@@ -194,7 +194,7 @@ Polygon rectangleIn(const IfcFrame& frame, double length, double width) {
             frame.at({x, y, 0}).onFloor(), frame.at({-x, y, 0}).onFloor()};
 }
 
-/// Reads profiles that are a shape with sizes: 2 is the position, sizes follow.
+/// Reads parameterised profiles: argument 2 is the position, sizes follow.
 class SizedProfile {
   public:
     SizedProfile(const IfcFrames& frames, const StepInstance& profile)
@@ -244,7 +244,7 @@ class SizedProfile {
     IfcFrame frame_;
 };
 
-/// The area within half a thickness of an open curve: a rectangle for each piece.
+/// Returns the area within half a thickness of an open curve: a rectangle for each piece.
 IfcArea band(const std::vector<Point3>& line, double thickness) {
     Polygon left, right;
     for (std::size_t i = 0; i < line.size(); ++i) {
@@ -256,7 +256,7 @@ IfcArea band(const std::vector<Point3>& line, double thickness) {
         const Vec2 sum = perpendicular(u + v);
         const double squared = dot(sum, sum);
         if (!(squared > 1e-6)) throw UnreadGeometry("IFCCENTERLINEPROFILEDEF");
-        // To the mitre of both sides; at the ends to the side of the only one.
+        // Extends to the mitre of both sides; at the ends, to the only side.
         const bool is_end = length(before) == 0 || length(after) == 0;
         const Vec2 side = (is_end ? thickness / 2 : thickness / squared) * sum;
         left.push_back(p + side);

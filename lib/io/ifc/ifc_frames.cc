@@ -46,7 +46,7 @@ double factorOf(const StepFile& file, StepId id, int depth = 0) {
     return factor > 0 && std::isfinite(factor) ? factor : 1;
 }
 
-/// Of the right-handed frame with this z and with x as near to `x` as can be.
+/// Builds the right-handed frame with this z and with x as near to `x` as possible.
 IfcFrame orthonormal(Vec3 z, Vec3 x, Point3 origin) {
     IfcFrame frame;
     frame.origin = origin;
@@ -237,7 +237,7 @@ void IfcTree::addAreas(StepId definition, std::vector<StatedArea>& areas) const 
             (one.type == "IFCPROPERTYSINGLEVALUE" && value.type() == "IFCAREAMEASURE");
         const std::string name = one[0].text();
         const double area = value.number().value_or(0);
-        // Walls and ceilings have areas, too.
+        // Walls and ceilings have areas, too; only floor areas come first.
         if (is_area && area > 0 &&
             (name.find("Floor") != std::string::npos || name.find("BIM Area") != std::string::npos))
             areas.push_back({name, area});

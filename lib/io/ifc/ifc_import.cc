@@ -141,7 +141,7 @@ std::string storeysText(const Building& building, std::size_t chosen) {
 namespace {
 
 constexpr double kFarOut = 100'000;  // metres: surveyors' coordinates
-/// Moves a building that stands in surveyors' coordinates to the origin, by whole metres.
+/// Moves a building in surveyors' coordinates to the origin, by whole metres.
 std::optional<Vec2> movedHome(Building& building) {
     Box2 box;
     const auto each_point = [&](auto visit) {
@@ -180,7 +180,7 @@ std::string unreadText(const Building& building) {
     return countText(all, "part") + " of its geometry cannot be read: " + text;
 }
 
-/// Lists the rooms of storeys that are not read.
+/// Lists the rooms of the storeys that are not imported.
 void listRooms(const Building& building, std::size_t first, std::size_t end,
                const std::string& operand, ImportOptions options, const Schemas& schemas) {
     if (options.found == nullptr || !options.found->all_storeys) return;

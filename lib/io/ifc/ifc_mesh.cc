@@ -19,7 +19,7 @@ namespace {
 
 using Loop = std::span<const Point3>;
 
-/// Twice the area of a loop, along its normal (Newell).
+/// Computes twice the area of a loop, along its normal (Newell).
 Vec3 areaVector(Loop loop) {
     Vec3 sum;
     for (std::size_t i = 2; i < loop.size(); ++i)
@@ -137,7 +137,7 @@ TriangleMesh ifcMesh(std::string_view bytes) {
             try {
                 add_product(id);
             } catch (const UnreadGeometry&) {
-                // As parts of its shapes that are not read.
+                // Count it like an unsupported part of a shape.
             }
         }
     }
@@ -148,8 +148,8 @@ namespace {
 
 constexpr double kFootprintHeight = 2.5;  // metres
 
-/// The surface that a profile sweeps through frames, which map its plane into space; closed at both
-/// ends, or without ends where it comes back to the first frame.
+/// Builds the surface that a profile sweeps through frames, which map its plane into space; closed
+/// at both ends, or without ends if it returns to the first frame.
 IfcFaces swept(const IfcArea& area, std::span<const IfcFrame> frames, bool comes_back) {
     IfcFaces faces;
     const auto loop_in = [](const Polygon& polygon, const IfcFrame& frame) {
@@ -284,7 +284,7 @@ IfcFaces shells(const IfcFrames& frames, std::span<const StepValue> ids) {
     return faces;
 }
 
-/// IfcTriangulatedFaceSet and IfcPolygonalFaceSet.
+/// Reads IfcTriangulatedFaceSet and IfcPolygonalFaceSet.
 IfcFaces faceSet(const IfcFrames& frames, const StepInstance& set) {
     std::vector<Point3> points;
     for (const StepValue& p : frames.file().read(set[0].reference())[0].list())
@@ -334,7 +334,7 @@ IfcFaces primitive(const IfcFrames& frames, const StepInstance& item) {
                     {0, 0, frames.length(item[1])});
 }
 
-/// The closed curves of a footprint.
+/// Reads the closed curves of a footprint.
 IfcFaces footprint(const IfcFrames& frames, const StepInstance& set) {
     IfcArea area;
     IfcFrame floor;

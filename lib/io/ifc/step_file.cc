@@ -19,7 +19,7 @@ bool isTypeCharacter(char c) {
     return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-/// Index behind the string or comment that begins at `at`, or `at` if neither does.
+/// Returns the index behind the string or comment that begins at `at`, or `at` if neither does.
 std::size_t skipQuoted(std::string_view text, std::size_t at) {
     if (text[at] == '\'') {
         const std::size_t end = text.find('\'', at + 1);  // '' is two strings side by side
@@ -46,7 +46,7 @@ std::string_view trimmedValue(std::string_view text) {
     return text.substr(0, text.find_last_not_of(kBlanks) + 1);
 }
 
-/// The values between the parentheses that `text` begins with.
+/// Returns the values between the parentheses that `text` begins with.
 std::vector<StepValue> valuesIn(std::string_view text) {
     std::vector<StepValue> values;
     std::size_t depth = 0, begin = 1;
@@ -167,7 +167,7 @@ void appendUtf8(std::string& out, std::uint32_t code) {
     }
 }
 
-/// The hexadecimal number of so many digits at the start of `text`, which it is taken from.
+/// Parses and removes a hexadecimal number of `digits` digits at the start of `text`.
 std::optional<std::uint32_t> takeHex(std::string_view& text, std::size_t digits) {
     if (text.size() < digits) return std::nullopt;
     std::uint32_t value = 0;
@@ -195,7 +195,7 @@ void takeRun(std::string_view& text, std::size_t digits, std::string& out) {
     if (text.starts_with("\\X0\\")) text.remove_prefix(4);
 }
 
-/// Appends the character that the escape at the start of `text` stands for.
+/// Appends the character of the escape at the start of `text`.
 void takeEscape(std::string_view& text, std::string& out) {
     const auto skips = [&text](std::string_view prefix) {
         if (!text.starts_with(prefix)) return false;

@@ -19,7 +19,7 @@ namespace {
 constexpr double kStoreyHeight = 1.8;  // metres to the next floor, at least
 constexpr double kBelowFloor = 0.3;    // how far things may begin below the floor they stand on
 constexpr double kThinnestThing = 0.01;
-constexpr double kMaxProxy = 5;  // metres: larger proxies are terrain, or all of a building
+constexpr double kMaxProxy = 5;  // metres: larger proxies are terrain, or a whole building
 constexpr double kMaxRailing = 0.3;
 constexpr double kAreaDiffers = 0.1;  // share
 
@@ -73,7 +73,7 @@ class StoreyImport {
                              "; it has neither walls nor spaces to enclose a room");
     }
 
-    /// Makes walls of the outlines of spaces that no walls enclose, as under a roof.
+    /// Adds the outlines of spaces that no walls enclose as walls, e.g. under a roof.
     void encloseSpaces(std::vector<Segment2>& all, std::span<const Segment2> doors) {
         const PlanFaces faces(all, doors);
         std::size_t open = 0;
@@ -125,7 +125,8 @@ class StoreyImport {
         }
     }
 
-    /// True where another opening takes away the same part of a wall, as leaves of one door.
+    /// Returns true if another opening removes the same part of a wall, e.g. two leaves of one
+    /// door.
     [[nodiscard]] bool overlapsOther(const StoreyOpening& opening) const {
         const Vec2 along = opening.line.b - opening.line.a;
         const double l = length(along);
@@ -185,7 +186,7 @@ class StoreyImport {
         return false;
     }
 
-    /// Walls of which no face bounds the rooms are left out.
+    /// Skips walls without a face that bounds the rooms.
     void writeWalls() {
         const std::vector<bool> keep = rooms_.regions.empty()
                                            ? std::vector<bool>(lines_.size(), true)

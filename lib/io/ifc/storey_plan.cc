@@ -17,12 +17,12 @@ namespace {
 constexpr double kParallel = 0.017;  // sine of a degree
 constexpr double kMinShare = 0.6;    // of an opening's width that a face has to bear
 constexpr double kMinWidth = 0.3;    // metres, of openings
-/// From boxes to the faces that they go through, in metres: those of holes, and of doors
-/// themselves.
+/// Distance from boxes to the faces that they go through, in metres: for holes, and for doors and
+/// windows without one.
 constexpr double kHoleReach = 0.05, kDoorReach = 0.5;
 constexpr double kThickestPane = 0.5;  // metres
 constexpr double kJambReach = 0.4;     // beyond a door to the ends of walls beside it
-constexpr double kMaxThrough = 0.99;   // openings reach through no thicker walls
+constexpr double kMaxThrough = 0.99;   // metres: thickest wall that an opening goes through
 
 std::vector<Segment2> linesOf(std::span<const Region> solids) {
     std::vector<Segment2> lines;
@@ -139,7 +139,7 @@ std::optional<StoreyOpening> WallFaces::find(const BuildingBox& box, bool is_hol
         if (auto opening = through(*one, is_hole)) return opening;
     for (const BuildingBox* const one : {&box, static_cast<const BuildingBox*>(&turned)})
         if (auto opening = across(*one)) return opening;
-    // A window or door that is a wall itself, as panes from floor to ceiling.
+    // A window or door that is a wall itself, e.g. panes from floor to ceiling.
     const BuildingBox& longer = box.length >= box.width ? box : turned;
     if (is_hole || longer.length < kMinWidth || longer.width > kThickestPane ||
         isInWall(box.center))
@@ -169,7 +169,7 @@ void carve(StoreyWalls& walls, std::span<const BuildingBox> holes) {
 
 namespace {
 
-constexpr double kMeet = 0.002;     // metres between walls that were meant to meet
+constexpr double kMeet = 0.002;     // metres between walls that should meet
 constexpr double kStraight = 1e-4;  // within which corners lie on a face where another wall ends
 constexpr double kTouch = 0.01;     // and between a column and the wall it belongs to
 
@@ -217,8 +217,8 @@ std::vector<Segment2> edgesOf(std::span<const Piece> pieces, std::vector<std::si
     return edges;
 }
 
-/// Leaves out pieces that an earlier one covers corner by corner, as mapped shapes may by the
-/// thousand: their corners would find all of them.
+/// Removes pieces that an earlier one covers corner by corner: mapped shapes may repeat by the
+/// thousand, and each corner would find all copies.
 void dropCopies(std::vector<Piece>& pieces) {
     using Corners = std::vector<std::vector<std::pair<double, double>>>;
     std::set<Corners> known;

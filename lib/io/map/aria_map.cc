@@ -171,13 +171,13 @@ struct Cells {
     std::int64_t left, right, bottom, top;
 };
 
-/// The cells of the points in blocks: runs within a row, merged where adjacent rows have the same
-/// run.
+/// Merges the cells of the points into blocks: runs within a row, joined if adjacent rows have the
+/// same run.
 std::vector<Cells> cellsOf(const std::vector<Point2>& points) {
     using Cell = std::pair<std::int64_t, std::int64_t>;  // row, column
     std::vector<Cell> cells;
     cells.reserve(points.size());
-    // In whole micrometres, so that points on the grid's own lines fall to one side of them.
+    // Whole micrometres, so that all points on a grid line fall to the same side.
     const auto cell_of = [](double metres) {
         return static_cast<std::int64_t>(std::floor(std::round(metres * 1e6) / (kCell * 1e6)));
     };

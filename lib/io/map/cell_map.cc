@@ -18,15 +18,15 @@ namespace ispace {
 
 namespace {
 
-/// How far outlines may move by default, in cells: half for staircases (see contour.h), the rest
-/// for noise.
+/// Default tolerance of outlines, in cells: half for staircases (see contour.h), the rest for
+/// noise.
 constexpr double kDefaultSimplify = 1;
 constexpr double kRaggedSimplify = 2;  ///< where walls are ragged by a cell on each side
 
-/// Metres; a larger map is not in metres, or not of a building.
+/// Metres; a larger map has the wrong unit, or is not of a building.
 constexpr double kMaxExtent = 10000;
 
-/// Of the bounding boxes of all rooms that are kept.
+/// Limit for the total area of the bounding boxes of all rooms kept.
 constexpr double kMaxCellsOfRooms = 1e9;
 
 /// Metres; a room outside these limits has probably a wrong resolution.
@@ -39,14 +39,14 @@ struct Choice {
     CellIndex place;
 };
 
-/// Turns cells into records, step by step.
+/// Converts cells to records, step by step.
 class CellMapImport {
   public:
     CellMapImport(const CellMap& map, const CellMapSource& source, const ImportOptions& options,
                   ImportRecords& out)
         : map_(map), source_(source), options_(options), out_(out), floor_(map.free) {
         for (const Point2 p : options.inside) choices_.push_back({p, true, map.placeOf(p)});
-        // Records of other inputs may be about another room.
+        // Records of other inputs may refer to another room.
         for (const Point2 p : options.known_inside)
             if (isInGrid(map.placeOf(p))) choices_.push_back({p, false, map.placeOf(p)});
     }
@@ -83,8 +83,8 @@ class CellMapImport {
         floor_ = difference(floor_, *barrier_);
     }
 
-    /// Keeps the rooms of the map with its gaps closed. False if these still reach the border: then
-    /// only inner doors were closed.
+    /// Keeps the rooms of the map with its gaps closed. Returns false if these still reach the
+    /// border: then only inner doors were closed.
     bool keepClosedRooms() {
         const MapCells cut = gapCells(floor_, *options_.close_gaps / map_.resolution);
         const MapCells closed = difference(floor_, cut);
@@ -154,7 +154,7 @@ class CellMapImport {
         reportCleaning(map_, cleaning, cells, out_);
     }
 
-    /// The cost of a room is its bounding box, and rooms may enclose each other.
+    /// The work for a room grows with its bounding box, and rooms may enclose each other.
     void checkWork(const CellPieces& pieces, const std::vector<std::size_t>& rooms) const {
         double cells = 0;
         for (const std::size_t room : rooms) {
@@ -241,7 +241,7 @@ class CellMapImport {
         }
     }
 
-    /// \param talks whether messages tell of it
+    /// \param talks whether messages report it
     [[nodiscard]] Outlined outlinedRoom(const CellPieces& pieces, std::size_t piece,
                                         const std::vector<Choice>& choices, Cleaning& cleaning,
                                         bool talks) {

@@ -21,19 +21,19 @@ namespace ispace {
 
 namespace {
 
-constexpr double kMinOpening = 0.5;       ///< metres of the picture's border
-constexpr double kMaxDoor = 1.2;          ///< metres
-constexpr double kGapOfPoints = 0.3;      ///< metres between points of a wall: not told one by one
+constexpr double kMinOpening = 0.5;   ///< metres of the picture's border
+constexpr double kMaxDoor = 1.2;      ///< metres
+constexpr double kGapOfPoints = 0.3;  ///< metres between points of a wall: not reported one by one
 constexpr double kShareBehindDoor = 0.1;  ///< of the floor, for a warning
 
-/// Whether each piece is one of the rooms.
+/// Returns for each piece whether it is one of the rooms.
 std::vector<bool> areRooms(const CellPieces& pieces, const std::vector<std::size_t>& rooms) {
     std::vector<bool> are(pieces.size());
     for (const std::size_t room : rooms) are[room] = true;
     return are;
 }
 
-/// As options take it.
+/// Writes a point as options take it.
 std::string pointText(Point2 p) { return formatFixed(p.x, 2) + ',' + formatFixed(p.y, 2); }
 
 /// A run of floor along an edge of the picture.
@@ -69,14 +69,14 @@ std::vector<Opening> openingsOf(const CellMap& map, const MapRoom& room) {
     return openings;
 }
 
-/// The largest part of a room that closing doors would separate from the picture's border.
+/// Finds the largest part of a room that closing doors would separate from the picture's border.
 struct BehindDoor {
     std::size_t cells = 0;
     CellIndex place;
 };
 
 BehindDoor behindDoors(const CellMap& map, const MapRoom& room) {
-    // In a grid that ends where the picture does.
+    // In a grid without margin around the picture.
     MapCells floor(map.free.width(), map.free.height());
     for (int y = 0; y < room.floor.height(); ++y)
         for (int x = 0; x < room.floor.width(); ++x)
@@ -108,7 +108,7 @@ void warnOfOpenings(const CellMap& map, const MapRoom& room, ImportRecords& out)
         "; --fence closes it where it should end");
 }
 
-/// From corner to corner of the box around a gap's cells, the way they run.
+/// Returns a diagonal of the box around a gap's cells, in the direction of the gap.
 Segment2 acrossGap(const CellMap& map, const CellPieces& gaps, std::size_t gap) {
     const CellIndex low = gaps[gap].lowest, high = gaps[gap].highest;
     const bool rises = 2 * gaps[gap].first.x <= low.x + high.x;  // the lowest cell lies on the left
@@ -206,7 +206,7 @@ constexpr std::uint8_t kOpaque = 128;
 /// Shade that map_server writes for unknown, of 255.
 constexpr int kUnknown = 205;
 
-/// The picture with its transparent pixels unknown.
+/// Returns the picture with its transparent pixels unknown.
 GreyPicture onUnknown(GreyPicture image) {
     const auto unknown = static_cast<std::uint16_t>(image.max_value * kUnknown / 255);
     for (std::size_t i = 0; i < image.opacity.size(); ++i)
@@ -338,7 +338,7 @@ Document readGridMap(std::string_view bytes, const std::string& name, const Impo
     GridCells cells = GridMapReader(bytes, name).read(out);
     const double resolution = options.resolution.value_or(1);
     checkCellMap(cells.free.width(), cells.free.height(), resolution, name);
-    ImportOptions exact = options;  // its cells are no measurement
+    ImportOptions exact = options;  // the cells are a game map, not noisy measurements
     exact.simplify = options.simplify.value_or(0);
     writeCellMap({std::move(cells.free), std::move(cells.occupied), resolution, options.origin},
                  {name, "ground is . G or S"}, exact, out);

@@ -25,7 +25,7 @@ std::optional<std::size_t> likeliestRoom(const CellPieces& pieces, double resolu
     for (const CellPiece& piece : pieces.list()) largest = std::max(largest, piece.cells);
     const double least = std::min(kMinRoomArea / (resolution * resolution),
                                   kMinShare * static_cast<double>(largest));
-    // By rank; of pieces without any, as a border all around, by size.
+    // By rank; if no piece has one, as with a border all around, by size.
     std::optional<std::size_t> best;
     std::pair<double, std::size_t> best_rank;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -51,7 +51,7 @@ std::vector<std::size_t> closedRooms(const MapCells& cells, const CellPieces& pi
             std::max(widest[piece], *std::max_element(row + run.first, row + run.last + 1));
     });
     const double least = kMinRoomArea / (resolution * resolution);
-    // Half a cell: the floor's edge lies that much before the middles of the cells outside.
+    // Half a cell: the floor's edge lies that much before the centres of the cells outside.
     const double radius = kMinRoomWidth / 2 / resolution;
     const std::optional<std::size_t> likeliest = likeliestRoom(pieces, resolution);
     std::vector<std::size_t> rooms;
@@ -128,7 +128,7 @@ MapCells barrierCells(const std::vector<Segment2>& lines, int width, int height)
 
 MapCells gapCells(const MapCells& free, double width) {
     const std::vector<int> clearance = squaredDistances(free, BorderRule::In);
-    // Wider than the grid is as wide as it.
+    // A wider disc than the grid counts as one of the grid's width.
     const double half =
         (std::min(width, static_cast<double>(free.width() + free.height())) + 1) / 2;
     MapCells broad(free.width(), free.height());
@@ -170,7 +170,7 @@ MapCells cellsWhere(const MapCells& like, const std::vector<int>& values, Test t
 }  // namespace
 
 MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<CellIndex>& from) {
-    // Half a cell: the edge of the cells outside lies that much before their middles.
+    // Half a cell: the edge of the cells outside lies that much before their centres.
     const double reach = (radius + 0.5) * (radius + 0.5);
     const MapCells middles = cellsWhere(cells, squaredDistances(cells, BorderRule::Out),
                                         [reach](int squared) { return squared >= reach; });
@@ -218,7 +218,7 @@ class SlitFilling {
   public:
     explicit SlitFilling(MapRoom& room) : room_(room) {}
 
-    /// \return how many cells became floor
+    /// \return the number of cells that became floor
     std::size_t run() {
         for (int y = 1; y + 1 < room_.floor.height(); ++y)
             for (int x = 1; x + 1 < room_.floor.width(); ++x) follow({x, y});
@@ -233,7 +233,7 @@ class SlitFilling {
         while (isTip(at)) {
             room_.floor.insert(at.x, at.y);
             ++filled_;
-            // At most one group of cells is left around it: the slit goes on there.
+            // At most one group of cells remains around it: the slit continues there.
             for (const CellIndex step : kAround) {
                 const CellIndex next{at.x + step.x, at.y + step.y};
                 if (!isTip(next)) continue;
@@ -277,7 +277,7 @@ class Flattener {
                 x = firstEdge(x, y, across);
                 if (x == floor_.width()) break;
                 const bool kind = floor_.contains(x, y);
-                if (isKind(x - along.x, y - along.y, kind)) continue;  // no begin of a run
+                if (isKind(x - along.x, y - along.y, kind)) continue;  // not the begin of a run
                 if (isKind(x + across.x, y + across.y, kind)) continue;
                 if (!isKind(x - across.x, y - across.y, kind)) continue;
                 flatten({x, y}, along, across, kind);
@@ -292,8 +292,7 @@ class Flattener {
         return x >= 0 && y >= 0 && x < floor_.width() && y < floor_.height();
     }
 
-    /// From (x, y) on along the row, the first cell that is perhaps not of the kind of the one
-    /// across.
+    /// Finds the first cell from (x, y) along the row that may differ in kind from the one across.
     [[nodiscard]] int firstEdge(int x, int y, CellIndex across) const {
         constexpr int kAtOnce = 32;
         const bool in_grid = y + across.y >= 0 && y + across.y < floor_.height();
@@ -333,7 +332,7 @@ class Flattener {
 };
 
 constexpr std::size_t kMaxPinhole = 8;  ///< cells
-constexpr double kCoarse = 0.3;         ///< of the width: one such cell is no noise
+constexpr double kCoarse = 0.3;         ///< share of the width: a cell this large is no noise
 
 void flattenWalls(MapCells& floor) {
     Flattener flattener(floor);
@@ -341,7 +340,7 @@ void flattenWalls(MapCells& floor) {
         for (const int side : {1, -1}) flattener.run(along, {side * along.y, side * along.x});
 }
 
-/// Sides between a cell of the set and one that is not.
+/// Counts sides between a cell of the set and one outside it.
 std::size_t countEdges(const MapCells& cells) {
     const auto n = static_cast<std::size_t>(cells.width());
     std::vector<std::uint8_t> below(n);
@@ -365,7 +364,7 @@ struct Island {
     bool is_occupied = false;
 };
 
-/// Islands that are small enough to be noise at all.
+/// Finds islands small enough to be noise.
 std::vector<Island> smallIslands(const MapRoom& room, const CellPieces& others, double resolution,
                                  double widest) {
     std::vector<bool> is_occupied(others.size());
@@ -382,8 +381,8 @@ std::vector<Island> smallIslands(const MapRoom& room, const CellPieces& others, 
     return islands;
 }
 
-/// The most cells that chance joins to one speck, where single cells of noise are as frequent as
-/// in this room: the expected number of larger ones is below a half.
+/// Returns the largest number of cells that chance joins to one speck, if single cells of noise are
+/// as frequent as in this room: the expected number of larger ones is below a half.
 std::size_t largestSpeckByChance(const std::vector<Island>& islands, std::size_t floor_cells) {
     // Shapes of n cells joined by sides or corners (fixed polyplets).
     constexpr std::array<double, 9> kShapes{0, 1, 4, 20, 110, 638, 3832, 23592, 147941};
@@ -438,7 +437,7 @@ Cleaning cleanRoom(MapRoom& room, double resolution, double width,
     fillSpecks(room, resolution, width, done);
     removeSpikes(room, resolution, width, keep, done);
     done.slit_cells = SlitFilling(room).run();
-    fillSpecks(room, resolution, width, done);  // that were in strips, and rests of slits
+    fillSpecks(room, resolution, width, done);  // specks that were in strips, and rests of slits
     flattenWalls(room.floor);
     done.edges = countEdges(room.floor);
     return done;

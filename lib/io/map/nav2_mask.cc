@@ -21,7 +21,7 @@ const Nav2Filter kSpeedFilter{
 
 namespace {
 
-/// A number that YAML's readers take for a double.
+/// Writes a number that YAML parsers take for a double.
 std::string yamlDouble(double value) {
     const std::string text = formatDouble(value);
     return text.find('.') == std::string::npos ? text + ".0" : text;
@@ -84,7 +84,7 @@ Nav2MaskFiles nav2MaskFiles(const Nav2Mask& mask, const std::string& picture_nam
     picture.reserve(picture.size() + grid.size());
     for (int row = grid.rows; row-- > 0;)
         for (int column = 0; column < grid.columns; ++column) {
-            // map_server computes round(100 * (255 - shade) / 255), which is the value again.
+            // map_server computes round(100 * (255 - shade) / 255), which restores the value.
             const double dark = std::round(mask.values[grid.cell(column, row)] * kWhite / kMost);
             picture += static_cast<char>(static_cast<std::uint8_t>(kWhite - dark));
         }

@@ -27,7 +27,7 @@ double multipleBelow(double value, double size) {
     return std::round(std::floor(value / size) * size * 1e9) / 1e9;
 }
 
-/// A resolution of one or two digits, at least `times` coarser.
+/// Returns a resolution of one or two digits, at least `times` coarser.
 double coarserResolution(double resolution, double times) {
     const double least = resolution * times;
     const double digit = std::pow(10, std::floor(std::log10(least)) - 1);
@@ -80,14 +80,14 @@ class MapPainter {
         forEachEdge(solid, [this](const Segment2& edge) { addMiddlesOn(edge); });
     }
 
-    /// After all solids: a line that no painted cell stands for occupies the nearer cell.
+    /// To be called after all solids: a line without a painted cell occupies the nearer cell.
     void addLine(const Segment2& line) {
         for (const CellPair& pair : crossingsOf(line))
             if (isFree(pair.near_column, pair.near_row) && isFree(pair.far_column, pair.far_row))
                 *cell(pair.near_column, pair.near_row) = kOccupied;
     }
 
-    /// A body that is small enough to lie between the middles of cells.
+    /// Returns true for a body small enough to lie between the centres of cells.
     void addSmall(const Polygon& body) {
         bool has_cells = false;
         forEachEdge(body, [&](const Segment2& edge) {
@@ -160,7 +160,7 @@ ExportedFiles writeRosMap(const Scene& scene, double height, double resolution,
     const Regions& indoor = scene.environment.indoor();
     const Grid grid = rosMapCells(bounds(indoor), resolution);
     Slice slice = scene.environment.slice(height);
-    // Cells are occupied that something touches: not those that a curve touches just from within.
+    // A cell is occupied if a body overlaps it, not if a curve only touches it from within.
     slice.solids = inscribedSolids(slice);
     MapPainter painter(grid);
     painter.addFloor(indoor);

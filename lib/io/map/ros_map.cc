@@ -29,7 +29,7 @@ namespace ispace {
 
 namespace {
 
-/// A millimetre a cell: below it the numbers are no metres.
+/// A millimetre a cell: a smaller value is not in metres.
 constexpr double kFinestResolution = 0.001;
 
 /// The keys of map.yaml.
@@ -158,7 +158,8 @@ MapHeader readHeader(std::string_view yaml, const std::string& name) {
     }
 }
 
-/// Why the picture cannot be read, or "". Devices and pipes are refused: they may never end.
+/// Returns the reason that the picture cannot be read, or "". Rejects devices and pipes: they may
+/// never end.
 std::string reasonNotToRead(const std::string& path) {
     std::error_code error;
     if (!mayBeRead(path)) return std::generic_category().message(ENOENT);
@@ -167,7 +168,7 @@ std::string reasonNotToRead(const std::string& path) {
     return std::filesystem::is_regular_file(status) ? "" : "it is no regular file";
 }
 
-/// \throws FormatError where map.yaml names it
+/// \throws FormatError at the position of `image` in map.yaml
 std::string readImage(const MapHeader& header, const std::string& path, const std::string& name) {
     const auto refuse = [&](const std::string& reason, const char* hint) {
         throw FormatError(Diagnostic{
@@ -204,7 +205,7 @@ CellMap readCells(MapHeader header, const std::string& path, const std::string& 
 }  // namespace
 
 bool isRosMap(std::string_view bytes) {
-    // Most YAML is told apart without parsing it twice.
+    // A cheap test rejects most YAML without a second parse.
     if (bytes.find("image") == std::string_view::npos ||
         bytes.find("resolution") == std::string_view::npos)
         return false;
@@ -212,7 +213,7 @@ bool isRosMap(std::string_view bytes) {
         const YAML::Node root = YAML::Load(std::string(bytes));
         return root.IsMap() && root["image"] && root["resolution"];
     } catch (const YAML::Exception&) {
-        return false;  // the YAML reader says where it is bad
+        return false;  // the YAML reader reports the error
     }
 }
 

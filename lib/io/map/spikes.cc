@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kMinSpike = 3;  ///< cells; smaller ones are bumps
 constexpr int kMinNear = 5;           ///< cells to a wall that is near
 
-/// The floor that is no strip: wider than a cell, and than `widest` cells where no wall is near.
+/// Returns the floor that is no strip: wider than a cell, and than `widest` cells if no wall is
+/// near.
 MapCells broadFloor(const MapRoom& room, int widest) {
     MapCells broad = opened(room.floor, widest + 1);
     const MapCells two = opened(room.floor, 2);

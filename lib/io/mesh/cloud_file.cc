@@ -31,7 +31,7 @@ std::vector<std::string_view> wordsOf(std::string_view line) {
     }
 }
 
-/// Unsigned, little-endian; 0 beyond the end.
+/// Reads an unsigned little-endian number; 0 beyond the end.
 std::uint64_t unsignedAt(std::string_view bytes, std::size_t at, std::size_t size) {
     std::uint64_t value = 0;
     for (std::size_t i = size; i > 0 && at + size <= bytes.size(); --i)
@@ -51,7 +51,7 @@ bool isPcd(std::string_view bytes) {
 
 bool isLas(std::string_view bytes) { return bytes.starts_with("LASF"); }
 
-/// A header with vertices and without faces.
+/// Returns true for a header with vertices and without faces.
 bool isPlyOfPoints(std::string_view bytes) {
     if (!bytes.starts_with("ply\n") && !bytes.starts_with("ply\r")) return false;
     const std::string_view head = bytes.substr(0, bytes.substr(0, 1 << 16).find("end_header"));
@@ -65,7 +65,7 @@ bool isPlyOfPoints(std::string_view bytes) {
     return has_vertices && !has_faces;
 }
 
-/// A type of PLY; a size of 0 for other words.
+/// Returns a type of PLY; a size of 0 for other words.
 std::pair<char, std::size_t> plyType(std::string_view word) {
     struct Type {
         std::string_view name, alias;
@@ -107,7 +107,7 @@ CloudFile::CloudFile(std::string_view bytes, const std::string& name) : name_(na
 
 void CloudFile::fail(const std::string& message, int line) const { failFile(name_, message, line); }
 
-/// Every point must lie in the bytes.
+/// Requires every point to lie in the bytes.
 void CloudFile::checkCoordinates() const {
     for (const Coordinate& of : xyz_) {
         if (of.kind == 0) fail("a point cloud without x, y and z");
@@ -180,14 +180,14 @@ void CloudFile::readPcd() {
     }
 }
 
-/// LZF (M. Lehmann): runs of up to 32 literal bytes, and references of 3 to 264 bytes back to at
-/// most 8 kB before.
+/// Unpacks LZF (M. Lehmann): runs of up to 32 literal bytes, and references of 3 to 264 bytes back
+/// to at most 8 kB before.
 void CloudFile::unpackLzf(std::size_t unpacked_size) {
     const std::uint64_t packed = unsignedAt(bytes_, 0, 4), size = unsignedAt(bytes_, 4, 4);
     const auto refuse = [this] { fail("damaged: its compressed points do not unpack"); };
     if (bytes_.size() < 8 || packed > bytes_.size() - 8 || size != unpacked_size) refuse();
     const std::string_view in = bytes_.substr(8, packed);
-    if (size / 264 > in.size()) refuse();  // three bytes give 264 at most
+    if (size / 264 > in.size()) refuse();  // three bytes unpack to at most 264
     unpacked_.reserve(size);
     for (std::size_t at = 0; at < in.size();) {
         const auto control = static_cast<unsigned char>(in[at++]);

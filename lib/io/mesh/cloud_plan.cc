@@ -30,13 +30,12 @@ constexpr int kRim = 3;              // cells around, so that the outside is con
 constexpr int kManyPoints = 10;      // in half of the cells: then a single one is a stray
 constexpr int kMinThing = 3;         // cells; smaller ones are noise
 constexpr double kBelowTop =
-    0.15;  // metres: points that end so far below the upper height are no wall
-constexpr double kFloorNoise = 0.1;  // metres above the floor
-constexpr double kStands =
-    0.25;  // metres: an island with points below this height stands on the floor
+    0.15;  // metres: islands that end so far below the upper height are no wall
+constexpr double kFloorNoise = 0.1;   // metres above the floor
+constexpr double kStands = 0.25;      // metres: islands with lower points stand on the floor
 constexpr double kFloorShare = 0.01;  // of all points lie lower than the floor
 constexpr double kRoundShare = 0.92;  // of its rectangle that a round thing fills at most
-constexpr int kHeadings = 90;         // of rectangles that are tried
+constexpr int kHeadings = 90;         // rectangle headings that are tried
 /// Widths of gaps between points, tried in this order; wider ones are doors.
 constexpr std::array kGaps{0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.2};
 constexpr double kGapOfPoints = 0.3;
@@ -120,7 +119,7 @@ class CloudPlan {
             failFile(name_, "no point lies between the heights of --slice-walls: " + reach);
         cell_ = options_.resolution.value_or(kCell);
         // The outermost walls lie in the middle of their cells.
-        // A disc as wide as a gap has to fit outside.
+        // A disc as wide as a gap must fit outside.
         const double rim = kRim + std::ceil(options_.close_gaps.value_or(kGaps.back()) / cell_);
         corner_ = {band.low.x - (rim + 0.5) * cell_, band.low.y - (rim + 0.5) * cell_};
         const double columns = std::ceil((band.high.x - corner_.x) / cell_) + rim;
@@ -202,7 +201,7 @@ class CloudPlan {
         return occupied;
     }
 
-    /// Islands that end below the upper height are no walls but furniture, or noise.
+    /// Islands that end below the upper height are furniture or noise, not walls.
     void takeThings(MapCells& occupied) {
         const CellPieces pieces(occupied, CellPieces::Joined::ByCorners);
         std::vector<std::vector<CellIndex>> places(pieces.size());
@@ -232,7 +231,7 @@ class CloudPlan {
         return {corner_.x + (place.x + 0.5) * cell_, corner_.y + (place.y + 0.5) * cell_};
     }
 
-    /// The smallest rectangle around the middles of the cells: points lie on the faces of things,
+    /// Finds the smallest rectangle around the cell centres: points lie on the faces of a body,
     /// which pass through cells anywhere.
     void fit(CloudThing& thing, const std::vector<CellIndex>& places) const {
         double least = HUGE_VAL;
@@ -291,7 +290,7 @@ class CloudPlan {
         return kGaps[i];
     }
 
-    /// The area of the room that would be kept, 0 if it is open.
+    /// Returns the area of the room that would be kept, 0 if it is open.
     [[nodiscard]] double enclosed(const MapCells& free, double gap) const {
         const MapCells closed = gap > 0 ? difference(free, gapCells(free, gap / cell_)) : free;
         const CellPieces pieces(closed, CellPieces::Joined::BySides);

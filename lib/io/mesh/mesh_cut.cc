@@ -105,7 +105,7 @@ void closeLoops(Slice& slice) {
 
 std::vector<PlanPath> cutPaths(Slice slice) {
     std::vector<PlanPath> paths;
-    // Ends of triangles are not corners: openings would be fitted to them.
+    // Ends of triangles are not corners: the plan's opening finder would use them.
     for (Polygon& outline : simplified(Joiner(std::move(slice.solids)).join(), kStraight))
         paths.push_back({std::move(outline), true, 0});
     for (const Segment2& sheet : slice.sheets) paths.push_back({{sheet.a, sheet.b}, false, 0});
@@ -116,7 +116,7 @@ namespace {
 
 constexpr double kDefaultCut = 1.2;  // metres: over most sills, under most lintels
 
-/// The cut through a layer as lines of the plan.
+/// Returns the cut through a layer as lines of the plan.
 void addShapes(Slice slice, const std::string& layer, std::vector<PlanShape>& shapes) {
     for (PlanPath& path : cutPaths(std::move(slice))) {
         PlanShape& shape = shapes.emplace_back();
@@ -151,7 +151,7 @@ struct Heights {
 Document readMeshWalls(const std::string& operand, const ImportOptions& options,
                        const Schemas& schemas) {
     if (options.slice_top) failFile(operand, "a mesh is cut at one height: --slice-walls M");
-    // The mesh as it would stand in a room.
+    // The mesh in its default pose in a room.
     Document mesh = meshDocument(operand, options, schemas);
     loadMeshes(mesh, operand);
     const Body body = bodyOf(mesh.records.front());

@@ -8,9 +8,9 @@
 
 namespace ispace {
 
-/// Returns the cut through meshes as lines of a plan, straight within 1 mm. Solids that
-/// meet at edges, such as walls that run into each other, are united; a solid inside another
-/// remains, e.g. furniture in a room modelled by its inner surface.
+/// Returns the cut through meshes as lines of a plan, straight within 1 mm. Solids that meet at
+/// edges, such as walls that run into each other, are united; a solid inside another remains, e.g.
+/// furniture in a room modelled by its inner surface.
 std::vector<PlanPath> cutPaths(Slice slice);
 
 /// Joins sheets that meet within 1 mm, and converts closed ones to solids: where openings are cut

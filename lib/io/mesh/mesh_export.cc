@@ -45,7 +45,7 @@ void appendCount(std::string& out, std::size_t number) {
     out.append(digits.data(), end);
 }
 
-/// Writes the nodes one behind another; OBJ counts vertices and normals over the whole file.
+/// Writes the nodes in order; OBJ counts vertices and normals over the whole file.
 class ObjWriter {
   public:
     ObjWriter(ObjUp up, const std::string& mtl_name) : up_(up), with_materials_(!mtl_name.empty()) {
@@ -97,7 +97,7 @@ class ObjWriter {
         out_ += '\n';
     }
 
-    /// 1-based number of the normal, written where it is new.
+    /// Returns the 1-based number of the normal; writes new ones.
     std::size_t indexOf(Vec3 normal) {
         const auto steps = [](double x) {
             return static_cast<std::int32_t>(std::lround(x * kNormalSteps));
@@ -130,11 +130,12 @@ class ObjWriter {
     bool with_materials_;
     std::string out_;
     std::size_t vertices_ = 0;
-    std::unordered_map<NormalKey, std::size_t, HashNormal> normals_;  // looked up, never listed
+    std::unordered_map<NormalKey, std::size_t, HashNormal>
+        normals_;  // only looked up: its order does not affect the output
     std::set<Material> materials_;
 };
 
-/// Colours as screens show them: that is how most readers of the format take them.
+/// Writes colours in sRGB, as most readers of the format expect.
 void addMaterial(std::string& out, Material material) {
     const Color color = displayColor(material);
     out.append("\nnewmtl ").append(lookOf(material).name).append("\nKd");
@@ -190,7 +191,7 @@ void addFacet(std::string& out, const std::array<Point3, 3>& corners) {
 }  // namespace
 
 std::string writeStl(const Scene& scene) {
-    // "solid" as first word would announce the text form.
+    // The first word "solid" would announce the text form.
     std::string out = "ispace: binary STL, metres, z up";
     out.resize(kHeader + sizeof(std::uint32_t));
     const std::vector<ModelNode> model = modelOf(scene);

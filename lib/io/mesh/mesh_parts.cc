@@ -22,14 +22,14 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
-/// The first line, which is removed.
+/// Removes and returns the first line.
 std::string_view takeLine(std::string_view& bytes) {
     const std::string_view line = bytes.substr(0, bytes.find('\n'));
     bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
     return line;
 }
 
-/// The first line of OBJ is a statement, behind comments; some line is a vertex.
+/// The first line of OBJ is a statement, after comments; at least one line is a vertex.
 bool isObj(std::string_view bytes) {
     constexpr std::array<std::string_view, 11> kStatements{"mtllib", "usemtl", "o",  "g", "s", "v",
                                                            "vn",     "vt",     "vp", "f", "l"};
@@ -45,7 +45,7 @@ bool isObj(std::string_view bytes) {
     return false;
 }
 
-/// True if a text in lower case has these words, not as parts of longer ones.
+/// Returns true if a text in lower case has these words, not as parts of longer ones.
 bool hasWords(std::string_view text, const std::string& words) {
     const auto is_letter = [&](std::size_t at) {
         return at < text.size() && text[at] >= 'a' && text[at] <= 'z';
@@ -187,7 +187,7 @@ class Unpacker {
         std::memcpy(&value, take(sizeof value).data(), sizeof value);
         return value;
     }
-    /// A number of things that take so many bytes at least.
+    /// Reads a count of items that take at least so many bytes each.
     [[nodiscard]] std::size_t count(std::size_t bytes) {
         const auto count = value<std::size_t>();
         if (count > rest_.size() / bytes) fail();
@@ -228,7 +228,7 @@ ConfinedLimits meshLimits(std::size_t file_bytes, bool is_building) {
                                 static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
     ConfinedLimits limits;
     limits.memory = std::max(1024 * kMega, std::min((1024 + 32 * megas) * kMega, machine / 4 * 3));
-    // Solids of a building are cut by each other.
+    // Solids of a building intersect each other.
     limits.seconds = is_building ? 60 + 10 * megas : 20 + 2 * megas;
     return limits;
 }

@@ -18,7 +18,7 @@ constexpr double kMinPieces = 8, kMaxPieces = 7200;
 constexpr int kMaxDegree = 15;
 constexpr int kMaxHalvings = 12;  // of a span between two knots
 
-/// Share of the radius by which a curve may be off its circle.
+/// Tolerance of a curve that counts as a circle, as share of the radius.
 constexpr double kArcShare = 0.01;
 
 Point2 pointOf(const CubicCurve& c, double t) {
@@ -91,7 +91,7 @@ int arcPieces(double sweep, double radius) {
 }
 
 void appendCubic(const CubicCurve& curve, Polygon& points) {
-    // The curve lies between its control points: pieces of a line would only be short ones.
+    // The curve lies between its control points: a short one needs no more pieces.
     const Segment2 chord{curve[0], curve[3]};
     if (distance(curve[1], chord) <= kCurveSagitta && distance(curve[2], chord) <= kCurveSagitta) {
         points.push_back(curve[3]);

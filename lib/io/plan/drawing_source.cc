@@ -16,10 +16,10 @@ namespace ispace {
 
 namespace {
 
-/// Metres that a plan is wide if its unit is right.
+/// Width of a plan in metres if its unit is right.
 constexpr double kLikelyPlan = 3, kUnlikelyPlan = 300;
 
-/// Metres; other drawings have another unit than they say.
+/// Metres; drawings outside have another unit than they say.
 constexpr double kMinPlan = 1, kMaxPlan = 2000;
 
 /// Rooms with areas that differ by a smaller share count as the same.
@@ -32,10 +32,10 @@ constexpr std::array<std::string_view, 26> kWallWords{
     "wall",  "walls",   "wand",   "wände",  "waende", "wande", "mauer", "mauern", "mauerwerk",
     "mur",   "murs",    "muro",   "muros",  "muri",   "muur",  "muren", "parede", "paredes",
     "pared", "paredes", "parete", "pareti", "vägg",   "vegg",  "stěna", "стена"};
-/// Words end with these, as in Innenwand and CURTAINWALL.
+/// Word endings, as in Innenwand and CURTAINWALL.
 constexpr std::array<std::string_view, 6> kWallEnds{"wall",  "walls",  "wand",
                                                     "wände", "waende", "mauer"};
-/// Of wall layers that hold no outlines of walls.
+/// Words of layers that belong to walls but have no outlines of walls.
 constexpr std::array<std::string_view, 20> kOtherWords{
     "patt",  "hatch", "hatching", "fill",    "schraffur", "iden",     "text",
     "texts", "tag",   "tags",     "dim",     "dims",      "note",     "notes",
@@ -46,7 +46,7 @@ bool isOneOf(const List& words, std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// The words of a name in lower case: letters of ASCII, and everything that is not ASCII.
+/// Splits a name into words in lower case: letters of ASCII, and all characters beyond ASCII.
 std::vector<std::string> wordsOf(std::string_view name) {
     std::vector<std::string> words;
     bool inside = false;

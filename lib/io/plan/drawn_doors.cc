@@ -14,18 +14,18 @@ namespace ispace {
 namespace {
 
 constexpr double kNarrowLeaf = 0.4, kWideLeaf = 1.5;  // metres
-/// Of the leaf's width: how far lengths and ends may be off.
+/// Tolerance of lengths and ends, as share of the leaf's width.
 constexpr double kOff = 0.12;
 /// Angle between the leaf and the closed door.
 constexpr double kMinOpen = 5, kMostOpen = 110;  // degrees
 
-/// A curve turns by less at each of its points, one way, and has few of them.
+/// Limits of a curve: it turns one way, by less than this at each of its points, and has few.
 constexpr double kMaxTurn = 35;  // degrees
 constexpr std::size_t kMinPieces = 2, kMaxPieces = 200;
 /// Metres; no swing is shorter or longer.
 constexpr double kMinSwing = 0.05, kMaxSwing = 2 * kWideLeaf;
 
-/// An end of a leaf that another wall meets this closely is no free end.
+/// An end of a leaf is not free if another wall comes this close.
 constexpr double kMeets = 2 * kDefaultSnap;
 
 /// Consecutive pieces of a path that bend one way, as indices of pathPieces().
@@ -113,7 +113,7 @@ class DoorFinder {
         return std::span(pieces_).subspan(run.first, run.count);
     }
 
-    /// Every line that may be the leaf of this swing.
+    /// Finds all lines that may be the leaf of this swing.
     [[nodiscard]] std::vector<Leaf> leavesOf(const Run& run, const NearSegments& search,
                                              const std::vector<bool>& is_curved) const {
         const std::span<const Segment2> swing = of(run);
@@ -144,7 +144,7 @@ class DoorFinder {
         return leaves;
     }
 
-    /// Whether another line than those of the door ends at the leaf's free end.
+    /// Returns true if another line than those of the door ends at the leaf's free end.
     [[nodiscard]] bool isAttached(const Leaf& leaf, const Run& run,
                                   const NearSegments& search) const {
         const auto near = search.near(leaf.end, kMeets);
@@ -160,7 +160,7 @@ class DoorFinder {
     }
 
     /// Of lines to both ends of a swing one is the leaf and one the threshold or a wall: the leaf
-    /// ends freely.
+    /// has a free end.
     void takeDoor(const Run& run, const NearSegments& search, const std::vector<bool>& is_curved) {
         std::vector<Leaf> leaves = leavesOf(run, search, is_curved);
         if (leaves.empty()) return;
@@ -184,7 +184,7 @@ class DoorFinder {
         doors_.swings.push_back(std::move(shape));
     }
 
-    /// Closed outlines of leaves go as a whole.
+    /// Removes closed outlines of leaves as a whole.
     void dropLeafOutlines() {
         const NearSegments search(leaves_);
         std::size_t first = 0;

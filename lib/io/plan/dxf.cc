@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kDeepest = 16;  // blocks in blocks
 
-/// Blocks that are in no file (an outside reference that was not bound), and how often.
+/// Blocks that the file lacks (an unbound external reference), with their numbers of inserts.
 using MissingBlocks = std::map<std::string, std::size_t>;
 
 /// Beyond these a bulge is a straight line, or a full circle.
@@ -37,9 +37,9 @@ constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
 /// Ends of a spline this near, in metres, make it closed.
 constexpr double kSameEnd = 1e-6;
 
-/// The drawing in metres with all blocks put where they are inserted, entities on layer 0 of a
-/// block on the layer of its insert. Each insert, entity and point spends from the budget; shapes
-/// on layers that are not used have no points.
+/// The drawing in metres with all inserts of blocks expanded, entities on layer 0 of a block on the
+/// layer of its insert. Each insert, entity and point spends from the budget; shapes on unused
+/// layers have no points.
 class Expander {
   public:
     Expander(const DxfDrawing& drawing, const std::string& name, const Budget& budget,
@@ -80,7 +80,7 @@ class Expander {
         }
     }
 
-    /// The layer of an entity, unless only a block around it has a name that an option gives.
+    /// Returns the layer of the entity, unless an option names an enclosing block instead.
     [[nodiscard]] const std::string& layerOf(const std::string& layer) const {
         if (blocks_.empty() || layers_.isHidden(layer) || layers_.isNamed(layer)) return layer;
         const auto named =
@@ -99,7 +99,7 @@ class Expander {
         return walls == blocks_.rend() ? "" : **walls;
     }
 
-    /// isWallName(), asked once for each name.
+    /// Caches isWallName() by name.
     [[nodiscard]] bool isCalledWalls(const std::string& name) {
         const auto [found, is_new] = called_walls_.try_emplace(name, false);
         if (is_new) found->second = isWallName(name);
@@ -277,7 +277,7 @@ class DxfImporter {
                 const Schemas& schemas)
         : drawing_(drawing), name_(name), bytes_(bytes), schemas_(schemas) {}
 
-    /// \param hints whether the drawing may be read again to tell the effect of other options
+    /// \param hints whether the drawing may be imported again to report the effect of other options
     [[nodiscard]] DxfImport import(const ImportOptions& options, bool hints) const {
         ImportRecords out(schemas_, name_, options);
         DrawingSource source = scaleOf(options, out);
@@ -311,7 +311,7 @@ class DxfImporter {
     }
 
   private:
-    /// For a drawing of ours: its layers, and lines that meet already.
+    /// Sorts a drawing of writeDxf(): its layers, and lines that already meet.
     static ImportOptions asDrawn(ImportOptions options) {
         options.wall_layers = {"walls"};
         options.door_layers = {"doors"};

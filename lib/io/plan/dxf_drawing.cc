@@ -29,7 +29,7 @@ struct Group {
     int line = 0;  // of the value
 };
 
-/// Takes a file apart into groups, two lines each.
+/// Splits a file into groups, two lines each.
 class GroupReader {
   public:
     GroupReader(std::string_view bytes, const std::string& name)
@@ -126,7 +126,7 @@ struct Kind {
     std::string_view name;
     std::vector<int> required, optional;
     DxfShape (*shape)(const Entity&) = nullptr;  // null: draws no line by itself
-    bool upright_only = true;  // its coordinates lie in the plane that its normal tells
+    bool upright_only = true;                    // its coordinates are in the plane of its normal
 };
 
 DxfShape polylineOf(const Entity& entity) {
@@ -190,7 +190,7 @@ const std::array<Kind, 11>& kinds() {
     return all;
 }
 
-/// Of every entity: visibility, paper space, normal.
+/// Properties of every entity: visibility, paper space, normal.
 constexpr std::array<int, 5> kCommon{60, 67, 210, 220, 230};
 
 template <typename List>
@@ -245,7 +245,7 @@ class DxfReader {
 
     void leaveOut(const std::string& what) { ++drawing_.left_out[what]; }
 
-    /// $INSUNITS is all that counts of the header.
+    /// Reads $INSUNITS, the only header variable needed.
     void readSetting(const Group& group) {
         if (group.code == 9) setting_ = group.value;
         if (group.code == 70 && setting_ == "$INSUNITS")
@@ -296,7 +296,7 @@ class DxfReader {
         }
     }
 
-    /// Numbers that only drawings of ours need: others may have anything there.
+    /// Numbers that only drawings of writeDxf() need: others may have any text here.
     void addSize(const Group& group, bool is_path) {
         const bool is_circle = entity_.kind->name == "CIRCLE";
         const auto value = parseDouble(group.value);
@@ -331,7 +331,7 @@ class DxfReader {
         return z > 0 ? 1 : -1;
     }
 
-    /// Why the entity is passed over, or "".
+    /// Returns the reason that the entity is skipped, or "".
     [[nodiscard]] std::string_view reasonToLeaveOut() const {
         const Kind& kind = *entity_.kind;
         if (entity_.number(67) != 0) return "in paper space";
@@ -368,7 +368,7 @@ class DxfReader {
             drawing_.hidden_layers.insert(name);
     }
 
-    /// Of two blocks of one name the later counts.
+    /// Of two blocks with one name the later wins.
     void beginBlock() {
         block_ = &drawing_.blocks[printable(*entity_.name)];
         *block_ = {entity_.point(), {}};

@@ -88,9 +88,9 @@ bool isDrawnRoom(const DxfDrawing& drawing);
 void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& sizes,
                     double metres_per_unit, ImportRecords& out);
 
-/// Reads ASCII DXF. Ignores counts in the file, and parses only the numbers it
-/// needs. \throws FormatError with its line: no group code, a malformed number,
-/// a missing coordinate, an end before `EOF`
+/// Reads ASCII DXF. Ignores counts in the file, and parses only the numbers it needs.
+/// \throws FormatError with its line: no group code, a malformed number, a missing coordinate, an
+/// end before `EOF`
 DxfDrawing readDrawing(std::string_view bytes, const std::string& name);
 
 }  // namespace ispace

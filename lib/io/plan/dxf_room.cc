@@ -24,7 +24,7 @@ struct Footprint {
     bool is_exact = true;
 };
 
-/// Corners this near to where a rectangle or an ellipse has them are there, metres.
+/// Tolerance for corners of a rectangle or an ellipse, in metres.
 constexpr double kNear = 1e-6;
 
 Footprint boxAlong(const Polygon& polygon, Vec2 along) {
@@ -56,7 +56,7 @@ Footprint boxAround(const Polygon& polygon) {
     return best;
 }
 
-/// The ellipse that outlineOf() or a circle of CAD is drawn for, if it is one.
+/// Finds the ellipse that outlineOf() or a circle of CAD was drawn for.
 bool findEllipse(const Polygon& polygon, Footprint& out) {
     const std::size_t corners = polygon.size();
     if (corners < 8 || corners % 4 != 0) return false;
@@ -68,7 +68,7 @@ bool findEllipse(const Polygon& polygon, Footprint& out) {
             2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(corners);
         if (distance(polygon[i], center + std::cos(t) * a + std::sin(t) * b) > kNear) return false;
     }
-    // Of the same area, about which the polygon is drawn.
+    // The polygon is drawn around the ellipse with the same area.
     const double step = 2 * std::numbers::pi / static_cast<double>(corners);
     const double grown = 2 * std::sqrt(std::sin(step) / step);
     out = {center, Angle::radians(std::atan2(a.y, a.x)), grown * length(a), grown * length(b),

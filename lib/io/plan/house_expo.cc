@@ -36,7 +36,7 @@ struct HousePlan {
     std::vector<Box> boxes;
 };
 
-/// An iterator over bytes that reports how far a parser has come, which holds copies of it.
+/// An iterator over bytes that reports the position of a parser, which holds copies of it.
 class CountingIterator {
   public:
     // NOLINTBEGIN(readability-identifier-naming): names that the standard library wants
@@ -137,7 +137,7 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
     [[nodiscard]] bool wanted() const {
         return key_ == "verts" || key_ == "holes" || key_ == "room_category";
     }
-    /// Depth of the lists of numbers: [x, y] in `verts` is the third list or object.
+    /// Returns the depth of the lists of numbers: [x, y] in `verts` is the third list or object.
     [[nodiscard]] int tupleDepth() const { return key_ == "verts" ? 3 : 4; }
     [[nodiscard]] std::string wantedShape() const {
         if (key_ == "verts") return "wanted a list of [x, y] in metres";

@@ -22,7 +22,7 @@ constexpr double kOpeningReach = 1e-5;  // from its end to its wall
 /// Sizes of openings where walls are high enough.
 constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
 
-/// The lines of a plan, and those of them that are kept.
+/// The lines of a plan, and the kept ones among them.
 class LinePlan {
   public:
     LinePlan(const LayerSorter::Sorted& shapes, const std::string& name,
@@ -50,7 +50,7 @@ class LinePlan {
 
     void write(ImportRecords& out, const ImportOptions& options) {
         if (!rooms_.reached.empty()) {
-            // Without walls doors are where the floor goes on.
+            // Without walls, doors are where the floor continues.
             writeRooms(rooms_, options, out);
             return note(out);
         }
@@ -93,7 +93,7 @@ class LinePlan {
                      "out, for example with --wall-layer 'A-WALL*'");
     }
 
-    /// Pieces that openings lie on or touch stay.
+    /// Keeps pieces that openings lie on or touch.
     void simplify(double tolerance, const std::vector<PlanOpening>& openings) {
         paths_ = joinedAtEnds(paths_);
         pieces_ = pathPieces(paths_);
@@ -107,7 +107,7 @@ class LinePlan {
         pieces_ = pathPieces(paths_);
     }
 
-    /// Walls, then lines that close the gaps of openings.
+    /// Returns walls, then lines that close the gaps of openings.
     [[nodiscard]] std::vector<Segment2> allPieces() const {
         std::vector<Segment2> all(pieces_);
         for (const PlanOpening& opening : openings_)
@@ -140,7 +140,7 @@ class LinePlan {
         paths_ = withPieces(paths_, walls);
     }
 
-    /// For each opening on a wall the index of the fence it is in.
+    /// Returns for each opening on a wall the index of the fence it is in.
     [[nodiscard]] std::vector<std::size_t> fencesOfOpenings(
         const std::vector<PlanPath>& fences) const {
         using Ends = std::array<double, 4>;

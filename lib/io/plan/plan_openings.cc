@@ -37,7 +37,7 @@ constexpr std::size_t kMaxOpenSwings = 4000;
 
 bool isNear(Point2 a, Point2 b) { return distance(a, b) <= kReach; }
 
-/// Where an end of a symbol meets the walls.
+/// Finds the points where an end of a symbol meets the walls.
 struct Anchor {
     Point2 place;
     double apart = 0;
@@ -47,7 +47,7 @@ class Walls {
   public:
     explicit Walls(std::span<const Segment2> walls) : walls_(walls), search_(walls) {}
 
-    /// The nearest end of a wall, else the nearest point of one, in reach.
+    /// Returns the nearest end of a wall, else the nearest point of one, in reach.
     [[nodiscard]] std::optional<Anchor> anchor(Point2 p) const {
         std::optional<Anchor> corner, foot;
         const auto keep_nearest = [p](std::optional<Anchor>& best, Point2 place) {
@@ -63,7 +63,7 @@ class Walls {
         return corner ? corner : foot;
     }
 
-    /// The nearest wall piece on which both ends lie.
+    /// Returns the nearest wall piece on which both ends lie.
     [[nodiscard]] std::optional<std::size_t> wallUnder(const Segment2& line, double reach) const {
         std::optional<std::size_t> nearest;
         for (const std::size_t i : search_.near(line.a, reach)) {
@@ -130,7 +130,8 @@ class Finder {
     }
     PlanOpenings take() { return std::move(found_); }
 
-    /// Where jambs mark the ends of three swings or more, two others on one wall are a doorway.
+    /// Finds doorways between jambs: if these mark the ends of three swings or more, two others on
+    /// one wall are a doorway.
     void findJambs() {
         std::map<std::size_t, std::vector<Point2>> free;  // by wall
         for (std::size_t i = 0; i < walls_.size(); ++i)
@@ -166,7 +167,7 @@ class Finder {
     }
 
   private:
-    /// The opening that a line means, and how far its ends are off the walls.
+    /// Finds the opening that a line represents, and the distance of its ends from the walls.
     struct Candidate {
         PlanOpening opening;
         double apart = 0;
@@ -237,7 +238,7 @@ class Finder {
         addLeaf({hinge, takes_first ? b : a});
     }
 
-    /// Arcs that end off the walls: two that meet are a double door.
+    /// Handles arcs that end off the walls: two that meet are a double door.
     void joinDoubleDoors() {
         if (open_swings_.size() > kMaxOpenSwings) {
             for (const Swing& swing : open_swings_) found_.unused += swing.is_guess ? 0 : 1;
@@ -320,7 +321,7 @@ namespace {
 
 constexpr double kOnLine = 3 * kWeldDistance;
 
-/// Chords to half a circle.
+/// Number of chords to half a circle.
 constexpr int kChords = 16;
 
 /// The disc's radius is met within this share; half of it goes to chords and simpler outlines.
@@ -333,7 +334,7 @@ constexpr double kSliver = 0.01;
 /// Outlines may move by this, in metres.
 constexpr double kSimplify = 2e-5;
 
-/// All points within the radius of the segment, arcs by chords.
+/// Returns all points within the radius of the segment, arcs by chords.
 Polygon capsule(const Segment2& s, double radius) {
     const Vec2 along = s.b - s.a;
     const double start = along.x == 0 && along.y == 0 ? 0 : std::atan2(along.y, along.x);
@@ -360,7 +361,7 @@ bool isSliver(const Region& region, double radius) {
     return 2 * region.area() < kSliver * radius * region.boundaryLength();
 }
 
-/// With fewer corners, and without the coinciding ones where arcs were cut.
+/// Removes corners, including the coinciding ones where arcs were cut.
 Region normalised(const Region& region, double tolerance) {
     std::vector<Polygon> curves = simplified(curvesOf(region), tolerance);
     const auto are_one = [](Point2 a, Point2 b) { return distance(a, b) <= kSimplify; };
@@ -375,7 +376,7 @@ Region normalised(const Region& region, double tolerance) {
     return result;
 }
 
-/// Where the disc's centre may be.
+/// Returns the positions that the disc's centre can reach.
 std::vector<Region> centres(std::span<const Region> rooms, std::span<const Segment2> walls,
                             double radius) {
     Box2 box;

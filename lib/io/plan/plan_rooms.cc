@@ -121,7 +121,7 @@ class RoomChooser {
         return best;
     }
 
-    /// Hands over the rooms of the plan, besides those kept only the largest.
+    /// Reports the rooms of the plan; outside the kept rooms only the largest.
     void handOver(const Attempt& taken) {
         const Box2 all = boundsOf(plan_.lines);
         const NearSegments walls(lines_);
@@ -239,12 +239,12 @@ class RoomChooser {
     }
 
     [[nodiscard]] bool isUncertain(const Attempt& attempt) const {
-        if (is_odd_) return false;  // one warning at a time
+        if (is_odd_) return false;  // report one warning only
         return attempt.groups.empty() || !attempt.is_whole ||
                attempt.area < kSmallShare * areaOf(boundsOf(plan_.lines));
     }
 
-    /// Attempts to compare: lines and closings are cut where they cross once for all widths, so
+    /// Compares attempts: lines and closings are split at their crossings once for all widths, so
     /// that finding faces is a walk. Rooms are those of attempt() up to rounding.
     class Trials {
       public:

@@ -82,7 +82,7 @@ class Simplifier {
         return result.points.size() < (path.closed ? 3U : 2U) ? path : result;
     }
 
-    /// A joint, else a point that is a corner.
+    /// Returns a joint, else a point that is a corner.
     [[nodiscard]] std::size_t startOf(const PlanPath& path) const {
         const auto joint = std::find_if(path.points.begin(), path.points.end(),
                                         [this](Point2 p) { return isJoint(p); });
@@ -102,7 +102,7 @@ class Simplifier {
         return path_->points[(start_ + i) % path_->points.size()];
     }
 
-    /// Appends the points after `begin`, up to `end`, that stay.
+    /// Appends the kept points after `begin`, up to `end`.
     void addRun(std::size_t begin, std::size_t end, Polygon& points) const {
         thinPolyline(
             begin, end, [this](std::size_t i) { return point(i); },

@@ -50,7 +50,7 @@ bool isOneOf(const List& names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Of the page; a larger rectangle is a drawing with a wrong page.
+/// Share of the page; a larger rectangle is a drawing with a wrong page.
 constexpr double kMaxBackground = 1.1;
 
 double metresOf(const std::string& unit) {
@@ -90,7 +90,7 @@ class SvgReader {
     }
 
   private:
-    /// Errors in attributes get the line of their element.
+    /// Adds the line of the element to errors in attributes.
     template <typename Read>
     void at(pugi::xml_node node, Read read) {
         try {
@@ -180,7 +180,7 @@ class SvgReader {
         addChildren(node, around);
     }
 
-    /// The element itself; kept where it may be used again.
+    /// Returns the element itself; caches it if it may be used again.
     const SvgElement& elementOf(pugi::xml_node node, bool is_used) {
         if (!is_used) return element_ = readSvgElement(node, sheet_, options_);
         const auto [known, is_new] = elements_.try_emplace(node.hash_value());
@@ -346,7 +346,7 @@ SvgDrawing readDrawing(std::string_view bytes, const std::string& name,
     return drawing;
 }
 
-/// \param hints whether the drawing may be read again to tell the effect of other options
+/// \param hints whether the drawing may be imported again to report the effect of other options
 SvgImport importSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
                     const Schemas& schemas, bool hints) {
     ImportRecords out(schemas, name, options);

@@ -40,14 +40,14 @@ std::string withoutComments(std::string_view css) {
     return text;
 }
 
-/// True if an option names layers like this.
+/// Returns true if an option names layers like this.
 bool isNamed(const char* text, const ImportOptions& options) {
     return *text != '\0' &&
            (matchesLayer(options.door_layers, text) || matchesLayer(options.window_layers, text) ||
             matchesLayer(options.wall_layers, text));
 }
 
-/// The text before the mark, which goes with it.
+/// Removes and returns the text before the mark, which is removed, too.
 std::string_view takeUntil(std::string_view& rest, char mark) {
     const std::string_view part = rest.substr(0, rest.find(mark));
     rest.remove_prefix(std::min(part.size() + 1, rest.size()));

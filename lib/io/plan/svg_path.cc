@@ -21,7 +21,7 @@ constexpr double kPixel = 0.0254 / 96;
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-/// Reads numbers, which may follow each other without blanks: `1.5.5-3`.
+/// Parses numbers, which may follow each other without blanks: `1.5.5-3`.
 class Scanner {
   public:
     explicit Scanner(std::string_view text) : rest_(text) {}
@@ -82,7 +82,7 @@ class Scanner {
 
 double angleOf(Vec2 v) { return std::atan2(v.y, v.x); }
 
-/// From the ends of an arc to its centre, as appendix B.2.4 of SVG 2 has it.
+/// Computes the centre of an arc from its ends, as in appendix B.2.4 of SVG 2.
 SvgPiece arcBetween(Point2 from, Point2 to, double rx, double ry, double degrees, bool large,
                     bool positive) {
     rx = std::abs(rx), ry = std::abs(ry);
@@ -90,7 +90,7 @@ SvgPiece arcBetween(Point2 from, Point2 to, double rx, double ry, double degrees
     const double turn = std::fmod(degrees, 360) * kPi / 180;
     const Vec2 x{std::cos(turn), std::sin(turn)}, y = perpendicular(x);
     const Vec2 half = 0.5 * (from - to);
-    // Where the ellipse is a circle of radius 1.
+    // In coordinates where the ellipse is a circle of radius 1.
     Vec2 unit{dot(half, x) / rx, dot(half, y) / ry};
     const double apart = length(unit);
     if (apart > 1) {
@@ -128,7 +128,7 @@ class PathParser {
     }
 
   private:
-    /// A command stands once for all of its arguments.
+    /// One command letter serves all of its arguments.
     void readCommand() {
         scan_.skipBlanks();
         if (command_ == 'Z') return close();
@@ -172,7 +172,7 @@ class PathParser {
         }
     }
 
-    /// The control point mirrored at the current point, after a curve of the same kind.
+    /// Returns the control point mirrored at the current point, after a curve of the same kind.
     [[nodiscard]] Point2 mirrored(char kind) const {
         return last_ == kind ? at_ + (at_ - control_) : at_;
     }

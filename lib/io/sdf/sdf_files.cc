@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 3> kIncludable{"model", "light", "actor"};
 /// Units of Budget for a file, however small: its nodes take 32 kB.
 constexpr std::size_t kFileWork = 100;
-/// How many missing models a message names.
+/// Maximum number of missing models in a message.
 constexpr std::size_t kMaxNamed = 8;
 
 std::string joined(const std::string& folder, std::string_view path) {
@@ -41,7 +41,7 @@ std::string_view behindModels(std::string_view uri) {
     return at == std::string_view::npos ? std::string_view() : uri.substr(at + kModels.size());
 }
 
-/// The same of a model on Fuel, without its version: NAME/2, or NAME/tip/files/PATH.
+/// Returns the same for a model on Fuel, without its version: NAME/2, or NAME/tip/files/PATH.
 std::string fuelPath(std::string_view uri) {
     const std::string_view path = behindModels(uri), name = path.substr(0, path.find('/'));
     constexpr std::string_view kFiles = "/files/";
@@ -114,7 +114,7 @@ std::vector<std::string> SdfFiles::pathsOf(pugi::xml_node node, std::string_view
         paths.emplace_back(path.substr(slash + 1));
         paths.push_back(joined("..", path.substr(slash + 1)));
     }
-    add_below_roots(behindModels(path));  // where they lay on another computer
+    add_below_roots(behindModels(path));  // their position on another computer
     return paths;
 }
 
@@ -142,7 +142,7 @@ bool SdfFiles::isThere(const std::string& path) const {
     try {
         return openSideFile(name(), path, false, roots_).has_value();
     } catch (const FormatError&) {
-        return false;  // elsewhere, or no file that can be read
+        return false;  // elsewhere, or not readable
     }
 }
 
@@ -306,7 +306,7 @@ using Transform = Eigen::Isometry3d;
 
 bool isInclude(pugi::xml_node node) { return std::string_view(node.name()) == "include"; }
 
-/// Radians as files have them: 1.5708 and its kin are meant to be quarter turns.
+/// Converts angles of files to radians: 1.5708 and the like become quarter turns.
 Angle snappedAngle(double radians) {
     constexpr double kClose = 1e-3;  // degrees
     const double degrees = Angle::radians(radians).degrees();
@@ -405,7 +405,7 @@ const Transform& SdfFrames::frameOf(pugi::xml_node node, const SdfScope& scope, 
     if (base.empty() && kind == "frame") base = node.attribute("attached_to").value();
     if (base.empty() && kind == "joint") base = trimmed(node.child_value("child"));
     Transform frame = frameCalled(base, scope, node, length) * poseIn(node);
-    // Where a model's own frame is: its pose may be that of a frame in it.
+    // Finds the position of a model's own frame: its pose may be that of a frame in it.
     std::string_view placed = trimmed(node.child_value("placement_frame"));
     if (placed.empty()) placed = modelOf(node).attribute("placement_frame").value();
     if (!placed.empty()) frame = frame * frameCalled(placed, scopeOf(node), node, length).inverse();

@@ -102,7 +102,7 @@ class SdfImporter {
         fences_.push_back({std::move(path), bottom + polyline.height, shape.model});
     }
 
-    /// Meshes stand in for walls where others enclose no room, or as the user says.
+    /// Cuts meshes into walls if other shapes enclose no room, or if the options say so.
     void cutIntoWalls() {
         const auto choose = [this](std::span<const Segment2> lines) {
             return roomsAmong(lines).rooms;
@@ -119,7 +119,7 @@ class SdfImporter {
         std::vector<Segment2> all = lines;
         for (const SdfMeshCut& cut : cuts)
             for (const Segment2& piece : pathPieces(cut.wall.paths)) all.push_back(piece);
-        if (!options_.slice_walls && choose(all).regions.empty()) return;  // it were no use
+        if (!options_.slice_walls && choose(all).regions.empty()) return;  // cutting would not help
         uncut_.reset();
         for (SdfMeshCut& cut : cuts) {
             walls_.push_back(std::move(cut.wall));
@@ -240,7 +240,7 @@ class SdfImporter {
         regions_ = std::move(rooms.regions);
     }
 
-    /// Gaps that were closed and are as wide as doors are open doors; takes them from `gaps`.
+    /// Closed gaps as wide as doors become open doors, and are removed from `gaps`.
     void addDoors(std::vector<Segment2>& gaps) {
         std::erase_if(gaps, [this](const Segment2& gap) {
             const double width = distance(gap.a, gap.b);
@@ -259,7 +259,8 @@ class SdfImporter {
         });
     }
 
-    /// True if neither its middle nor a corner lies in a room, nor a corner of a room in it.
+    /// Returns true if neither its middle nor a corner lies in a room, nor a corner of a room in
+    /// it.
     [[nodiscard]] bool isOutside(const SdfBlock& block) const {
         if (regions_.empty()) return false;
         Polygon places = rectangle(block.center, block.length, block.width, block.heading);

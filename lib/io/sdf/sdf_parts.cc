@@ -26,7 +26,7 @@ Point2 toLocal(const Pose2& frame, Point2 p) {
     return {dot(way, along), cross(along, way)};
 }
 
-/// Without corners on the line between their neighbours.
+/// Removes corners on the line between their neighbours.
 Polygon cornersOf(const Polygon& footprint) {
     Polygon corners;
     const std::size_t count = footprint.size();
@@ -46,7 +46,7 @@ bool isRectangle(const Polygon& corners) {
            std::abs(dot(a, b)) <= kContactTolerance * std::max(length(a), length(b));
 }
 
-/// A rectangle as a box; which of its sides is the length depends on where it should point.
+/// Converts a rectangle to a box; the direction of its length depends on the preferred heading.
 SdfPart boxPart(const Polygon& corners, double bottom, double top, bool is_framed) {
     SdfPart part;
     Vec2 along = corners[1] - corners[0], across = corners[3] - corners[0];
@@ -103,7 +103,7 @@ Prism thinWall(const Sheet& sheet) {
             sheet.material};
 }
 
-/// Things, furniture and pillars stand somewhere: their models do so, too.
+/// Returns true for furniture and pillars with a position, which is their model's, too.
 bool hasFrame(const Record& record) {
     const RecordType type = record.schema().type;
     return (type == RecordType::Other || type == RecordType::Infra) &&

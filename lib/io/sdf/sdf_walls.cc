@@ -28,7 +28,7 @@ constexpr double kRoundTurn = 1e9;  // steps a degree
 
 // Limits of a box that counts as a wall: metres, and multiples of its thickness.
 constexpr double kThickestWall = 0.5, kMinLength = 3, kMinHeight = 2;
-/// How far beyond the face of a wall another one may end that is meant to meet it.
+/// Maximum distance beyond the face of a wall at which another wall still meets it.
 constexpr double kLooseEnd = 0.02;
 
 /// A mesh that encloses this share of the world's extent is its walls; so many are tried, by size.
@@ -48,7 +48,7 @@ double areaOf(const Box2& box) { return box.width() * box.depth(); }
 
 Box2 boxOf(const SdfMeshCut& cut) { return boundsOf(pathPieces(cut.wall.paths)); }
 
-/// The triangles in the world, loaded as a `mesh` record would be.
+/// Returns the triangles in the world, loaded as a `mesh` record would be.
 Body bodyOf(const SdfShape& shape, const TriangleMesh& mesh, const Schemas& schemas) {
     const auto& [x, y, z] = std::get<SdfMesh>(shape.shape).scale;
     auto placed = std::make_shared<TriangleMesh>();
@@ -65,7 +65,7 @@ Body bodyOf(const SdfShape& shape, const TriangleMesh& mesh, const Schemas& sche
     return meshBody(record);
 }
 
-/// Bad files are told where records load them: a thing that is no wall need not keep others out.
+/// Skips bad files, which are reported when records load them: furniture must not block the import.
 std::shared_ptr<const TriangleMesh> meshOrNothing(const std::string& path) {
     try {
         return loadMesh(path, {sdfMeshUp(path)});
@@ -169,7 +169,7 @@ struct BoxLine {
     }
 };
 
-/// Moves the ends of one line onto those of `walls` that it may be meant to meet.
+/// Moves the ends of one line onto those of `walls` that it should meet.
 Segment2 joinedEnds(const BoxLine& wall, std::span<const BoxLine> walls, const NearSegments& search,
                     double reach) {
     const Vec2 whole = wall.line.b - wall.line.a;

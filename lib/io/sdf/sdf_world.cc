@@ -54,7 +54,7 @@ class WorldWriter {
     }
 
   private:
-    /// Steps of time, plugins, and a sun above the walls.
+    /// Adds steps of time, plugins, and a sun above the walls.
     void addSurroundings() {
         pugi::xml_node physics = world_.append_child("physics");
         physics.append_attribute("name").set_value("default");
@@ -77,7 +77,7 @@ class WorldWriter {
         addText(sun, "direction", "-0.3 0.2 -1");
     }
 
-    /// A model that stays where it is. \return its link
+    /// Adds a static model. \return its link
     pugi::xml_node addModel(const std::string& id, const Pose3& pose) {
         pugi::xml_node model = world_.append_child("model");
         model.append_attribute("name").set_value(names_.take(id).c_str());
@@ -157,7 +157,7 @@ class WorldWriter {
                 addSensor(link, other, other.mount->robot_from_sensor, names);
     }
 
-    /// The sensor, and its body as a box that no camera sees.
+    /// Adds the sensor, and its body as a box that no camera sees.
     void addSensor(pugi::xml_node link, const PlacedRecord& placed, const Pose3& link_from_sensor,
                    XmlNames& names) {
         const std::string id = names.take(idOf(placed));

@@ -20,7 +20,7 @@ namespace ispace {
 
 namespace {
 
-/// Rounded to a number of steps a unit; minus zero becomes zero.
+/// Rounds to a number of steps a unit; minus zero becomes zero.
 std::string rounded(double value, double steps) {
     return formatDouble(std::round(value * steps) / steps + 0.0);
 }
@@ -81,7 +81,7 @@ MeshBox boxAround(const std::vector<Mesh>& meshes) {
 
 namespace {
 
-/// ROS' optical frame in a body's: x right, y down, z forward (REP 103).
+/// Returns ROS' optical frame in a body's: x right, y down, z forward (REP 103).
 constexpr const char* kOpticalAngles = "-1.570796326795 0 -1.570796326795";
 
 /// The sensors of a layout as links: from `world`, or from the robot or person that carries them.
@@ -94,7 +94,7 @@ class UrdfWriter {
     }
 
     std::string write() {
-        // Carriers first: joints name their links.
+        // Carriers first: joints refer to their links.
         for (const PlacedRecord& placed : scene_.placed)
             if (const std::string& keyword = keywordOf(placed);
                 keyword == "robot" || keyword == "human")

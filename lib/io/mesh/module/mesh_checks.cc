@@ -95,8 +95,8 @@ void NodeGraph::check() const {
     }
 }
 
-/// Assimp 5.2 never ends on a header that is cut off, and allocates whatever one says: an element
-/// takes a byte of the file at least.
+/// Assimp 5.2 never ends on a truncated header, and allocates any count that one gives: an element
+/// takes at least a byte of the file.
 void checkPlyHeader(std::string_view bytes) {
     if (bytes.size() < 3 || (bytes[0] | 0x20) != 'p' || (bytes[1] | 0x20) != 'l' ||
         (bytes[2] | 0x20) != 'y')
@@ -232,7 +232,7 @@ struct Tag {
     static constexpr std::string_view kBlanks = " \t\r\n";
 };
 
-/// The tags of XML, one after the other: a document in memory would take as long as assimp takes.
+/// The tags of XML, in order: a document in memory would take as long as assimp takes.
 class Tags {
   public:
     explicit Tags(std::string_view xml) : rest_(xml) {}
@@ -259,7 +259,7 @@ class Tags {
     }
 
     Tag tag() {
-        // A ">" in quotes is no end.
+        // Skips a ">" in quotes.
         std::size_t end = 1;
         for (char quote = 0; end < rest_.size(); ++end) {
             const char c = rest_[end];
@@ -297,7 +297,7 @@ class ColladaNodes {
     }
 
     void check() {
-        // Assimp looks for names, too.
+        // Assimp also resolves names.
         for (const auto& [url, node] : instances_) {
             const auto& found = with_id_.contains(url) ? with_id_ : with_name_;
             for (auto [at, end] = found.equal_range(url); at != end; ++at)

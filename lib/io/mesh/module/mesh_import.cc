@@ -39,8 +39,8 @@
 #include "io/mesh/module/handed_files.h"
 
 // Debian builds assimp with its assertions, which abort the program on some damaged files. This
-// stands before assimp's own function of the same name and makes an error of them, which assimp
-// catches and reports as any other.
+// function replaces assimp's own of the same name and throws an error, which assimp catches and
+// reports like any other.
 namespace Assimp {
 // NOLINTNEXTLINE(misc-use-internal-linkage)
 ASSIMP_API void aiAssertViolation(const char* expression, const char* /*file*/, int /*line*/) {
@@ -56,7 +56,7 @@ using Vertex = FloatPlace;
 using Triangle = std::array<std::uint32_t, 3>;
 
 constexpr std::size_t kMaxWords = 1000;
-/// Corners of meshes that are used again, in the time of one unit of Budget.
+/// Mesh corners per unit of Budget, for meshes used more than once.
 constexpr std::size_t kMeshCornersPerUnit = 8;
 
 [[noreturn]] void fail(const std::string& message) { throw std::runtime_error(message); }
@@ -81,7 +81,7 @@ bool comesWithYUp(const aiScene& scene) {
     return name.starts_with("glTF") || name.starts_with("Collada");
 }
 
-/// Puts the meshes of all nodes into one list of triangles.
+/// Merges the meshes of all nodes into one list of triangles.
 class Gatherer {
   public:
     /// \param size of the file in bytes
@@ -98,7 +98,7 @@ class Gatherer {
     }
 
   private:
-    /// Before anything is set aside for it: instances are quickly written.
+    /// To be called before any allocation: instances cost a file few bytes.
     void checkSize(Budget budget) const {
         std::vector<std::pair<const aiNode*, std::size_t>> open{{scene_.mRootNode, 1}};
         std::vector<bool> is_used(scene_.mNumMeshes);
@@ -139,7 +139,7 @@ class Gatherer {
 
     template <typename Visit>
     void forEachNode(Visit visit) {
-        // A list instead of recursion: how deep nodes lie in each other is the file's choice.
+        // A list instead of recursion: the file decides the depth of nodes.
         std::vector<Place> open{{scene_.mRootNode, scene_.mRootNode->mTransformation}};
         while (!open.empty()) {
             const Place place = open.back();
@@ -214,8 +214,8 @@ void renumber(TriangleMesh& mesh, const std::vector<std::uint32_t>& standing = {
     mesh.vertices = std::move(vertices);
 }
 
-/// Exact enough: products of differences of floats in doubles vanish where corners lie on a line
-/// of the float grid.
+/// Exact enough: products of differences of floats are exact in doubles, so collinear corners of
+/// the float grid give zero.
 bool hasArea(const TriangleMesh& mesh, const Triangle& triangle) {
     const auto& [i, j, k] = triangle;
     if (i == j || j == k || k == i) return false;
