@@ -26,7 +26,7 @@ constexpr double kRaggedSimplify = 2;  ///< where walls are ragged by a cell on 
 /// Metres; a larger map has the wrong unit, or is not of a building.
 constexpr double kMaxExtent = 10000;
 
-/// Limit for the total area of the bounding boxes of all rooms kept.
+/// Maximum number of cells in the bounding boxes of all rooms kept.
 constexpr double kMaxCellsOfRooms = 1e9;
 
 /// Metres; a room outside these limits has probably a wrong resolution.

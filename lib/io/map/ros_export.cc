@@ -87,7 +87,7 @@ class MapPainter {
                 *cell(pair.near_column, pair.near_row) = kOccupied;
     }
 
-    /// Returns true for a body small enough to lie between the centres of cells.
+    /// Occupies a cell for a body that may lie between the centres of cells.
     void addSmall(const Polygon& body) {
         bool has_cells = false;
         forEachEdge(body, [&](const Segment2& edge) {
@@ -160,7 +160,7 @@ ExportedFiles writeRosMap(const Scene& scene, double height, double resolution,
     const Regions& indoor = scene.environment.indoor();
     const Grid grid = rosMapCells(bounds(indoor), resolution);
     Slice slice = scene.environment.slice(height);
-    // A cell is occupied if a body overlaps it, not if a curve only touches it from within.
+    // Solids circumscribe curves; the inscribed ones occupy no cell beside the curve itself.
     slice.solids = inscribedSolids(slice);
     MapPainter painter(grid);
     painter.addFloor(indoor);

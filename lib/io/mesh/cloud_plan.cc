@@ -23,14 +23,13 @@ namespace ispace {
 
 namespace {
 
-constexpr double kCell = 0.05;       // metres, unless the user says otherwise
-constexpr double kMostCells = 25e6;  // of the grid in which points are counted
-constexpr double kCellsPerUnit = 4;  // of Budget
-constexpr int kRim = 3;              // cells around, so that the outside is connected
-constexpr int kManyPoints = 10;      // in half of the cells: then a single one is a stray
-constexpr int kMinThing = 3;         // cells; smaller ones are noise
-constexpr double kBelowTop =
-    0.15;  // metres: islands that end so far below the upper height are no wall
+constexpr double kCell = 0.05;        // metres, unless the user says otherwise
+constexpr double kMostCells = 25e6;   // of the grid in which points are counted
+constexpr double kCellsPerUnit = 4;   // of Budget
+constexpr int kRim = 3;               // cells around, so that the outside is connected
+constexpr int kManyPoints = 10;       // in half of the cells: then a single one is a stray
+constexpr int kMinThing = 3;          // cells; smaller ones are noise
+constexpr double kBelowTop = 0.15;    // metres: islands that end this far below the top are no wall
 constexpr double kFloorNoise = 0.1;   // metres above the floor
 constexpr double kStands = 0.25;      // metres: islands with lower points stand on the floor
 constexpr double kFloorShare = 0.01;  // of all points lie lower than the floor

@@ -228,7 +228,7 @@ ConfinedLimits meshLimits(std::size_t file_bytes, bool is_building) {
                                 static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
     ConfinedLimits limits;
     limits.memory = std::max(1024 * kMega, std::min((1024 + 32 * megas) * kMega, machine / 4 * 3));
-    // Solids of a building intersect each other.
+    // Solids of a building are cut by each other, which takes longer.
     limits.seconds = is_building ? 60 + 10 * megas : 20 + 2 * megas;
     return limits;
 }

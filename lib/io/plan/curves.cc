@@ -91,7 +91,7 @@ int arcPieces(double sweep, double radius) {
 }
 
 void appendCubic(const CubicCurve& curve, Polygon& points) {
-    // The curve lies between its control points: a short one needs no more pieces.
+    // The curve lies in the hull of its control points: a flat one is a single piece.
     const Segment2 chord{curve[0], curve[3]};
     if (distance(curve[1], chord) <= kCurveSagitta && distance(curve[2], chord) <= kCurveSagitta) {
         points.push_back(curve[3]);

@@ -311,7 +311,7 @@ class DxfImporter {
     }
 
   private:
-    /// Sorts a drawing of writeDxf(): its layers, and lines that already meet.
+    /// Returns options for a drawing of writeDxf(): its layers, and lines that already meet.
     static ImportOptions asDrawn(ImportOptions options) {
         options.wall_layers = {"walls"};
         options.door_layers = {"doors"};

@@ -37,7 +37,7 @@ constexpr std::size_t kMaxOpenSwings = 4000;
 
 bool isNear(Point2 a, Point2 b) { return distance(a, b) <= kReach; }
 
-/// Finds the points where an end of a symbol meets the walls.
+/// The point where an end of a symbol meets the walls, and its distance.
 struct Anchor {
     Point2 place;
     double apart = 0;

@@ -91,7 +91,7 @@ class RoomChooser {
     }
 
   private:
-    /// The rooms with gaps up to a width closed.
+    /// The rooms after closing gaps up to a width.
     struct Attempt {
         double width;
         std::size_t closings;  ///< lines that close gaps

@@ -405,7 +405,7 @@ const Transform& SdfFrames::frameOf(pugi::xml_node node, const SdfScope& scope, 
     if (base.empty() && kind == "frame") base = node.attribute("attached_to").value();
     if (base.empty() && kind == "joint") base = trimmed(node.child_value("child"));
     Transform frame = frameCalled(base, scope, node, length) * poseIn(node);
-    // Finds the position of a model's own frame: its pose may be that of a frame in it.
+    // The pose may be that of `placement_frame` in the model: convert it to the model's own frame.
     std::string_view placed = trimmed(node.child_value("placement_frame"));
     if (placed.empty()) placed = modelOf(node).attribute("placement_frame").value();
     if (!placed.empty()) frame = frame * frameCalled(placed, scopeOf(node), node, length).inverse();

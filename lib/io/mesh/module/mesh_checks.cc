@@ -297,7 +297,7 @@ class ColladaNodes {
     }
 
     void check() {
-        // Assimp also resolves names.
+        // Assimp resolves instances by id, else by name.
         for (const auto& [url, node] : instances_) {
             const auto& found = with_id_.contains(url) ? with_id_ : with_name_;
             for (auto [at, end] = found.equal_range(url); at != end; ++at)
