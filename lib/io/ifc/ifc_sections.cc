@@ -15,7 +15,7 @@ namespace ispace {
 namespace {
 
 constexpr double kSameEnd = 1e-5;  // metres, between ends of edges that meet
-constexpr double kNearEnd = 0.02;  // and between ends of a curve that was meant to close
+constexpr double kNearEnd = 0.02;  // and between ends of a curve that should close
 
 /// Appends the edges in which a plane cuts faces.
 void cutFaces(const IfcFaces& faces, double height, std::vector<Segment2>& edges) {

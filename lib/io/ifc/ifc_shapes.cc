@@ -16,7 +16,7 @@ constexpr std::size_t kCornersPerUnit = 4;
 /// Beyond any building, in metres: how far limits of half-spaces are drawn out.
 constexpr double kFar = 10'000;
 
-/// How well a representation tells the body; 0: not at all.
+/// Ranks a representation as source of the body; 0: unsuitable.
 int rankOf(const StepInstance& representation) {
     constexpr std::array<std::string_view, 9> kOthers{"Axis",      "Annotation", "Plan",
                                                       "Profile",   "Reference",  "Lighting",

@@ -25,7 +25,7 @@ namespace ispace {
 
 namespace {
 
-/// The parts without those that stand in another one on the same line.
+/// Returns the parts without those inside another one on the same line.
 std::vector<WallPart> withoutDoubles(const std::vector<WallPart>& parts) {
     const auto ends = [&](std::size_t i) {
         const auto& [a, b] = parts[i].piece.line;
@@ -335,7 +335,7 @@ class RoomWriter {
         return kNames[static_cast<std::size_t>(filling)];
     }
 
-    /// The rooms, without the walls that stand in them, and the zones.
+    /// Adds the rooms, minus the walls in them, and the zones.
     void addSpaces(const WholeWalls& walls) {
         const std::vector<Region> rooms =
             difference(scene_.environment.indoor(), walls.footprints());

@@ -17,7 +17,7 @@ namespace ispace {
 namespace {
 
 constexpr double kStoreyHeight = 1.8;  // metres to the next floor, at least
-constexpr double kBelowFloor = 0.3;    // how far things may begin below the floor they stand on
+constexpr double kBelowFloor = 0.3;    // metres that furniture may begin below its floor
 constexpr double kThinnestThing = 0.01;
 constexpr double kMaxProxy = 5;  // metres: larger proxies are terrain, or a whole building
 constexpr double kMaxRailing = 0.3;

@@ -144,7 +144,7 @@ class Strips {
     CellPieces broad_, strips_;
     std::vector<std::vector<std::size_t>> neighbours_;  ///< broad pieces, then strips
     std::vector<bool> stays_;
-    std::vector<bool> is_wide_;                       ///< of the broad pieces, where asked for
+    std::vector<bool> is_wide_;                       ///< of the broad pieces computed so far
     std::unordered_set<std::uint64_t> neighbouring_;  ///< pairs of a strip and a broad piece
 };
 

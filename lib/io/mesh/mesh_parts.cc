@@ -130,7 +130,7 @@ std::string objUpAxis(std::string_view bytes, double metres) {
 bool isMeshFile(std::string_view bytes) { return meshFormatOf(bytes).has_value(); }
 
 bool hasMeshSuffix(const std::string& operand) {
-    // GLB is told by its first bytes.
+    // The first bytes identify GLB.
     return std::any_of(kMeshSuffixes.begin(), kMeshSuffixes.end(),
                        [suffix = meshSuffix(operand)](const MeshSuffix& known) {
                            return known.suffix == suffix && known.format != MeshFormat::Glb;

@@ -265,7 +265,7 @@ const LengthUnit& unitOf(const DxfDrawing& drawing, const std::string& name,
     return *unit;
 }
 
-/// A drawing's document in a unit, and the floor it comes to.
+/// A drawing's document in a unit, and its floor area.
 struct DxfImport {
     Document document;
     double area = 0;

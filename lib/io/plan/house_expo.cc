@@ -278,7 +278,7 @@ bool isJson(std::string_view bytes) {
     const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
     if (begin == std::string_view::npos || (bytes[begin] != '{' && bytes[begin] != '['))
         return false;
-    // YAML's flow form begins so, too; JSON goes on with a quoted key or another bracket.
+    // YAML's flow form begins likewise; in JSON a quoted key or another bracket follows.
     const std::size_t next = bytes.find_first_not_of(" \t\r\n", begin + 1);
     return next != std::string_view::npos &&
            std::string_view("\"[{").find(bytes[next]) != std::string_view::npos;

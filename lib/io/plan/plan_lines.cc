@@ -88,7 +88,7 @@ class PointWelder {
                                     static_cast<double>(cell.second));
         }
     };
-    /// Points that stand are apart: few are in a cell, which is so many reaches wide.
+    /// Representatives are apart, so a cell of a few reaches holds few of them.
     struct PlacementFrame {
         Point2 at;
         std::uint32_t next;  // in the same cell

@@ -41,7 +41,7 @@ constexpr double kMinPlan = 2, kMaxPlan = 2000;
 constexpr std::size_t kMaxGroups = 500;
 
 constexpr std::size_t kMaxPlaces = 6;  // in one message
-/// Metres; messages tell gaps to the millimetre.
+/// Metres; messages round gaps to the millimetre.
 constexpr double kMinListedGap = 0.0005;
 
 /// Metres from the edge of the plan at which a room touches it.

@@ -136,7 +136,7 @@ class Simplifier {
         return from <= own && own < to;
     }
 
-    /// Pieces that go on from the line's ends may touch it there.
+    /// Pieces that continue from the line's ends may touch it there.
     static bool isApart(const Segment2& piece, const Segment2& line, const Polygon& run) {
         const auto is_free = [&](Point2 p) {
             return p == line.a || p == line.b || locate(run, p) == Side::Outside;

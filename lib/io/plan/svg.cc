@@ -327,7 +327,7 @@ class SvgReader {
     SvgDrawing drawing_;
 };
 
-/// A drawing's document, and the floor it comes to.
+/// A drawing's document, and its floor area.
 struct SvgImport {
     Document document;
     double area = 0;

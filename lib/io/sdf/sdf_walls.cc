@@ -200,7 +200,7 @@ Segment2 joinedEnds(const BoxLine& wall, std::span<const BoxLine> walls, const N
 }  // namespace
 
 void joinEnds(std::vector<SdfWall>& walls) {
-    // Models that are included where they stand already make walls by the thousand that coincide.
+    // Models included several times at one pose already create thousands of coincident walls.
     std::map<BoxLine, std::size_t> known;
     std::vector<BoxLine> distinct;
     std::vector<Segment2> lines;
