@@ -185,9 +185,9 @@ bool isSvg(std::string_view bytes);
 ///
 /// - Scale: `width` and `height` against `viewBox`, with pixels of 1/96 inch;
 ///   ImportOptions::units overrides the unit of the drawing's coordinates.
-/// - Layers: the innermost group whose label (Inkscape) or id matches a glob, else the Inkscape
-/// layer, else the outermost named group.
-/// - Invisible elements are left out: `display: none`, hidden, drawn with neither stroke nor fill
+/// - Layers: the innermost group with a label (Inkscape) or id that matches a glob, else the
+/// Inkscape layer, else the outermost named group.
+/// - Invisible elements are left out: `display: none`, hidden, without stroke and fill
 ///   (also by rules of `style` elements with one name, class or id);
 ///   so are definitions, text, pictures, and a rectangle as the page's background.
 /// - Curves become straight pieces within 1 mm.
@@ -204,7 +204,7 @@ bool isSdf(std::string_view bytes);
 /// Reads a world of SDF (Gazebo), or a model: the shapes of readSdfShapes().
 ///
 /// - Upright boxes on the floor, at most 0.5 m thick, three times as long and twice as high, become
-/// walls; their ends are moved onto the mid-lines of walls in whose thickness they end, and the
+/// walls; ends within the thickness of another wall are moved onto its mid-line, and the
 /// room is chosen as in readDxf(). Other upright boxes become cubes, upright cylinders cylinders,
 /// polylines on the floor closed fences.
 /// - Meshes become `mesh` records if their files are there (see SdfFiles), and are else left out
@@ -249,7 +249,7 @@ bool isIfc(std::string_view bytes);
 ///
 /// - Walls, curtain walls, plates and members are cut 1 m above the floor, or at
 /// ImportOptions::slice_walls (the building's own height). Their faces become closed fences, so
-/// that rooms are as wide as they are; holes in walls with their doors and windows become doors and
+/// that rooms keep their width; holes in walls with their doors and windows become doors and
 /// windows through both faces.
 /// - Spaces become zones, and the rooms that hold them are kept; without spaces the room is chosen
 /// as in readDxf().

@@ -91,7 +91,7 @@ class IfcTree {
     explicit IfcTree(const StepFile& file);
 
     /// Finds the nearest ancestor of this type, by aggregation, containment, holes and fillings; 0
-    /// if there is none, also in loops.
+    /// without one, also in loops.
     [[nodiscard]] StepId above(StepId id, std::string_view type) const;
     /// Returns the ancestor's name, or "".
     [[nodiscard]] std::string nameAbove(StepId id, std::string_view type) const;

@@ -15,7 +15,7 @@ namespace ispace {
 /// \throws std::runtime_error if neither is known
 MeshFormat meshFormat(std::string_view bytes, const std::string& suffix);
 
-/// Rejects files that crash or hang assimp 5.2, or whose sizes it would trust: bad headers of PLY,
+/// Rejects files that crash or hang assimp 5.2, or make it trust wrong sizes: bad headers of PLY,
 /// bad chunks of GLB, and nodes of glTF and COLLADA that form circles or are too deep or too many.
 /// \throws std::runtime_error
 void checkMesh(MeshFormat format, std::string_view bytes);
