@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sim.
+// Private to lib/sim: collisions of movers with obstacles and with each other.
 #pragma once
 
 #include <algorithm>
@@ -22,13 +22,14 @@
 
 namespace ispace {
 
-/// Metres by which circles may overlap things: touching is allowed, and this absorbs rounding.
+/// Tolerated overlap of circles and bodies in metres: touching is allowed, and this absorbs
+/// rounding.
 constexpr double kTouch = 1e-9;
 
-/// Distance of two closed segments, 0 if they share a point, with rounding errors.
+/// Returns the distance between two closed segments, 0 if they share a point, with rounding errors.
 double distance(const Segment2& s, const Segment2& t);
 
-/// Squared distance of a point and a segment, for those who look at many.
+/// Returns the squared distance between a point and a segment, for bulk queries.
 inline double squaredDistance(Point2 p, const Segment2& s) {
     const Vec2 along = s.b - s.a, way = p - s.a;
     const double square = dot(along, along);
@@ -37,25 +38,25 @@ inline double squaredDistance(Point2 p, const Segment2& s) {
     return dot(apart, apart);
 }
 
-/// Obstacles for circles on the floor: the lines of a band, indexed by a grid.
+/// Stores the lines of a band in a grid and finds those that block a circle.
 /// Thread-safe.
 class Obstacles {
   public:
     /// \pre the band's pieces have owners
     explicit Obstacles(const Slice& band);
-    Obstacles(Obstacles&&) = default;  // the solids stay where they are
+    Obstacles(Obstacles&&) = default;  // the solids keep their addresses
 
-    /// An element of Environment::elements() whose line a circle overlaps, or whose solid contains
-    /// it.
+    /// Returns an element of Environment::elements() whose line a circle overlaps, or whose solid
+    /// contains it.
     [[nodiscard]] std::optional<std::size_t> overlap(Point2 center, double radius) const;
-    /// Distance to the nearest line, at most `farthest`. The nearer the line, the cheaper.
+    /// Returns the distance to the nearest line, at most `farthest`. Near lines cost least.
     [[nodiscard]] double nearest(Point2 p, double farthest) const;
-    /// Appends the lines that are nearer to p than `reach`, and perhaps others, each once.
+    /// Appends each line nearer to p than `reach` once, and possibly others.
     void findAbout(Point2 p, double reach, std::vector<Segment2>& lines) const;
-    /// True if the path comes nearer than `distance` to a line.
+    /// Returns true if the path comes nearer than `distance` to a line.
     [[nodiscard]] bool near(const Segment2& way, double distance) const;
-    /// An element that stops a circle whose centre moves along the path: one it enters deeper than
-    /// at its start, so that a circle overlapping a line by rounding can leave it.
+    /// Finds an element that stops a circle whose centre moves along the path: one that it enters
+    /// deeper than at its start, so that a circle that overlaps a line by rounding can leave it.
     [[nodiscard]] std::optional<std::size_t> stop(const Segment2& way, double radius) const;
 
   private:
@@ -63,17 +64,18 @@ class Obstacles {
     [[nodiscard]] std::optional<std::size_t> find(Point2 p, double reach, Test test) const;
 
     std::vector<Polygon> solids_;
-    PolygonIndex index_;  // of them
+    PolygonIndex index_;  // of the lines
     std::vector<Segment2> lines_;
     std::vector<std::size_t> solid_owners_, line_owners_;
     SegmentGrid grid_;
 };
 
-/// The lines about somebody: found for more than is asked, and again only after some way.
+/// Caches the lines around a mover: a lookup finds more lines than required and is repeated only
+/// after the mover has gone some way.
 class Vicinity {
   public:
-    /// Calls visit(line, its distance) for the lines nearer to p than `reach`, each once.
-    /// \pre the obstacles are the same each time
+    /// Calls visit(line, its distance) once for each line nearer to p than `reach`.
+    /// \pre every call passes the same obstacles
     template <typename Visit>
     void forEachWithin(const Obstacles& obstacles, Point2 p, double reach, Visit visit) {
         if (!(std::hypot(p.x - middle_.x, p.y - middle_.y) + reach <= reach_))
@@ -96,57 +98,58 @@ class Vicinity {
     std::vector<Segment2> lines_;
 };
 
-/// A robot's or a person's proposed step.
+/// The step that a mover proposes.
 struct Move {
     const Motion* from = nullptr;
     const MotionLimits* limits = nullptr;
     double duration = 0;
     double radius = 0;
     Advance to;
-    Vec2 drift = {};  ///< of its end from where the motion alone would lead; grows evenly with time
+    Vec2 drift = {};  ///< offset of its end from the noiseless motion; grows linearly with time
 
     [[nodiscard]] Point2 start() const { return from->pose.position; }
-    /// With the drift, as is the pose in `to`.
+    /// Includes the drift, like the pose in `to`.
     [[nodiscard]] Point2 end() const { return to.motion.pose.position; }
     [[nodiscard]] Segment2 chord() const { return {start(), end()}; }
-    /// Its place after `part` of kParts equal intervals of the step.
+    /// Returns its position after `part` of kParts equal intervals of the step.
     static constexpr int kParts = 16;
     [[nodiscard]] Point2 place(int part) const;
-    /// Keeps the robot where it is, at rest and without a goal.
+    /// Holds the robot at its start, at rest and without a goal.
     void cancel();
 };
 
-/// The element that the move runs into. Tests the chord first; only if that is not clear by more
-/// than the path may bulge, the chords of its parts.
+/// Finds the element that the move runs into. Tests the chord first, and the chords of the parts
+/// only if the path may bulge beyond the clearance.
 std::optional<std::size_t> collides(const Move& move, const Obstacles& obstacles);
 
-/// True if the move runs into another robot, which moves at the same time or stays at its start.
+/// Returns true if the move runs into another mover, which moves at the same time or stays at its
+/// start.
 bool collides(const Move& move, const Move& other, bool other_moves);
 
-/// Indices of the movers in the order in which their moves are settled: robots, then people, each
-/// by the bytes of their ids.
+/// Sorts the movers into the order in which their moves are settled: robots, then people, each by
+/// the bytes of their ids. Returns indices.
 std::vector<std::size_t> settlingOrder(std::span<const Mover> movers);
 
-/// Finds the robots and people that a move runs into.
+/// Finds the movers that a move runs into.
 ///
-/// A move is tested against the moves settled before it, and against all others where they stand:
-/// whatever these do later, no two ever overlap.
+/// A move is tested against the settled moves, and against the starts of all other movers: whatever
+/// moves these make later, no two movers ever overlap.
 class Traffic {
   public:
-    /// `order` as of settlingOrder; a step takes `duration` seconds.
+    /// \param order see settlingOrder \param duration seconds of a step
     Traffic(std::span<const Mover> movers, std::span<const std::size_t> order, double duration);
 
-    /// Indexes where everybody is, which is where the moves begin.
+    /// Builds the index of positions, at which the moves begin.
     void rebuild(std::span<const Motion> motions);
-    /// The first one, in the order of settling, that this mover's move runs into.
+    /// Returns the first mover, in settling order, that this mover's move runs into.
     /// \pre the moves before it are settled, cancelled or not
     [[nodiscard]] std::optional<std::size_t> hit(std::span<const Move> moves,
                                                  std::size_t mover) const;
-    /// Place in the order of settling.
+    /// Returns the rank in settling order.
     [[nodiscard]] std::size_t rank(std::size_t mover) const { return rank_[mover]; }
-    /// Where a mover is.
+    /// Returns a mover's position.
     [[nodiscard]] Point2 place(std::size_t mover) const { return places_[mover]; }
-    /// Calls visit(index) for everybody who may stand or come within `reach` of p in a step.
+    /// Calls visit(index) for each mover that may come within `reach` of p in a step.
     template <typename Visit>
     void forEachNear(Point2 p, double reach, Visit visit) const {
         const Vec2 margin{reach, reach};
@@ -154,18 +157,18 @@ class Traffic {
     }
 
   private:
-    std::vector<std::size_t> rank_;  // in the order of settling
-    double reach_ = 0;               // of who gets farthest from its place in a step
+    std::vector<std::size_t> rank_;  // in settling order
+    double reach_ = 0;  // of the mover that gets farthest from its start in a step
     std::vector<Point2> places_;
     FloorGrid grid_;
 };
 
-/// Obstacles by height of the movers.
+/// Maps the height of movers to their obstacles.
 using ObstacleSets = std::map<double, Obstacles>;
 ObstacleSets obstaclesOf(const Environment& environment, std::span<const Mover> movers);
 
-/// \throws FormatError with all findings if a robot stands in something, in another robot or in a
-///         person. People may stand in things, like one who sits on a chair: they can only get out.
+/// \throws FormatError with all findings if a robot overlaps a body, a robot or a person. People
+/// may overlap bodies, as one on a chair does: they can only get out.
 void checkStart(const Environment& environment, std::span<const Mover> movers,
                 const ObstacleSets& obstacles);
 

@@ -16,21 +16,21 @@ namespace ispace {
 
 class World;
 
-/// What happens in a world that somebody may want to be told.
+/// Kinds of events to which clients can subscribe.
 enum class EventKind {
-    Collision,  ///< `id` ran into `other` at `place`
-    Stall,      ///< `id` stands still until its next command, from then on
-    Enter,      ///< `id` came into the zone `other`
+    Collision,  ///< mover `id` ran into `other` at this point
+    Stall,  ///< `id` stands still until its next command
+    Enter,  ///< `id` entered the zone `other`
     Leave,
-    Mat,     ///< `other` stepped on the mat `id` (value 1) or off it (0)
-    Gate,    ///< `other` passed the gate `id`, the way in (value 1) or out (0)
-    Seen,    ///< `id` comes into sight of `value` sensors, after none
-    Lost,    ///< no sensor sees `id` any more
-    Mark,    ///< somebody wrote `text`
-    Change,  ///< the world was changed by the request `text`; `other`: file of the scene after it
+    Mat,  ///< `other` stepped on the mat `id` (value 1) or off it (0)
+    Gate,  ///< `other` passed the gate `id` inwards (value 1) or outwards (0)
+    Seen,  ///< `id` comes into the sight of `value` sensors, after zero
+    Lost,  ///< no sensor sees `id` any more
+    Mark,  ///< a client wrote `text`
+    Change,  ///< the request `text` changed the world; `other`: file of the scene after it
 };
 constexpr std::size_t kEventKinds = 10;
-/// "collision".
+/// Returns the name of a kind: "collision".
 std::string_view nameOf(EventKind kind);
 std::optional<EventKind> eventKindNamed(std::string_view name);
 using EventKinds = std::set<EventKind>;
@@ -45,18 +45,18 @@ struct Event {
     std::string text = {};
 };
 
-/// The head of a table of events, and one as its row: t,kind,id,other,x,y,value,text.
+/// Return the header of an event table, and one event as its row: t,kind,id,other,x,y,value,text.
 std::string_view eventTableHead();
 void appendEventRow(std::string& out, const Event& event);
 
-/// Watches a world step by step and says what happened.
+/// Watches a world step by step and reports its events.
 ///
-/// Seen and Lost are as class Watch (sense/detection.h) defines them, ten times a second.
+/// Seen and Lost follow DetectionMonitor (sense/detection.h), ten times a second.
 ///
-/// Only kinds that somebody wants are looked for. Watching begins with nobody in a zone, on a mat
-/// or in sight: whoever is enters, steps on it, is seen at the next step. Events of one step are in
-/// the order of their kinds, those of a kind in the order of the world's. Who or what is removed
-/// from the world neither leaves nor is lost.
+/// Only subscribed kinds are computed. At the start all movers count as outside every zone, off
+/// every mat and unseen, so those inside raise Enter, Mat or Seen at the next step. Events of one
+/// step are sorted by kind, those of a kind in the world's order. A removed mover or zone raises no
+/// Enter, Lost or the like.
 class EventLog {
   public:
     explicit EventLog(const World& world);
@@ -64,19 +64,19 @@ class EventLog {
     EventLog(EventLog&&) noexcept;
     EventLog& operator=(EventLog&&) noexcept;
 
-    /// Somebody wants these from now on.
+    /// Subscribes to these kinds.
     void want(const EventKinds& kinds);
-    /// And no more. \pre as often as wanted
+    /// Cancels one subscription to each. \pre want() was called for each
     void unwant(const EventKinds& kinds);
 
-    /// Looks at the world after a step.
+    /// Reads the world after a step.
     void stepped();
-    /// What happened between steps, at the world's time. \pre Mark or Change
+    /// Adds an event between steps, at the world's time. \pre Mark or Change
     void add(EventKind kind, std::string text, std::string other = {});
 
-    /// Events have numbers from 0 in their order: that of the next one.
+    /// Events are numbered from 0 in their order; returns the number of the next one.
     [[nodiscard]] std::int64_t next() const;
-    /// The first that is still there; some ten thousand are kept.
+    /// Returns the number of the first event that is still stored; some ten thousand are kept.
     [[nodiscard]] std::int64_t first() const;
     /// \pre first() <= number < next()
     [[nodiscard]] const Event& at(std::int64_t number) const;

@@ -34,43 +34,42 @@ struct Expectation {
     enum class State { Collision, Stalled, Still, Near, InZone, Seen, Faster, Slower };
     enum class When { Once, Always, Never, AtLeast, AtMost };
 
-    std::string text;  ///< as it was given
+    std::string text;  ///< as given
     std::string subject = "*";
     State state = State::Collision;
-    bool is_negated = false;      ///< the state counts where it does not hold
-    double amount = 0;            ///< metres, m/s, or sensors
-    std::optional<Point2> place;  ///< Near: of it,
-    std::string name;             ///< or of who has this id; InZone: the zone
+    bool is_negated = false;  ///< requires that the state does not hold
+    double amount = 0;  ///< metres, m/s, or a number of sensors
+    std::optional<Point2> place;  ///< Near: of this point,
+    std::string name;  ///< or of the mover with this id; InZone: the zone
     When when = When::Once;
-    SimTime span{};  ///< AtLeast, AtMost
+    SimTime span{};  ///< Parses a sentence. \throws UsageError that names the expected word and its position
     SimTime after{};
     SimTime before = SimTime::max();
 };
 
-/// \throws UsageError saying what was wanted where
+/// Result of an expectation.
 Expectation parseExpectation(std::string_view text);
 
-/// What became of an expectation.
+/// when it was decided
 struct RunVerdict {
     std::string expectation;
     bool is_met = false;
-    SimTime time{};           ///< when that was clear
-    std::string reason = {};  ///< why it is not met: "r1 was 1.2 m away at t=4.500, never nearer"
+    SimTime time{};  ///< why it is not met: "r1 was 1.2 m away at t=4.500, never nearer"
+    std::string reason = {};  ///< Judges a run by its expectations. The same run gets the same verdicts, at any speed and with any number of clients.
 };
 
-/// Judges a run by what is expected of it. The same run gets the same verdicts, however fast it is
-/// and whoever drives it.
+/// The world must outlive the judge. \throws UsageError for subjects and zones that the world lacks
 class ExpectationJudge {
   public:
-    /// The world must outlive it. \throws UsageError for subjects and zones that it does not have
+    /// Reads the world: call it before the first step and after every step.
     ExpectationJudge(const World& world, std::vector<Expectation> expectations);
     ~ExpectationJudge();
     ExpectationJudge(ExpectationJudge&&) noexcept;
     ExpectationJudge& operator=(ExpectationJudge&&) noexcept;
 
-    /// Looks at the world: once before the first step and after every one.
+    /// Returns verdicts in the order of the expectations, as if the run ended now.
     void observe();
-    /// In the order of the expectations, as if the run ended now.
+    /// Returns one line for each unmet expectation; "" if all are met.
     [[nodiscard]] std::vector<RunVerdict> verdicts() const;
 
   private:

@@ -11,15 +11,15 @@
 
 namespace ispace {
 
-/// Friction of the floor from place to place.
+/// Maps points of the floor to friction.
 class FrictionMap {
   public:
     explicit FrictionMap(const Environment& environment);
 
-    /// Friction of the last `floor` record in file order that contains the point, edges included,
-    /// as later ones lie on top; 0 if there is none.
+    /// Returns the friction of the last `floor` record in file order that contains the point, edges
+    /// included, as later ones lie on top; 0 without any.
     [[nodiscard]] double at(Point2 p) const;
-    /// True if it is 0 everywhere.
+    /// Returns true if it is 0 everywhere.
     [[nodiscard]] bool empty() const { return floors_.empty(); }
 
   private:
@@ -32,102 +32,102 @@ class FrictionMap {
     std::vector<Floor> floors_;
 };
 
-/// Limits of one axis of motion: along the heading in metres, or about the centre of rotation in
-/// degrees.
+/// Limits of one axis of motion: metres along the heading, or degrees about the centre of rotation.
 struct AxisLimits {
-    double top = 0;    ///< speed of commands that come to an end
+    double top = 0;  ///< speed of commands that come to an end
     double max = 0;    ///< greatest speed in either direction
     double accel = 0;  ///< of speeding up and braking
     friend bool operator==(const AxisLimits&, const AxisLimits&) = default;
 };
 
-/// What a robot or a person can do where it stands.
+/// Limits of a mover at its position.
 struct MotionLimits {
     AxisLimits drive, turn, side;
     friend bool operator==(const MotionLimits&, const MotionLimits&) = default;
 };
 
-/// The model's limits, each times (1 - friction).
+/// Returns the model's limits, each multiplied by (1 - friction).
 MotionLimits limitsOf(const RobotModel& model, double friction);
 
-/// The limits of a robot on this floor, with those of an order in place of its usual ones.
+/// Returns the limits of a robot on this floor, with those of an order replacing its defaults.
 MotionLimits narrowed(const MotionLimits& model, const MotionLimits& order, double friction);
 
-/// What one axis is to do.
+/// Goal of one axis.
 struct AxisGoal {
     enum class Kind {
-        Speed,    ///< reach a speed and keep it
+        Speed,  ///< reach a speed and keep it
         Distance  ///< go that far and come to rest exactly there
     } kind = Kind::Speed;
     double value = 0;  ///< the speed, or the signed distance left
     friend bool operator==(const AxisGoal&, const AxisGoal&) = default;
 };
 
-/// What a program that speaks to the wheels asks of a robot: each axis by itself, and how hard.
+/// Order of a program that drives the wheels directly: a goal for each axis, with limits.
 struct WheelOrder {
-    std::optional<AxisGoal> drive, turn;  ///< nothing: it goes on as it does
-    /// Of both axes, until the next Command. Speeds count up to the model's greatest ones.
+    std::optional<AxisGoal> drive, turn;  ///< unset: the axis keeps its goal
+    /// Limits of both axes until the next Command. Speeds may reach the model's maxima.
     AxisLimits drive_limits, turn_limits;
 };
 
-/// One axis: its speed, and what it does next.
+/// One axis: its speed and its goal.
 struct Axis {
     AxisGoal goal;
     double speed = 0;
     double accel = 0;  ///< at the end of the last step
 };
 
-/// State of a robot or a person in motion: a unicycle that drives along its heading and turns about
-/// its centre of rotation. Who is omnidirectional moves sideways at the same time.
+/// Kinematic state of a mover: a unicycle that drives along its heading and turns about its centre
+/// of rotation. An omnidirectional robot also moves sideways at the same time.
 struct Motion {
     Pose2 pose;      ///< heading within (-180, 180]
     Axis drive;      ///< metres
     Axis turn;       ///< degrees, counter-clockwise
     Axis side;       ///< metres, to the left
-    Angle turn_end;  ///< the heading at which a turn of given angle ends
+    Angle turn_end;  ///< heading at which a turn by a given angle ends
 
-    /// Unit vector along the heading.
+    /// Returns the unit vector along the heading.
     [[nodiscard]] Vec2 forward() const {
         return kept_heading == pose.heading ? kept_forward : unitVector(pose.heading);
     }
-    /// Keeps it, for those who ask more than once.
+    /// Stores that vector, for repeated calls.
     void keepForward() {
         kept_forward = forward();
         kept_heading = pose.heading;
     }
-    /// Sets the goals of a command. Speed, Rotspeed and Sidespeed keep the speeds that the others
-    /// have set. Path brings all to rest: who walks it sets the goals, see route.h.
+    /// Sets the goals of a command. Speed, Rotspeed and Sidespeed keep the speeds of the other
+    /// axes. Path stops all axes: its Navigator sets the goals.
     void command(const Command& command);
-    /// Sets the goals of an order; a goal that is not in it stays.
+    /// Sets the goals of an order; axes without a goal keep theirs.
     void steer(const WheelOrder& order);
-    /// All axes at rest and no distance left.
+    /// Returns true if all axes are at rest and no distance is left.
     [[nodiscard]] bool arrived() const;
-    /// At rest at once, without a goal.
+    /// Stops all axes at once and removes their goals.
     void halt();
 
     Vec2 kept_forward{1, 0};  ///< of kept_heading, see forward()
     Angle kept_heading;
 };
 
-/// Result of a motion, and how far it strayed from an even motion along its chord.
+/// Result of a motion, and its deviation from a uniform motion along the chord.
 struct Advance {
     Motion motion;
-    double path = 0;   ///< length of the path travelled; sideways at the same time: at most
+    double path = 0;  ///< length of the path; an upper bound if it also moves sideways
     double bulge = 0;  ///< upper bound of its distance from the chord
-    double lag = 0;    ///< upper bound of its distance from an even motion along the chord
+    double lag = 0;  ///< upper bound of its distance from a uniform motion along the chord
 };
 
-/// Where a robot or a person is after `duration` seconds.
+/// Returns the motion of a mover after `duration` seconds.
 ///
 /// Each axis reaches its goal in the least time, with accelerations that are constant between the
-/// moments where it starts to brake or reaches a speed; these may lie anywhere within the duration.
-/// The plan depends on the state alone, so two half steps give the same as a whole one. With a
-/// distance to go it keeps to its top speed, brakes first if it goes the wrong way or is too fast
-/// to stop in time (and comes back), and ends with speed and remaining distance exactly 0.
+/// moments at which it starts to brake or reaches a speed; these may lie anywhere within the
+/// duration. The plan depends on the state alone, so two half steps give the same as a whole one.
+/// With a distance to go, an axis keeps to its top speed, brakes first if it goes the wrong way or
+/// is too fast to stop in time (and comes back), and ends with speed and remaining distance exactly
+/// 0.
 ///
-/// Eq. (5.1)-(5.4) of the thesis, integrated in closed form where speeds are constant and else by
-/// Gauss-Legendre quadrature over pieces of small turn: accurate to 1e-13 of the path length.
-/// Without acceleration (friction 1) it stops at once.
+/// Integrates eq. (5.1)-(5.4) of the thesis, in closed form where speeds are constant and otherwise
+/// by Gauss-Legendre quadrature over pieces of small turn: accurate to 1e-13 of the path length.
+/// Without acceleration (friction 1) the mover stops at once.
 /// \pre duration >= 0
 Advance advance(const Motion& from, const MotionLimits& limits, double duration);
 

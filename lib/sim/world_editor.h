@@ -14,20 +14,20 @@
 
 namespace ispace {
 
-/// What changes of a world need from outside, since the library reads no files by itself.
+/// Loads the files that a change of a world requires: the library reads no files by itself.
 class SceneSource {
   public:
     virtual ~SceneSource() = default;
     [[nodiscard]] virtual const DeviceCatalogue& devices() const = 0;
-    /// The scene of two files, `layout` may be "". \throws FormatError, UsageError,
+    /// Reads a scene from two files; `layout` may be "". \throws FormatError, UsageError,
     /// std::system_error
     [[nodiscard]] virtual Scene load(const std::string& environment,
                                      const std::string& layout) const = 0;
-    /// Loads what a changed record names, or refuses it. \throws as load()
+    /// Loads the files that a changed record names, or rejects it. \throws as load()
     virtual void loadFilesOf(Record& record) const = 0;
 };
 
-/// An edit that cannot be made, whatever is in the world.
+/// An edit that is invalid in any world.
 class BadEdit : public FormatError {
   public:
     explicit BadEdit(const FormatError& error) : FormatError(error) {}
@@ -42,24 +42,25 @@ class UnknownRecord : public FormatError {
     std::string id;
 };
 
-/// What is to be told of a change once it is made.
+/// Facts about a change, reported to clients once it is made.
 struct ChangeNews {
-    /// Ids of the robots and people that a Set is about; one "" for all, if they are many.
+    /// Ids of the robots and people that a Set changes; one "" for all, if there are many.
     std::vector<std::string> movers = {};
-    /// Its request does not say all: it names files.
+    /// Its request names files, so clients require the scene as well.
     bool needs_scene = false;
 };
 
-/// A change of a world in two parts, for those who have somebody else to serve meanwhile. What
-/// fails leaves the world as it was.
+/// A change of a world in two parts, so that a server can answer clients in between. A part that
+/// fails leaves the world unchanged.
 struct WorldChange {
-    /// What takes long: in any thread and while the world goes on, but is changed by nobody else.
-    /// \throws BadEdit, UnknownRecord, FormatError, UsageError, std::system_error
+    /// Does the slow part, in any thread and while the world goes on; the world must not be changed
+    /// otherwise meanwhile. \throws BadEdit, UnknownRecord, FormatError, UsageError,
+    /// std::system_error
     std::function<void()> prepare;
-    /// The world goes on with it, between steps. \returns what it was, see World::change
+    /// Applies the change between steps. \returns the previous state, see World::change
     /// \throws FormatError
     std::function<std::shared_ptr<const void>()> adopt;
-    std::shared_ptr<const ChangeNews> news;  ///< filled by prepare()
+    std::shared_ptr<const ChangeNews> news;  ///< written by prepare()
 
     void carryOut() const {
         prepare();
@@ -72,12 +73,12 @@ class WorldEditor {
   public:
     WorldEditor(Simulation& simulation, std::shared_ptr<const SceneSource> source);
 
-    /// The world goes on with its records after these edits, see World::change. Robots and people
-    /// whose place or heading is set are where they are then but for that.
+    /// Applies these edits to the world's records, see World::change. Robots and people whose
+    /// position or heading is set keep the other at its current value.
     [[nodiscard]] WorldChange edit(std::vector<Edit> edits) const;
-    /// It starts anew in another scene, see World::restart.
+    /// Restarts in another scene, see World::restart.
     [[nodiscard]] WorldChange load(std::string environment, std::string layout) const;
-    /// It starts anew in the scene in which it did so last, see World::sharedStart.
+    /// Restarts in the scene of the last start, see World::sharedStart.
     [[nodiscard]] WorldChange reset() const;
 
   private:

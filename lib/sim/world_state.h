@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sim: from one scene to the next while a world runs.
-// Private to lib/sim: the state of a world, and what a step makes of it.
+// Private to lib/sim: the state of a world, and the transition to the next scene.
 #pragma once
 
 #include <map>
@@ -26,9 +25,9 @@
 
 namespace ispace {
 
-/// A scene with what is made of it wherever robots and people are, which takes long.
+/// A scene and the structures built from it, independent of where movers are; slow to build.
 struct SceneResources {
-    /// \param meshes that somebody will need; others are made when they are needed
+    /// \param meshes to build now; others are built when required
     /// \throws FormatError for a texture that cannot be read, if there are cameras
     SceneResources(std::shared_ptr<const Scene> made_of, const RunOptions& options,
                    const Worlds::Meshes& meshes);
@@ -40,31 +39,31 @@ struct SceneResources {
     std::unique_ptr<Photographer> photographer;  // if there are cameras
 };
 
-/// Ids of what goes on as it is when `next` follows `before`: robots and people in both whose
-/// records say the same of where they are, and sensors, mats and the like whose records are the
-/// same. The scene before must outlive them.
+/// Returns the ids that keep their state when `next` follows `before`: robots and people whose
+/// start is the same in both, and sensors, mats and gates whose records are the same. The views
+/// point into `before`, which must outlive them.
 std::unordered_set<std::string_view> unchangedMovers(const Scene& before, const Scene& next);
 
-/// Puts the robots and people who stay, and the sensors they carry, where they are now. Their
-/// records still say where they began. \pre `places` has them
+/// Moves the remaining robots and people, and the sensors that they carry, to their current poses.
+/// Their records keep the start poses. \pre `places` has them
 void keepInPlace(Scene& next, const std::unordered_set<std::string_view>& stayers,
                  const std::unordered_map<std::string_view, Pose2>& places);
 
-/// What somebody is besides the motion.
+/// Non-kinematic state of a mover.
 struct MoverState {
     const Obstacles* obstacles = nullptr;
-    Vicinity vicinity;  // among them
+    Vicinity vicinity;  // lines of those obstacles
     MotionLimits limits;
-    std::optional<MotionLimits> own_limits;  // of its wheels' orders
-    double clearance = 0;  // it may go at least as far before it meets an obstacle
-    double room = 0;       // no other mover's circle is nearer
-    int ids = 0;           // given so far
-    int running = 0;       // id of the command that comes to an end, or 0
-    // Moments at which it was given commands, and when that was.
+    std::optional<MotionLimits> own_limits;  // from orders to its wheels
+    double clearance = 0;  // distance that it can go before it meets an obstacle, at least
+    double room = 0;  // no other mover's circle is nearer
+    int ids = 0;  // issued so far
+    int running = 0;  // id of the command that comes to an end, or 0
+    // Number of moments at which it was given commands, and the first and last of them.
     std::int64_t told = 0;
     SimTime told_first{}, told_last{};
     bool stall = false;
-    Vec2 bump;  // the way of the step that was cancelled when the stall began
+    Vec2 bump;  // displacement of the step that was cancelled when the stall began
     std::vector<bool> recorded_bumpers;  // of a replay
     std::optional<std::size_t> blocked;  // by an element of the environment
 };
@@ -90,13 +89,13 @@ struct World::Data {
         time += step_length;
         ++steps;
     }
-    /// Somebody is given a command.
+    /// Records that a mover is given a command.
     void tell(std::size_t mover);
-    /// Somebody gets where a record says.
+    /// Sets a mover to a recorded state.
     void put(std::size_t mover, const RobotStatus& status);
-    /// What a step does. Each proposes its move, in parallel. Those who cannot meet anybody are
-    /// then done: settle() looks at the others, in parallel again, and settles one by one those
-    /// who may.
+    /// Advances the world by one step. Movers propose their moves in parallel; moves that cannot
+    /// meet another mover are then final. settle() tests the others, in parallel again, and settles
+    /// one by one those that may collide.
     void proposeAll();
     void settle();
     void apply();
@@ -105,32 +104,32 @@ struct World::Data {
     [[nodiscard]] std::optional<std::size_t> elementAhead(std::size_t mover);
     [[nodiscard]] bool isAlone(std::size_t mover);
     [[nodiscard]] bool mayMeet(std::size_t mover);
-    /// What became of some movers in a step. They are the same for any number of threads.
+    /// Results of some movers in a step, the same for any number of threads.
     struct Chunk {
-        std::vector<std::size_t> doubtful;  // who may meet somebody or something
+        std::vector<std::size_t> doubtful;  // movers that may run into an obstacle or a mover
         std::vector<CommandEnd> ends;
         bool moved = false;
     };
     void finish(std::size_t mover, Chunk& chunk);
-    /// Nobody goes farther in a step, but for what noise adds.
+    /// Returns the longest way of a mover in a step, without noise.
     [[nodiscard]] double longestStep() const;
     void setLimits(std::size_t mover);
     void collide(const Collision& collision);
     void walk(std::size_t mover);
     void keepGait(std::size_t mover, const Data& before, std::size_t old);
     void end(std::size_t mover, Outcome outcome);
-    /// Of robots and people, by id.
+    /// Maps ids of robots and people to their poses.
     [[nodiscard]] std::unordered_map<std::string_view, Pose2> places() const;
-    /// Another scene, with what goes on: of those who stay their motion, of the others what their
-    /// clients know them by.
+    /// Builds the data of another scene: remaining movers keep their motion, and clients keep the
+    /// ids that they know.
     [[nodiscard]] std::shared_ptr<Data> next(
         std::shared_ptr<SceneResources> room,
         const std::unordered_set<std::string_view>& stayers) const;
 
     std::shared_ptr<SceneResources> setting;
-    std::shared_ptr<const Scene> scene;         // of it
-    std::shared_ptr<const Scene> start;         // of the run
-    std::shared_ptr<const Scene> latest_start;  // that, or of the last restart
+    std::shared_ptr<const Scene> scene;  // of the resources
+    std::shared_ptr<const Scene> start;  // of the run
+    std::shared_ptr<const Scene> latest_start;  // of the run, or of the last restart
     RunOptions options;
     SimTime step_length, time{};
     std::int64_t steps = 0, changes = 0;
@@ -145,13 +144,13 @@ struct World::Data {
     std::vector<Angle> swings;  // of their limbs
     std::vector<Navigator> pilots;
     std::vector<Odometer> odometers;       // of robots
-    std::vector<std::size_t> kept_starts;  // whose start errors lead nowhere
+    std::vector<std::size_t> kept_starts;  // whose start errors lead to no free position
     std::vector<Move> moves;
-    std::optional<double> longest_step;  // while it is known
+    std::optional<double> longest_step;  // while it is valid
     std::vector<Chunk> chunks;
-    std::vector<std::size_t> unsettled;  // who really may; kept for its memory
+    std::vector<std::size_t> unsettled;  // movers that may collide; kept for its memory
     Traffic traffic;
-    bool moved = true;  // since the traffic was looked at
+    bool moved = true;  // since the traffic was rebuilt
     SensorReader sensors;
     std::map<std::string_view, std::size_t> sensor_index;
 
@@ -159,7 +158,7 @@ struct World::Data {
     std::vector<Collision> collisions;
 };
 
-/// Says which robots start as written as their start_noise leads nowhere free.
+/// Reports the robots that start at their recorded pose because start_noise leads to no free one.
 /// \param id of one of them; "" for all
 std::vector<std::string> startWarnings(const World& world, std::string_view id = "");
 
