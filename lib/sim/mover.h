@@ -19,7 +19,7 @@
 
 namespace ispace {
 
-/// Where robots and people are, in the order of the scene.
+/// Poses of robots and people, in the order of the scene.
 struct MoverPoses {
     std::vector<Pose2> robots, people;
     std::vector<Angle> swings;  ///< of the people's limbs
@@ -28,60 +28,61 @@ struct MoverPoses {
     explicit MoverPoses(const Movers& movers);
 };
 
-/// Where robots and people were in the last steps, for scans that take longer than one. Before the
-/// first of these everything counts as having stood.
+/// Poses of robots and people in the last steps, for scans that take longer than one step. Before
+/// the first of these all movers count as having stood still.
 ///
-/// From step to step a carrier goes along an arc and turns evenly, which is how robots move at
-/// constant speeds. A trail has a moment for each step, or fewer where memory would run out: some
-/// 2^19 bodies are kept.
+/// Between steps a carrier follows an arc and turns at a constant rate, which is how robots move at
+/// constant speeds. A trail holds a moment for each step, or fewer to bound memory: about 2^19
+/// bodies are kept.
 class PoseHistory {
   public:
-    /// \param length of the longest scan, 0: nothing is kept
+    /// \param length of the longest scan; 0: no poses are stored
     explicit PoseHistory(SimTime length = SimTime(0)) : length_(length) {}
 
     [[nodiscard]] bool isKept() const { return length_ > SimTime(0); }
-    /// After a step, or once more after it. \param moved false: all are where they were at the last
-    /// call
+    /// Stores the poses after a step; may be repeated after the same step. \param moved false: no
+    /// mover has moved since the last call
     void add(SimTime time, const Movers& movers, bool moved);
-    /// Nothing is known of the steps before the next one.
+    /// Removes all moments.
     void clear() { entries_.clear(); }
-    /// Goes on from that of another scene. `robots` and `people` have for each of this scene's its
-    /// index in the other one, or nothing: then it counts as having stood where it is now.
+    /// Continues the trail of another scene. `robots` and `people` map each mover of this scene to
+    /// its index in the other one; an empty index counts as having stood at its current pose.
     using Indices = std::span<const std::optional<std::size_t>>;
     void goOn(const PoseHistory& before, Indices robots, Indices people, const MoverPoses& now);
 
     using SetBodies = std::function<void(const MoverPoses& places, MovingBodies& bodies)>;
-    /// Makes the bodies that a walk from this time on asks for, in parallel.
+    /// Builds the bodies that a walk from this time on requires, in parallel.
     void makeBodies(SimTime since, const SetBodies& set_bodies);
 
-    /// Moments kept.
+    /// Returns the number of stored moments.
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
-    /// True if nobody has moved since.
+    /// Returns true if no mover has moved since.
     [[nodiscard]] bool isStillSince(SimTime time) const;
 
-    /// Goes from moment to moment, from a beginning on: a leg begins behind one, and ends with the
-    /// next one. Behind the last moment there is one leg more, without end; who looks there, or
-    /// before the first moment, finds all standing.
+    /// Iterates over the moments after a beginning: a leg begins at one and ends at the next. After
+    /// the last moment there is one more leg, without end; there, and before the first moment, all
+    /// movers stand still.
     class Walk {
       public:
         /// \pre the trail is not empty
         Walk(const PoseHistory& trail, SimTime begin);
-        /// Goes on to the leg of some seconds after the beginning. \pre not before those of the
-        /// last call
+        /// Advances to the leg that holds this time, in seconds after the beginning. \pre not
+        /// before that of the last call
         void to(double later);
-        /// Seconds after the beginning when the leg ends.
+        /// Returns the end of the leg in seconds after the beginning.
         [[nodiscard]] double end() const;
-        /// The share of the leg that is over some seconds after the beginning: first + later *
+        /// Maps seconds after the beginning to the share of the leg that is over: first + later *
         /// rate.
         struct Share {
             double first = 0, rate = 0;
             [[nodiscard]] double at(double later) const { return first + later * rate; }
         };
         [[nodiscard]] Share share() const;
-        /// Where the leg begins and ends.
+        /// Poses at the start and the end of the leg.
         [[nodiscard]] const MoverPoses& from() const { return placesAt(before_); }
         [[nodiscard]] const MoverPoses& to() const { return placesAt(last()); }
-        /// The bodies of the nearest moment, for a share of the leg. \pre they are made
+        /// Returns the bodies of the moment nearest to a share of the leg. \pre makeBodies() built
+        /// them
         [[nodiscard]] const MovingBodies& bodies(double share) const;
 
       private:
@@ -95,7 +96,7 @@ class PoseHistory {
 
         const PoseHistory* trail_;
         SimTime begin_;
-        std::size_t before_ = 0, after_ = 0;  // entries
+        std::size_t before_ = 0, after_ = 0;  // indices of entries
     };
 
   private:
@@ -106,14 +107,14 @@ class PoseHistory {
     };
     struct Entry {
         SimTime time;
-        std::shared_ptr<Moment> moment;  // the same until somebody moves
+        std::shared_ptr<Moment> moment;  // the same until a mover moves
     };
 
     SimTime length_;
     std::deque<Entry> entries_;
 };
 
-/// Somebody in a scene that moves: a robot, or a person, who moves as a robot does.
+/// A robot of a scene, or a person, modelled as a robot.
 struct Mover {
     std::string id;
     RobotModel model;
@@ -123,26 +124,26 @@ struct Mover {
     bool is_person = false;
 };
 
-/// The robots of a scene in its order, and its people behind them.
+/// Returns the robots of a scene in its order, followed by its people.
 std::vector<Mover> moversOf(const Scene& scene);
 
-/// What a person can do as a robot would: the circle of humanRadius() about her is kept clear.
+/// Returns the robot model of a person; its radius is humanRadius().
 ///
-/// She reaches her speed in half a second and goes at most 1.3 times as fast (relaxation time and
-/// limit of Helbing and Molnar, Social Force Model for Pedestrian Dynamics, 1995); she turns about
-/// within a second and a half, and takes a step sideways at half her speed.
+/// A person reaches her speed in half a second and goes at most 1.3 times as fast (relaxation time
+/// and limit of Helbing and Molnar, Social Force Model for Pedestrian Dynamics, 1995); she turns
+/// about within a second and a half, and steps sideways at half her speed.
 RobotModel modelOf(const PlacedPerson& person);
 
-/// A person's gait. The limbs swing by up to kMaxSwingDegrees to either side; below half a metre a
-/// second by less, so that steps get shorter and not slower. A stride is as long as its two steps.
+/// A person's gait. The limbs swing by up to kMaxSwingDegrees to either side, and by less below 0.5
+/// m/s, so that steps get shorter and not slower. A stride is as long as its two steps.
 class Gait {
   public:
     /// Share of the stride in [0, 1); the left leg is ahead in its first half.
     double phase = 0;
 
-    /// Angle of the left leg ahead of the vertical at a speed, as humanParts takes it.
+    /// Returns the angle of the left leg ahead of the vertical at a speed, as humanParts takes it.
     [[nodiscard]] Angle swing(double speed) const;
-    /// Goes on by a way in metres, forward or back, at this speed.
+    /// Advances the phase by a way in metres, forward or back, at this speed.
     void walk(double height, double way, double speed);
 };
 

@@ -9,36 +9,36 @@
 
 namespace ispace {
 
-/// What a scene costs a run, over all that is in it.
+/// Cost of a scene in a run, summed over its sensors and movers.
 struct RunLoad {
     double records = 0;
-    /// Of one scan of each laser, and rays of one echo of each sonar and of each tag at each
+    /// Beams of one scan of each laser, and rays of one echo of each sonar and of each tag at each
     /// receiver.
     double beams = 0;
-    double beam_rate = 0;       ///< of lasers, tags and receivers, in a simulated second
+    double beam_rate = 0;       ///< of lasers, tags and receivers, per simulated second
     double pixels = 0;          ///< of one frame of each camera and ranger
-    double pixel_rate = 0;      ///< in a simulated second, if somebody reads all of them
-    double recorded_bytes = 0;  ///< in a simulated second, about; 0: nothing is recorded
+    double pixel_rate = 0;      ///< per simulated second, if all of them are read
+    double recorded_bytes = 0;  ///< per simulated second, roughly; 0: no record
 };
 
-/// \param record null: nothing is recorded
+/// Computes the load of a scene. \param record null: no record
 RunLoad loadOf(const Scene& scene, SimTime step, const RecordOptions* record);
 
-/// A change would make a world too large.
+/// A change would exceed a limit.
 class OverLimit : public FormatError {
   public:
     using FormatError::FormatError;
 };
 
-/// Refuses what clients may not add: the bounds are in run_limits.cc, and simrun(1) lists them. A
-/// world that begins with more, as its user asked for, may stay as it is.
+/// Rejects additions by clients beyond the bounds of run_limits.cc, which simrun(1) lists. A world
+/// that starts above a bound, at its user's request, may stay there.
 /// \throws OverLimit naming the sum and its bound, if it is exceeded and was less `before`
 void checkLoad(const RunLoad& before, const RunLoad& after);
 
-/// Of one frame of a camera or a ranger; 0 of others.
+/// Returns the pixels of one frame of a camera or a ranger; 0 for other sensors.
 double pixelsOf(const RunSensor& sensor);
 
-/// Pixels of pictures and depth frames that clients may let wait to be made, all together.
+/// Limit of pixels of pictures and depth frames that all clients together may have pending.
 constexpr double kMaxWaitingPixels = 64e6;
 
 }  // namespace ispace

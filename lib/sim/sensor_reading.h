@@ -19,54 +19,55 @@
 
 namespace ispace {
 
-/// When the periods of a sensor begin: period k at k / rate seconds, in exact arithmetic. A rate
-/// with up to nine decimals counts as written, any other as the double it is.
+/// Computes the periods of a sensor: period k begins at k / rate seconds, in exact arithmetic. A
+/// rate with up to nine decimals counts as written, any other as the double it is.
 class Periods {
   public:
     /// \pre rate > 0
     explicit Periods(double rate);
-    /// The latest period that has begun.
+    /// Returns the latest period that has begun.
     [[nodiscard]] std::int64_t newest(SimTime time) const;
-    /// The first nanosecond of period k; a time beyond any run if that is after a hundred years.
+    /// Returns the first nanosecond of period k; a time beyond any run if that is after a hundred
+    /// years.
     [[nodiscard]] SimTime begin(std::int64_t k) const;
 
   private:
-    // Periods a nanosecond, as a fraction; a numerator of 0: never again.
+    // Periods per nanosecond, as a fraction; a numerator of 0: only the first period.
     __int128 numerator_ = 0, denominator_ = 1;
 };
 
-/// What a run reads: a sensor (tags too, whose bursts receivers hear), a mat or a gate, where it
-/// is at the start.
+/// A sensor that a run reads: one of the scene (including tags, whose bursts receivers hear), a mat
+/// or a gate, with its start pose.
 struct RunSensor {
     std::string id;
     std::variant<Sensor, Mat, Gate> what;
 
-    /// Null for mats and gates.
+    /// Returns null for mats and gates.
     [[nodiscard]] const Sensor* sensor() const { return std::get_if<Sensor>(&what); }
-    /// Its model, if it is of that kind; else null.
+    /// Returns its model if it is of that kind, else null.
     template <typename Model>
     [[nodiscard]] const Model* model() const {
         return sensor() == nullptr ? nullptr : std::get_if<Model>(&sensor()->model);
     }
-    /// Of its records.
+    /// Returns the keyword of its records.
     [[nodiscard]] std::string_view keyword() const;
-    /// Readings a second; of a swept laser single scans.
+    /// Returns readings per second; of a swept laser, single scans.
     [[nodiscard]] double rate() const;
-    /// Depth frames and pictures: taken only if somebody wants them.
+    /// Returns true for rangers and cameras: they are read only on request.
     [[nodiscard]] bool isHeavy() const;
-    /// Where a mat or a gate lies. \pre sensor() is null
+    /// Returns the pose of a mat or a gate. \pre sensor() is null
     [[nodiscard]] Pose3 floorPose() const;
-    /// True if it is on this robot.
+    /// Returns true if this robot carries it.
     [[nodiscard]] bool isOn(std::size_t robot) const;
 };
 
-/// What a receiver hears of one tag.
+/// Signal of one tag at a receiver.
 struct HeardTag {
     std::string tag;
     std::optional<double> time_of_flight;  ///< seconds; empty: not heard
 };
 
-/// What a receiver hears: all tags, in the order of the scene.
+/// Signals at a receiver: all tags, in the order of the scene.
 struct Hearings {
     std::vector<HeardTag> tags;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sim.
+// Private to lib/sim: reads the sensors of a running world.
 #pragma once
 
 #include <chrono>
@@ -27,10 +27,10 @@ namespace ispace {
 
 struct SceneResources;
 
-/// Reads the sensors of a world when they are due: in the first step at or after the beginning of
-/// a period, all at the moment of that step. The beams of a laser that spins follow one another
-/// from that moment on: each is of its own time, and the scan is read with the last one. Its first
-/// scan is of one moment.
+/// Reads the sensors of a world when they are due: in the first step at or after the beginning of a
+/// period, all at the time of that step. The beams of a spinning laser follow one another from that
+/// time on: each has its own time, and the scan is read with the last one. Its first scan is
+/// instantaneous.
 class SensorReader {
   public:
     struct Options {
@@ -38,67 +38,67 @@ class SensorReader {
         bool noise = false;
         SimTime step = SimTime(1);  ///< of the world
     };
-    /// The setting must outlive it, and be that of no other.
+    /// \param setting must outlive the reader and belong to it alone
     SensorReader(SceneResources& setting, const Options& options);
 
-    /// After each step: follows those who move, and reads what is due, in parallel. Heavy
-    /// sensors are left out.
+    /// Call it after each step: updates the poses of carried sensors, and reads due sensors in
+    /// parallel. Heavy sensors are skipped.
     void read(SimTime time, const Movers& movers) {
         begin(time, movers);
         finish();
     }
-    /// The same, but what is due is read later: by readSome(), or each when reading() is asked for.
-    /// It is as it would be now, whatever movers do until then.
+    /// Likewise, but due sensors are read later: by readSome(), or when reading() is called. The
+    /// readings are the same, however movers go on until then.
     void begin(SimTime time, const Movers& movers);
-    /// Reads until all is read, or about until then. \returns true if all is read
+    /// Reads due sensors until all are read, or about until then. \returns true if all are read
     bool readSome(std::chrono::steady_clock::time_point until);
     void finish();
-    /// After a step that nobody looks at: what is due is read after a later one.
+    /// Call it after a skipped step: due sensors are read after a later one.
     void pass(const Movers& movers) {
         finish();
         latest_.clear();
         floor_.follow(movers);
         trail_.clear();
     }
-    /// Before the first reading in another scene: those that stay as they are keep their last
+    /// Call it before the first reading in another scene: unchanged sensors keep their last
     /// reading, and gates their counts; scans that have begun go on. \param movers of this scene
     /// \pre all of `before` is read
     void follow(const SensorReader& before, const std::unordered_set<std::string_view>& stayers,
                 const Movers& movers);
-    /// Says that robots or people have moved.
+    /// Records that robots or people have moved.
     void moved() { moved_ = trail_moved_ = pictures_moved_ = true; }
-    /// They were put elsewhere, so nobody passed a gate on the way.
+    /// Records that movers were set to other poses, so that no gate counts a passage.
     void jumped();
 
-    /// Sensors in the order of the scene, as they start; then mats, then gates.
+    /// Returns sensors in the order of the scene, at their starts; then mats, then gates.
     [[nodiscard]] const std::vector<RunSensor>& sensors() const { return sensors_; }
     [[nodiscard]] const SensorReading& reading(std::size_t sensor) {
         if (unread_blocks_ > 0) complete(sensor);
         return readings_[sensor];
     }
-    /// Those read last, ascending.
+    /// Returns the sensors read last, ascending.
     [[nodiscard]] std::span<const std::size_t> latest() const { return latest_; }
-    /// The newest period; readings of heavy sensors may be of earlier ones.
+    /// Returns the newest period; readings of heavy sensors may be of earlier ones.
     [[nodiscard]] std::int64_t period(std::size_t sensor, SimTime time) const {
         return is_heavy_[sensor] == 0 ? readings_[sensor].seq : periods_[sensor].newest(time);
     }
-    /// True unless it is heavy and was not read in its newest period.
+    /// Returns true unless it is heavy and was not read in its newest period.
     [[nodiscard]] bool isTaken(std::size_t sensor, SimTime time) const {
         return due_[sensor] > time || is_heavy_[sensor] == 0;
     }
-    /// Reads a heavy sensor now if it is not taken.
+    /// Reads a heavy sensor now unless it is taken.
     void take(std::size_t sensor, SimTime time, const Movers& movers);
-    /// The same in two parts: see World::captureLater.
+    /// Likewise in two parts: see World::captureLater.
     std::function<SensorReading()> captureLater(std::size_t sensor, SimTime time,
                                                 const Movers& movers);
     void put(std::size_t sensor, SensorReading reading);
 
     [[nodiscard]] const FloorSensors& floor() const { return floor_; }
-    /// The bodies of robots and people where they are.
+    /// Returns the bodies of robots and people at their poses.
     const MovingBodies& bodies(const Movers& movers);
-    /// What a laser on a robot would measure now, see World::look.
+    /// Computes the scan of a laser on a robot, see World::look.
     Scan look(const Sensor& laser, const Movers& movers);
-    /// What surrounds them, as light or sound meets it.
+    /// Returns the surfaces around, as light or sound meets them.
     const RayWorld& mesh(Surfaces surfaces);
 
   private:
@@ -125,7 +125,7 @@ class SensorReader {
     static int frameOf(std::int64_t number);
     [[nodiscard]] std::vector<double> spinHeights() const;
     void makeTrailBodies(std::span<const std::size_t> due);
-    /// \param heights those of all level rays that will meet them; empty: rays go everywhere
+    /// \param heights of all level rays that will meet the bodies; empty: rays in any direction
     void setBodies(const MoverPoses& places, std::span<const double> heights,
                    MovingBodies& bodies) const;
     void followTrail(const SensorReader& before,
@@ -146,7 +146,7 @@ class SensorReader {
     bool sweepLevel(const Laser& laser, std::size_t sensor, BeamFrames& frames);
     void measure(std::size_t sensor, SimTime time);
     void measure(const Laser& laser, std::size_t sensor, SimTime time);
-    // These are taken.
+    // Heavy sensors are read by take().
     void measure(const Ranger& /*ranger*/, std::size_t /*sensor*/, SimTime /*time*/) {}
     void measure(const Camera& /*camera*/, std::size_t /*sensor*/, SimTime /*time*/) {}
     void measure(const Tag& tag, std::size_t sensor, SimTime time);
@@ -157,35 +157,35 @@ class SensorReader {
     UltrasoundOptions sound_;
     SimTime step_;
     FloorSensors floor_;
-    std::vector<RunSensor> sensors_;  // as they start
+    std::vector<RunSensor> sensors_;  // at their starts
     Worlds* worlds_;
     std::vector<Periods> periods_;
     std::vector<SimTime> due_;
-    std::vector<SimTime> durations_;  // of scans, in whole steps
+    std::vector<SimTime> durations_;  // of scans, rounded up to steps
     std::vector<char> is_heavy_;
     std::vector<SensorReading> readings_;
     std::vector<std::optional<LaserCaster>> casters_;  // of lasers
     std::vector<std::size_t> latest_;
-    // What is due and still to be read, ascending, at the time of the step; in blocks, of which
-    // some are read already.
+    // Due sensors still to be read, ascending, at the time of the step; in blocks, some of which
+    // are read already.
     std::vector<std::size_t> unread_;
     std::vector<std::size_t> block_ends_;
     std::vector<char> is_read_;  // of blocks
     std::size_t unread_blocks_ = 0, next_block_ = 0;
     SimTime unread_time_{};
-    // Those that hear, and those that are heard, where they are; made when one of them is read.
+    // Receivers and tags at their poses; built when one of them is read.
     std::vector<Sensor> receivers_, tags_;
     std::vector<Pose2> people_starts_;
     Photographer* photographer_;                       // if there are cameras
-    std::mutex photographing_;                         // of it
-    std::shared_ptr<const Stage> photographed_;        // as it was moved last
-    std::shared_ptr<const Stage> stage_;               // as all are, if it was asked for
-    std::shared_ptr<const MovingBodies> kept_bodies_;  // those of now, likewise
-    bool moved_ = true;                                // since the bodies were made
-    bool pictures_moved_ = true;                       // since those of pictures were
+    std::mutex photographing_;                         // guards it
+    std::shared_ptr<const Stage> photographed_;        // at the poses of the last picture
+    std::shared_ptr<const Stage> stage_;               // at current poses, once requested
+    std::shared_ptr<const MovingBodies> kept_bodies_;  // at current poses, likewise
+    bool moved_ = true;                                // since the bodies were built
+    bool pictures_moved_ = true;                       // since the stage was built
     bool trail_moved_ = true;                          // since the trail's last moment
     MovingBodies bodies_;
-    PoseHistory trail_;                           // for scans that take a while
+    PoseHistory trail_;                           // for scans that last several steps
     std::vector<double> spin_heights_;            // of their rays, if all are level; else empty
     std::vector<std::vector<BeamsAmong>> parts_;  // of each laser's last scan; kept for the memory
 };

@@ -15,17 +15,17 @@ using SimTime = std::chrono::nanoseconds;
 /// Runs end at this time at the latest: a hundred years.
 constexpr SimTime kMaxTime = std::chrono::hours(24) * 36525;
 
-/// The nearest double, for formats that want seconds as a number.
+/// Returns the nearest double, for formats that store seconds as a number.
 double seconds(SimTime time);
 
-/// Reads "2.5", "5ms", "2min": units of Unit::Time, seconds without one, rounded to nanoseconds.
-/// Nothing if it is not a number, negative, or above a hundred years.
+/// Parses "2.5", "5ms", "2min": units of Unit::Time, seconds without one, rounded to nanoseconds.
+/// Returns nullopt if it is not a number, negative, or above a hundred years.
 std::optional<SimTime> parseSimTime(std::string_view text);
 
-/// Exact and shortest, in seconds: "0.005".
+/// Returns the exact and shortest text, in seconds: "0.005".
 std::string formatSimTime(SimTime time);
 
-/// Seconds with three decimals, as the protocol has it: "12.300".
+/// Returns seconds with three decimals, as the protocol requires: "12.300".
 std::string formatMilliseconds(SimTime time);
 
 }  // namespace ispace

@@ -20,25 +20,25 @@ namespace ispace {
 
 using WallTime = std::chrono::steady_clock::time_point;
 
-/// How simulated time follows wall time.
+/// Relation of simulated time to wall time.
 struct Clock {
     enum class Kind {
         Real,  ///< `rate` simulated seconds in a second
         Fast,  ///< as fast as possible
-        Step   ///< only when told to
+        Step   ///< only on request
     } kind = Kind::Real;
     double rate = 1;
 };
 
-/// `real`, `real:20`, `fast`, `step`. \throws UsageError
+/// Parses `real`, `real:20`, `fast`, `step`. \throws UsageError
 Clock parseClock(const std::string& text);
 
 /// Drives a world: script, clock, pauses, end.
 class Simulation {
   public:
     /// The last step is the first one that ends at `until` or later; without it a run ends at
-    /// kMaxTime. Later commands of the script are never given, nor are those to robots that the
-    /// world has lost since, or that cannot do them any more. \pre the script is in order of time
+    /// kMaxTime. Skips commands of the script after the end, and those to robots that were removed
+    /// or can no longer do them. \pre the script is sorted by time
     Simulation(World& world, std::vector<TimedCommand> script, Clock clock,
                std::optional<SimTime> until);
 
@@ -46,12 +46,12 @@ class Simulation {
     [[nodiscard]] const World& world() const { return *world_; }
     [[nodiscard]] const Clock& clock() const { return clock_; }
 
-    /// What happened; looked for after every step, before it is recorded.
+    /// Returns the events, updated after every step, before it is recorded.
     [[nodiscard]] EventLog& events() { return events_; }
     [[nodiscard]] const EventLog& events() const { return events_; }
 
-    /// Says that the world was changed by this request, which a record holds.
-    /// \param with_scene it does not say all: the record gets the scene, too
+    /// Reports that this request changed the world; a record stores it.
+    /// \param with_scene the request names files: the record stores the scene, too
     void tellChange(std::string request, bool with_scene);
 
     /// Adds an observer, called after every step once it is recorded and the script's commands for
@@ -61,41 +61,41 @@ class Simulation {
     /// Records every step from now on. The recorder must outlive the last one.
     void recordWith(Recorder& recorder) { recorder_ = &recorder; }
 
-    /// Takes the steps of a record instead of simulating. At its end the run ends; or, if it is to
-    /// hold, it pauses and goes on serving the last moment. \pre the replay outlives the last step
+    /// Takes the steps of a record instead of simulating. At its end the run ends; if `holds`, it
+    /// pauses and goes on serving the last moment. \pre the replay outlives the last step
     void replay(Replay& replay, bool holds);
-    /// Null: nothing is recorded.
+    /// Returns null without a record.
     [[nodiscard]] const Recorder* recorder() const { return recorder_; }
-    /// Records what sensors read in the last step, until about then. \returns true once that is
-    /// done, or nothing is recorded: the world may then be changed
+    /// Records the readings of the last step, until about then. \returns true once that is done, or
+    /// without a record: the world may then be changed
     bool finishRecord(WallTime until) {
         return recorder_ == nullptr || recorder_->finishStep(*world_, until);
     }
-    /// Writes out what of the record has been pending for 0.1 s, see Recorder::flushDue: for those
-    /// who do not call run().
+    /// Writes out lines of the record pending for 0.1 s, see Recorder::flushDue: for callers that
+    /// do not call run().
     std::optional<WallTime> flushRecord();
-    /// True if robots and people go as recorded, whatever they are told.
+    /// Returns true if movers follow a record and ignore commands.
     [[nodiscard]] bool isReplay() const { return replay_ != nullptr; }
-    /// True if a record that is to hold has come to its end: there are no more steps.
+    /// Returns true if a replay that holds has reached its end: no steps are left.
     [[nodiscard]] bool isHeld() const { return holds_ && replay_ != nullptr && replay_->atEnd(); }
 
-    /// True if seek() may be called: the steps of this replay may be taken in any order.
+    /// Returns true if seek() may be called: the steps of this replay may be taken in any order.
     [[nodiscard]] bool maySeek() const {
         return replay_ != nullptr && recorder_ == nullptr && !is_in_order_;
     }
-    /// Somebody needs the steps of a replay from the first to the last.
+    /// Requires the steps of the replay in order, from the first to the last.
     void keepOrder() { is_in_order_ = true; }
-    /// Takes a replay to a time in parts, see Replay::seekSome: call it until it returns true.
-    /// Steps allowed before are to be dropped. \pre maySeek()
+    /// Seeks a replay to a time in parts, see Replay::seekSome: call it until it returns true. Drop
+    /// steps allowed before. \pre maySeek()
     bool seekSome(SimTime time, WallTime until);
-    /// What is to be prepared before the next step of a replay, or on the way to a time: see
-    /// Replay::preparation. run() prepares by itself where its first step needs it.
+    /// Returns the preparation that the next step of a replay, or a seek to a time, requires: see
+    /// Replay::preparation. run() prepares by itself if its first step requires it.
     [[nodiscard]] std::function<void()> preparation(std::optional<SimTime> to = {}) const {
         if (to) to = std::min(*to, until_);
         return replay_ == nullptr ? nullptr : replay_->preparation(*world_, to);
     }
     std::shared_ptr<const void> adoptPrepared() { return replay_->adopt(*world_); }
-    /// When a replay ends, as far as that is known.
+    /// Returns the end of a replay, if known.
     [[nodiscard]] std::optional<SimTime> end() const {
         return replay_ == nullptr ? std::nullopt : replay_->end();
     }
@@ -105,14 +105,14 @@ class Simulation {
     /// Pauses; drops steps allowed but not taken.
     void pause(WallTime now);
     /// Resumes; drops steps allowed but not taken. With the clock Real the next step is due as long
-    /// after this as it was at the pause, so only the time of the pause is lost.
-    /// One that isHeld() stays paused. \pre the clock is not Step
+    /// after this as it was at the pause, so only the time of the pause is lost. A replay that
+    /// isHeld() stays paused. \pre the clock is not Step
     void resume(WallTime now);
-    /// Lets a paused world take `count` more steps; none if it isHeld(). \pre paused(), count >= 0
+    /// Lets a paused world take `count` more steps; 0 if it isHeld(). \pre paused(), count >= 0
     void allow(std::int64_t count);
-    /// Takes back `count` allowed steps. \pre count <= owed()
+    /// Revokes `count` allowed steps. \pre count <= owed()
     void forgo(std::int64_t count) { owed_ -= count; }
-    /// Steps allowed but not taken yet.
+    /// Returns the steps allowed but not taken yet.
     [[nodiscard]] std::int64_t owed() const { return owed_; }
 
     void finish() { finished_ = true; }
@@ -120,24 +120,25 @@ class Simulation {
 
     /// Takes the steps that are due, for about `budget` of wall time (one step at least, if one is
     /// due, or a part of reading its sensors and recording them). A step begins once the one before
-    /// is recorded, with its frames. With the clock Real a lag of more than a quarter of
-    /// a second is forgiven: time then goes slower, instead of faster later. \returns when to call
-    /// again; nothing: only once told to step or resume
+    /// is recorded, with its frames. With the clock Real a lag of more than a quarter of a second
+    /// is forgiven: time then goes slower, instead of faster later. \returns the time of the next
+    /// call; nullopt: only after allow() or resume()
     std::optional<WallTime> run(WallTime now, std::chrono::nanoseconds budget);
-    /// True if a step is to be taken now.
+    /// Returns true if a step is due.
     [[nodiscard]] bool isDue(WallTime now) const;
-    /// When the next step is due by the clock Real; nothing with others, or while paused.
+    /// Returns the wall time of the next step by the clock Real; nullopt with other clocks, or
+    /// while paused.
     [[nodiscard]] std::optional<WallTime> due() const;
-    /// How punctual the steps were that were due by the clock Real: the latest of them, and how
-    /// many began later than a step after their time (as a step lasts in wall time). `own`: the
-    /// most of that for which this thread was at work since the steps before it, instead of waiting
-    /// for the processor.
+    /// Punctuality of the steps by the clock Real: the greatest delay, and the number of steps that
+    /// began later than one step (in wall time) after their time. `own`: the greatest part of a
+    /// delay in which this thread worked since the steps before, instead of waiting for the
+    /// processor.
     struct Lateness {
         std::int64_t steps = 0, late = 0;
         std::chrono::nanoseconds most{}, own{};
     };
     [[nodiscard]] const Lateness& lateness() const { return lateness_; }
-    /// Wall time lost so far because steps took too long.
+    /// Returns the wall time lost so far because steps took too long.
     [[nodiscard]] std::chrono::nanoseconds lost() const { return lost_; }
 
   private:
@@ -146,23 +147,23 @@ class Simulation {
     void giveScripted();
     void step();
     void endIfReached();
-    /// Lets simulated time follow wall time from here on.
+    /// Aligns simulated time with wall time from here on.
     void startAt(WallTime now);
-    /// When the next step is due by the clock Real. \pre it is started
+    /// Returns the wall time of the next step by the clock Real. \pre it is started
     [[nodiscard]] WallTime dueAt() const;
     void noteLateness();
-    /// Gives up a lag that is too long.
+    /// Forgives a lag that is too long.
     void forgive(WallTime now);
 
     World* world_;
     EventLog events_;
     std::vector<TimedCommand> script_;
-    std::vector<std::string> scripted_;  // ids of those whom the script commands, as it has indices
+    std::vector<std::string> scripted_;  // ids of the movers that the script commands by index
     std::size_t next_ = 0;               // of script_
     Recorder* recorder_ = nullptr;
     Replay* replay_ = nullptr;
     bool holds_ = false;        // at the end of the record
-    bool is_in_order_ = false;  // it is taken step by step
+    bool is_in_order_ = false;  // steps must be taken in order
     Clock clock_;
     SimTime until_;
     std::vector<std::function<void()>> observers_;
@@ -170,8 +171,7 @@ class Simulation {
     std::int64_t owed_ = 0;
     std::optional<WallTime> started_;  // wall time of start_time_
     SimTime start_time_{};
-    std::optional<std::chrono::nanoseconds>
-        ahead_;  // of a pause to the next step; less than 0: lag
+    std::optional<std::chrono::nanoseconds> ahead_;  // from a pause to the next step; negative: lag
     std::chrono::nanoseconds lost_{};
     std::chrono::nanoseconds work_{};  // of the thread until run() returned
     Lateness lateness_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sim: which way is free, for those who go by themselves.
+// Private to lib/sim: finds free headings for autonomous movers.
 #pragma once
 
 #include <cstddef>
@@ -13,45 +13,46 @@
 
 namespace ispace {
 
-/// Everybody at one moment, and what stands about.
+/// All movers at one moment, and the obstacles around them.
 struct Surroundings {
     std::span<const Mover> movers;
     std::span<const Motion> motions;
-    const Traffic* traffic = nullptr;  ///< rebuilt for that moment
+    const Traffic* traffic = nullptr;  ///< built for that moment
 };
 
-/// Where somebody is who looks about.
+/// Pose and surroundings of a mover that is steered.
 struct SteeringState {
     const Surroundings* around = nullptr;
     const Obstacles* obstacles = nullptr;
     Vicinity* vicinity = nullptr;  ///< of the mover, among these obstacles
     std::size_t mover = 0;
-    double clearance = 0;  ///< nothing is nearer to the mover's circle
+    double clearance = 0;  ///< no obstacle is nearer to the mover's circle
     SimTime time{}, step{};
 };
 
-/// A direction, and for how many seconds one can go there.
+/// A direction, and the seconds for which it is free.
 struct FreeHeading {
     Angle direction;
     double time = 0;
 };
 
-/// Looks for a free way about one mover at one moment: things stand, the others keep their
+/// Finds free headings for one mover at one moment: obstacles stand still, other movers keep their
 /// velocities (velocity obstacles; Fiorini and Shiller, Motion Planning in Dynamic Environments
-/// Using Velocity Obstacles, 1998). What it stands too near to is in the way only if it gets
-/// nearer.
+/// Using Velocity Obstacles, 1998). An obstacle or mover that is already closer than allowed blocks
+/// only headings that lead nearer to it.
 class Steering {
   public:
-    /// Looks ahead as far as one gets in `horizon` seconds at `speed`.
+    /// Computes the free headings as far as the mover gets in `horizon` seconds at `speed`.
     Steering(const SteeringState& helm, double speed, double horizon);
 
-    /// Seconds until somebody or something is in the way, at most `horizon`; until things in steps
-    /// of a half, a quarter, an eighth of it.
+    /// Returns the seconds until an obstacle or a mover blocks the direction, at most `horizon`;
+    /// for obstacles in steps of a half, a quarter, an eighth of it.
     [[nodiscard]] double freeTime(Angle direction) const { return freeTime(direction, 1); }
-    /// The desired direction if it is free for `needed` seconds; else the nearest one that is, up
-    /// to a little more than square; else the one that is free longest, less so the farther it
-    /// leads aside. Who turns aside to pass somebody turns back in time: things count for a quarter
-    /// of the horizon there. Of left and right it is right, so that two who meet pass each other.
+    /// Returns the desired direction if it is free for `needed` seconds; else the nearest one that
+    /// is, up to a little more than square; else the one that is free longest, with a penalty for
+    /// its angle. A mover that turns aside to pass another turns back in time: obstacles count for
+    /// a quarter of the horizon there. Of left and right it chooses right, so that two movers that
+    /// meet pass each other.
     [[nodiscard]] FreeHeading choose(Angle desired, double needed) const;
 
   private:
