@@ -24,14 +24,14 @@ std::vector<Segment2> linesOf(const Slice& band) {
     return lines;
 }
 
-/// The way of a place past the origin.
+/// The relative motion of a point past the origin.
 struct RelativeWay {
     Vec2 from, to;
 
     [[nodiscard]] double nearest() const {
         return distance(Point2{}, Segment2{{from.x, from.y}, {to.x, to.y}});
     }
-    /// As Obstacles::stop.
+    /// Returns the same as Obstacles::stop.
     [[nodiscard]] bool stops(double reach) const {
         const double least = nearest();
         return least < reach && least < length(from);
@@ -58,7 +58,7 @@ Obstacles::Obstacles(const Slice& band)
     assert(line_owners_.size() == lines_.size());
 }
 
-/// The owner of a line that comes nearer than `reach` to p and for which the test holds.
+/// Finds the owner of a line that comes nearer than `reach` to p and passes the test.
 template <typename Test>
 std::optional<std::size_t> Obstacles::find(Point2 p, double reach, Test test) const {
     std::optional<std::size_t> owner;
@@ -215,7 +215,7 @@ std::optional<std::size_t> Traffic::hit(std::span<const Move> moves, std::size_t
 
 namespace {
 
-/// Finds who stands in whom.
+/// Detects overlapping movers.
 class Neighbours {
   public:
     explicit Neighbours(std::span<const Mover> movers) : movers_(movers) {
@@ -229,7 +229,7 @@ class Neighbours {
         grid_.rebuild(places, reach);
     }
 
-    /// The first of movers `begin` to `end` that mover `i` stands in.
+    /// Returns the first of movers `begin` to `end` that mover `i` overlaps.
     [[nodiscard]] std::optional<std::size_t> firstOver(std::size_t i, std::size_t begin,
                                                        std::size_t end) const {
         const double radius = movers_[i].model.radius;
@@ -273,7 +273,7 @@ void checkStart(const Environment& environment, std::span<const Mover> movers,
     };
     std::size_t robots = 0;
     while (robots < movers.size() && !movers[robots].is_person) ++robots;
-    // Full findings end it: robots on one heap would be looked at in pairs.
+    // Stops at full findings: a heap of robots would be tested in pairs.
     for (std::size_t i = 0; i < robots && !findings.full(); ++i) {
         const Mover& robot = movers[i];
         const std::string name = "robot " + robot.id;

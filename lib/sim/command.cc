@@ -18,7 +18,7 @@ namespace ispace {
 
 namespace {
 
-/// A slip of a digit, not a way to go; it also keeps poses within what doubles resolve.
+/// Rejects a mistyped digit; also keeps poses within the resolution of doubles.
 constexpr double kMaxDistance = 1e6;
 
 constexpr std::string_view kPathExample = "PATH 1,0;1,2 speed=0.3";
@@ -28,7 +28,7 @@ struct VerbFacts {
     std::string_view name;
     std::string_view value_name;
     std::string_view unit;      // of the value
-    std::string_view opposite;  // what goes the other way, where the value is not negative
+    std::string_view opposite;  // verb of the reverse direction, if the value cannot be negative
     std::string_view example;
 };
 
@@ -47,7 +47,7 @@ constexpr std::array<VerbFacts, 9> kVerbs = {{
 
 const VerbFacts& factsOf(Verb verb) { return kVerbs[static_cast<std::size_t>(verb)]; }
 
-/// Text put together from pieces.
+/// Joins pieces of text.
 std::string join(std::initializer_list<std::string_view> pieces) {
     std::string text;
     for (const std::string_view piece : pieces) text += piece;
@@ -73,7 +73,7 @@ std::string unknownCommand(std::string_view name) {
     return join({"unknown command ", excerpt(name), hint});
 }
 
-/// The one value of `facts.verb`.
+/// Parses the single value of `facts.verb`.
 ParsedCommand parseValue(const VerbFacts& facts, std::string_view text) {
     const auto value = parseDouble(text);
     if (!value) {
@@ -99,7 +99,7 @@ ParsedCommand refusePath(const std::string& message) {
     return refuse(CommandError::Kind::Syntax, join({message, ", like ", kPathExample}));
 }
 
-/// "1,0;1,2". Nothing if it is something else.
+/// Parses "1,0;1,2"; nullopt for other texts.
 std::optional<std::vector<Point2>> parsePlaces(std::string_view text) {
     std::vector<Point2> places;
     while (true) {
@@ -116,7 +116,7 @@ std::optional<std::vector<Point2>> parsePlaces(std::string_view text) {
     }
 }
 
-/// A key of PATH. Returns what is wrong with it, or "".
+/// Parses a key of PATH. Returns an error message, or "".
 std::string applyPathKey(std::string_view text, Command& command) {
     const std::size_t sign = std::min(text.find('='), text.size());
     const std::string_view key = text.substr(0, sign);
@@ -201,7 +201,7 @@ ParsedCommand parseCommand(std::string_view text) {
 
 namespace {
 
-/// Reads lines one by one and collects what is wrong with them.
+/// Reads a script line by line and collects all findings.
 class ScriptReader {
   public:
     ScriptReader(const std::string& file, const World& world) : file_(&file), world_(&world) {
@@ -211,7 +211,7 @@ class ScriptReader {
 
     /// \param line without its comment
     void read(std::string_view line, int number);
-    /// The commands in the order of time. \throws FormatError with all findings
+    /// Sorts the commands by time. \throws FormatError with all findings
     std::vector<TimedCommand> take();
 
   private:

@@ -24,10 +24,10 @@ namespace ispace {
 
 namespace {
 
-/// Kept for readers that are behind: at least those of the last step, and so many.
+/// Number of events kept for slow readers, besides all those of the last step.
 constexpr std::size_t kKept = 16384;
 
-/// Who is seen is found out at the first step of each such interval.
+/// Sight is computed at the first step of each such interval.
 constexpr SimTime kLookEvery = std::chrono::milliseconds(100);
 
 constexpr std::array<std::string_view, kEventKinds> kNames = {
@@ -57,7 +57,8 @@ std::string_view eventTableHead() { return "t,kind,id,other,x,y,value,text\n"; }
 
 void appendEventRow(std::string& out, const Event& event) {
     out.append(formatSimTime(event.time)).append(",").append(nameOf(event.kind));
-    out.append(",").append(event.id).append(",").append(event.other);  // words: nothing to quote
+    out.append(",").append(event.id).append(",").append(
+        event.other);  // words that require no quotes
     out += ',';
     if (event.place) appendDouble(out, event.place->x);
     out += ',';
@@ -103,17 +104,17 @@ struct EventLog::Data {
     std::vector<Zone> zones;
     struct Walker {
         std::string id;
-        std::optional<Point2> place;  // where it was looked at
+        std::optional<Point2> place;  // position at the last look
         std::vector<bool> in;         // of the zones
         bool is_seen = false;
     };
     std::vector<Walker> walkers;                         // as World::movers()
-    std::map<std::string, std::vector<std::string>> on;  // who was on each mat
-    std::optional<DetectionMonitor> watch;               // once sight is asked for
+    std::map<std::string, std::vector<std::string>> on;  // the movers on each mat
+    std::optional<DetectionMonitor> watch;               // once Seen or Lost is subscribed
     std::int64_t look = -1;                              // the last one
 };
 
-/// Drops what is old, but nothing of the last step.
+/// Removes old events, except those of the last step.
 void EventLog::Data::forget() {
     while (events.size() > kKept) {
         events.pop_front();
@@ -121,7 +122,7 @@ void EventLog::Data::forget() {
     }
 }
 
-/// Who and what there is; what is known of them stays.
+/// Reads movers, zones and mats from the scene; the state of unchanged ones stays.
 void EventLog::Data::readScene() {
     if (changes == world->changes()) return;
     changes = world->changes();
@@ -263,7 +264,7 @@ void EventLog::unwant(const EventKinds& kinds) {
         assert(data_->wants(kind));
         --data_->wanted[static_cast<std::size_t>(kind)];
     }
-    // Whoever wants them again begins anew.
+    // A later subscription starts anew.
     const auto neither = [this](EventKind one, EventKind other) {
         return !data_->wants(one) && !data_->wants(other);
     };

@@ -21,26 +21,26 @@ namespace {
 using State = Expectation::State;
 using When = Expectation::When;
 
-/// What is seen of somebody at a step.
+/// State of a mover at a step.
 struct Observation {
-    bool holds = false;           ///< the state, as the expectation has it
+    bool holds = false;           ///< the state of the expectation
     double measure = 0;           ///< metres, sensors or m/s, by the state
     std::string_view other = {};  ///< of a collision
-    bool is_struck = false;       ///< by the other
+    bool is_struck = false;       ///< `other` ran into it
 };
 
 /// One expectation about one robot or person.
 struct Trial {
     std::size_t expectation = 0;
     std::string id;
-    std::optional<std::size_t> mover;  // its index; nothing while it is not there
-    std::optional<SimTime> since;      // when the state began to hold
-    std::optional<SimTime> decided;    // when the verdict was clear
+    std::optional<std::size_t> mover;  // its index; empty while the world lacks it
+    std::optional<SimTime> since;      // since when the state holds
+    std::optional<SimTime> decided;    // when the verdict was decided
     bool is_met = false;
     bool was_observed = false;                                 // within the window
-    double nearest = std::numeric_limits<double>::infinity();  // it came, metres
-    SimTime nearest_time{}, longest{};                         // longest: that the state held
-    std::string reason;                                        // why it is not met
+    double nearest = std::numeric_limits<double>::infinity();  // distance so far, metres
+    SimTime nearest_time{}, longest{};  // longest: time for which the state held
+    std::string reason;                 // why it is not met
 };
 
 std::string at(SimTime time) { return " at t=" + formatMilliseconds(time); }
@@ -80,7 +80,7 @@ std::string stateText(const Expectation& expectation, const Observation& seen) {
     return {};
 }
 
-/// The state was observed; decides what can be decided.
+/// Updates a trial by an observation, and decides it if possible.
 void decide(Trial& trial, const Expectation& expectation, const Observation& seen, SimTime now) {
     const auto settle = [&](bool is_met, const std::string& reason) {
         trial.decided = now;
@@ -115,7 +115,7 @@ void decide(Trial& trial, const Expectation& expectation, const Observation& see
     }
 }
 
-/// Of what was not decided earlier.
+/// Decides a trial that was open until the end.
 bool holdsAtTheEnd(const Trial& trial, const Expectation& expectation) {
     switch (expectation.when) {
         case When::Once:
@@ -133,7 +133,7 @@ bool holdsAtTheEnd(const Trial& trial, const Expectation& expectation) {
 
 /// The run, or the window, has ended.
 void close(Trial& trial, const Expectation& expectation, SimTime now) {
-    const bool is_over = now >= expectation.before;  // the window, not the run alone
+    const bool is_over = now >= expectation.before;  // the end of the window, not only of the run
     trial.decided = std::min(now, expectation.before);
     trial.is_met = trial.was_observed && holdsAtTheEnd(trial, expectation);
     if (trial.is_met) return;
@@ -171,7 +171,7 @@ struct ExpectationJudge::Data {
     std::vector<Trial> trials;
     std::optional<DetectionMonitor> watch;
     std::vector<Pose2> poses;  // of all movers, for the watch
-    std::int64_t changes = 0;  // of the world, when everything was found
+    std::int64_t changes = 0;  // of the world, when movers and zones were found
 };
 
 ExpectationJudge::Data::Data(const World& simulated, std::vector<Expectation> list)
@@ -209,7 +209,7 @@ void ExpectationJudge::Data::checkTarget(const Expectation& expectation) {
         throw unknown(*world, expectation.name);
 }
 
-/// Everybody in the world as it is since its last change.
+/// Finds movers and zones in the world as of its last change.
 void ExpectationJudge::Data::find() {
     changes = world->changes();
     for (Trial& trial : trials) trial.mover = world->moverNamed(trial.id);
@@ -250,7 +250,7 @@ std::size_t ExpectationJudge::Data::seenBy(std::size_t mover) const {
                          {.robots = all.first(robots), .people = all.subspan(robots)});
 }
 
-/// \pre somebody has this id
+/// \pre the world has a mover with this id
 Observation ExpectationJudge::Data::look(const Trial& trial) const {
     const Expectation& expectation = expectations[trial.expectation];
     const RobotStatus status = world->status(*trial.mover);
@@ -333,7 +333,7 @@ std::vector<RunVerdict> ExpectationJudge::verdicts() const {
         if (!trial.decided)
             close(trial, data_->expectations[trial.expectation], data_->world->time());
         RunVerdict& verdict = verdicts[trial.expectation];
-        // The first failure tells; else the last success.
+        // Reports the first failure, or else the last success.
         if (!trial.is_met && (verdict.is_met || *trial.decided < verdict.time)) {
             verdict.is_met = false;
             verdict.time = *trial.decided;

@@ -56,7 +56,7 @@ class SentenceReader {
     [[noreturn]] void fail(const std::string& what) const {
         throw UsageError((result_.text.empty() ? "" : excerpt(result_.text) + ": ") + what);
     }
-    /// Says what is wanted in place of the next word.
+    /// Rejects the next word, naming the expected one.
     [[noreturn]] void want(const std::string& wanted,
                            const std::vector<std::string>& known = {}) const {
         const std::string where =
@@ -70,7 +70,7 @@ class SentenceReader {
         return words_[next_++];
     }
 
-    /// People write `1 s` for `1s`.
+    /// Accepts `1 s` for `1s`.
     void joinUnit(std::initializer_list<std::string_view> units) {
         if (next_ + 1 >= words_.size()) return;
         const auto unit = words_.begin() + static_cast<std::ptrdiff_t>(next_) + 1;
@@ -78,7 +78,7 @@ class SentenceReader {
         words_[next_] += *unit;
         words_.erase(unit);
     }
-    /// A number from 0, with a unit.
+    /// Parses a number from 0, with a unit.
     double amount(Unit unit, const std::string& wanted) {
         if (atEnd()) want(wanted);
         if (unit == Unit::Length) joinUnit({"m", "cm", "mm"});

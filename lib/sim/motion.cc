@@ -11,7 +11,7 @@ namespace ispace {
 FrictionMap::FrictionMap(const Environment& environment) {
     for (const Element& element : environment.elements()) {
         const Record& record = element.record;
-        // Below the first rough one a smooth floor is as good as none.
+        // A smooth floor below the first rough one has no effect.
         const bool tells =
             record.keyword() == "floor" && (!floors_.empty() || record.number("friction") != 0);
         if (!tells) continue;
@@ -38,13 +38,13 @@ double FrictionMap::at(Point2 p) const {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
-/// Seconds: moments nearer to each other are one.
+/// Seconds: moments closer than this count as one.
 constexpr double kInstant = 1e-13;
-/// A way to stop that misses its goal by this share is exact but for rounding.
+/// A braking distance that misses its goal by this share is exact up to rounding.
 constexpr double kStopTolerance = 1e-12;
 /// A piece of quadrature turns by at most so many radians, and its rate changes at most so much
-/// (square root of the radians that makes): five points are then good to 1e-14 of the way. So are
-/// three if it turns little, as in most steps.
+/// (square root of the radians that makes): five points are then accurate to 1e-14 of the way. So
+/// are three if it turns little, as in most steps.
 constexpr double kMaxTurn = 0.25, kMaxBend = 0.3;
 constexpr double kLittleTurn = 0.015, kLittleBend = 0.01;
 
@@ -54,7 +54,7 @@ struct Phase {
     double speed;  // at its end
 };
 
-/// What an axis does from now on: phases, the last of them without end.
+/// Computes the future motion of an axis: phases, the last of them without end.
 class Profile {
   public:
     explicit Profile(double speed) : speed_(speed) {}
@@ -94,7 +94,7 @@ Profile distanceProfile(const Axis& axis, const AxisLimits& limits) {
         profile.hold(kForever);
         return profile;
     }
-    // Brake first if it goes the wrong way, or beyond.
+    // Brakes first if it goes the wrong way, or would overshoot.
     if (speed != 0 && (speed * left <= 0 || std::abs(to_rest) > std::abs(left))) {
         profile.rampTo(0, accel);
         left -= to_rest;
@@ -117,7 +117,7 @@ Profile distanceProfile(const Axis& axis, const AxisLimits& limits) {
     return profile;
 }
 
-/// An axis on its way through its profile.
+/// Runs an axis through its profile.
 class Run {
   public:
     Run(const Axis& axis, const AxisLimits& limits)
@@ -133,7 +133,7 @@ class Run {
     [[nodiscard]] double speed() const { return speed_; }
     [[nodiscard]] double accel() const { return profile_[phase_].accel; }
     [[nodiscard]] bool atGoal() const { return phase_ + 1 == profile_.size(); }
-    /// How far it goes in a time. \pre time <= rest()
+    /// Returns the way in a time. \pre time <= rest()
     [[nodiscard]] double way(double time) const { return time * (speed_ + accel() * time / 2); }
 
     /// \pre time <= rest()
@@ -154,7 +154,7 @@ class Run {
         if (speed_ != 0) came_with_ = speed_;
     }
 
-    /// The axis after all that was passed.
+    /// Returns the axis after all passed times.
     [[nodiscard]] Axis after(const Axis& from) const {
         Axis axis{from.goal, speed_, accel()};
         if (axis.goal.kind == AxisGoal::Kind::Distance)
@@ -181,8 +181,8 @@ class Run {
     bool reverses_ = false;
 };
 
-/// Radians up to which four terms of Taylor's series are good to rounding: steps turn by less as a
-/// rule.
+/// Radians up to which four terms of Taylor's series are accurate to rounding: steps usually turn
+/// by less.
 constexpr double kLittle = 0.03;
 
 double sinc(double x) {
@@ -191,14 +191,14 @@ double sinc(double x) {
     return 1 - square * (1.0 / 6) * (1 - square * (1.0 / 20) * (1 - square * (1.0 / 42)));
 }
 
-/// Of an angle in radians.
+/// Computes both of an angle in radians.
 CosSin cosSinOf(double x) {
     if (std::abs(x) > kLittle) return {std::cos(x), std::sin(x)};
     const double square = x * x;
     return {1 - square * 0.5 * (1 - square * (1.0 / 12) * (1 - square * (1.0 / 30))), x * sinc(x)};
 }
 
-/// A vector of the frame that faces along `forward`.
+/// Converts a vector from the frame that faces along `forward`.
 Vec2 turned(Vec2 local, Vec2 forward) {
     return local.x * forward + local.y * perpendicular(forward);
 }
@@ -220,7 +220,7 @@ constexpr Rule<5> kFive = {
     {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
      0.2369268850561891}};
 
-/// Displacement from time `begin` on for twice `half`.
+/// Computes the displacement from time `begin` on for twice `half`.
 template <std::size_t kCount>
 Vec2 quadrature(const Rule<kCount>& rule, const Velocity& velocity, double rate, double rate_accel,
                 double begin, double half) {
@@ -234,8 +234,8 @@ Vec2 quadrature(const Rule<kCount>& rule, const Velocity& velocity, double rate,
     return sum;
 }
 
-/// Displacement while speeds and rate of turning (radians) change, in a frame that faces along the
-/// heading of the start.
+/// Computes the displacement while speeds and rate of turning (radians) change, in a frame that
+/// faces along the heading of the start.
 Vec2 quadrature(const Velocity& velocity, double rate, double rate_accel, double time) {
     const double turn = std::max(std::abs(rate), std::abs(rate + rate_accel * time)) * time;
     if (turn <= kLittleTurn && std::abs(rate_accel) * time * time <= kLittleBend * kLittleBend)
@@ -268,7 +268,7 @@ Vec2 displacement(Vec2 forward, const Run& drive, const Run& side, const Run& tu
 
 void setDeviation(Advance& to, const Run& drive, const Run& side, const Run& turn,
                   double duration) {
-    // A motion whose acceleration is at most a strays from an even one by at most a T^2 / 8.
+    // A motion whose acceleration is at most a deviates from a uniform one by at most a T^2 / 8.
     const double rate = Angle::degrees(turn.fastest()).radians();
     const double accel =
         drive.hardest() + side.hardest() + (drive.fastest() + side.fastest()) * rate;
@@ -385,7 +385,7 @@ Advance advance(const Motion& from, const MotionLimits& limits, const double dur
     const bool turned = from.turn.goal.kind == AxisGoal::Kind::Distance && turn.atGoal();
     if (turned)
         pose.heading = from.turn_end;
-    else if (std::abs(pose.heading.degrees()) >= 180)  // as a rule it is not: a remainder is dear
+    else if (std::abs(pose.heading.degrees()) >= 180)  // rare, and a remainder is slow
         pose.heading = wrapped(pose.heading);
     to.path = drive.path() + side.path();
     setDeviation(to, drive, side, turn, duration);

@@ -15,7 +15,7 @@ namespace ispace {
 
 namespace {
 
-/// Shortest time between two moments of which both are kept.
+/// Returns the shortest time between two stored moments.
 SimTime spacingOf(SimTime length, const Movers& movers) {
     constexpr std::size_t kMaxBodies = std::size_t{1} << 19U;
     constexpr std::size_t kPartsOfPerson = 16;
@@ -85,7 +85,7 @@ void PoseHistory::makeBodies(SimTime since, const SetBodies& set_bodies) {
 bool PoseHistory::isStillSince(SimTime time) const {
     if (entries_.empty()) return true;
     const auto* const last = entries_.back().moment.get();
-    // Once somebody has moved, earlier moments are others.
+    // Once a mover has moved, earlier moments differ.
     for (std::size_t i = entries_.size(); i-- > 0;) {
         if (entries_[i].moment.get() != last) return false;
         if (entries_[i].time <= time) return true;
@@ -156,7 +156,7 @@ void Gait::walk(double height, double way, double speed) {
     if (way == 0 || speed == 0) return;
     phase += way / (strideOf(height) * shareOfSwing(speed));
     phase -= std::floor(phase);
-    if (phase >= 1) phase = 0;  // a hair below 0, rounded
+    if (phase >= 1) phase = 0;  // slightly below 0, rounded
 }
 
 }  // namespace ispace

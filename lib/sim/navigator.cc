@@ -18,9 +18,9 @@ SimTime simSeconds(double seconds) {
     return SimTime(static_cast<SimTime::rep>(std::llround(seconds * 1e9)));
 }
 
-/// m/s: who is fast looks for a way at down to this speed.
+/// m/s: a faster mover tries lower speeds down to this one.
 constexpr double kPace = 1;
-/// Degrees: who has to turn farther does so in place.
+/// Degrees: for a wider turn the mover turns on the spot.
 constexpr double kWide = 30;
 
 double degreesOff(Angle a, Angle b) { return wrapped(a - b).degrees(); }
@@ -50,7 +50,7 @@ double Navigator::random() {
     return static_cast<double>(value);
 }
 
-/// Seconds ahead that have to be free: enough to brake.
+/// Returns the seconds ahead that must be free: enough to brake.
 double Navigator::horizon(double speed) const {
     constexpr double kMinValue = 2, kSlack = 0.5;
     return std::max(kMinValue, speed / model_.accel + kSlack);
@@ -61,7 +61,7 @@ void Navigator::steer(const SteeringState& helm, Motion& motion) {
     idle_ = false;
     if (gained_ == kNever) {
         gained_ = helm.time;
-        // Not all in the same step.
+        // Spreads the movers over the steps.
         due_ = helm.time + SimTime(static_cast<SimTime::rep>(id_ % kInterval.count()));
     }
     if (next_ < course_.path.size())
@@ -89,7 +89,7 @@ void Navigator::arrive(SimTime time) {
     leave(time);
 }
 
-/// On to the next place.
+/// Goes on to the next point.
 void Navigator::leave(SimTime time) {
     nearest_ = kForever;
     gained_ = time;
@@ -106,7 +106,7 @@ void Navigator::walk(const SteeringState& helm, Motion& motion) {
     const double left = length(way);
     const bool stops = stopsAtNext(helm.step);
     if (left <= (stops ? kArrive : kPass)) {
-        // The last centimetre to where it comes to rest.
+        // The last centimetre to a stop.
         const bool ends = motion.drive.goal.kind == AxisGoal::Kind::Distance;
         if (stops && ends && !motion.arrived()) return;
         if (stops) stand(motion);
@@ -132,7 +132,7 @@ void Navigator::walk(const SteeringState& helm, Motion& motion) {
         aside_until_ = {};
     }
     const Angle direct = Angle::radians(std::atan2(way.y, way.x));
-    // What lies behind the place does not matter.
+    // Obstacles behind the point do not matter.
     const auto needed = [&](double speed) { return std::min(horizon(speed), left / speed); };
     constexpr double kMinValue = 0.3;  // seconds
     double pace = speed_;
@@ -156,7 +156,7 @@ Steering Navigator::lookAbout(const SteeringState& helm, double speed) const {
     return {helm, speed, horizon(speed)};
 }
 
-/// Waits a while, then tries a way aside.
+/// Waits a while, then tries to pass on the side.
 void Navigator::stepAside(const SteeringState& helm, const Steering& steering,
                           const Motion& motion) {
     constexpr double kWait = 1, kWaitMore = 2, kAside = 0.7;  // seconds
@@ -222,11 +222,11 @@ void Navigator::go(Motion& motion, Angle direction, double speed, double stop) {
         motion.drive.goal = {AxisGoal::Kind::Distance, stop};
         return;
     }
-    // To come to rest there, turning on the way.
+    // Allows it to stop there, turning on the way.
     speed = std::min(speed, std::sqrt(2 * model_.accel * stop));
     const double aside = Angle::degrees(off).radians();
     const bool sidles = model_.drive == Drive::Omni && std::abs(off) < 2 * kWide;
-    const bool turns = std::abs(off) >= kWide || bumped_;  // in place
+    const bool turns = std::abs(off) >= kWide || bumped_;  // on the spot
     const double ahead = sidles ? speed * std::cos(aside) : turns ? 0 : speed;
     motion.drive.goal = {AxisGoal::Kind::Speed, ahead};
     if (sidles)

@@ -17,13 +17,14 @@ ISPACE_INLINE double series(double square, double first, Others... others) {
     return 1.0 / first - square * series(square, others...);
 }
 
-/// sin(x) / x by the square of x, to rounding up to a quarter turn: factorials of odd numbers.
+/// Computes sin(x) / x from the square of x, up to rounding, to a quarter turn: factorials of odd
+/// numbers.
 ISPACE_INLINE double sineOver(double square) {
     return series(square, 1.0, 6.0, 120.0, 5040.0, 362880.0, 39916800.0, 6227020800.0,
                   1307674368000.0, 355687428096000.0, 121645100408832000.0, 51090942171709440000.0);
 }
 
-/// cos(x) alike: of even ones.
+/// cos(x) likewise: of even ones.
 ISPACE_INLINE double cosine(double square) {
     return series(square, 1.0, 2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0, 87178291200.0,
                   20922789888000.0, 6402373705728000.0, 2432902008176640000.0);
@@ -43,20 +44,21 @@ struct Part {
 ISPACE_INLINE Part partOf(MotionPlan course, double share) {
     const double angle = share * course.half, square = angle * angle;
     const double over = sineOver(square), c = cosine(square), s = angle * over;
-    // An arc of this angle has a chord that points half of it to the side.
+    // The chord of an arc of this angle points half of it to the side.
     const double part = share * over / course.whole;
     return {part * (c * course.chord_x - s * course.chord_y),
             part * (s * course.chord_x + c * course.chord_y), 1 - 2 * s * s, 2 * s * c};
 }
 
-/// Poses in the world where the course begins.
+/// Poses in the world at the beginning of the course.
 struct Begin {
     double x, y;                  // of the mover
-    double mount_x, mount_y;      // from there to what it carries
-    double forward_x, forward_y;  // where that faces
+    double mount_x, mount_y;      // from there to the carried frame
+    double forward_x, forward_y;  // its heading
 };
 
-// Structures come by value: they are then known not to change while the arrays do.
+// Structures are passed by value, so that the compiler knows that stores to the arrays leave them
+// unchanged.
 ISPACE_SIMD_CLONES
 void carryAlong(MotionPlan course, Begin begin, double first, double step, int count, double* x,
                 double* y, double* cos, double* sin) {
@@ -101,7 +103,7 @@ void ArcWay::carry(const Pose2& mount, double first, double step, std::size_t be
 
 namespace {
 
-/// Two independent standard normal numbers.
+/// Returns two independent standard normal numbers.
 std::array<double, 2> normals(const RandomKey& key) {
     float a = 0, b = 0;
     draw(key, 0, {.normal = std::span(&a, 1), .other = std::span(&b, 1)});
@@ -127,7 +129,7 @@ Pose2 strayed(const Pose2& motion, const std::array<double, 4>& alphas, const Ra
     const auto [of_turn, of_way] = normals(key);
     const Angle error = Angle::radians(of_turn * std::sqrt(alphas[0] * turn + alphas[1] * metres));
     const double stretch = of_way * std::sqrt(alphas[2] * metres + alphas[3] * turn);
-    // Who turns on the spot strays along the new heading.
+    // A mover that turns on the spot strays along the new heading.
     const Vec2 along = metres > 0 ? (1 / metres) * way : unitVector(motion.heading);
     const Vec2 far = (metres + stretch) * along;
     const Vec2 half = unitVector(0.5 * error);
@@ -143,7 +145,7 @@ std::vector<std::size_t> strayStarts(std::span<Mover> movers, const ObstacleSets
     constexpr std::uint64_t kTries = 100;
     const auto is_free = [&](std::size_t i, const Pose2& pose) {
         const RobotModel& model = movers[i].model;
-        // Nor through a wall.
+        // Rejects starts behind a wall, too.
         const Segment2 way{movers[i].pose.position, pose.position};
         if (obstacles.at(model.height).stop(way, model.radius)) return false;
         for (std::size_t j = 0; j < movers.size(); ++j)

@@ -42,8 +42,8 @@ std::string_view wholeLines(std::string_view text) {
     return text.substr(0, text.rfind('\n') + 1);  // npos + 1 is 0
 }
 
-/// An empty file for writing. What an earlier run left is removed, not overwritten: it may have
-/// another name elsewhere. Links are not followed.
+/// Creates an empty file for writing. A file of an earlier run is removed, not overwritten: it may
+/// have another name elsewhere. Links are not followed.
 int openAnew(const std::string& name) {
     struct stat info {
     }, behind{};
@@ -53,7 +53,7 @@ int openAnew(const std::string& name) {
             refuseLink(name, "file");
         const mode_t mode = is_link ? behind.st_mode : info.st_mode;
         if (S_ISCHR(mode) || S_ISFIFO(mode))
-            // Not to wait for a reader, should it be a pipe.
+            // Does not wait for a reader if it is a pipe.
             return ::open(name.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
         if (::unlink(name.c_str()) != 0) return -1;
     }
@@ -101,7 +101,7 @@ void LineFile::flush() {
 }
 
 void LineFile::write() {
-    // An exception while a line was put together may have left a piece of one.
+    // An exception while a line was built may have left a part of it.
     const std::string_view lines = wholeLines(pending);
     std::string_view rest = lines;
     while (!rest.empty()) {
@@ -117,7 +117,7 @@ void LineFile::write() {
     size_ += static_cast<off_t>(lines.size());
 }
 
-/// A full disk may have taken a piece of the last line.
+/// Removes a part of the last line that a full disk may have left.
 void LineFile::takeBackTornLine(std::string_view written) {
     size_ += static_cast<off_t>(wholeLines(written).size());
     static_cast<void>(!::ftruncate(fd_, size_));
@@ -153,7 +153,7 @@ FolderLock::~FolderLock() {
 
 namespace {
 
-/// True for names that frames have, and for those under which they are written.
+/// Returns true for names of frames, and for those under which frames are being written.
 bool isFrameName(const std::string& name, std::string_view ending) {
     constexpr std::size_t kDigits = 6;
     std::string_view stem = name;
@@ -210,7 +210,7 @@ namespace {
 
 void appendRow(std::string& out, const std::string& t, const std::string& id,
                std::initializer_list<double> values) {
-    out.append(t).append(",").append(id);  // a word: nothing to quote
+    out.append(t).append(",").append(id);  // a word that requires no quotes
     for (const double value : values) {
         out += ',';
         appendDouble(out, value);
@@ -286,7 +286,7 @@ void appendBumperRows(std::string& out, const World& world, std::vector<std::vec
 
 namespace {
 
-/// Lines by kind.
+/// Writes lines by kind.
 struct LineWriter {
     std::string& out;
     const RunSensor& sensor;
@@ -351,7 +351,7 @@ std::string frameName(const std::string& id, std::int64_t seq, std::string_view 
     constexpr std::size_t kDigits = 6;
     std::string name;
     for (const char c : id) {
-        // The only sign of a word that a file's name cannot have; % is none of theirs.
+        // The only character of a word that a file's name cannot hold; % is not part of words.
         if (c == '/')
             name += "%2F";
         else

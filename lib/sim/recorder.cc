@@ -26,7 +26,7 @@ using std::chrono::steady_clock;
 constexpr auto kFlushEvery = std::chrono::milliseconds(100);
 constexpr std::size_t kMaxPending = std::size_t{1} << 20;  // bytes of a file
 
-/// Files that grow, in the order of Recorder::growingFilesIn, and the others behind them.
+/// Growing files in the order of Recorder::growingFilesIn, then the others.
 enum File {
     kRobots,
     kOdometry,
@@ -49,18 +49,18 @@ std::string pathIn(const std::string& folder, const char* name) {
     return (std::filesystem::path(folder) / name).string();
 }
 
-/// Every how many periods a frame is recorded; 0: none.
+/// Returns n if every n-th period's frame is recorded; 0: no frames.
 std::int64_t strideOf(double rate, double most) {
     if (most <= 0) return 0;
     return std::max<std::int64_t>(1, std::llround(std::ceil(rate / most - 1e-9)));
 }
 
-/// A frame of the step, which is written once all before it are made.
+/// A frame of the step, written once all before it are made.
 struct Frame {
     explicit Frame(const RunSensor& the_sensor)
         : sensor(the_sensor), is_picture(the_sensor.model<Camera>() != nullptr) {}
 
-    /// Makes file and line of a reading. In any thread.
+    /// Builds file and line of a reading. Call it in any thread.
     void make(const SensorReading& reading) {
         name = frameName(sensor.id, reading.seq);
         bytes = frameBytes(sensor, reading);
@@ -68,7 +68,7 @@ struct Frame {
         appendReadingLine(line, sensor, reading, {}, file);
     }
 
-    /// One that memory did not suffice for is left out: a client may have added its camera.
+    /// A frame for which memory ran out is skipped: a client may have added its camera.
     void finish(const std::exception_ptr& failure) {
         is_made = true;
         try {
@@ -80,7 +80,7 @@ struct Frame {
 
     RunSensor sensor;
     bool is_picture, is_made = false;
-    std::string name, bytes, line;  // "": it is left out
+    std::string name, bytes, line;  // "": it is skipped
 };
 
 }  // namespace
@@ -115,19 +115,19 @@ struct Recorder::Data {
     FrameFiles pictures, depths, scenes;
     std::int64_t scene_count = 0;
     steady_clock::time_point started = steady_clock::now(), flushed = started;
-    // As of the last record, for what the destructor writes.
+    // As of the last record() call, for the destructor's writes.
     SimTime time{}, step_length{}, control_interval{};
     std::int64_t steps = 0;
-    bool flushed_all = false;  // nothing was recorded since the last flush
-    std::exception_ptr ended;  // what ended the record early
+    bool flushed_all = false;  // no record() call since the last flush
+    std::exception_ptr ended;  // the error that ended the record early
     std::int64_t next_event = 0;
-    // Of the world's sensors, made anew when it has changed.
+    // Of the world's sensors, rebuilt after a change.
     std::int64_t changes = -1;
     std::vector<Sensor> receivers;
     std::vector<std::int64_t> strides;  // of frames; 0: none
     std::vector<std::int64_t> periods;  // recorded last
     bool has_sonars = false;
-    std::vector<std::vector<bool>> felt;  // by the bumpers of each robot
+    std::vector<std::vector<bool>> felt;  // pressed bumpers of each robot
     std::optional<Periods> sonar_periods;
     SimTime sonars_due{};
     // Of the step recorded last: the next of World::read() to be written, and frames, which follow.
@@ -135,7 +135,7 @@ struct Recorder::Data {
     std::size_t next_reading = 0;
     std::vector<std::shared_ptr<Frame>> frames;
 
-    /// True if something happened since the last record.
+    /// Returns true if events are newer than the last record.
     [[nodiscard]] bool hasNewEvents() const {
         return events_log != nullptr && next_event < events_log->next();
     }
@@ -194,11 +194,11 @@ void Recorder::Data::lookAtSensors(const World& world) {
     has_sonars = false;
     for (const PlacedRobot& robot : world.robots())
         has_sonars = has_sonars || !robot.model.sonar.places.empty();
-    // Indices may be others.
+    // Indices may have changed.
     felt.clear();
 }
 
-/// Frames are recorded in the step in which their period begins, whoever else takes some.
+/// Frames are recorded in the step in which their period begins, even if clients take others.
 void Recorder::Data::takeFrames(World& world) {
     for (std::size_t i = 0; i < strides.size(); ++i) {
         if (strides[i] == 0) continue;
@@ -211,7 +211,7 @@ void Recorder::Data::takeFrames(World& world) {
             frame->is_made = true;
             continue;
         }
-        // The record may end before the frame does.
+        // The record may end before the frame is taken.
         options.frame_taker(
             {i, [frame](const SensorReading& reading) { frame->make(reading); },
              [frame](const std::exception_ptr& failure) { frame->finish(failure); }});
@@ -232,7 +232,7 @@ bool Recorder::Data::appendScans(World& world, steady_clock::time_point until) {
         const RunSensor& sensor = world.sensors()[i];
         if (sensor.isHeavy()) continue;
         appendReadingLine(scans.pending, sensor, world.reading(i), receivers);
-        // One step of many lasers may be more than should be held.
+        // Bounds the memory for one step of many lasers.
         if (scans.pending.size() > kMaxPending) scans.flush();
         if (steady_clock::now() >= until) break;
     }
@@ -242,7 +242,7 @@ bool Recorder::Data::appendScans(World& world, steady_clock::time_point until) {
 bool Recorder::Data::finishStep(World& world, steady_clock::time_point until) {
     if (!is_open) return true;
     flushed_all = false;
-    // Once: the world may be changed before the frames are made.
+    // Only once: the world may change before the frames are taken.
     awaits_frames = awaits_frames || appendScans(world, until);
     if (!awaits_frames) return false;
     while (!frames.empty() && frames.front()->is_made) {
@@ -255,7 +255,7 @@ bool Recorder::Data::finishStep(World& world, steady_clock::time_point until) {
     return true;
 }
 
-/// What robots feel by themselves.
+/// Writes rows of sonars and bumpers.
 void Recorder::Data::appendFeelings(World& world) {
     lookAtSensors(world);
     if (has_sonars && sonar_periods && world.time() >= sonars_due) {
@@ -307,7 +307,7 @@ std::uint64_t Recorder::Data::size() const {
 
 void Recorder::Data::writeLines() {
     for (LineFile* file : stepFiles()) file->flush();
-    // Else the step before may have to be the last.
+    // Otherwise the step before may have to be the last.
     if (!is_open) {
         for (LineFile* file : stepFiles()) file->forget();
         pictures.forget();
@@ -327,7 +327,7 @@ void Recorder::Data::writeLines() {
                                std::to_string(options.max_bytes) + " (--record-limit)"});
 }
 
-/// A file cannot be written: the record ends with the last step that is whole in all.
+/// A file cannot be written: the record ends with the last step that all files hold.
 void Recorder::Data::endEarly() {
     ended = std::current_exception();
     for (LineFile* file : stepFiles()) steps = std::min(steps, file->wholeSteps());
@@ -339,7 +339,7 @@ void Recorder::Data::endEarly() {
     try {
         writeInfo();
     } catch (const std::system_error&) {
-        // The first error is the one to tell.
+        // Only the first error is reported.
     }
 }
 
@@ -347,7 +347,7 @@ void Recorder::Data::flush() {
     if (ended) std::rethrow_exception(ended);
     flushed = steady_clock::now();
     try {
-        // What clients did since the step.
+        // Writes events that clients raised since the step.
         if (hasNewEvents()) appendEvents();
         writeLines();
     } catch (const std::system_error&) {
@@ -375,7 +375,7 @@ Recorder::Recorder(const std::string& folder, World& world, const RecordOptions&
     if (events != nullptr) events->want(allEventKinds());
     data_->begin();
     record(world);
-    // What cannot be written should be known before the run.
+    // Reports write errors before the run.
     flush(world);
 }
 
@@ -383,7 +383,7 @@ Recorder::~Recorder() {
     try {
         if (!data_->flushed_all) data_->flush();
     } catch (const std::exception&) {
-        // flush() tells those who ask.
+        // flush() reports it.
     }
 }
 

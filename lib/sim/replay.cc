@@ -41,7 +41,7 @@ Replay::Replay(const std::string& folder) : folder_(folder), reader_(folder) {
     const SimTime begin = timeOf(reader_.time());
     const auto info = recordedInfo(folder);
     info_ = info.value_or(RunInfo());
-    // Without a moment of the start nobody was there then.
+    // A record without a moment of the start began without movers.
     is_late_ = begin > SimTime(0) && info && isEmptyAt(SimTime(0));
     if (!is_late_) start_.assign(reader_.states().begin(), reader_.states().end());
     is_ahead_ = is_late_ || reader_.next();
@@ -80,8 +80,8 @@ void Replay::placeAtStart(Scene& scene) const {
     keepInPlace(scene, ids, places);
 }
 
-/// True if the record may lack the moment at a time because nobody was in the world. A change takes
-/// effect before the next step.
+/// Returns true if the record may lack the moment at a time because the world had no movers. A
+/// change takes effect before the next step.
 bool Replay::isEmptyAt(SimTime time) const {
     const SimTime next = timeOf(reader_.time());
     return changed_ && *changed_ <= next && time < next;
@@ -145,7 +145,7 @@ void Replay::find(const World& world) {
         movers_.push_back(world.moverNamed(who[i].id));
 }
 
-/// The collisions of the step that is to be taken.
+/// Reads the collisions of the next step.
 void Replay::collide(const World& world) {
     collisions_.clear();
     const SimTime time = world.time() + step_;
@@ -214,8 +214,8 @@ void Replay::seek(World& world, SimTime time) {
 }
 
 bool Replay::seekSome(World& world, SimTime time, std::chrono::steady_clock::time_point until) {
-    // Every sensor is read once in its turn before that time; of a laser that spins the first scan
-    // from then on may miss its beginning, and the next one is late.
+    // Every sensor is read once in its turn before that time; the first scan of a spinning laser
+    // after it may lack its beginning, and the next one is late.
     double settle = 0;
     for (const RunSensor& sensor : world.sensors()) {
         const auto* laser = sensor.model<Laser>();

@@ -16,58 +16,61 @@
 
 namespace ispace {
 
-/// A recorded run as the steps of a world: robots and people go where the record says, whatever
-/// they are told, and sensors read what they see there. In the scene of the record these are the
-/// readings of then; in another, what other sensors would have read.
+/// Replays a recorded run as the steps of a world: robots and people follow the record and ignore
+/// commands, and sensors are read along the way. In the scene of the record this reproduces its
+/// readings; in another scene, it computes those of other sensors.
 class Replay {
   public:
     /// Opens the record in a folder and reads its first moment.
-    /// \throws std::system_error, FormatError as RunReader, and if it holds nothing
+    /// \throws std::system_error, FormatError as RunReader, and if it is empty
     explicit Replay(const std::string& folder);
 
-    /// From one moment to the next.
+    /// Returns the time from one moment to the next.
     [[nodiscard]] SimTime stepLength() const { return step_; }
-    /// Seed and noise of the readings of then.
+    /// Returns the seed and noise of the recorded readings.
     [[nodiscard]] const RunInfo& info() const { return info_; }
-    /// True if the record has odometry.
+    /// Returns true if the record has odometry.
     [[nodiscard]] bool hasOdometry() const { return reader_.hasOdometry(); }
-    /// Puts everybody where the record begins. \throws FormatError for who is not in the scene
+    /// Sets all movers to the first poses of the record. \throws FormatError for a mover that the
+    /// scene lacks
     void placeAtStart(Scene& scene) const;
-    /// True if step() takes no more.
+    /// Returns true if step() takes no more.
     [[nodiscard]] bool atEnd() const { return !is_ahead_; }
-    /// Collisions are those of events.csv; without it, who begins to stall has run into
-    /// "something". Takes the next step of a world that has taken as many steps; false, and nothing
-    /// done, at the end of the record. Who is not in the world is passed over, who is not in the
-    /// record stays; when nobody was in the world, for which the record has no moments, all stay.
+    /// Takes the next step of a world that has taken as many steps; false, without a step, at the
+    /// end of the record. Collisions are those of events.csv; without it, a mover that begins to
+    /// stall has run into "something". Skips recorded movers that the world lacks; movers that are
+    /// not in the record stand still, and all do while the world had no movers, for which the
+    /// record has no moments.
     /// \throws FormatError as RunReader, and for a moment that is not one step after the last,
     /// unless the run had changed its world
     bool step(World& world);
-    /// From now on the changes that clients made to the world of the run are made again, each
-    /// after the step after which it was made.
+    /// Repeats the changes that clients made to the world of the run, each after the same step as
+    /// in the run.
     void makeChanges(RunChanges changes) { run_changes_.emplace(std::move(changes)); }
-    /// What became of the first change that could not be made; "" if all could.
+    /// Returns the message of the first change that failed; "" if there is none.
     [[nodiscard]] std::string failure() const {
         return run_changes_ ? run_changes_->failure() : "";
     }
-    /// Takes the world to its last step at or before a time, back or forth, or to the end of the
+    /// Moves the world to its last step at or before a time, back or forth, or to the end of the
     /// record. Sensors are read as if all steps had been taken one by one. \throws as step()
     void seek(World& world, SimTime time);
 
-    /// What takes long before the next step, or on the way to a time: a change of the world, or its
-    /// beginning. For any thread, while the world takes no step and is changed by no other; adopt()
-    /// then completes it. Null where there is none. step() and seek() prepare by themselves.
+    /// Returns the slow part of the next step, or of a seek to a time: a change of the world, or
+    /// its beginning. Call it in any thread, while the world takes no step and is not changed;
+    /// adopt() then completes it. Null if there is no such part. step() and seek() prepare by
+    /// themselves.
     [[nodiscard]] std::function<void()> preparation(const World& world,
                                                     std::optional<SimTime> to = {});
-    /// \returns what the world was, to be ended by somebody with time for it
+    /// \returns the previous state, which any thread may free later
     std::shared_ptr<const void> adopt(World& world);
-    /// seek() in parts: until that moment, or until there is something to prepare.
+    /// seek() in parts: until that wall time, or until a preparation is required.
     /// \returns true if the world is there
     bool seekSome(World& world, SimTime time, std::chrono::steady_clock::time_point until);
-    /// When the record ends, as far as that is known.
+    /// Returns the end of the record, if known.
     [[nodiscard]] std::optional<SimTime> end() const;
-    /// When clients first changed the world of the run.
+    /// Returns the time of the first change that clients made to the world of the run.
     [[nodiscard]] const std::optional<SimTime>& changedAt() const { return changed_; }
-    /// True if the record ends with a moment that is not whole; known at its end.
+    /// Returns true if the record ends with an incomplete moment; known at its end.
     [[nodiscard]] bool isCut() const { return reader_.isCut(); }
 
   private:
@@ -75,7 +78,7 @@ class Replay {
     /// A scene that is ready to be adopted.
     struct Prepared {
         bool rewinds;
-        std::optional<RunChanges::Step> step;  // without its scene; nothing: it cannot be made
+        std::optional<RunChanges::Step> step;  // without its scene; empty: the change failed
         NextScene next;
     };
     std::shared_ptr<const void> rewind(World& world, const NextScene& beginning);
@@ -92,17 +95,17 @@ class Replay {
     std::optional<RunChanges> run_changes_;
     std::optional<Prepared> prepared_;
     std::vector<RunState> start_;
-    bool is_late_ = false;                          // it has no moment of the start
-    bool is_ahead_ = false;                         // the reader's moment is that of the next step
-    std::vector<RobotStatus> states_;               // of all movers of the world
+    bool is_late_ = false;             // it lacks the moment of the start
+    bool is_ahead_ = false;            // the reader has read the moment of the next step
+    std::vector<RobotStatus> states_;  // of all movers of the world
     std::vector<std::optional<Pose2>> odometries_;  // of all its robots
     std::vector<Collision> collisions_;
-    std::vector<RunCollision> recorded_;              // what they name
-    std::vector<std::optional<std::size_t>> movers_;  // of each in the record
-    std::int64_t changes_ = -1;                       // of the world, when they were found
+    std::vector<RunCollision> recorded_;              // their ids
+    std::vector<std::optional<std::size_t>> movers_;  // index of each in the record
+    std::int64_t changes_ = -1;                       // of the world, when movers_ was computed
 };
 
-/// Of somebody with this status, who is to do nothing.
+/// Returns the motion of a mover with this status, without goals.
 Motion motionOf(const RobotStatus& status);
 
 }  // namespace ispace

@@ -20,10 +20,10 @@ constexpr int kCircles = 3, kInFirst = 6;
 static_assert(kSonarRays == 1 + kInFirst * (1 + 2 + 3));
 /// Of the body's height.
 constexpr double kSonarHeight = 0.75;
-/// What is lower is the floor.
+/// Lower surfaces are the floor.
 constexpr double kFloor = 1e-3;
 
-/// Unit vectors within a cone about the heading.
+/// Returns unit vectors within a cone about the heading.
 Directions coneOf(Angle heading, Angle fov) {
     const Frame3 frame(Pose3{{}, heading, {}, {}});
     Directions rays;
@@ -69,7 +69,7 @@ std::vector<bool> pressedBumpers(
     const RobotModel& model, const Pose2& pose, Vec2 bump,
     const std::function<double(Point2 place, double farthest)>& nearest) {
     constexpr double kStep = 0.25;  // degrees
-    // Between two places on the rim, and what rounding leaves.
+    // Half the distance between two points on the rim, plus rounding.
     const double slack = 0.5 * kStep * std::numbers::pi / 180 * model.radius + 2 * kTouch;
     std::vector<bool> pressed;
     for (const Bumper& bumper : model.bumpers) {
@@ -109,7 +109,7 @@ bool touchesDisc(const Area& area, Point2 center, double radius) {
     return std::hypot(x, y) <= radius;
 }
 
-/// True if an axis of `area` keeps the two apart.
+/// Returns true if an axis of `area` separates the two.
 bool isApart(const Area& area, const Area& other) {
     const Vec2 middle = area.toLocal(other.pose.position);
     const Vec2 along = unitVector(other.pose.heading - area.pose.heading);
@@ -125,7 +125,7 @@ bool touches(const Area& area, const MovingBody& body) {
     return !isApart(area, other) && !isApart(other, area);
 }
 
-/// What of a mover is on the floor, or in the way of beams.
+/// Returns the parts of a mover that touch the floor, or those that block beams.
 std::vector<MovingBody> bodiesOfMover(const MoverShape& shape, const Pose2& pose, Angle swing) {
     if (shape.is_person) return humanBodies(shape.height, pose, 0, swing);
     return {robotBody(shape.model, pose, 0)};
@@ -135,7 +135,7 @@ bool standsIn(const MovingBody& body, const Gate& gate) {
     if (gate.height < body.bottom || gate.height > body.top) return false;
     const Segment2 beam = gate.beam();
     const Vec2 way = beam.b - beam.a;
-    // A sheet between the posts, which a box or a disc may touch.
+    // Represents the beam between the posts as a sheet, which a box or a disc may touch.
     const Area sheet{{gate.pose.position, gate.pose.heading}, 0, length(way) / 2};
     return touches(sheet, body.cutAt(gate.height));
 }
@@ -198,10 +198,10 @@ void FloorSensors::follow(const Movers& movers) {
     }
 }
 
-/// What notices a mover where it is.
+/// Updates the mats and gates near a mover.
 void FloorSensors::look(std::size_t mover, const Pose2& pose, Angle swing) {
     const MoverShape& shape = movers_[mover];
-    std::vector<MovingBody> bodies;  // made when something is near
+    std::vector<MovingBody> bodies;  // built when a mat or gate is near
     const auto any = [&](const Area& area, auto test) {
         if (distance(area.pose.position, pose.position) > area.reach() + shape.radius) return false;
         if (bodies.empty()) bodies = bodiesOfMover(shape, pose, swing);
@@ -221,8 +221,8 @@ void FloorSensors::look(std::size_t mover, const Pose2& pose, Angle swing) {
     }
 }
 
-/// Counts the gates on the way. What is on a gate's line is before it, so that a way of many steps
-/// crosses it as often as it changes sides.
+/// Counts the gates on the way. A point on a gate's line counts as before it, so that a way of many
+/// steps crosses it as often as it changes sides.
 void FloorSensors::pass(std::size_t mover, Point2 from, Point2 to) {
     const MoverShape& shape = movers_[mover];
     for (std::size_t k = 0; k < gates_.size(); ++k) {

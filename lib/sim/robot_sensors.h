@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sim: what robots feel by themselves.
+// Private to lib/sim: sonars and bumpers of robots, mats and gates of the floor.
 #pragma once
 
 #include <cstddef>
@@ -22,23 +22,23 @@ namespace ispace {
 
 constexpr std::size_t kSonarRays = 37;
 
-/// What each sonar of a robot at a pose measures: the nearest surface that one of 37 rays meets,
-/// its axis and three circles about it up to the rim of the cone (6, 12 and 18 rays). +infinity: no
-/// echo within the range; a nearer one than the least reads as the least. They are at three
-/// quarters of the body's height. The floor sends sound away, never back. \param own owner of the
-/// robot's body
+/// Computes the range of each sonar of a robot at a pose: the nearest surface that one of 37 rays
+/// meets, its axis and three circles about it up to the rim of the cone (6, 12 and 18 rays).
+/// +infinity: no echo within the range; an echo below the least range reads as the least. Sonars
+/// are at three quarters of the body's height. The floor sends sound away, never back. \param own
+/// owner of the robot's body
 std::vector<float> sonarRanges(const RobotModel& model, const Pose2& pose,
                                const RayWorld& environment, const MovingBodies& bodies,
                                std::uint32_t own);
 
-/// Which bumpers touch something after a step along `bump` was cancelled: those with a place on the
-/// rim (the circle of the model's radius, every quarter of a degree) that would have come to a
-/// surface on that way. \param nearest distance to the nearest surface, up to the second argument
+/// Finds the bumpers that touch a body after a step along `bump` was cancelled: those with a point
+/// on the rim (the circle of the model's radius, every quarter of a degree) that would have come to
+/// a surface on that way. \param nearest distance to the nearest surface, up to the second argument
 std::vector<bool> pressedBumpers(
     const RobotModel& model, const Pose2& pose, Vec2 bump,
     const std::function<double(Point2 place, double farthest)>& nearest);
 
-/// Robots and people as they are after a step, in the order of the scene.
+/// Robots and people after a step, in the order of the scene.
 struct Movers {
     std::span<const Motion> robots, people;
     std::span<const Angle> swings;  ///< of the people's limbs, see humanParts
@@ -48,42 +48,42 @@ struct Movers {
 struct Mat {
     Pose2 pose;
     double half_length = 0, half_width = 0;
-    double rate = 10;  ///< readings a second
+    double rate = 10;  ///< readings per second
 };
 
 /// A light gate: a level beam between two posts.
 struct Gate {
-    Pose2 pose;  ///< of the middle; `in` is the way along the heading
+    Pose2 pose;  ///< of the middle; `in` is the direction of the heading
     double half_width = 0;
-    double height = 0;  ///< of the beam: what is lower passes below it
+    double height = 0;  ///< of the beam: lower movers pass below it
     double rate = 10;
 
-    /// The posts, the left one first.
+    /// Returns the posts, the left one first.
     [[nodiscard]] Segment2 beam() const;
 };
 
-/// Who stands on a mat: people with a leg on it, robots whose body is over it; edges count.
+/// Movers on a mat: people with a leg on it, robots whose body is over it; edges count.
 struct MatState {
     std::vector<std::string> on;  ///< robots first, in the order of the scene
 };
 
-/// Who went through a gate since the start. One passes when the centre crosses the line between
-/// the posts.
+/// Passages of a gate since the start. A mover passes when its centre crosses the line between the
+/// posts.
 struct GateState {
     std::int64_t in = 0, out = 0;
-    std::string last;  ///< who passed last; "" before the first
+    std::string last;  ///< mover that passed last; "" before the first
     bool last_in = false;
-    bool broken = false;  ///< somebody stands in the beam
+    bool broken = false;  ///< a mover interrupts the beam
 };
 
-/// A robot or person that passed a gate in the last step.
+/// A passage of a gate by a robot or person in the last step.
 struct Passage {
-    std::size_t gate = 0;  ///< index of those given
+    std::size_t gate = 0;  ///< index into the given gates
     std::string_view who;
     bool in = false;
 };
 
-/// Robots and people, as what lies on the floor notices them. The same order as of their motions.
+/// Shapes of robots and people for sensors of the floor, in the order of their motions.
 struct MoverShape {
     std::string id;
     bool is_person = false;
@@ -93,8 +93,8 @@ struct MoverShape {
 };
 std::vector<MoverShape> moverShapes(const Scene& scene);
 
-/// Mats and gates of a scene, followed step by step. Steps are straight from place to place, so
-/// nobody slips through between two of them.
+/// Updates mats and gates of a scene step by step. Steps are straight lines between positions, so a
+/// mover cannot slip through between two of them.
 class FloorSensors {
   public:
     explicit FloorSensors(const Scene& scene);
@@ -105,16 +105,16 @@ class FloorSensors {
     [[nodiscard]] const std::vector<std::string>& gateIds() const { return gate_ids_; }
     [[nodiscard]] bool empty() const { return mats_.empty() && gates_.empty(); }
 
-    /// Where everybody is after a step.
+    /// Reads the poses of all movers after a step.
     void follow(const Movers& movers);
-    /// A gate goes on counting from there.
+    /// Continues a gate's count from this state.
     void goOn(std::size_t gate, const GateState& state) { gate_states_[gate] = state; }
-    /// The next step begins where it ends: nobody walked there.
+    /// Starts the next step at its end: movers were set there and did not walk.
     void forgetPlaces() { places_.clear(); }
 
     [[nodiscard]] const MatState& mat(std::size_t i) const { return mat_states_[i]; }
     [[nodiscard]] const GateState& gate(std::size_t i) const { return gate_states_[i]; }
-    /// Of the last step; a mover's before those of later ones.
+    /// Returns the passages of the last step, sorted by mover.
     [[nodiscard]] std::span<const Passage> passages() const { return passages_; }
 
   private:

@@ -10,7 +10,7 @@ namespace ispace {
 
 namespace {
 
-/// Some 70 bytes of memory a beam, and 3 a pixel, come to less than half a gigabyte.
+/// Some 70 bytes of memory a beam, and 3 a pixel, add up to less than half a gigabyte.
 struct Bound {
     double RunLoad::*sum;
     double most;
@@ -25,7 +25,7 @@ constexpr Bound kBounds[] = {
     {&RunLoad::recorded_bytes, 250e6, "recorded bytes a second"},
 };
 
-/// Bytes that a record takes, about: of a row of somebody, of a range, of a pixel as PNG.
+/// Approximate bytes in a record: of a mover's row, of a range, of a pixel as PNG.
 constexpr double kRow = 80, kRange = 8, kPixel = 3;
 
 }  // namespace
@@ -54,7 +54,7 @@ RunLoad loadOf(const Scene& scene, SimTime step, const RecordOptions* record) {
     double echoes = 0;
     for (const PlacedRobot& robot : scene.robots)
         echoes += static_cast<double>(robot.model.sonar.places.size());
-    // Tags ask receivers, and receivers tags.
+    // Tags query receivers, and receivers tags.
     const double sounds = 2 * tags * receivers;
     load.beams += echoes * kSonarRays + sounds;
     load.beam_rate += sounds * sound_rate;

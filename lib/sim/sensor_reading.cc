@@ -30,7 +30,7 @@ Periods::Periods(double rate) {
     constexpr int kBits = std::numeric_limits<double>::digits;
     numerator_ = static_cast<std::int64_t>(std::ldexp(mantissa, kBits));
     denominator_ = kSecond;
-    // Up to 2^53 every fraction of two has its shift to the right.
+    // Every binary fraction up to 2^53 becomes whole by a shift.
     denominator_ <<= std::max(0, kBits - exponent);
     numerator_ <<= std::max(0, exponent - kBits);
 }

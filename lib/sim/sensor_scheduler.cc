@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth frames and pictures, which are taken when they are asked for.
+// Depth frames and pictures are taken on request.
 #include "sim/sensor_scheduler.h"
 
 #include <tbb/parallel_for.h>
@@ -18,11 +18,10 @@ namespace ispace {
 
 namespace {
 
-/// Sensors that are read together: enough for other threads to gain by it, few enough for those who
-/// wait meanwhile.
+/// Sensors per block: enough to gain from other threads, few enough for short waits.
 constexpr std::size_t kBlock = 64, kBlockBeams = 100'000;
 
-/// A pose on a carrier, in the carrier's frame.
+/// Converts a pose on a carrier to the carrier's frame.
 Pose3 localPose(const Pose2& carrier, const Pose3& pose) {
     const Vec2 way = pose.position.onFloor() - carrier.position;
     const Vec2 along = unitVector(carrier.heading);
@@ -32,7 +31,7 @@ Pose3 localPose(const Pose2& carrier, const Pose3& pose) {
             pose.roll};
 }
 
-/// As `scan` takes them with the same seed.
+/// The same seeds as in `scan`.
 std::optional<std::uint64_t> noiseSeedOf(const SensorReader::Options& options) {
     return options.noise ? std::optional(options.seed) : std::nullopt;
 }
@@ -75,7 +74,7 @@ SensorReader::SensorReader(SceneResources& setting, const Options& options)
         const auto* laser = sensors_[i].model<Laser>();
         if (laser == nullptr) continue;
         durations_[i] = durationOf(*laser, step_);
-        // What memory does not suffice for is refused before a step needs it.
+        // Allocates now, so that a lack of memory is reported before a step.
         std::get<Scan>(readings_[i].value).ranges.reserve(static_cast<std::size_t>(laser->beams));
         casters_[i].emplace(*worlds_, bodies_, *sensor, sensor->mount.has_value(), options_,
                             beams.of(*laser));
@@ -118,7 +117,7 @@ void SensorReader::follow(const SensorReader& before,
             continue;
         readings_[i] = before.readings_[found->second];
         due_[i] = before.due_[found->second];
-        // Of every step, where the reading is of a period.
+        // Read in every step, although the reading is of a period.
         if (std::holds_alternative<Gate>(sensors_[i].what))
             floor_.goOn(gateOf(i), before.floor_.gate(before.gateOf(found->second)));
     }
@@ -147,7 +146,7 @@ void SensorReader::begin(SimTime time, const Movers& movers) {
     is_read_.assign(unread_blocks_, 0);
 }
 
-/// Divides what is to be read into blocks.
+/// Divides the due sensors into blocks.
 void SensorReader::makeBlocks() {
     block_ends_.clear();
     std::size_t count = 0, beams = 0;
@@ -173,7 +172,7 @@ void SensorReader::readBlock(std::size_t block) {
                       [&](std::size_t k) { measure(unread_[k], unread_time_); });
 }
 
-/// With those of its block, which other threads then read.
+/// Reads the sensor with those of its block, which other threads then read.
 void SensorReader::complete(std::size_t sensor) {
     const auto found = std::lower_bound(unread_.begin(), unread_.end(), sensor);
     if (found != unread_.end() && *found == sensor)
@@ -195,7 +194,7 @@ void SensorReader::finish() {
     });
 }
 
-/// Where it sits on its carrier, in the carrier's frame.
+/// Returns the pose of a sensor on its carrier, in the carrier's frame.
 Pose3 SensorReader::mountOf(const Sensor& sensor) const {
     if (sensor.mount) return sensor.mount->robot_from_sensor;
     return localPose(people_starts_[sensor.person.value()], sensor.pose);
@@ -211,7 +210,7 @@ Pose3 SensorReader::poseOf(const Sensor& sensor, const Movers& movers) const {
     return sensor.person ? poseOn(sensor, movers.people[*sensor.person].pose) : sensor.pose;
 }
 
-/// All that does not depend on rays: times, poses, bodies.
+/// Updates all values that do not depend on rays: times, poses, bodies.
 void SensorReader::update(std::span<const std::size_t> due, SimTime time, const Movers& movers) {
     bool hears = false;
     for (const std::size_t i : due) {
@@ -338,7 +337,7 @@ const RayWorld& SensorReader::mesh(Surfaces surfaces) {
     return worlds_->mesh(surfaces);
 }
 
-/// Where all is that pictures show.
+/// Poses of all bodies that pictures show.
 struct SensorReader::Stage {
     std::vector<Pose3> poses;  // of Scene::placed
     std::vector<Angle> swings;
@@ -376,7 +375,7 @@ SensorReading SensorReader::begun(std::size_t sensor, SimTime time, const Movers
     return reading;
 }
 
-/// Several threads may ask for pictures; they are taken one after another.
+/// Several threads may take pictures; they are taken one after another.
 void SensorReader::photograph(const Sensor& camera, const std::shared_ptr<const Stage>& stage,
                               SensorReading& reading) {
     const std::lock_guard lock(photographing_);

@@ -11,7 +11,7 @@ namespace ispace {
 
 namespace {
 
-/// The next step at or after a time.
+/// Returns the next step at or after a time.
 SimTime atStep(SimTime time, SimTime step) { return (time + step - SimTime(1)) / step * step; }
 
 void join(std::vector<BeamsAmong>& parts, const BeamsAmong& part) {
@@ -23,8 +23,7 @@ void join(std::vector<BeamsAmong>& parts, const BeamsAmong& part) {
 
 }  // namespace
 
-/// The beams of a laser as they are measured: in the order of their bearings, or the other way
-/// round.
+/// Maps beams of a laser to their order of measurement: that of their bearings, or the reverse.
 class SensorReader::BeamOrder {
   public:
     explicit BeamOrder(const Laser& laser)
@@ -32,18 +31,18 @@ class SensorReader::BeamOrder {
           forwards_(laser.spin > 0),
           seconds_(laser.step.degrees() / (360 * std::fabs(laser.spin))) {}
 
-    /// Seconds from the first beam to the one that is measured as number n.
+    /// Returns seconds from the first beam to the n-th measured one.
     [[nodiscard]] double timeOf(std::size_t n) const { return static_cast<double>(n) * seconds_; }
-    /// Seconds from a beam to the next one of the laser's, below 0 if that comes earlier.
+    /// Returns seconds from a beam to the next bearing, negative if that is measured earlier.
     [[nodiscard]] double step() const { return forwards_ ? seconds_ : -seconds_; }
     [[nodiscard]] std::size_t count() const { return count_; }
-    /// Those measured as numbers begin to before end.
+    /// Returns the beams measured as numbers begin to before end.
     [[nodiscard]] BeamsAmong beams(std::size_t begin, std::size_t end,
                                    const MovingBodies& bodies) const {
         return forwards_ ? BeamsAmong{begin, end, &bodies}
                          : BeamsAmong{count_ - end, count_ - begin, &bodies};
     }
-    /// The beam that is measured as number n, and the other way round.
+    /// Maps a number of measurement to its beam, and the reverse.
     [[nodiscard]] std::size_t beam(std::size_t n) const { return forwards_ ? n : count_ - 1 - n; }
     [[nodiscard]] double timeOfBeam(std::size_t beam) const { return timeOf(this->beam(beam)); }
 
@@ -53,13 +52,13 @@ class SensorReader::BeamOrder {
     double seconds_;  // from beam to beam
 };
 
-/// Up to the step at or after its last beam.
+/// Rounds up to the step at or after its last beam.
 SimTime SensorReader::durationOf(const Laser& laser, SimTime step) {
     constexpr double kNanoseconds = 1e9;
     return atStep(SimTime(std::llround(laser.duration() * kNanoseconds)), step);
 }
 
-/// When the scan began that a sensor has completed; of others now.
+/// Returns the beginning of a sensor's completed scan; of other sensors the present time.
 SimTime SensorReader::beginOf(std::size_t sensor, SimTime time) const {
     const bool is_first = due_[sensor] == SimTime(0);
     if (is_first || durations_[sensor] == SimTime(0)) return time;
@@ -78,7 +77,7 @@ Pose3 SensorReader::poseOf(const Sensor& sensor, const PoseHistory::Walk& walk,
     return poseOn(sensor, way.at(walk.share().at(later)));
 }
 
-/// Nothing where some of these lasers do not stay level.
+/// Returns an empty list if some of these lasers do not stay level.
 std::vector<double> SensorReader::spinHeights() const {
     std::vector<double> heights;
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
@@ -92,7 +91,7 @@ std::vector<double> SensorReader::spinHeights() const {
     return heights;
 }
 
-/// Of the moments in which scans were measured that are due.
+/// Builds the bodies at the moments at which the due scans were measured.
 void SensorReader::makeTrailBodies(std::span<const std::size_t> due) {
     std::optional<SimTime> since;
     for (const std::size_t i : due)
@@ -123,7 +122,7 @@ void SensorReader::followTrail(const SensorReader& before,
                 indices(scene_->people, before.scene_->people), MoverPoses(movers));
 }
 
-/// Measures beam after beam.
+/// Computes a scan beam by beam.
 void SensorReader::sweep(const Laser& laser, std::size_t sensor) {
     SensorReading& reading = readings_[sensor];
     Scan& scan = std::get<Scan>(reading.value);
@@ -147,7 +146,7 @@ void SensorReader::sweep(const Laser& laser, std::size_t sensor) {
         caster.cast(scan, parts);
 }
 
-/// Calls visit(walk, begin, end) for each leg and its beams, and notes among whom they are.
+/// Calls visit(walk, begin, end) for each leg and its beams, and stores the bodies for these beams.
 template <typename Visit>
 void SensorReader::forEachLeg(const BeamOrder& order, std::size_t sensor, Visit visit) {
     std::vector<BeamsAmong>& parts = parts_[sensor];
@@ -190,7 +189,8 @@ void SensorReader::sweepInSpace(const Laser& laser, std::size_t sensor) {
     if (!moves) scan.beam_poses.clear();
 }
 
-/// Sets where beams leave that stay level; false if that is one place, and `frames` says nothing.
+/// Computes the origins of level beams; returns false if they have a common origin, and leaves
+/// `frames` unset.
 bool SensorReader::sweepLevel(const Laser& laser, std::size_t sensor, BeamFrames& frames) {
     const Sensor& placed = *sensors_[sensor].sensor();
     const bool is_carried = placed.mount || placed.person;

@@ -11,10 +11,10 @@ namespace ispace {
 namespace {
 
 constexpr std::int64_t kMax = kMaxTime.count();
-constexpr int kNanoseconds = 9;  // powers of ten to a second
+constexpr int kNanoseconds = 9;  // powers of ten in a second
 constexpr std::uint64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;
 
-/// The unit at the end of `text`, which is cut off; seconds if there is none.
+/// Removes the unit at the end of `text` and returns it; seconds without one.
 std::optional<UnitSuffix> takeUnit(std::string_view& text) {
     const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
     const auto first = std::find_if_not(text.rbegin(), text.rend(), is_letter).base();
@@ -31,8 +31,8 @@ constexpr std::int64_t powerOfTen(int exponent) {
     return power;
 }
 
-/// The number times factor times 10^exponent, half rounded up, digit by digit: a double cannot hold
-/// every nanosecond of a hundred years.
+/// Computes the number times factor times 10^exponent, half rounded up, digit by digit: a double
+/// cannot hold every nanosecond of a hundred years.
 /// \pre the text is a number, not negative, and the result is far below 2^63
 std::int64_t scaledInteger(std::string_view text, int exponent, std::int64_t factor) {
     const auto mark = text.find_first_of("eE");
@@ -43,7 +43,7 @@ std::int64_t scaledInteger(std::string_view text, int exponent, std::int64_t fac
     const auto point = mantissa.find('.');
     power += static_cast<std::int64_t>(point == std::string_view::npos ? mantissa.size() : point);
 
-    constexpr int kDigits = 15;  // of a fraction; those behind are cut off
+    constexpr int kDigits = 15;  // of a fraction; further digits are cut off
     std::int64_t total = 0, fraction = 0;
     for (const char c : mantissa) {
         if (c == '.') continue;
@@ -59,7 +59,7 @@ std::int64_t scaledInteger(std::string_view text, int exponent, std::int64_t fac
     return total + (fraction + kOne / 2) / kOne;
 }
 
-/// `value` in decimal, at least `width` digits.
+/// Converts `value` to decimal, with at least `width` digits.
 std::string padded(std::uint64_t value, std::size_t width) {
     std::string digits = std::to_string(value);
     if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
@@ -75,7 +75,7 @@ std::uint64_t magnitude(SimTime time) {
 
 double seconds(SimTime time) {
     constexpr std::uint64_t kExactInDouble = std::uint64_t{1} << 53;
-    // One rounding, in the division; beyond, the conversion would be a second one.
+    // Rounds once, in the division; larger times also round in the conversion.
     if (magnitude(time) <= kExactInDouble)
         return static_cast<double>(time.count()) / static_cast<double>(kSecond);
     return parseDouble(formatSimTime(time)).value_or(0);

@@ -24,7 +24,7 @@ constexpr double kFastestRate = 1e6;
 constexpr nanoseconds kMaxLag = std::chrono::milliseconds(250);
 constexpr std::string_view kReal = "real:";
 
-/// Processor time of this thread.
+/// Returns the processor time of this thread.
 nanoseconds threadTime() {
     timespec time{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -81,14 +81,14 @@ void Simulation::resume(WallTime now) {
     paused_ = false;
     owed_ = 0;
     startAt(now);
-    // Else pauses that follow each other closely would stop the world.
+    // Otherwise pauses in quick succession would stop the world.
     if (ahead_) started_.value() -= dueAt() - now - *std::exchange(ahead_, std::nullopt);
 }
 
 void Simulation::allow(std::int64_t count) {
     assert(paused_ && count >= 0);
     if (isHeld()) return;
-    // A client that asks for all the steps there are may ask again.
+    // A client that allows the maximum number of steps may allow more later.
     owed_ += std::min(count, std::numeric_limits<std::int64_t>::max() - owed_);
 }
 
@@ -137,7 +137,7 @@ void Simulation::step() {
     else
         world_->stepDeferred();
     events_.stepped();
-    // Before the next commands: one of motion would wipe out the stall flag of this step.
+    // Before the next commands: one of motion would clear the stall flag of this step.
     if (recorder_ != nullptr) recorder_->record(*world_);
     endIfReached();
     if (!finished_) giveScripted();
@@ -150,8 +150,8 @@ void Simulation::startAt(WallTime now) {
 }
 
 WallTime Simulation::dueAt() const {
-    // From the start each time, so that no rounding adds up. 64 bits hold every nanosecond, and a
-    // slow clock may have its next step beyond all of them.
+    // Computed from the start each time, so that rounding errors do not add up. 64 bits hold every
+    // nanosecond, and a slow clock may have its next step beyond all of them.
     constexpr long double kMaxDistance = 3e18L;  // 95 years
     const auto simulated = (world_->time() - start_time_ + world_->stepLength()).count();
     const long double wall =
@@ -210,7 +210,7 @@ std::optional<WallTime> Simulation::runDue(WallTime now, nanoseconds budget) {
         const bool waits = recorder_ != nullptr && recorder_->awaitsFrames();
         return waits ? flushRecord() : std::optional(now);
     };
-    // What the last step left, though the next one may be due.
+    // Finishes the last step first, even if the next one is due.
     if (!finishStep(end)) return next_part();
     while (isDue(now)) {
         if (paused_)

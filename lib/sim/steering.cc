@@ -10,11 +10,11 @@ namespace ispace {
 
 namespace {
 
-/// Metres that are kept between circles and things where there is room.
+/// Metres to keep between circles and obstacles if there is room.
 constexpr double kGap = 0.05;
-/// Metres beyond which nobody is looked at.
+/// Metres beyond which movers are ignored.
 constexpr double kSight = 4;
-/// As many as are near as a rule.
+/// Usual number of neighbours.
 constexpr std::size_t kUsual = 32;
 constexpr double kHair = 1e-6;
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -25,7 +25,7 @@ Vec2 velocityOf(const Motion& motion) {
     return motion.drive.speed * ahead + motion.side.speed * perpendicular(ahead);
 }
 
-/// True if the way comes nearer to the line than `reach`.
+/// Returns true if the way comes nearer to the line than `reach`.
 bool comesNear(const Segment2& way, const Segment2& line, double reach) {
     const auto apart = [reach](double a, double b, double c, double d) {
         return std::max(a, b) + reach < std::min(c, d) || std::max(c, d) + reach < std::min(a, b);
@@ -71,7 +71,7 @@ void Steering::findLines(const SteeringState& helm) {
     if (helm.clearance > ahead) return;
     helm.vicinity->forEachWithin(
         *helm.obstacles, place_, radius_ + ahead, [&](const Segment2& line, double apart) {
-            // A hair less, so that going along it is free.
+            // A hair less, so that the way along it is free.
             lines_.push_back({line, std::min(radius_ + kGap, apart - kHair)});
         });
 }
@@ -91,7 +91,7 @@ double Steering::untilNeighbour(Vec2 velocity) const {
     return least;
 }
 
-/// Looks at `most` of the horizon.
+/// Tests the first `most` of the horizon.
 double Steering::untilLine(Vec2 velocity, double most) const {
     constexpr double kMinValue = 1.0 / 8;
     if (lines_.empty()) return kNever;

@@ -15,8 +15,8 @@ namespace ispace {
 
 namespace {
 
-/// Ends of commands that were given between two steps are kept up to so many and one a robot: a
-/// client that never lets the world go on must not fill the memory.
+/// Limit of stored ends of commands given between two steps, besides one per robot: a client that
+/// never lets the world go on must not fill the memory.
 constexpr std::size_t kMaxEnds = 4096;
 
 }  // namespace
@@ -301,7 +301,7 @@ void World::step() {
 
 void World::stepDeferred() {
     Data& data = *data_;
-    // Sensors first look at what is moved now.
+    // Sensors first read the poses before the change.
     data.sensors.finish();
     data.begin();
     data.proposeAll();

@@ -17,19 +17,19 @@ namespace {
 using Preparer = std::function<NextScene(Scene scene)>;
 using Check = std::function<void(const Scene& scene)>;
 
-/// Each of more would be looked for among all.
+/// Above this number each one would be looked up among all.
 constexpr std::size_t kFewMovers = 100;
 
-/// Where robots and people are.
+/// Finds the pose of a robot or a person.
 std::optional<Pose2> placeIn(const World& world, const std::string& id) {
     const auto mover = world.moverNamed(id);
     return mover ? std::optional(world.status(*mover).pose) : std::nullopt;
 }
 
-/// Edits of a scene, and what becomes of it.
+/// Applies edits to a scene.
 class Editing {
   public:
-    /// Takes little time: names are looked for in prepare().
+    /// Fast: names are looked up in prepare().
     Editing(World& world, std::shared_ptr<const SceneSource> source, std::vector<Edit> edits,
             Check check)
         : world_(&world),
@@ -46,7 +46,7 @@ class Editing {
         findAll();
         Scene scene = makeScene(goodRecords(), *before_, source_->devices());
         check_(scene);
-        // Whoever is put somewhere is looked for in the room.
+        // A new position of a mover is validated against the room.
         const bool places = std::any_of(edits_.begin(), edits_.end(), [](const Edit& edit) {
             return edit.kind != Edit::Kind::Delete;
         });
@@ -77,12 +77,12 @@ class Editing {
     Check check_;
     std::vector<Pose2> poses_;  // of robots and people before, in the order of the scene
     std::vector<std::string> placed_;
-    std::unordered_map<std::string, Pose2> places_;  // of robots and people among them
+    std::unordered_map<std::string, Pose2> places_;  // of movers among them
     NextScene next_;
     std::shared_ptr<ChangeNews> news_ = std::make_shared<ChangeNews>();
 };
 
-/// Whom and what the edits are about. \throws UnknownRecord
+/// Finds the records that the edits change. \throws UnknownRecord
 void Editing::findAll() {
     const std::vector<std::string>& ids = before_->ids;
     for (const Edit& edit : edits_) {
@@ -139,7 +139,7 @@ std::vector<Record> Editing::goodRecords() const {
     }
 }
 
-/// Those who are put somewhere may have moved meanwhile.
+/// Edited movers may have moved meanwhile.
 void Editing::follow() {
     const bool moved = std::any_of(places_.begin(), places_.end(), [this](const auto& place) {
         return placeIn(*world_, place.first) != place.second;
@@ -157,7 +157,7 @@ void Editing::follow() {
 WorldEditor::WorldEditor(Simulation& simulation, std::shared_ptr<const SceneSource> source)
     : simulation_(&simulation), source_(std::move(source)) {}
 
-/// For another thread.
+/// Returns a check for another thread.
 WorldEditor::Check WorldEditor::loadCheck() const {
     const World& world = simulation_->world();
     std::optional<RecordOptions> record;

@@ -24,7 +24,7 @@ SceneResources::SceneResources(std::shared_ptr<const Scene> made_of, const RunOp
       worlds(scene->environment) {
     if (meshes.opaque) worlds.prepareMesh();
     if (meshes.solid) worlds.prepareMesh(Surfaces::Solid);
-    // A client that asks first must not wait for them, nor the others.
+    // Built here, so that neither the first client to require them nor the others must wait.
     if (std::any_of(scene->robots.begin(), scene->robots.end(),
                     [](const PlacedRobot& robot) { return !robot.model.sonar.places.empty(); }))
         worlds.prepareMesh(Surfaces::Solid);
@@ -53,7 +53,7 @@ bool isMover(const Record& record) {
 
 bool isPlaced(const Record& record) { return record.schema().type == RecordType::Placement; }
 
-/// True if what says where it is and where it faces is the same in both.
+/// Returns true if position and heading are the same in both.
 bool sameStart(const Record& a, const Record& b) {
     if (a.keyword() != b.keyword()) return false;
     for (const KeySpec& key : a.schema().keys) {
@@ -173,7 +173,7 @@ void World::Data::put(std::size_t mover, const RobotStatus& status) {
     moved = moved || status.pose != motions[mover].pose;
     if (moved) sensors.moved();
     motions[mover] = motionOf(status);
-    // It may be near to others all at once, and faster than it goes by itself.
+    // It may suddenly be near to others, and faster than it drives by itself.
     for (MoverState& state : states) state.room = 0;
     longest_step.reset();
     states[mover].stall = status.stall;

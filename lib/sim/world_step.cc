@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a step makes of the state of a world.
+// Advances the state of a world by a step.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -13,12 +13,12 @@ namespace ispace {
 
 namespace {
 
-/// Metres around a robot within which obstacles are looked for: farther ones are looked for again
-/// when it has gone as far.
+/// Metres around a robot within which obstacles are cached: they are looked up again once it has
+/// gone as far.
 constexpr double kLookout = 1;
 /// Movers that one thread proposes for: fewer are done before other threads have begun.
 constexpr std::size_t kTogether = 64;
-/// Metres that rounding may add to how near two are.
+/// Metres by which rounding may reduce the distance of two movers.
 constexpr double kRounding = 1e-9;
 
 }  // namespace
@@ -44,7 +44,7 @@ void World::Data::proposeAll() {
     });
 }
 
-/// Independent of all other proposals: of others only place and speed count, which stay.
+/// Independent of all other proposals: reads only position and speed of other movers, which stay.
 void World::Data::propose(std::size_t mover, const Surroundings& around) {
     Move& move = moves[mover];
     Motion& motion = motions[mover];
@@ -65,7 +65,7 @@ void World::Data::propose(std::size_t mover, const Surroundings& around) {
         move.drift = odometers[mover].stray(move.to.motion, motion.pose, steps);
         move.to.path += length(move.drift);
     }
-    // For the next step, and for those who steer by it.
+    // For the next step, and for navigators.
     if (move.to.motion.drive.speed != 0 || move.to.motion.side.speed != 0)
         move.to.motion.keepForward();
     states[mover].blocked = elementAhead(mover);
@@ -99,8 +99,8 @@ std::optional<std::size_t> World::Data::elementAhead(std::size_t mover) {
     return std::nullopt;
 }
 
-/// True if the move meets nobody, whatever the others do: who has room is not looked at again
-/// before it may be used up. How far noise leads is not known beforehand.
+/// Returns true if the move cannot meet another mover, whatever its move. The room is not measured
+/// again before it may be used up. The way due to noise is not known beforehand.
 bool World::Data::isAlone(std::size_t mover) {
     const Advance& to = moves[mover].to;
     double& room = states[mover].room;
@@ -110,9 +110,9 @@ bool World::Data::isAlone(std::size_t mover) {
     return true;
 }
 
-/// False if the move meets nobody, whatever becomes of the others' moves. Measures the room.
+/// Returns false if the move cannot meet another mover, whatever its move. Measures the room.
 bool World::Data::mayMeet(std::size_t mover) {
-    // Longer than a look about takes to pay.
+    // Longer than a search takes to pay.
     constexpr double kSteps = 32;
     const Move& move = moves[mover];
     if (states[mover].blocked) return true;
@@ -146,7 +146,7 @@ void World::Data::settle() {
         tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t k) { look(chunks[k]); });
     else if (doubtful > 0)
         std::for_each(chunks.begin(), chunks.end(), look);
-    // One after another: each move depends on what became of those before it.
+    // One after another: each move depends on those settled before it.
     unsettled.clear();
     for (const Chunk& chunk : chunks)
         unsettled.insert(unsettled.end(), chunk.doubtful.begin(), chunk.doubtful.end());
@@ -172,7 +172,7 @@ void World::Data::collide(const Collision& collision) {
     collisions.push_back(collision);
 }
 
-/// Nothing changes its move any more.
+/// The move is final.
 void World::Data::finish(std::size_t mover, Chunk& chunk) {
     Motion& motion = next_motions[mover];
     motion = moves[mover].to.motion;
