@@ -16,12 +16,12 @@ namespace {
 /// The record of a part with the words of the command, each ended by a NUL.
 constexpr std::string_view kCommand = "command";
 
-/// Steps of what shards share out begin so.
+/// Returns the prefix of keys for the steps that shards share.
 std::string_view prefixOf(Shared what) {
     return what == Shared::Candidates ? "views/" : what == Shared::Starts ? "start" : "proof/";
 }
 
-/// The job that the command is about. \param places the text of --places, "" without
+/// Returns the job of the command. \param places the text of --places, "" without
 JobId arrangeJob(const ArrangeCommand& command, const SceneInput& input,
                  const std::string& places) {
     const ArrangeToolOptions& options = command.options();
@@ -85,7 +85,7 @@ std::unique_ptr<JobResults> resultsOf(const ArrangeCommand& command, const Arran
     if (is_done) return nullptr;
     auto results = std::make_unique<JobResults>(output, job, head.shard, batch.resume);
     results->setInterval(options.checkpoint_interval);
-    // A part without a step would be of no use; a search goes on without.
+    // A part without a step would be useless; a search goes on without it.
     if (!batch.shard) results->dropWithoutRoom();
     return results;
 }

@@ -9,12 +9,12 @@
 
 namespace ispace {
 
-/// The command line that made the parts, as the one of a merge: with the outputs and the talk of
-/// `merge` in place of its own. \throws FormatError
+/// Returns the command line that made the parts, as that of a merge, with the outputs and verbosity
+/// of `merge`. \throws FormatError
 std::unique_ptr<ArrangeCommand> commandOf(const JobResults& parts, const ArrangeToolOptions& merge);
 
-/// Where the steps of the search are stored: the parts of a merge, or the results of a shard or of
-/// a run with --resume; null for others, and with `is_done` for a part that is there already.
+/// Returns the store of the search's steps: the parts of a merge, or the results of a shard or of a
+/// run with --resume; null for other runs, and with `is_done` for an existing part.
 /// \param parts those of a merge, or null
 /// \throws UsageError for a shard whose input is a stream; as JobResults
 std::unique_ptr<JobResults> resultsOf(const ArrangeCommand& command, const ArrangeWork& work,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// --shard, --merge, --resume and what goes with them.
+// --shard, --merge, --resume and related options.
 #include "arrange/arrange_options.h"
 
 #include <algorithm>
@@ -21,13 +21,13 @@ namespace ispace {
 
 namespace {
 
-/// As many as a room may ask for, and no slip of a digit.
+/// Enough for any room; rejects a mistyped digit.
 constexpr int kMaxHeadings = 3600;
 
-/// Numbers of a unit, parted by commas.
+/// Parses numbers of a unit, separated by commas.
 Tuple numbers(const std::string& text, Unit unit, std::size_t least, std::size_t most, double lower,
               double upper) {
-    const KeySpec key{.name = "",  // the option is named anyway
+    const KeySpec key{.name = "",  // the option's name is added anyway
                       .type = KeyType::Tuple,
                       .unit = unit,
                       .help = "",
@@ -70,7 +70,7 @@ Angle readResolution(const std::string& text) {
         "an angle from 0.01 to 90 degrees, nor `sensor` (cells are --grid P,Q or --cell M)"));
 }
 
-/// A bare 1 is all to who thinks in fractions and a hundredth to who thinks in per cent.
+/// Rejects a bare 1, which is ambiguous: the whole as a fraction, a hundredth in per cent.
 double readGap(const std::string& text) {
     const double gap = readShare(text);
     if (gap == 1 && !text.ends_with('%'))
@@ -295,7 +295,7 @@ void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
     checkBatchOptions(line_, options_.batch, options_.common, options_.operands);
     if (!options_.batch.shard)
-        (void)outputFormat({}, options_.common.output, {"3dm"});  // refuses another suffix
+        (void)outputFormat({}, options_.common.output, {"3dm"});  // rejects another suffix
     if (!words_.mount.empty()) how.mount.on = valueOf(words_.mount, kMounts);
     settleStrategy();
     how.cells = words_.cells.choice();

@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-/// What names zones, which only the environment knows.
+/// Options that name zones, which are looked up in the environment.
 struct ZoneWords {
     std::vector<std::string> targets, keep_out, keep_in;
     std::vector<std::string> weights;  ///< ZONE=W
@@ -23,7 +23,7 @@ struct ArrangeToolOptions {
     CommonOptions common;
     std::vector<std::string> operands;
     std::vector<std::string> sensors;  ///< MODEL[,KEY=VALUE…][:COUNT]
-    std::vector<std::string> fixed;    ///< globs of ids; none: all that is placed stays
+    std::vector<std::string> fixed;    ///< globs of ids; empty: all placed sensors stay
     ArrangeOptions how;
     ZoneWords zones;
     std::string places_file;
@@ -39,8 +39,8 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     /// Opens no file. \throws UsageError, TextRequested
     ArrangeCommand(int argc, const char* const* argv);
 
-    /// Makes the command of a shard that of the merge of so many, which may have other outputs,
-    /// threads and talk.
+    /// Converts the command of a shard to that of the merge of that number of shards, which may
+    /// have other outputs, threads and verbosity.
     void becomeMerge(const ArrangeToolOptions& merge, Shared what, int shards);
 
   private:
@@ -57,7 +57,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void settleFiles() const;
     void settleBatch();
 
-    /// Words of options that become something else once all are known.
+    /// Words of options that are converted once all options are known.
     struct Words {
         std::string effort, strategy, optimize, mount, judge, share;
         CellWords cells;
@@ -65,7 +65,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     Words words_;
 };
 
-/// What `--weight ZONE=W` says. \throws UsageError
+/// Parses `--weight ZONE=W`. \throws UsageError
 std::pair<std::string, double> splitWeight(const std::string& text);
 
 }  // namespace ispace

@@ -96,7 +96,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
 
 namespace {
 
-/// Sensors that stand and those that may be placed.
+/// Numbers of fixed sensors and of those that may be placed.
 struct Numbers {
     std::size_t receivers = 0, others = 0;
 };
@@ -116,7 +116,7 @@ Numbers numbersOf(const ArrangeWork& work) {
     return numbers;
 }
 
-/// Where the pixels of a camera are too few; "" without one, or if any number will do.
+/// Returns the reason why a camera has too few pixels; "" without a camera or a required density.
 std::string reasonOfDensity(const ArrangeWork& work) {
     const double density = work.how.pixel_density;
     if (!(density > 0)) return "";
@@ -129,7 +129,7 @@ std::string reasonOfDensity(const ArrangeWork& work) {
     return "";
 }
 
-/// Why nothing is covered; "" where something is.
+/// Returns the reason why coverage is zero; "" if it is not.
 std::string reasonForNothing(const ArrangeWork& work, const Arrangement& arrangement) {
     const auto [receivers, others] = numbersOf(work);
     const std::size_t together = others + receivers / kMinReceivers;
@@ -147,7 +147,7 @@ std::string reasonForNothing(const ArrangeWork& work, const Arrangement& arrange
            "`coverage` draws (-o map.png)";
 }
 
-/// Section 4.4.5 of the thesis; "" where it does not apply.
+/// Section 4.4.5 of the thesis; "" if it does not apply.
 std::string hintAlongWalls(const ArrangeWork& work) {
     constexpr double kSlack = 1e-9;  // degrees
     const bool has_headings = work.how.headings.has_value();
@@ -165,7 +165,7 @@ std::string hintAlongWalls(const ArrangeWork& work) {
     return "";
 }
 
-/// Nothing hangs above the room.
+/// Warns of sensors above the room.
 void warnOfHeights(const ArrangeToolOptions& options, const ArrangeWork& work) {
     const double top = work.input.scene.environment.height();
     for (const double height : work.how.mount.heights)
@@ -175,7 +175,7 @@ void warnOfHeights(const ArrangeToolOptions& options, const ArrangeWork& work) {
                      " m high, and nothing is there to mount a sensor on");
 }
 
-/// Where nothing is covered there is a reason, which is worth a word; and so are sensors too many.
+/// Warns with a reason if coverage is zero, and of redundant sensors.
 void warnOfNothing(const ArrangeToolOptions& options, const ArrangeWork& work,
                    const Arrangement& arrangement) {
     std::string text = reasonForNothing(work, arrangement);
@@ -217,13 +217,13 @@ std::string counted(std::size_t count, const char* one, const char* many) {
     return std::to_string(count) + ' ' + (count == 1 ? one : many);
 }
 
-/// Share of the bound that is open; 0 for a layout that is proven best.
+/// Returns the gap as a share of the bound; 0 for a layout that is proven optimal.
 double gapOf(const Arrangement& arrangement) {
     const double bound = arrangement.candidate_bound;
     return bound > 0 ? std::max(0.0, (bound - arrangement.candidate_value) / bound) : 0;
 }
 
-/// The step that a signal or the time limit ended after the candidates were chosen.
+/// Returns the step that a signal or the time limit ended after the candidates were chosen.
 std::string unfinishedText(const ArrangeOptions& how) {
     return how.target ? "the search for fewer sensors" : how.refine ? "refining" : "the curve";
 }
@@ -239,7 +239,7 @@ std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) 
 std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement) {
     std::string text = "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") +
                        ", coverage " + percentText(arrangement.coverage);
-    // The bound is about what was maximised, before it was refined.
+    // The bound holds for the objective before refinement.
     if (arrangement.value)
         text += "; value " + percentText(arrangement.candidate_value);
     else if (how.refine)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a user of arrange may not have meant, and what of it was not reached.
+// Inputs of arrange, its warnings and its report.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-/// What is read before the search.
+/// Inputs of the search.
 struct ArrangeWork {
     SceneInput input;
     std::vector<SensorGroup> groups;
@@ -20,29 +20,28 @@ struct ArrangeWork {
     std::string places;              ///< the text of --places
 };
 
-/// Reads room, layout, sensors, zones and places. \throws UsageError if nothing is to be placed,
-/// and as the readers
+/// Reads room, layout, sensors, zones and sites. \throws UsageError without a sensor to place, and
+/// as the readers
 ArrangeWork readWork(const ArrangeToolOptions& options);
 
 /// Warns, before the search, of heights and strategies that cannot do well.
 void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work);
 
-/// Warns of sensors that see nothing, that are too many, or that stand in one place.
-/// \throws UnmetError if a goal is not reached or a sensor has no place
+/// Warns of sensors that cover zero cells, that are redundant, or that share a site.
+/// \throws UnmetError if a goal is not reached or a sensor has no site
 void checkGoals(const ArrangeToolOptions& options, const ArrangeWork& work,
                 const Arrangement& arrangement);
 
-/// What came out, how near it is to the bound, and what the bound is over: a line or some, for
-/// stderr.
+/// Returns the result, its gap, and the objective of the bound: one or more lines for stderr.
 std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement);
 
-/// Why a target was not reached, as a sentence without end.
+/// Returns the reason why a target was not reached, as a sentence without full stop.
 std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement);
 
-/// The sensors that could as well be left out, as a sentence without end; "" if there are none.
+/// Lists redundant sensors as a sentence without full stop; "" if there are none.
 std::string idleText(const Arrangement& arrangement);
-/// Which sensors are at one place, where only one can be mounted; "" if none are. The search allows
-/// it: what it proves then holds all the more for places of their own.
+/// Lists sensors that share a site, where only one can be mounted; "" if there are none. The search
+/// allows it: its bound holds all the more for distinct sites.
 std::string doubledText(const Arrangement& arrangement);
 
 }  // namespace ispace

@@ -22,7 +22,7 @@ namespace {
 
 using namespace ispace;
 
-/// True if what a signal leaves of the run is of no use, or is kept elsewhere.
+/// Returns true if the rest of a run after a signal is useless, or is stored elsewhere.
 bool endsWithoutProduct(const ArrangeToolOptions& options) {
     return options.batch.resume ||
            (options.batch.shard && options.how.search.share.what != Shared::Tree);
@@ -47,7 +47,7 @@ void writeLayout(const ArrangeCommand& command, const ArrangeWork& work,
     writeDependencies(options.common, work.files);
 }
 
-/// Words on the layout, and what is not as it was asked for.
+/// Reports the layout, and unmet requests.
 void report(const ArrangeToolOptions& options, const ArrangeWork& work,
             const Arrangement& arrangement) {
     if (!options.common.quiet) std::cerr << reportText(work.how, arrangement);
@@ -56,14 +56,14 @@ void report(const ArrangeToolOptions& options, const ArrangeWork& work,
              formatDouble(arrangement.cost));
 }
 
-/// Says that a signal left nothing to write, and ends by it.
+/// Reports that a signal left no product, and ends by it.
 [[noreturn]] void endWithNothing(const ArrangeToolOptions& options, int signal,
                                  const std::string& text) {
     if (!options.common.quiet) std::cerr << "arrange: " << text << '\n';
     endBySignal(signal);
 }
 
-/// Ends by the signal that leaves nothing to write.
+/// Ends by a signal that leaves no product.
 Arrangement search(const ArrangeToolOptions& options, const ArrangeWork& work, SearchWatch& watch) {
     std::optional<FileStream> mps;
     if (!options.mps_file.empty()) mps.emplace(options.mps_file);

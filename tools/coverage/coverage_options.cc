@@ -21,18 +21,18 @@ std::vector<std::string> formatNames() {
     return names;
 }
 
-/// What is about the map alone.
+/// Options that apply to the map alone.
 constexpr const char* kMapOptions[] = {"--to",   "--width", "--color",
                                        "--fans", "--trace", "--speeds"};
 
-/// Words of options that become something else once they are read.
+/// Words of options that are converted once all are read.
 struct Words {
     std::string to, cells_by, color, fans;
     CellWords cells;
     std::vector<std::string> requirements;
 };
 
-/// `30` or `30,3`.
+/// Parses `30` or `30,3`.
 ParallaxChoice parseParallax(const std::string& text) {
     const auto comma = text.find(',');
     const auto degrees = parseDouble(text.substr(0, comma));
@@ -46,7 +46,7 @@ ParallaxChoice parseParallax(const std::string& text) {
     return {Angle::degrees(*degrees), static_cast<int>(*cameras)};
 }
 
-/// `30%,60%,100%`. Nav2 takes a limit of nothing for none, and masks know whole per cents.
+/// Parses `30%,60%,100%`. Nav2 reads a limit of 0 as unlimited, and masks hold whole per cents.
 std::vector<double> parseSpeeds(const std::string& text) {
     constexpr double kHundred = 100;
     std::vector<double> speeds;
@@ -115,7 +115,7 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
         throw UsageError("--speeds is for --to nav2-speed, not for " + name);
 }
 
-/// Of many scenes there are only reports.
+/// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
     if (!o.operands.empty())
         throw UsageError("--batch takes scenes from LIST: put " + o.operands.front() +
@@ -143,7 +143,7 @@ void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string
 void checkReport(const CoverageToolOptions& o) {
     if (isStdout(o.report))
         throw UsageError("the report goes to stdout anyway: give --report a file, or --json alone");
-    static_cast<void>(outputFormat({}, o.report, {"json"}));  // refuses another suffix
+    static_cast<void>(outputFormat({}, o.report, {"json"}));  // rejects another suffix
 }
 
 }  // namespace
@@ -227,7 +227,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         o.requirements.push_back(parseRequirement(text));
     if (line.given("--junit") && o.requirements.empty())
         throw UsageError("--junit writes what became of requirements: give --require");
-    // Of many scenes the reports may go to a file.
+    // The reports of a list may go to a file.
     if (isStdout(o.junit) && (o.batch.empty() || isStdout(o.common.output)))
         throw UsageError("the report goes to stdout: give --junit a file");
     if (o.batch.empty())
@@ -236,7 +236,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         checkBatch(line, o);
     o.command = line.historyLine({});
     if (line.given("--report")) checkReport(o);
-    o.measure.keep_depths = o.format != nullptr;  // to be drawn
+    o.measure.keep_depths = o.format != nullptr;  // for drawing
     return o;
 }
 

@@ -18,19 +18,19 @@ struct CoverageToolOptions {
     CoverageOptions measure;
     std::vector<Requirement> requirements;
     std::vector<std::string> zones;  ///< to report besides those of the room
-    std::string junit;               ///< file for what became of the requirements; "" for none
+    std::string junit;               ///< file for the verdicts on requirements; "" for none
     std::string command;             ///< its history line, without operands
-    std::string batch;  ///< list of many scenes, whose reports are the product; "" for one scene
+    std::string batch;  ///< list of scenes whose reports are the product; "" for one scene
     Shard shard;        ///< of the list
     bool resume = false;
     std::string other;  ///< LAYOUT to compare with; "" for none
     bool json = false;
     std::string report;  ///< file for the report as JSON besides stdout; "" for none
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
-    std::string trace;  ///< file of what a search tried, for the map; "" for none
-    std::string run;    ///< folder of a record, whose robots and people are looked at; "" for none
+    std::string trace;  ///< file of tried poses of a search, for the map; "" without
+    std::string run;    ///< folder of a record of robots and people; "" without
     MapOptions map;
-    std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor that 0, 1, ... sensors see
+    std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor seen by 0, 1, ... sensors
     SceneRules rules;
     std::string history_line;
 };

@@ -30,14 +30,15 @@ namespace ispace {
 
 namespace {
 
-/// A layout may bring furniture, which is part of the comparison, but not another room.
+/// A layout may add furniture, which is part of the comparison, but must not replace the room.
 void mustBeSameRoom(const Environment& room, const Environment& other, const std::string& file) {
     if (room.limits() == other.limits() && room.indoor() == other.indoor()) return;
     throw FormatError({displayName(file), 0, 0,
                        "its walls make another room: layouts of one room can be compared"});
 }
 
-/// What a model holds: the records of the scene, under what made both inputs and this command.
+/// Returns the content of a model: the records of the scene, below the history of both inputs and
+/// this command.
 Document documentOf(const CoverageToolOptions& options, const SceneInput& input) {
     Document document;
     document.history = input.environment.history;
@@ -143,8 +144,8 @@ std::string unmetText(std::span<const JunitCase> verdicts) {
 
 namespace {
 
-// Each line behind the report begins with what it is; a verdict has its parts between tabs, which
-// printable() leaves nowhere else.
+// Each line after the report begins with its type; the parts of a verdict are separated by tabs,
+// which printable() removes from all other text.
 constexpr char kFailed = 'f', kMessage = 'm', kMet = '0', kUnmet = '1', kError = '2';
 
 char letterOf(JunitCase::Outcome outcome) {
@@ -245,7 +246,7 @@ class BatchWorker {
         outcome.report = coverageJson(coverage.report);
     }
 
-    /// For CI servers: the same for whoever runs the list, wherever it is.
+    /// For CI servers: the same name on every machine and in every folder.
     [[nodiscard]] std::string nameOf(const BatchJob& job) const {
         return baseName(options_.batch) + ':' + std::to_string(job.line) + ' ' + job.text();
     }
@@ -253,7 +254,7 @@ class BatchWorker {
     const CoverageToolOptions& options_;
 };
 
-/// Writes what became of the jobs, in their order.
+/// Writes the results of the jobs, in their order.
 class BatchWriter {
   public:
     BatchWriter(const CoverageToolOptions& options, JunitFile& junit)
@@ -294,7 +295,7 @@ class BatchWriter {
     std::size_t failed_ = 0, unmet_ = 0;
 };
 
-/// What identifies the results of a list. \param list its bytes
+/// Returns the identity of a list's results. \param list its bytes
 JobId jobOf(const CoverageToolOptions& options, const std::string& list, std::size_t jobs) {
     JobId id;
     id.tool = "coverage";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// coverage: measures and draws what the sensors of a scene see.
+// coverage: computes and draws the coverage of a scene's sensors.
 #include <iostream>
 #include <optional>
 #include <utility>
@@ -24,7 +24,7 @@ namespace {
 
 using namespace ispace;
 
-/// What a search tried, from stdin only where that is not read yet.
+/// Reads the tried poses of a search, from stdin only if no other input is.
 std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SceneInput& input) {
     std::vector<std::string> streams = input.named;
     streams.insert(streams.end(), {options.other, options.trace});
@@ -33,7 +33,7 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const Scene
     return readTrace(bytes, displayName(options.trace)).poses;
 }
 
-/// A record knows its scene.
+/// A record holds its own scene.
 SceneInput readInput(const CoverageToolOptions& options) {
     std::vector<std::string> operands = options.operands;
     if (!options.run.empty() && operands.empty())
@@ -44,7 +44,7 @@ SceneInput readInput(const CoverageToolOptions& options) {
     return input;
 }
 
-/// Says what is met, and writes the verdicts where that is wanted. \throws UnmetError
+/// Reports the requirements that are met, and writes the verdicts on request. \throws UnmetError
 void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
                    const Coverage& coverage, JunitFile& junit) {
     const std::vector<JunitCase> verdicts = judge(options.requirements, coverage);

@@ -133,7 +133,7 @@ void addEditOptions(CommandLine& line, std::vector<Edit>& edits) {
     edit(Edit::Kind::Delete, "ID", "remove");
 }
 
-/// Two or `most` numbers, the first two of them a place.
+/// Parses two or `most` numbers, the first two of them a point.
 Tuple placeFrom(const char* name, Unit unit, std::size_t most, const std::string& text) {
     return std::get<Tuple>(parseValue({.name = name,
                                        .type = KeyType::Tuple,
@@ -156,7 +156,7 @@ Pose2 poseFrom(const std::string& text) {
     return {{at[0], at[1]}, Angle::degrees(at.size() > 2 ? at[2] : 0)};
 }
 
-/// Which part of a plan is the room.
+/// Options that select the room of a plan.
 void addRoomOptions(CommandLine& line, EnvcOptions& options) {
     ImportOptions& import = options.import;
     const auto take_inside = [&import](const std::string& text) {
@@ -273,7 +273,7 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
         throw UsageError(std::string(format.naming_hint));
 }
 
-/// A suffix means the first format that has it: .yaml is a map of a slice, and records of a room.
+/// Returns the first format with the suffix: .yaml is a map of a slice, and records of a room.
 const ExportFormat* productFormat(const std::string& to, const EnvcOptions& options) {
     const std::vector<std::string> names = formatNames(options.slice.has_value());
     std::vector<SuffixOf> suffixes;

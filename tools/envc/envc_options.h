@@ -22,7 +22,7 @@ struct EnvcOptions {
     bool list_rooms = false;         ///< instead of writing the room; format is null then, too
     std::optional<double> slice;     ///< height of the obstacle map, which is the product then
     int width = 1200;                ///< pixels of a PNG
-    std::vector<std::string> zones;  ///< to keep out of, or to add
+    std::vector<std::string> zones;  ///< to omit, or to add
     SceneRules rules;
     ImportOptions import;
     std::string rooms;        ///< "" or a word of --rooms
@@ -33,15 +33,15 @@ struct EnvcOptions {
 /// Opens no file. \throws UsageError, TextRequested
 EnvcOptions parseEnvcOptions(int argc, const char* const* argv);
 
-/// The file that stands beside the product; "" for none.
+/// Returns the file that accompanies the product; "" for none.
 std::string besideOf(const EnvcOptions& options);
 
-/// Writes the product and what stands beside it. \throws as OutputFile and the format's writer
+/// Writes the product and its accompanying file. \throws as OutputFile and the format's writer
 void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document,
                   const FoundRooms* found);
 
-/// For large inputs: what is let go of on the way is used again, and not given back to the system,
-/// which would have to clear it anew. Large rooms come and go through a few hundred megabytes.
+/// For large inputs: freed memory is reused instead of returned to the system, which would have to
+/// clear it anew. Large rooms allocate and free a few hundred megabytes.
 void keepMemory(const std::vector<std::string>& inputs);
 
 }  // namespace ispace

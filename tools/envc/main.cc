@@ -43,8 +43,8 @@ void addZones(const EnvcOptions& options, Document& document) {
         document.records.push_back(std::move(zone));
 }
 
-/// \param found takes the rooms of plans; null: they are not asked for
-/// \param report what the imports have to say besides
+/// \param found receives the rooms of plans; null: not requested
+/// \param report receives the other messages of the imports
 Document readModel(const EnvcOptions& options, FoundRooms* found, ImportReport& report) {
     InputRequest request;
     request.inputs = options.inputs;
@@ -74,14 +74,14 @@ Document readModel(const EnvcOptions& options, FoundRooms* found, ImportReport& 
     return document;
 }
 
-/// Names of files in a product are relative to its folder.
+/// Makes names of files in a product relative to its folder.
 void rebaseTo(const std::string& output, Document& document) {
     rebaseFiles(document.records, "",
                 isStream(output) ? "" : fs::path(output).parent_path().string());
 }
 
-/// The warnings of an import and what is wrong with the scene, together; the first count all the
-/// more where no scene can be made of it. \throws FormatError with all findings
+/// Reports the warnings of an import together with the findings of the scene; the former also if
+/// the scene cannot be built. \throws FormatError with all findings
 void check(const EnvcOptions& options, const Document& document, const ImportReport& report,
            const DeviceCatalogue& devices) {
     Diagnostics findings;
@@ -89,7 +89,7 @@ void check(const EnvcOptions& options, const Document& document, const ImportRep
     for (const Diagnostic& doubt : report.doubts) findings.add(doubt);
     try {
         const Scene scene = makeScene(document, nullptr, devices);
-        // A sensor without a position is what arrange asks for: named, but no mistake.
+        // arrange accepts a sensor without a position: it is reported, but is no error.
         warn(options.common, "envc", sceneWarnings(scene, {.checks = {"unplaced"}}));
         FindingFilter mistakes;
         for (const SceneCheck& check : sceneChecks())
@@ -102,7 +102,7 @@ void check(const EnvcOptions& options, const Document& document, const ImportRep
     findings.throwIfAny();
 }
 
-/// What is compiled.
+/// The room to be compiled.
 struct Room {
     Document document;
     Scene scene;
@@ -115,7 +115,7 @@ Room makeRoom(Document document, const DeviceCatalogue& devices) {
 
 void compile(const EnvcOptions& options, Document document, const FoundRooms* found,
              const ImportReport& report) {
-    // The model holds its environment: a way to another would only go stale.
+    // The model contains its environment: a path to another file would only go stale.
     std::erase_if(document.records,
                   [](const Record& record) { return record.keyword() == "environment"; });
     document.kind = DocumentKind::Environment;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// golden-diff: compares what a tool wrote with what it should write, numbers within a tolerance.
+// golden-diff: compares the output of a tool with the expected one, numbers within a tolerance.
 #include <algorithm>
 #include <sstream>
 #include <string>
@@ -59,7 +59,7 @@ Options parseOptions(int argc, const char* const* argv) {
 
 bool isPng(const std::string& bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
 
-/// The parts of comma-separated lists.
+/// Splits comma-separated lists.
 std::vector<std::string> split(const std::vector<std::string>& lists) {
     std::vector<std::string> parts;
     for (const std::string& list : lists) {
@@ -69,7 +69,7 @@ std::vector<std::string> split(const std::vector<std::string>& lists) {
     return parts;
 }
 
-/// The differences of JSON, a line each.
+/// Lists the differences of JSON, one a line.
 std::string listOf(const std::vector<std::string>& differences) {
     constexpr std::size_t kMost = 100;
     std::string list;
@@ -80,7 +80,7 @@ std::string listOf(const std::vector<std::string>& differences) {
     return list.empty() ? "" : ':' + list;
 }
 
-/// "" if the files agree, else a text that follows "B differs from A".
+/// Returns "" if the files agree, else a text that follows "B differs from A".
 std::string differenceOf(const Options& options, std::string expected, std::string actual) {
     if (isPng(expected) != isPng(actual)) return ", one is a PNG and the other is not";
     if (isPng(expected)) {
@@ -100,7 +100,7 @@ std::string differenceOf(const Options& options, std::string expected, std::stri
     return found.empty() ? "" : ", " + found;
 }
 
-/// True, and says where, if the files do not agree.
+/// Returns true, and reports the first difference, if the files do not agree.
 bool differ(const Options& options) {
     const std::string &expected = options.operands[0], &actual = options.operands[1];
     const std::string found = differenceOf(options, readAll(expected), readAll(actual));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ispace: one name for all tools. `ispace scan …` becomes the program scan of the same
-// installation, whatever else in PATH is called scan; `ispace help scan` becomes man.
+// ispace: one name for all tools. `ispace scan …` runs the program scan of the same installation,
+// even if PATH has another scan; `ispace help scan` runs man.
 #include <unistd.h>
 
 #include <algorithm>
@@ -62,8 +62,8 @@ bool isTool(std::string_view word) {
                        [word](const Tool& tool) { return tool.name == word; });
 }
 
-/// In a folder of their own where another package has a program of the same name, else beside this
-/// one.
+/// Finds a program in a separate folder if another package has a program of that name, else beside
+/// this one.
 fs::path programOf(const std::string& tool) {
     const fs::path prefix(programPrefix());
     if (prefix.empty()) return tool;  // without /proc: from PATH
@@ -72,7 +72,7 @@ fs::path programOf(const std::string& tool) {
     return fs::exists(own, error) ? own : prefix / "bin" / tool;
 }
 
-/// Becomes `file`, which execvp looks for in PATH if it has no slash. \throws std::system_error
+/// Executes `file`, which execvp looks up in PATH if it has no slash. \throws std::system_error
 [[noreturn]] void become(const std::string& file, std::vector<std::string> words) {
     std::vector<char*> argv;
     argv.reserve(words.size() + 1);
@@ -82,8 +82,8 @@ fs::path programOf(const std::string& tool) {
     throw std::system_error(errno, std::generic_category(), file);
 }
 
-/// The file of a page, compressed or not: `scan` is man1/scan.1, `env` is man5/ispace-env.5.gz.
-/// Packages may add to the section (scan.1ispace). "" if there is none.
+/// Finds the file of a page, compressed or not: `scan` is man1/scan.1, `env` is
+/// man5/ispace-env.5.gz. Packages may add to the section (scan.1ispace). "" if there is none.
 std::string pageFile(const std::string& page) {
     const std::array<std::string, 2> names = {page, "ispace-" + page};
     for (const std::string& name : names)
@@ -112,7 +112,7 @@ std::string pageFile(const std::string& page) {
     }
 }
 
-/// Never returns where all is well: another program takes over.
+/// Returns only on errors: another program replaces this one.
 void run(const std::vector<std::string>& words) {
     std::vector<std::string> known = {"help"};
     for (const Tool& tool : kTools) known.emplace_back(tool.name);

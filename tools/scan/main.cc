@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// scan: simulates what the sensors of a scene read.
+// scan: computes readings of a scene's sensors.
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -22,7 +22,7 @@ namespace {
 
 using namespace ispace;
 
-/// Counts the poses that are inside something solid.
+/// Counts the poses that are inside a solid.
 class BuriedPoses {
   public:
     explicit BuriedPoses(const Environment& environment) : burial_(environment) {}

@@ -22,21 +22,21 @@ namespace ispace {
 
 namespace {
 
-/// Where robots believed to be, at times that grow but for scans that took a while: these come in
-/// the order of their last beams.
+/// Reads robots' odometry at ascending times, except for scans that last several steps: these are
+/// sorted by their last beams.
 class RecordedOdometry {
   public:
     RecordedOdometry(const std::string& folder, const Scene& scene, const Sensors& lasers)
         : run_(folder) {
         for (const PlacedRobot& robot : scene.robots) robots_.push_back(robot.id);
         has_next_ = run_.next();
-        // A scan is there in the step after its last beam.
+        // A scan is complete in the step after its last beam.
         constexpr double kLongestStep = 1;
         for (const Sensor& laser : lasers.read)
             if (const double duration = laser.as<Laser>().duration(); duration > 0)
                 kept_ = std::max(kept_, duration + kLongestStep);
     }
-    /// Its pose by its odometry, or its true one if that was not recorded: nothing before the
+    /// Returns the pose by odometry, or the true one if that was not recorded; nullopt before the
     /// record begins.
     std::optional<Pose2> poseOf(std::size_t robot, double time) {
         constexpr double kRounding = 1e-9;
@@ -75,7 +75,7 @@ class RecordedOdometry {
     bool has_next_ = false;
 };
 
-/// Everybody in a run, those who come later, too.
+/// Returns all movers of a run, including those added later.
 std::vector<RunMember> membersOf(const std::string& folder) {
     RunReader run(folder);
     while (run.next()) {
@@ -83,7 +83,7 @@ std::vector<RunMember> membersOf(const std::string& folder) {
     return run.who();
 }
 
-/// Writes where everybody is, up to the times of the readings, to a stream of a format.
+/// Writes the poses of all movers, up to the times of the readings, to a stream of a format.
 class RecordedMoments {
   public:
     RecordedMoments(const std::string& folder, const ReadingFormat& format, ReadingStream& stream)
@@ -120,7 +120,7 @@ Sensors recordedLasers(const ScanToolOptions& options, const Scene& scene) {
     return lasers;
 }
 
-/// A record knows its scene.
+/// A record holds its own scene.
 SceneInput sceneOf(const ScanToolOptions& options) {
     std::vector<std::string> operands = options.operands;
     if (operands.empty()) operands.push_back(fileOfRecord(options.view.run, "scene.env"));

@@ -19,10 +19,10 @@ namespace ispace {
 
 namespace {
 
-// Keys of results: what stands before all readings of a stream, and readings, with the number of
-// the first of the job and how many they are: 000000000026+13. Of files there is but the key.
+// Keys of results: the header of a stream, and blocks of readings, with the number of the first one
+// in the job and their count: 000000000026+13. For separate files only the key is stored.
 constexpr std::string_view kHeader = "header";
-/// Ends the form of parts that hold clouds of points in place of text.
+/// Suffix of the format of parts that hold clouds of points instead of text.
 constexpr std::string_view kClouds = " clouds";
 
 static_assert(std::endian::native == std::endian::little, "clouds are kept in little-endian order");
@@ -39,7 +39,7 @@ void appendCloud(std::string& bytes, const PointCloud& cloud) {
     std::memcpy(bytes.data() + at, cloud.xyz.data(), size);
 }
 
-/// Cuts the first cloud off.
+/// Removes the first cloud and returns it.
 std::optional<PointCloud> takeCloud(std::string_view& bytes) {
     std::uint64_t sides[2];
     if (bytes.size() < sizeof sides) return std::nullopt;
@@ -65,7 +65,7 @@ std::string keyOf(std::int64_t first, std::size_t count) {
     return key + '+' + std::to_string(count);
 }
 
-/// Where the readings from `first` on that are there end. \throws FormatError for a foreign key
+/// Returns the end of the stored readings from `first` on. \throws FormatError for a foreign key
 std::int64_t endOfReadings(const JobResults& results, std::int64_t first) {
     for (const std::string& key : results.keys()) {
         if (key == kHeader) continue;
@@ -89,7 +89,7 @@ void forEachBlock(const JobResults& results, Visit visit) {
         if (key != kHeader) visit(results.find(key).value());
 }
 
-/// Rows of all clouds in results, which are read and checked.
+/// Reads and validates the rows of all clouds in results.
 CloudRows rowsIn(const JobResults& results) {
     CloudRows rows;
     forEachBlock(results, [&](const std::string& bytes) {
@@ -103,7 +103,7 @@ CloudRows rowsIn(const JobResults& results) {
     return rows;
 }
 
-/// Writes the readings of a job as one file. Damage is found before anything goes into a stream.
+/// Writes the readings of a job as one file. Damage is found before the first write to a stream.
 void writeReadings(const JobResults& results, const std::string& target) {
     const std::string_view form = results.head().job.form;
     const CloudRows rows = rowsIn(results);
@@ -127,11 +127,12 @@ void writeReadings(const JobResults& results, const std::string& target) {
     file.commit();
 }
 
-/// Readings as results of a job; the product, or a part of it, is made of them in the end.
+/// Stores readings as results of a job; the product, or a part of it, is built from them at the
+/// end.
 class StoredReadings final : public Delivery {
   public:
     /// \param first reading that is still to be taken
-    /// \param files files of one reading each, which get the readings; null: the results do
+    /// \param files write one file a reading; null: the readings are stored in the results
     StoredReadings(const ScanToolOptions& options, const ReadingFormat& format, JobResults results,
                    std::int64_t first, std::unique_ptr<Delivery> files)
         : options_(options), results_(std::move(results)), next_(first), files_(std::move(files)) {
@@ -218,7 +219,7 @@ OwnReadings ownReadings(const ScanToolOptions& options, const JobId& job, const 
                          "take jsonl, csv, raw or pcd");
     if (!names && format.isStream()) format.checkStream();
     if (!names && options.batch.shard && options.batch.resume && isPartOf(output, head)) return own;
-    std::unique_ptr<Delivery> files;  // makes the folder, in which the checkpoint is
+    std::unique_ptr<Delivery> files;  // creates the folder, which holds the checkpoint
     if (names)
         files = makeDelivery(options, sensors, format, options.poses.empty() ? *job.units : -1);
     JobResults results(output, job, head.shard, options.batch.resume);

@@ -11,25 +11,25 @@
 
 namespace ispace {
 
-/// True if a run takes a share of the readings, or keeps what is done.
+/// Returns true if a run takes a share of the readings, or stores completed ones.
 bool isBatch(const ScanToolOptions& options);
 
-/// The job that the command is about. \param format how readings are written \param poses the text
-/// of --poses, "" without \param units all readings
+/// Returns the job of the command. \param format of the readings \param poses the text of --poses,
+/// "" without \param units all readings
 JobId readingsJob(const ScanCommand& command, const SceneInput& input, const ReadingFormat& format,
                   const std::string& poses, std::int64_t units);
 
-/// The readings that a run has to take, and where they go.
+/// The readings that a run has to take, and their output.
 struct OwnReadings {
     Shard::Block block;
-    std::unique_ptr<Delivery> delivery;  ///< null: the part is there already
+    std::unique_ptr<Delivery> delivery;  ///< null: the part exists already
 };
-/// The share of --shard, without what --resume finds done. \pre isBatch()
-/// \throws UsageError where readings cannot be joined; as JobResults
+/// Returns the share of --shard, less the readings that --resume finds. \pre isBatch()
+/// \throws UsageError if readings cannot be joined; as JobResults
 OwnReadings ownReadings(const ScanToolOptions& options, const JobId& job, const Sensors& sensors,
                         const ReadingFormat& format);
 
-/// --merge: writes what one run would have written.
+/// --merge: writes the output of the unsharded run.
 void mergeReadings(const ScanCommand& command);
 
 }  // namespace ispace

@@ -47,7 +47,7 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     ScanToolOptions& o = options_;
     checkBatchOptions(line_, o.batch, o.common, o.operands);
     checkViewOptions(line_, o.view);
-    // The suffix of a part says nothing about what is in it.
+    // The suffix of a part does not name the format of its readings.
     const bool is_part = o.batch.shard && suffixOf(o.common.output) == "part";
     const std::string output = is_part ? "-" : o.common.output;
     if (o.view.views.empty()) {

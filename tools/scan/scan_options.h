@@ -47,7 +47,7 @@ class ScanCommand : public ToolCommand<ScanToolOptions> {
     /// Opens no file. \throws UsageError, TextRequested
     ScanCommand(int argc, const char* const* argv);
 
-    /// Options that say nothing about any of the sensors read are mistakes. \throws UsageError
+    /// Rejects options that apply to none of the sensors read. \throws UsageError
     void checkSensors(const std::vector<Sensor>& read) const;
 
   private:

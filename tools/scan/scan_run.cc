@@ -21,7 +21,7 @@ namespace ispace {
 
 namespace {
 
-/// The text of --poses, held for a batch, which needs it more than once.
+/// Returns the text of --poses, held for a batch, which requires it more than once.
 std::shared_ptr<const std::string> posesText(const ScanToolOptions& options) {
     if (options.poses.empty() || !isBatch(options)) return std::make_shared<std::string>();
     return std::make_shared<std::string>(options.poses == "-" ? readStdin()
@@ -107,10 +107,10 @@ ReadingWork workOf(const ScanCommand& command, const SceneInput& input, const Se
 
 namespace {
 
-/// Keywords of what may follow poses.
+/// Keywords of sensors that poses can move.
 std::vector<std::string_view> movable() { return keywordsOf(&SensorKind::follows_poses); }
 
-/// \param sources gets the calibration that it names
+/// \param sources receives the calibration that it names
 Record recordOfModel(const std::string& model, const DeviceCatalogue& devices,
                      std::vector<std::string>& sources) {
     const SensorSpec spec = readSensorSpec(model, movable(), sceneSchemas(), devices);
@@ -139,7 +139,7 @@ std::size_t onlySensor(const Scene& scene, const std::vector<std::string>& globs
                      " sensors could take them; say which with --model or --select");
 }
 
-/// The sensor with the id if the scene has placed it, or null.
+/// Returns the sensor with the id if the scene has placed it, or null.
 const Sensor* placedSensor(const Scene& scene, const std::string& id) {
     const auto found = std::find_if(scene.sensors.begin(), scene.sensors.end(),
                                     [&id](const Sensor& sensor) { return sensor.id == id; });
@@ -191,7 +191,7 @@ class Stream final : public Delivery {
     std::unique_ptr<ReadingStream> stream_;
 };
 
-/// Each reading in files of its own.
+/// Writes each reading to separate files.
 class Files final : public Delivery {
   public:
     Files(OutputSet names, const Sensors& sensors) : names_(std::move(names)), sensors_(sensors) {}
@@ -216,7 +216,7 @@ class Files final : public Delivery {
     const Sensors& sensors_;
 };
 
-/// The only reading: its first file has the name given, the others stand beside it, if that is a
+/// Writes the only reading: its first file has the given name, the others accompany it if that is a
 /// file.
 class OneFile final : public Delivery {
   public:
@@ -249,7 +249,7 @@ class OneFile final : public Delivery {
     std::vector<std::unique_ptr<OutputFile>> files_;
 };
 
-/// Points of each row that a sensor makes, and rows of a reading.
+/// Returns the points of each row of a sensor, and rows of a reading.
 std::size_t rowWidth(const Sensor& sensor) {
     return static_cast<std::size_t>(sensor.is<Laser>() ? sensor.as<Laser>().beams
                                                        : sensor.as<Ranger>().columns);
@@ -262,7 +262,7 @@ std::size_t rowsOf(const Sensor& sensor) {
 /// All points in one cloud.
 class OneCloud final : public Delivery {
   public:
-    /// \param count all readings, -1 if nobody knows
+    /// \param count all readings, -1 if unknown
     OneCloud(const ScanToolOptions& options, const Sensors& sensors, std::int64_t count)
         : file_(options.common.output), frames_(framesOf(sensors, count)) {
         CloudRows rows;

@@ -21,7 +21,7 @@ namespace ispace {
 
 namespace {
 
-/// Views that are the same kind get numbers, so that each has a name for its file.
+/// Numbers views of the same kind, so that each has a unique file name.
 void nameApart(std::vector<ViewSpec>& views) {
     for (std::size_t i = 0; i < views.size(); ++i) {
         const auto same = [&](const ViewSpec& view) { return view.name == views[i].name; };
@@ -65,7 +65,7 @@ struct DrawView {
     }
 };
 
-/// Where pictures go: a set of files, or one file, which is a sheet if there are several.
+/// Writes pictures to a set of files, or to one file, as a sheet if there are several.
 class PictureFiles {
   public:
     PictureFiles(const ScanToolOptions& options, int frames)
@@ -101,7 +101,7 @@ class PictureFiles {
                 files_.add(set_->fileOf(views[i].name, frame, ending()), std::move(image));
             else
                 images.push_back(std::move(image));
-            // A camera's picture is the camera's (thesis, fig. 3.15).
+            // The view of a camera is named after it (thesis, fig. 3.15).
             names.push_back(views[i].mode == ViewMode::Camera ? views[i].id : views[i].name);
         }
         if (!set_) writeFile(output_, encoded(sheet.draw(images, names)));
@@ -136,7 +136,7 @@ class PictureFiles {
     EncodeAhead files_;
 };
 
-/// What clients did to the world of a run before a time.
+/// Applies the changes that clients made to the world of a run before a time.
 void makeChanges(RunChanges& changes, Scene& scene, double time) {
     const auto unknown = [](const std::string&) { return std::optional<Pose2>(); };
     while (auto step = changes.next(time, scene, unknown)) scene = std::move(step->scene);
@@ -225,7 +225,7 @@ void takeViews(const ScanCommand& command) {
     for (int frame = 0; frame < frames; ++frame) {
         ViewOptions drawing = options.view.drawing;
         if (run) {
-            // One picture is of the end.
+            // A single picture shows the end.
             const double share = frames > 1 ? 1.0 * frame / (frames - 1) : 1;
             const double time = run->begin() + share * (run->end() - run->begin());
             makeChanges(*changes, scene, time);

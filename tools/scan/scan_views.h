@@ -12,9 +12,9 @@ namespace ispace {
 class CommandLine;
 class ScanCommand;
 
-/// What --view and its companions say.
+/// Values of --view and its companions.
 struct ViewToolOptions {
-    std::vector<ViewSpec> views;  ///< with names of their own
+    std::vector<ViewSpec> views;  ///< each with a unique name
     ViewOptions drawing;
     std::optional<bool> labels;
     std::string run;  ///< folder of a record; "": none

@@ -20,7 +20,7 @@ namespace {
 
 using namespace ispace;
 
-/// Finds out before the run what cannot be written after it.
+/// Reports before the run which outputs cannot be written.
 void claimFiles(const SimrunOptions& options) {
     if (!options.drawing.format.empty()) claimOutputs(options.common);
     claimOutput(options.port_file, "--port-file");
@@ -30,9 +30,9 @@ void claimFiles(const SimrunOptions& options) {
         claimOutput(file, "a file of --record");
 }
 
-/// Does that. If other threads are still at work then, the process ends at once, with the status
-/// and the lines that it would have: they use what would be destroyed, and a picture or a large
-/// room may take minutes.
+/// Runs it. If other threads are still at work at the end, the process exits at once, with the same
+/// status and lines: they use objects that would be destroyed, and a picture or a large room may
+/// take minutes.
 void endingAtOnce(const std::function<bool()>& is_busy, JunitFile& junit,
                   const SimrunOptions& options, const std::function<void()>& work) {
     std::exception_ptr failure;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options about records: served once more, or drawn.
-// Options about who is served, and what they may do.
+// Options of records, replays and drawings, of clients and of their rights.
 #include "simrun/simrun_options.h"
 
 #include <algorithm>
@@ -20,7 +19,7 @@ namespace {
 
 std::string optionOf(const WireProtocol& protocol) { return "--" + std::string(protocol.name); }
 
-/// Reads "l1=10940" or "l1=127.0.0.2:10940".
+/// Parses "l1=10940" or "l1=127.0.0.2:10940".
 DevicePortOption parsePort(const WireProtocol& protocol, const std::string& text) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals == 0)

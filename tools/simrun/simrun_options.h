@@ -16,21 +16,21 @@
 
 namespace ispace {
 
-/// A robot or sensor behind the port of a real device, as an option asks for it.
+/// An option that serves a robot or sensor at the port of a real device.
 struct DevicePortOption {
     const WireProtocol* protocol = nullptr;
     std::string id;
     Endpoint endpoint;
 };
 
-/// The options of device ports, one for each row of wireProtocols(), and who may use them.
+/// The options of device ports, one for each row of wireProtocols(), and their access rules.
 class DevicePortOptions {
   public:
     void declare(CommandLine& line);
-    /// Once the line is parsed. \throws UsageError
+    /// Stores the options after parsing. \throws UsageError
     void take(const CommandLine& line, ServerLimits& limits);
     [[nodiscard]] const std::vector<DevicePortOption>& ports() const { return ports_; }
-    /// Connections they may take at once.
+    /// Returns the number of simultaneous connections to device ports.
     [[nodiscard]] std::size_t connections() const;
 
   private:
@@ -40,16 +40,16 @@ class DevicePortOptions {
     std::vector<DevicePortOption> ports_;
 };
 
-/// The addresses of device ports, by the id of their robot or sensor.
+/// Maps the id of a robot or sensor to its device port, by protocol.
 using DeviceAddresses = std::map<const WireProtocol*, std::map<std::string, std::string>>;
 /// \throws UsageError naming the option, std::system_error
 DeviceAddresses serveDevices(Server& server, const DevicePortOptions& options);
 
-/// What -o draws of a record.
+/// Drawing of a record, for -o.
 struct DrawingOptions {
     std::string format;          ///< png, svg, pdf, y4m or gif; "" without -o
     int width = 1200;            ///< pixels
-    double fps = 25, speed = 1;  ///< of a film: pictures a second, simulated seconds a second
+    double fps = 25, speed = 1;  ///< of a film: pictures per second, simulated seconds per second
 };
 
 struct SimrunOptions {
@@ -70,7 +70,7 @@ struct SimrunOptions {
     DrawingOptions drawing;
     std::vector<Expectation> expected;
     std::string junit;           ///< file; "" without
-    double recorded_frames = 1;  ///< a simulated second, at most
+    double recorded_frames = 1;  ///< per simulated second, at most
     double recorded_sonars = 10;
     std::string port_file;  ///< "" without
     Endpoint listen;
@@ -82,8 +82,7 @@ struct SimrunOptions {
     DevicePortOptions devices;
 };
 
-/// The value of an option that is a time. \throws UsageError unless it is one from `least` to
-/// `most`
+/// Parses the value of a time option. \throws UsageError outside [least, most]
 SimTime timeOption(const std::string& text, SimTime least, SimTime most);
 
 class SimrunCommand : public ToolCommand<SimrunOptions> {

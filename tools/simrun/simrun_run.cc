@@ -129,7 +129,7 @@ void conclude(const ExpectationJudge& judge, const SimrunOptions& options, const
 
 namespace {
 
-/// The scene as one file that stands by itself in the folder of the record.
+/// Returns the scene as one self-contained file for the folder of the record.
 std::string sceneText(const Scene& scene, const History& history, const std::string& folder) {
     Document document;
     document.history = history;
@@ -145,7 +145,7 @@ RunningRecord::RunningRecord(const SimrunOptions& options, Simulation& simulatio
     : recorder(options.record, simulation.world(), record, &simulation.events()),
       guard(Recorder::growingFilesIn(options.record), recorder.lock()) {}
 
-/// What the record of a run until a given time holds at least is known before it begins.
+/// Computes the least size of the record before the run.
 void checkRecord(const SimrunOptions& options, const World& world) {
     if (options.record.empty() || !options.until) return;
     constexpr double kMinLine = 20;  // bytes, of robots.csv
@@ -182,7 +182,7 @@ std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOpti
 
 namespace {
 
-/// A client takes a file descriptor: as many as this process may have, less what it needs itself.
+/// A client requires a file descriptor: the limit is that of the process, less those in use.
 ServerLimits withinFileLimit(ServerLimits limits, std::size_t of_devices) {
     const rlim_t own = 32 + of_devices;
     rlimit files{};
@@ -217,7 +217,7 @@ void announce(const Server& server, const std::string& web, const DeviceAddresse
     for (const WireProtocol* const protocol : wireProtocols()) {
         const auto found = devices.find(protocol);
         const bool is_used = found != devices.end();
-        // The first two are there in any case; those that came later would surprise old readers.
+        // The first two are always listed; later ones would surprise old readers.
         if (!is_used && protocol->name != "p2os" && protocol->name != "scip") continue;
         json.key(std::string(protocol->name)).beginObject();
         if (is_used)
@@ -227,7 +227,7 @@ void announce(const Server& server, const std::string& web, const DeviceAddresse
     if (!web.empty()) json.key("web").value(web);
     json.endObject();
     writeAll("-", json.take() + '\n');
-    // Clients are not cut off because nobody reads the warnings any more.
+    // Clients stay connected when the reader of the warnings has gone.
     std::signal(SIGPIPE, SIG_IGN);
 }
 
@@ -239,7 +239,7 @@ double endOf(const SimrunOptions& options) {
     return seconds(options.until.value_or(kMaxTime)) + kRounding;
 }
 
-/// Reads the record up to --until; `before` hears of each moment that is still to be added.
+/// Reads the record up to --until; calls `before` for each moment that is still to be added.
 void readRecord(const SimrunOptions& options, RunPicture& picture,
                 const std::function<void(double)>& before) {
     RunReader reader(options.replay);
@@ -350,7 +350,7 @@ void CollisionLog::tell() {
 
 namespace {
 
-/// What is measured of a camera's light always spreads.
+/// Readings of a camera's light always have noise.
 bool isNoisy(const Sensor& sensor) {
     const auto noise_of = [&sensor]() -> const RangeNoise* {
         if (const auto* laser = std::get_if<Laser>(&sensor.model)) return &laser->noise;
@@ -377,7 +377,7 @@ void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options)
 
 void LagLog::tell() {
     using std::chrono::steady_clock;
-    constexpr std::chrono::seconds kCalm(1);  // without a loss, before the run is said to keep up
+    constexpr std::chrono::seconds kCalm(1);  // without a loss, before the run counts as keeping up
     constexpr int kMost = 10;
     const auto due = simulation_->due();
     if (!due) return;

@@ -24,16 +24,16 @@
 
 namespace ispace {
 
-/// The operands; a record knows its scene.
+/// Reads the operands; a record holds its own scene.
 SceneInput readInput(const SimrunOptions& options);
 
-/// Of what is shown: the room, or the record.
+/// Returns the title of the room or the record.
 std::string titleOf(const SimrunOptions& options, const SceneInput& input);
 
-/// The record to be served, and the scene as it begins; nothing without --replay.
+/// Opens the record to be served, and sets the scene to its beginning; nullopt without --replay.
 std::optional<Replay> openReplay(const SimrunOptions& options, Scene& scene);
 
-/// Up to where a record is to be served from.
+/// Moves a replay to the time from which it is served.
 void forward(Replay& replay, World& world, SimTime from);
 
 History historyOf(const SimrunCommand& command, const SceneInput& input);
@@ -42,18 +42,18 @@ History historyOf(const SimrunCommand& command, const SceneInput& input);
 std::vector<TimedCommand> scriptOf(const SimrunOptions& options, const SceneInput& input,
                                    const World& world);
 
-/// Robots of a record go where it says; its sensors have their noise of then, unless another is
-/// asked for.
+/// Returns options of a run or a replay; a replay keeps the noise of its record unless an option
+/// sets another.
 RunOptions runOptionsOf(const SimrunOptions& options, const std::optional<Replay>& replay);
 
-/// Shows how far a run is that ends at a given time.
+/// Creates the progress bar of a run that ends at a given time.
 std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions& options);
 
-/// Says how far a run came and whether it kept up with the clock.
+/// Reports the length of a run and whether it kept up with the clock.
 void report(const Simulation& simulation, const SimrunOptions& options);
 
-/// The last word on a run: whether it did what --expect says. Completes the file of --junit.
-/// \throws UnmetError if it did not
+/// Reports the verdicts of --expect at the end. Completes the file of --junit.
+/// \throws UnmetError if one is unmet
 void conclude(const ExpectationJudge& judge, const SimrunOptions& options, const SceneInput& input,
               JunitFile& junit);
 
@@ -65,35 +65,35 @@ struct RunningRecord {
     LineGuard guard;
 };
 
-/// What the record of a run until a given time holds at least is known before it begins.
-/// \throws UsageError if that is more than --record-limit
+/// Computes the least size of the record before the run.
+/// \throws UsageError if it is more than --record-limit
 void checkRecord(const SimrunOptions& options, const World& world);
 
-/// Replaces the records of the run before: to be called when all that may go wrong has gone well.
-/// Null without --record. \param odometry it differs from the true poses
+/// Replaces the records of an earlier run: call it after all steps that may fail. Null without
+/// --record. \param odometry it differs from the true poses
 std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOptions& options,
                                         const Scene& scene, const History& history, bool odometry,
                                         FrameTaker frame_taker);
 
-/// Limits of the server, with what clients need to know and may read. Raises the number of files
-/// that this process may open, as every client takes one.
+/// Returns the limits of the server, and the values and files that clients may read. Raises the
+/// limit of open files of this process, as every client takes one.
 ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input);
 
-/// The first line of output: clients can connect now.
+/// Writes the first line of output: clients can connect now.
 /// \param web address of the page; "" without
-/// \param devices where device ports are
+/// \param devices addresses of device ports
 void announce(const Server& server, const std::string& web, const DeviceAddresses& devices);
 
 /// Draws the record of --replay to -o, as a picture or a film.
 /// \param title of the picture; "" for none
 void drawRecord(const SimrunOptions& options, const Scene& scene, const std::string& title);
 
-/// Says on stderr what robots run into, up to a number of lines that nobody reads beyond.
+/// Reports collisions of robots on stderr, up to a number of lines.
 class CollisionLog {
   public:
     CollisionLog(const World& world, const CommonOptions& options)
         : world_(&world), options_(&options) {}
-    /// Tells the collisions of the world's last step.
+    /// Reports the collisions of the world's last step.
     void tell();
 
   private:
@@ -102,27 +102,27 @@ class CollisionLog {
     int count_ = 0;
 };
 
-/// Says on stderr when a run by the clock Real falls behind it, and when it keeps up again.
+/// Reports on stderr when a run by the clock Real falls behind it, and when it keeps up again.
 class LagLog {
   public:
     LagLog(const Simulation& simulation, const CommonOptions& options)
         : simulation_(&simulation), options_(&options) {}
-    /// Looks at the clock after a step.
+    /// Reads the clock after a step.
     void tell();
 
   private:
     const Simulation* simulation_;
     const CommonOptions* options_;
-    std::chrono::nanoseconds lost_{};             // as last seen
-    std::chrono::steady_clock::time_point last_;  // when some was lost
+    std::chrono::nanoseconds lost_{};             // at the last step
+    std::chrono::steady_clock::time_point last_;  // time of the last loss
     bool is_behind_ = false;
-    int count_ = 0;  // of times it fell behind
+    int count_ = 0;  // number of delays
 };
 
-/// Says so if no sensor has noise, nor a robot that moves by itself.
+/// Warns that no sensor has noise, nor an autonomous robot.
 void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options);
 
-/// Says once what change of a recorded run cannot be made again.
+/// Reports once that a change of a recorded run cannot be repeated.
 class FailureLog {
   public:
     FailureLog(const std::optional<Replay>& replay, const CommonOptions& options)
@@ -135,7 +135,7 @@ class FailureLog {
     bool is_told_ = false;
 };
 
-/// Says that a run changed its world, of which the picture shows the start.
+/// Warns that a run changed its world, of which the picture shows the start.
 void warnOfChanges(const Replay& replay, const CommonOptions& options);
 
 }  // namespace ispace
