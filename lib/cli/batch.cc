@@ -41,7 +41,7 @@ void checkBatchOptions(const CommandLine& line, const BatchOptions& options,
         if (options.shard) throw UsageError("--merge joins what shards made: leave out --shard");
         if (options.resume) throw UsageError("--merge takes moments: leave out --resume");
         if (operands.empty()) throw UsageError("--merge: name the parts of all shards");
-        // What changes the result is in the parts.
+        // The parts store the options that change the result.
         const std::string words = line.historyLine({});
         if (const std::size_t blank = words.find(' '); blank != std::string::npos) {
             const std::string rest = words.substr(blank + 1);
@@ -63,7 +63,7 @@ namespace {
 
 constexpr std::size_t kMaxOperands = 2;
 
-/// The operands on a line, none for a blank one or a comment. \throws LexError
+/// Returns the operands on a line, empty for a blank one or a comment. \throws LexError
 std::vector<std::string> operandsOn(std::string_view line) {
     std::vector<std::string> operands;
     LineLexer lexer(line);
@@ -112,7 +112,7 @@ void runInOrder(std::size_t count, const std::function<std::function<void()>(std
         control.stop();
         return 0;
     };
-    // Whoever waits for others in a job does not begin with another one.
+    // A thread that waits within a job does not begin another one.
     const auto run = [&](std::size_t i) {
         return tbb::this_task_arena::isolate([&] { return work(i); });
     };
@@ -195,7 +195,7 @@ void JunitFile::during(std::span<const std::string> inputs, const std::function<
             error.message.append(error.message.empty() ? "" : "; ").append(line);
         try {
             write(error.name, {&error, 1});
-        } catch (const std::exception&) {  // what the work threw is to be told
+        } catch (const std::exception&) {  // the exception of the work is the one to report
         }
         throw;
     }

@@ -17,40 +17,41 @@
 
 namespace ispace {
 
-/// How a job is shared out, joined, or gone on with.
+/// Sharing, joining and resuming of a job.
 struct BatchOptions {
     std::optional<Shard> shard;
     bool merge = false;  ///< operands are parts
     bool resume = false;
 };
 
-/// Declares --shard I/N, --merge and --resume. \param shares what the shards share out, for help
+/// Declares --shard I/N, --merge and --resume. \param shares the units that shards divide, for help
 void addBatchOptions(CommandLine& line, BatchOptions& options, const std::string& shares);
 
-/// Checks them against each other and the rest. \throws UsageError for --merge without operands,
-/// with --shard or --resume, or with an option that the parts know; for the output of a shard with
+/// Validates them against each other and the rest. \throws UsageError for --merge without operands,
+/// with --shard or --resume, or with an option that the parts store; for the output of a shard with
 /// another suffix than .part; for --resume to stdout
 void checkBatchOptions(const CommandLine& line, const BatchOptions& options,
                        const CommonOptions& common, const std::vector<std::string>& operands);
 
-/// One job of a list: what would be the operands of a command.
+/// One job of a list: the operands of a command.
 struct BatchJob {
-    int line = 0;  ///< where it stands in the list
+    int line = 0;  ///< number of its line in the list
     std::vector<std::string> operands;
-    std::string wrong = {};  ///< why it cannot be run, "" if it can
+    std::string wrong = {};  ///< why it is rejected, "" if it is valid
 
-    /// The operands with blanks between.
+    /// Joins the operands by blanks.
     [[nodiscard]] std::string text() const;
 };
 
-/// Reads a list of jobs, a line `ENV [LAYOUT]` each. Names are words or "strings" by the rules for
-/// values of records; blank lines and comments are no jobs. Lines that are wrong are jobs that say
-/// so. O(bytes) \throws FormatError for bytes that are no text, and for a list without a job
+/// Parses a list of jobs, a line `ENV [LAYOUT]` each. Names are words or "strings" by the rules for
+/// values of records; skips blank lines and comments. Invalid lines become jobs with an error.
+/// O(bytes) \throws FormatError for bytes that are no text, and for a list without a job
 std::vector<BatchJob> readBatchList(std::string_view bytes, const std::string& name);
 
-/// Calls work(i) for all i below `count` on all threads, and what it returns one after the other in
-/// order. No more than two results a thread wait for their turn, so that memory does not grow with
-/// `count`. What `work` does in parallel stays within it. What either throws ends it.
+/// Calls work(i) for all i below `count` on all threads, and the functions that it returns one
+/// after the other in order. Each thread holds at most two waiting results, so that memory does not
+/// grow with `count`. Parallel loops in `work` stay within it. An exception of either function ends
+/// the run and is rethrown.
 void runInOrder(std::size_t count, const std::function<std::function<void()>(std::size_t)>& work);
 
 /// One verdict, as CI servers list them.
@@ -63,11 +64,12 @@ struct JunitCase {
     std::string name;
     Outcome outcome = Outcome::Met;
     std::string message = {};            ///< why it is not met
-    std::chrono::nanoseconds time = {};  ///< 0 where no time passes
+    std::chrono::nanoseconds time = {};  ///< 0 if not timed
 };
 
-/// The verdicts of a tool in the XML that CI servers read as JUnit's: one testsuite, whose time is
-/// that of its last verdict, with a testcase each. \param suite its name, e.g. the environment's
+/// Writes the verdicts of a tool in the XML that CI servers read as JUnit's: one testsuite, whose
+/// time is that of its last verdict, with a testcase each. \param suite its name, e.g. the
+/// environment's
 std::string junitXml(const std::string& tool, const std::string& suite,
                      std::span<const JunitCase> cases);
 
@@ -79,8 +81,8 @@ class JunitFile {
 
     /// Writes the verdicts of a suite, once.
     void write(const std::string& suite, std::span<const JunitCase> cases);
-    /// Does a tool's work. If it throws before write(), the file holds one case, an `error` with
-    /// the messages, named after the tool and `inputs`, its operands; the exception goes on.
+    /// Runs a tool's work. If it throws before write(), the file holds one case, an `error` with
+    /// the messages, named after the tool and `inputs`, its operands; the exception is rethrown.
     void during(std::span<const std::string> inputs, const std::function<void()>& work);
 
   private:

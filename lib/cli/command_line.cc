@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading a command line, and what is wrong with one.
-// A command line as text: for --help, for the history of what it made, and for those who run it
-// again.
+// Parses a command line, explains its errors, and prints it for --help, for the history of the
+// product and for reruns.
 #include "cli/command_line.h"
 
 #include <algorithm>
@@ -117,7 +116,7 @@ void CommandLine::dependencies(DependencyOptions& options, const std::string& ou
 
 namespace {
 
-/// Puts a whole number in [lowest, highest] into `variable`.
+/// Parses a whole number in [lowest, highest] into `variable`.
 template <typename Number>
 auto takeCount(Number& variable, int lowest, int highest) {
     return [&variable, lowest, highest](const std::string& text) {
@@ -129,7 +128,7 @@ auto takeCount(Number& variable, int lowest, int highest) {
     };
 }
 
-/// Puts a length or a time in [lowest, highest] into `variable`.
+/// Parses a length or a time in [lowest, highest] into `variable`.
 template <typename Number>
 auto takeQuantity(Number& variable, Unit unit, double lowest, double highest) {
     return [&variable, unit, lowest, highest](const std::string& text) {
@@ -209,7 +208,7 @@ bool CommandLine::given(const std::string& name) const { return data_->app.count
 
 namespace {
 
-/// Turns -MD, -MF FILE and -MFFILE into what CLI11 can parse.
+/// Converts -MD, -MF FILE and -MFFILE to names that CLI11 can parse.
 void rewriteCompilerNames(std::vector<std::string>& words) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (!words[i].starts_with("-M") || !isCompilerName(words[i].substr(1, 2))) continue;
@@ -261,7 +260,7 @@ void CommandLine::Data::sortOut(const std::vector<std::string>& words) {
 void CommandLine::parse(int argc, const char* const* argv) {
     Data& d = *data_;
     std::vector<std::string> words(argv + 1, argv + argc);
-    // CLI11 takes words from the back; what follows "--" is kept from it and put behind.
+    // CLI11 takes words from the back; those after "--" are withheld from it and appended.
     const auto end = std::find(words.begin(), words.end(), "--");
     const std::vector<std::string> tail(end, words.end());
     words.erase(end, words.end());
@@ -300,8 +299,8 @@ std::string signature(const CLI::Option& option, const std::string& value) {
     return value.empty() ? names : names + ' ' + value;
 }
 
-/// Appends `text` wrapped to kHelpWidth, its lines beginning at `column`; the first line is
-/// `used` characters long already.
+/// Appends `text` wrapped to kHelpWidth, its lines beginning at `column`; the first line already
+/// has `used` characters.
 void appendWrapped(std::string& out, const std::string& text, std::size_t used,
                    std::size_t column) {
     std::istringstream words(text);
@@ -333,7 +332,8 @@ void CommandLine::Data::forEachResult(Visit visit) const {
         const CLI::Option& option = *entry.option;
         if (entry.enters == Enters::Nothing || option.count() == 0) continue;
         if (entry.take) {
-            // Where the first of them stands in the man page they all follow, as they came.
+            // At the man page's position of the first one, all follow in the order of the command
+            // line.
             if (!std::exchange(ordered_done, true))
                 forEachOrdered([&](const Entry& one, const std::string& text) {
                     visit(nameOf(*one.option), &text, one);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What CommandLine keeps, for the files that declare, parse and print options.
+// Declares, parses and prints the options and operands of a tool.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -21,14 +21,14 @@
 
 namespace ispace {
 
-/// Whether an option changes the bytes of the product: only those enter its history line, a file by
-/// its base name.
+/// Form in which an option enters the history line of the product: only options that change its
+/// bytes do, a file by its base name.
 enum class Enters { History, BaseName, Nothing };
 
-/// A rule for make that names what the product was made from.
+/// A rule for make that lists the sources of the product.
 struct DependencyOptions {
     bool wanted = false;  ///< -MD
-    std::string file;     ///< -MF; "": the product's whole name and .d
+    std::string file;     ///< -MF; "": the product's full name and .d
 };
 
 /// One tool's options and operands. Each option is declared once, in the man page's order, bound
@@ -38,7 +38,7 @@ struct DependencyOptions {
 /// and after operands; `--` ends them.
 class CommandLine {
   public:
-    /// `synopsis` is what follows the tool's name, `summary` one or two lines for `--help`.
+    /// `synopsis` follows the tool's name, `summary` holds one or two lines for `--help`.
     CommandLine(std::string tool, std::string synopsis, std::string summary);
     ~CommandLine();
     CommandLine(const CommandLine&) = delete;
@@ -47,25 +47,25 @@ class CommandLine {
     /// `names` as CLI11 takes them ("-o,--output"), `value` names the value in help ("FILE").
     void text(const std::string& names, const std::string& value, std::string& variable,
               const std::string& help, Enters enters);
-    /// The name of a file; an empty one, as of an unset shell variable, is refused.
+    /// A file name; rejects an empty one, as of an unset shell variable.
     void file(const std::string& names, const std::string& value, std::string& variable,
               const std::string& help, Enters enters);
     /// May be given several times.
     void texts(const std::string& names, const std::string& value,
                std::vector<std::string>& variable, const std::string& help, Enters enters);
     void flag(const std::string& names, bool& variable, const std::string& help, Enters enters);
-    /// How often it was given (-vv).
+    /// Counts the flag (-vv).
     void flag(const std::string& names, int& variable, const std::string& help, Enters enters);
     /// A pair --name / --no-name; `off` wins if both are given, and neither leaves it empty.
     void switchFlag(const std::string& on, const std::string& off, std::optional<bool>& variable,
                     const std::string& help, const std::string& off_help, Enters enters);
-    /// Any other option: `take` gets the text; what it throws (UsageError) is prefixed with the
-    /// option's name.
+    /// Any other option: `take` receives the text; its UsageError is prefixed with the option's
+    /// name.
     void parsed(const std::string& names, const std::string& value,
                 std::function<void(const std::string&)> take, const std::string& help,
                 Enters enters);
-    /// Repeatable options whose order matters among each other: `take` and the history line get
-    /// them in the order of the command line.
+    /// Repeatable options whose relative order matters: `take` and the history line receive them in
+    /// the order of the command line.
     void ordered(const std::string& names, const std::string& value,
                  std::function<void(const std::string&)> take, const std::string& help);
     /// -MD and -MF FILE, as compilers have them, for the product `output`.
@@ -88,37 +88,37 @@ class CommandLine {
     /// One of a fixed set of words.
     void choice(const std::string& names, std::string& variable, std::vector<std::string> words,
                 const std::string& help, Enters enters);
-    /// An option that no longer exists, and what to use instead.
+    /// A removed option, with its replacement as a hint.
     void renamed(const std::string& name, const std::string& hint);
-    /// What the exit status tells, for `--help`, where it is not what it is elsewhere.
+    /// Replaces the usual description of the exit status in `--help`.
     void exitStatus(const std::string& text);
     /// The operands in order; at most `most`.
     void operands(std::vector<std::string>& variable, std::size_t most);
-    /// Any number of operands where this flag is given.
+    /// Allows any number of operands with this flag.
     void manyOperandsWith(const bool& flag);
 
     /// \throws UsageError with a hint, TextRequested for -h and -V
     void parse(int argc, const char* const* argv);
 
-    /// True if the option ("--output") stood in the command line. \pre it is declared
+    /// Returns true if the option ("--output") stood in the command line. \pre it is declared
     [[nodiscard]] bool given(const std::string& name) const;
-    /// "arrange room.glb --sensor urg-04lx:1 --strategy wall" for the options given.
+    /// Returns "arrange room.glb --sensor urg-04lx:1 --strategy wall" for the options given.
     [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const;
-    /// The words of a command line with the same result: the tool, the options that enter its
-    /// history as they were given, and the operands.
+    /// Returns the words of a command line with the same result: the tool, the options that enter
+    /// its history as they were given, and the operands.
     [[nodiscard]] std::vector<std::string> resultWords() const;
     [[nodiscard]] std::string helpText() const;
 
   private:
     struct Data;
-    /// `take` with the option's name put before what it throws.
+    /// Returns `take` with the option's name prefixed to its errors.
     [[nodiscard]] std::function<void(const std::string&)> guarded(
         const std::string& names, std::function<void(const std::string&)> take) const;
     std::unique_ptr<Data> data_;
 };
 
-/// A tool's options with the command line they come from, kept for its history line, whose operands
-/// are known only once they are read.
+/// A tool's options with their command line, kept for its history line, whose operands are known
+/// only once they are read.
 template <typename Options>
 class ToolCommand {
   public:
@@ -150,7 +150,7 @@ struct CommandLine::Data {
         CLI::Option* option;
         std::string value, help;
         Enters enters;
-        /// Of options whose order among each other counts.
+        /// Of options whose relative order matters.
         std::function<void(const std::string&)> take = {};
     };
 
@@ -162,8 +162,8 @@ struct CommandLine::Data {
     std::vector<std::string> unused_operands;
     std::vector<std::string>* operands = &unused_operands;
     std::size_t max_operands = 0;
-    const bool* many = nullptr;                  // where it is set there may be more
-    std::map<std::string, std::string> renamed;  // options that there are not: hints
+    const bool* many = nullptr;                  // if set, there may be more
+    std::map<std::string, std::string> renamed;  // removed options and their hints
     std::function<void()> check = [] {};  // of options against each other, once all are known
 
     CLI::Option* keep(CLI::Option* option, const std::string& value, const std::string& text,
@@ -174,7 +174,7 @@ struct CommandLine::Data {
     [[noreturn]] void usage(const std::string& message) const {
         throw UsageError(message + " (see " + tool + " --help)");
     }
-    /// In our words: an option without its value, or given too often.
+    /// Rejects an option without its value, or given too often, in our words.
     void explain(const std::string& mismatch) const;
     void sortOut(const std::vector<std::string>& words);
     [[nodiscard]] std::string hintFor(const std::string& unknown) const;
@@ -187,8 +187,8 @@ struct CommandLine::Data {
                 if (entry.option == option && entry.take)
                     visit(entry, option->results().at(used[option]++));
     }
-    /// Calls visit(name, value or null, entry) for what enters the history, in the man page's
-    /// order.
+    /// Calls visit(name, value or null, entry) for the options that enter the history, in the man
+    /// page's order.
     template <typename Visit>
     void forEachResult(Visit visit) const;
 };

@@ -30,8 +30,8 @@ namespace {
 
 constexpr int kMaxThreads = 4096;
 
-/// Cores this process may use: the affinity mask, or less if the control group or a batch system
-/// says so.
+/// Returns the cores this process may use: the affinity mask, or less if the control group or a
+/// batch system limits it.
 int availableThreads() {
     int threads = tbb::info::default_concurrency();
     if (const auto quota = cpuQuota()) threads = std::min(threads, *quota);
@@ -41,15 +41,15 @@ int availableThreads() {
     return threads;
 }
 
-/// How many of `wanted` more threads can be had together: TBB does not get over one that it is
-/// refused. They end at once.
+/// Finds how many of `wanted` more threads the system grants at once: TBB cannot handle a refused
+/// one. They end at once.
 std::size_t grantedThreads(std::size_t wanted) {
     std::vector<std::thread> threads;
     threads.reserve(wanted);
     std::atomic<bool> is_over = false;
     try {
         while (threads.size() < wanted) threads.emplace_back([&is_over] { is_over.wait(false); });
-    } catch (const std::exception&) {  // then these have to do
+    } catch (const std::exception&) {  // then these must do
     }
     is_over = true;
     is_over.notify_all();
@@ -120,7 +120,7 @@ void limitThreads(int threads) {
     // TBB starts no more than there are cores.
     const int wanted =
         threads > 0 ? std::min(threads, tbb::info::default_concurrency()) : availableThreads();
-    // Never taken back: TBB would start threads for work that is over.
+    // Never destroyed: TBB would start threads for work that is over.
     static const tbb::global_control* control = nullptr;
     delete std::exchange(control, nullptr);
     control = new tbb::global_control(tbb::global_control::max_allowed_parallelism,

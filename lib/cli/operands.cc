@@ -55,7 +55,7 @@ bool hasPlaced(const Document& document, const std::vector<std::string>& keyword
     });
 }
 
-/// The environment that layouts are held against.
+/// The environment against which layouts are validated.
 struct Reference {
     std::span<const Record> records;
     std::string operand;
@@ -63,7 +63,7 @@ struct Reference {
 };
 
 /// Compares the digest that `layout` records with that of `environment`.
-/// \throws FormatError if they differ and SceneRules::same_environment says so
+/// \throws FormatError if they differ and SceneRules::same_environment requires equality
 void checkDigest(const Document& layout, const Reference& environment,
                  std::optional<bool> same_environment, std::vector<Diagnostic>& warnings) {
     if (!same_environment.value_or(true)) return;
@@ -83,10 +83,10 @@ void checkDigest(const Document& layout, const Reference& environment,
     warnings.push_back(std::move(finding));
 }
 
-/// The environment that a layout names. \param layout the operand \param parse makes a document of
-/// its bytes \throws FormatError at the layout's line if it cannot be opened or is no regular file;
-/// where `parse` does, without what it quotes of a file that is neither in the layout's folder nor
-/// begins as records do
+/// Reads the environment that a layout names. \param layout the operand \param parse converts its
+/// bytes to a document \throws FormatError at the layout's line if it cannot be opened or is no
+/// regular file; if `parse` throws, without quoting a file that is neither in the layout's folder
+/// nor begins as records do
 template <typename Parse>
 Document documentReferenced(const EnvironmentReference& reference, const std::string& file,
                             const std::string& layout, const Parse& parse) {
@@ -120,7 +120,7 @@ Document documentReferenced(const EnvironmentReference& reference, const std::st
     return document;
 }
 
-/// Names textures relative to the current folder, where pictures are made.
+/// Makes names of textures relative to the current folder, where pictures are drawn.
 void rebaseTextures(std::vector<Record>& records, const std::string& operand) {
     constexpr const char* kKey = "texture";
     for (Record& record : records)
@@ -128,7 +128,7 @@ void rebaseTextures(std::vector<Record>& records, const std::string& operand) {
             record.set(kKey, sideFilePath(operand, record.text(kKey)), record.keyPlace(kKey));
 }
 
-/// The operands as they are found, before they are joined.
+/// Finds the operands before they are joined.
 class OperandReader {
   public:
     explicit OperandReader(const SceneRequest& request) : request_(request) {}
@@ -193,7 +193,7 @@ class OperandReader {
         take("-", std::move(document));
     }
 
-    /// ENV was left out: LAYOUT's `environment file=` names it.
+    /// ENV is missing: LAYOUT's `environment file=` names it.
     void findEnvironment() {
         const auto reference = environmentReference(*layout_);
         if (!reference || reference->file.empty())
@@ -287,7 +287,7 @@ std::string environmentFileFor(const std::string& output, const std::string& env
     if (isStream(environment_operand)) return "";
     const fs::path folder = output == "-" ? fs::path() : fs::path(output).parent_path();
     const fs::path from = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder);
-    // The environment itself may be a link that is meant: only its folder is resolved.
+    // The environment itself may be a deliberate link: only its folder is resolved.
     const fs::path file(environment_operand);
     const fs::path to = fs::weakly_canonical(file.has_parent_path() ? file.parent_path() : ".");
     return (to / file.filename()).lexically_relative(from).string();
@@ -305,7 +305,7 @@ std::string folderOf(const std::string& operand) {
     return isStream(operand) ? "" : fs::path(operand).parent_path().string();
 }
 
-/// Points that are given win over those of records.
+/// Points on the command line override those of records.
 void setInside(std::span<const Point2> points, std::vector<Document>& documents) {
     for (Document& document : documents)
         std::erase_if(document.records,
@@ -317,7 +317,7 @@ void setInside(std::span<const Point2> points, std::vector<Document>& documents)
     }
 }
 
-/// The bytes of an input; an empty stdin may stand for no records.
+/// The bytes of an input; an empty stdin may hold no records.
 struct RawInput {
     std::string name, bytes;
     bool is_plan = false;
@@ -332,15 +332,15 @@ RawInput readRaw(const std::string& input, const ImportOptions& import) {
 Document parseInput(const RawInput& raw, const InputRequest& request, const ImportOptions& import) {
     if (raw.name == "-" && request.may_be_empty && isBlank(raw.bytes)) return {};
     Document document = parseDocument(raw.bytes, raw.name, import, sceneSchemas());
-    if (!isRecordText(raw.bytes)) checkIds(document.records);  // as those are when they are read
+    if (!isRecordText(raw.bytes)) checkIds(document.records);  // text records are checked when read
     rebaseFiles(document.records, folderOf(raw.name), "");
     return document;
 }
 
-/// What an importer has to know of records that others bring: their walls close its gaps, their
-/// inside points choose its rooms.
+/// Passes the records of other inputs to an importer: their walls close its gaps, their inside
+/// points choose its rooms.
 void addKnown(std::span<const Record> records, ImportOptions& import) {
-    Diagnostics ignored;  // said where the environment is built
+    Diagnostics ignored;  // reported when the environment is built
     for (const Record& record : records) {
         if (record.keyword() == "inside" && record.has("at")) {
             const Tuple& at = record.tuple("at");
@@ -352,7 +352,7 @@ void addKnown(std::span<const Record> records, ImportOptions& import) {
     }
 }
 
-/// All inputs in their order; plans are read last, as they need to know what the others say.
+/// Parses all inputs in their order; plans last, as they require the records of the others.
 std::vector<Document> parseInputs(const InputRequest& request) {
     std::vector<RawInput> raw;
     for (const std::string& input : request.inputs) raw.push_back(readRaw(input, request.import));
@@ -379,7 +379,7 @@ void append(std::vector<T>& to, std::vector<T>&& from) {
         to.insert(to.end(), std::move_iterator(from.begin()), std::move_iterator(from.end()));
 }
 
-/// Layouts alone: the first that names its environment brings it along. Returns the file's name.
+/// Layouts alone: reads the environment of the first that names one. Returns the file's name.
 std::string addEnvironment(std::vector<Document>& documents, const InputRequest& request) {
     for (std::size_t i = 0; i < documents.size(); ++i) {
         const auto reference = environmentReference(documents[i]);
@@ -396,8 +396,8 @@ std::string addEnvironment(std::vector<Document>& documents, const InputRequest&
     return "";
 }
 
-/// The environment among the documents, read from the layouts' records if none was given; its
-/// records come later.
+/// Finds the environment among the documents, or reads it from the layouts' records; its records
+/// come later.
 Reference environmentAmong(std::vector<Document>& documents, const InputRequest& request) {
     Reference environment;
     for (std::size_t i = 0; i < documents.size(); ++i)

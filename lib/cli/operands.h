@@ -16,7 +16,7 @@
 
 namespace ispace {
 
-/// How tools take what the files of a scene say of other files.
+/// Rules for references from the files of a scene to other files.
 struct SceneRules {
     /// If a layout records another digest than that of the environment: an error (true) or accepted
     /// (false). Unset: a warning if the environment is an operand, an error if the layout's record
@@ -26,25 +26,25 @@ struct SceneRules {
     std::optional<std::uint64_t> max_work = {};  ///< of each input, see Budget; unset: by its size
 };
 
-/// The changes that clients made to the world of a recorded run, which began in a scene.
+/// Returns the changes that clients made to the world of a recorded run, which began in a scene.
 /// \throws FormatError if events.csv holds no events
 RunChanges changesOfRun(const std::string& folder, const Scene& start);
 
 struct CommonOptions;
 
-/// How a tool that takes `ENV [LAYOUT]` reads its operands.
+/// Request of a tool that takes `ENV [LAYOUT]`.
 struct SceneRequest {
     std::vector<std::string> operands;  ///< at most two, in any order; recognised by content
     /// Warnings of the digest go to environment.warnings.
     SceneRules rules = {};
-    /// Read LAYOUT from stdin where ENV holds no placed sensor, or where there is no operand
-    /// (scan and coverage); otherwise a missing operand is a usage error (arrange).
+    /// Read LAYOUT from stdin if ENV holds no placed sensor, or without operands (scan and
+    /// coverage); otherwise a missing operand is a usage error (arrange).
     bool layout_from_stdin = true;
     /// Keywords of sensors; an ENV with a placed one needs no LAYOUT.
     std::vector<std::string> sensors = {"laser", "ranger", "camera", "ultrasound"};
 };
 
-/// What the operands hold.
+/// Content of the operands.
 struct SceneInput {
     Scene scene;
     Document environment;
@@ -62,7 +62,7 @@ void warnOfImport(const CommonOptions& options, const std::string& tool, const S
 /// Adds the zones of --zone to the scene, as records. \throws UsageError as readZones()
 void addZones(std::span<const std::string> zones, SceneInput& input);
 
-/// The files that a scene was read from, the operands first; for -MD.
+/// Returns the files that a scene was read from, the operands first; for -MD.
 std::vector<std::string> filesOf(const SceneInput& input);
 
 /// Reads and joins ENV and LAYOUT by the rules of operands.
@@ -84,22 +84,22 @@ OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
 /// \throws UsageError if two of these files are stdin
 void mustReadStdinOnce(const std::vector<std::string>& files);
 
-/// Reads everything on stdin unless it is a terminal. \throws UsageError
+/// Reads all of stdin unless it is a terminal. \throws UsageError
 std::string readStdin();
 
-/// `file=` of an `environment` record in a layout written to `output`: the path of ENV relative to
-/// its folder, never absolute; "" if ENV came from a stream.
+/// Returns `file=` of an `environment` record in a layout written to `output`: the path of ENV
+/// relative to its folder, never absolute; "" if ENV came from a stream.
 std::string environmentFileFor(const std::string& output, const std::string& environment_operand);
 
-/// Adds the folders where the environment of the process says that models of Gazebo lie:
-/// GAZEBO_MODEL_PATH, GZ_SIM_RESOURCE_PATH and SDF_PATH.
+/// Adds the folders of Gazebo models in the environment variables GAZEBO_MODEL_PATH,
+/// GZ_SIM_RESOURCE_PATH and SDF_PATH.
 void addModelFolders(ImportOptions& options);
 
-/// How a tool that takes any number of environments and layouts reads them as one.
+/// Request of a tool that reads any number of environments and layouts as one.
 struct InputRequest {
     std::vector<std::string> inputs;  ///< "-" for stdin
     ImportOptions import;
-    std::vector<Record> added;  ///< by edits; importers of plans must know them
+    std::vector<Record> added;  ///< by edits; importers of plans require them
     bool compiles = true;       ///< the environment of layouts is read, and digests are compared
     std::optional<bool> same_environment = {};  ///< as in SceneRules
     bool may_be_empty = false;  ///< an empty stdin is an environment without records

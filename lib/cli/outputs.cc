@@ -21,7 +21,7 @@ constexpr std::size_t kBuffer = 1U << 20U;
 FileStream::FileStream(const std::string& target)
     : file_(target), buffer_(kBuffer, '\0'), stream_(this) {
     setp(buffer_.data(), buffer_.data() + buffer_.size());
-    stream_.exceptions(std::ios::badbit);  // what writing throws reaches the caller
+    stream_.exceptions(std::ios::badbit);  // exceptions of a write reach the caller
 }
 
 int FileStream::overflow(int c) {
@@ -45,14 +45,14 @@ namespace {
 
 bool isControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-/// make drops ./ before it looks for ~.
+/// make removes ./ before it looks for ~.
 bool isHome(std::string_view name) {
     while (name.starts_with("./"))
         name.remove_prefix(std::min(name.find_first_not_of('/', 1), name.size()));
     return name.starts_with('~');
 }
 
-/// Why make cannot read a name in a rule, however it is quoted; "" if it can.
+/// Returns the reason why make cannot read a name in a rule, however it is quoted; "" if it can.
 std::string_view reasonAgainst(const std::string& name) {
     constexpr std::string_view kWildcards = "*?[";
     if (name.find_first_of("=;") != std::string::npos) return "it has = or ; in it";
@@ -67,8 +67,8 @@ std::string_view reasonAgainst(const std::string& name) {
     return "";
 }
 
-/// A file's name as make reads it back. Blanks, #, colons and wildcards are quoted by a backslash,
-/// % in a target and | elsewhere; backslashes count only before those.
+/// Returns a file's name as make reads it back. Blanks, #, colons and wildcards are quoted by a
+/// backslash, % in a target and | elsewhere; backslashes count only before those.
 std::string inMake(const std::string& name, bool is_target) {
     if (const std::string_view reason = reasonAgainst(name); !reason.empty())
         throw UsageError("-MD: make cannot read the name `" + printable(name) +
@@ -135,7 +135,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A piece of a pattern: text, or what stands for the frame (with a least width) or the id.
+/// A piece of a pattern: text, or the frame (with a least width), or the id.
 struct Piece {
     enum class Kind { Text, Frame, Id } kind = Kind::Text;
     std::string text;
@@ -186,10 +186,10 @@ bool has(const std::vector<Piece>& pieces, Piece::Kind kind) {
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
-/// An id and a frame with nothing between them that ends or begins a number: l1 and 2 are l12, and
-/// so are l and 12.
+/// Returns true for an id and a frame without a separator, or with one that could be part of a
+/// number: l1 and 2 are l12, and so are l and 12.
 bool runsTogether(const std::vector<Piece>& pieces) {
-    // Between any two that are no text stands one that is.
+    // Pieces that are no text have text in between.
     for (std::size_t i = 1; i + 2 < pieces.size(); i += 2) {
         const Piece &a = pieces[i], &text = pieces[i + 1], &b = pieces[i + 2];
         if (a.kind == b.kind) continue;
@@ -200,8 +200,8 @@ bool runsTogether(const std::vector<Piece>& pieces) {
     return false;
 }
 
-/// An id as a part of a file's name. What leads to another folder, hides the file, looks like an
-/// option or does not show becomes _.
+/// Converts an id to a part of a file's name. Characters that lead to another folder, hide the
+/// file, look like an option or are invisible become _.
 std::string nameOf(const std::string& id) {
     std::string name;
     for (std::size_t i = 0; i < id.size();) {
@@ -216,7 +216,7 @@ std::string nameOf(const std::string& id) {
     return name;
 }
 
-/// Makes the folder and those above it, unless they exist.
+/// Creates the folder and its parents, unless they exist.
 void makeFolder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
@@ -325,7 +325,7 @@ bool isStdout(const std::string& output) {
 }
 
 bool isStream(const std::string& operand) {
-    // What is open already has a name, too; behind it may be a regular file.
+    // An open descriptor has a name, too; it may be a regular file.
     if (operand == "-" || operand.starts_with("/dev/std") || operand.starts_with("/dev/fd/") ||
         (operand.starts_with("/proc/") && operand.find("/fd/") != std::string::npos))
         return true;

@@ -15,11 +15,11 @@ namespace ispace {
 /// A stream into an OutputFile, for products that are too large for memory.
 class FileStream : private std::streambuf {
   public:
-    /// \throws std::system_error if the file cannot be made there
+    /// \throws std::system_error if the file cannot be created there
     explicit FileStream(const std::string& target);
 
     [[nodiscard]] std::ostream& stream() { return stream_; }
-    /// Writes the rest and puts the file in its place. \throws std::system_error naming the
+    /// Writes the rest and renames the file to its target. \throws std::system_error naming the
     /// target, a full disk included, whenever it happened
     void commit();
 
@@ -32,20 +32,20 @@ class FileStream : private std::streambuf {
     std::ostream stream_;
 };
 
-/// A rule for make: `target` depends on `sources`, each named once, in their order, without
+/// Returns a rule for make: `target` depends on `sources`, each named once, in their order, without
 /// streams. Each source is also a target without recipe, so that make continues if a file that is
 /// no longer used was deleted. Special characters are escaped for make. \throws UsageError for
 /// names that make cannot read: with = ; control characters, two %, ~ at the beginning, or a blank,
 /// backslash or ) at the end
 std::string dependencyRule(const std::string& target, std::span<const std::string> sources);
 
-/// Checks -MD and -MF against -o. \throws UsageError for -MF alone and without a product's name
+/// Validates -MD and -MF against -o. \throws UsageError for -MF alone and without a product's name
 void checkDependencies(const DependencyOptions& options, const std::string& output);
 
 /// Claims the product and its rule, see claimOutput(); a tool calls it first.
 void claimOutputs(const CommonOptions& options);
 
-/// Writes the rule of -o if wanted. \param files all sources of the product
+/// Writes the rule of -o on request. \param files all sources of the product
 void writeDependencies(const CommonOptions& options, std::span<const std::string> files);
 
 /// Names of the files of a run that writes many: `-o` names a folder (one that exists, or with / at
@@ -54,21 +54,20 @@ void writeDependencies(const CommonOptions& options, std::span<const std::string
 /// id, control characters and a leading dot or dash, become _.
 class OutputSet {
   public:
-    /// Nothing if `output` is one file or stdout.
+    /// Returns nullopt if `output` is one file or stdout.
     static std::optional<OutputSet> of(const std::string& output);
 
-    /// Checks that no two files have the same name, and makes the folder; for a pattern, those of
-    /// the first frame.
-    /// \param several_frames whether frames must be told apart
-    /// \param endings of the files of one reading; all but the first stand beside it
-    /// \throws UsageError for a bad pattern, and where files would have one name; std::system_error
-    ///         if the folder cannot be made
+    /// Rejects equal file names, and creates the folder; for a pattern, those of the first frame.
+    /// \param several_frames names must differ by frame
+    /// \param endings of the files of one reading; all but the first accompany it
+    /// \throws UsageError for a bad pattern, and for equal names; std::system_error if the folder
+    /// cannot be created
     void prepare(const std::vector<std::string>& ids, bool several_frames,
                  const std::vector<std::string>& endings) const;
-    /// Name of the file of a reading: the suffix of a pattern stands in place of its format's own.
+    /// Returns the file name of a reading: the suffix of a pattern replaces that of the format.
     [[nodiscard]] std::string fileOf(const std::string& id, int frame,
                                      const std::string& ending) const;
-    /// Name of a file beside it.
+    /// Returns the name of an accompanying file.
     [[nodiscard]] std::string fileBeside(const std::string& id, int frame,
                                          const std::string& ending) const;
 
@@ -80,12 +79,12 @@ class OutputSet {
     std::string suffix_;   // of the pattern, with its dot
 };
 
-/// True for "-" and the other names of standard output.
+/// Returns true for "-" and the other names of standard output.
 bool isStdout(const std::string& output);
-/// True for "-" and for what is a stream by another name: /dev/stdin, <(…), a named pipe.
+/// Returns true for "-" and for other names of streams: /dev/stdin, <(…), a named pipe.
 bool isStream(const std::string& operand);
 
-/// The part of a file's name before its suffix.
+/// Returns the part of a file's name before its suffix.
 std::string withoutSuffix(const std::string& file);
 
 }  // namespace ispace

@@ -105,7 +105,7 @@ std::unique_ptr<Progress> makeProgress(const std::string& tool, std::optional<bo
 
 SearchWatch::SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> limit)
     : shown_(std::move(shown)) {
-    constexpr double kMaxLength = 1e9;  // some thirty years, and no overflow
+    constexpr double kMaxLength = 1e9;  // some thirty years, without overflow
     if (limit)
         end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                   std::chrono::duration<double>(std::min(*limit, kMaxLength)));

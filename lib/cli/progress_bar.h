@@ -37,14 +37,14 @@ class ProgressBar final : public Progress {
     bool shown_ = false;
 };
 
-/// A ProgressBar if `wanted`, or by default if stderr is a terminal; else one that is silent.
+/// Creates a ProgressBar if `wanted`, or by default if stderr is a terminal; else a silent one.
 std::unique_ptr<Progress> makeProgress(const std::string& tool, std::optional<bool> wanted,
                                        bool quiet);
 
-/// Progress of a search that ends early at TERM, INT or a time limit, with the best it has.
+/// Progress of a search that ends early at TERM, INT or a time limit, with the best result so far.
 class SearchWatch final : public Progress {
   public:
-    /// \param shown where progress is shown; \param limit seconds from now on
+    /// \param shown receives the progress; \param limit seconds from now on
     SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> limit);
 
     void begin(std::string_view phase, std::int64_t total) override { shown_->begin(phase, total); }
@@ -54,7 +54,7 @@ class SearchWatch final : public Progress {
     void end() override { shown_->end(); }
     [[nodiscard]] bool stopped() const override;
 
-    /// The signal received, 0 if none.
+    /// Returns the signal received, 0 if none.
     [[nodiscard]] int signal() const { return signals_.signal(); }
 
   private:

@@ -45,16 +45,16 @@ std::string systemErrorText(const std::system_error& error) {
     return "error: " + what;
 }
 
-/// A file opened later must not get the number of a standard stream that the parent closed. What
-/// stands in for it refuses every read or write, so that a lost product is an error.
+/// A file opened later must not get the number of a standard stream that the parent closed. The
+/// substitute rejects every read or write, so that a lost product is an error.
 void occupyStandardStreams() {
     for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(fd, F_GETFD) < 0 && errno == EBADF)
             (void)::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }
 
-/// Without this the process ends where a file would grow beyond `ulimit -f`; with it writing fails.
-/// A handler, unlike a signal that is ignored, is not passed on to other programs.
+/// Without this the process ends if a file would grow beyond `ulimit -f`; with it writing fails. A
+/// handler, unlike an ignored signal, is not inherited by other programs.
 void refuseLargeFiles() {
     struct sigaction action = {};
     action.sa_handler = [](int) {};
@@ -66,7 +66,7 @@ void* orThrow(void* memory) {
     return memory;
 }
 
-/// Without this GMP (exact geometry) ends the process by an abort where memory is out.
+/// Without this GMP (exact geometry) aborts the process if memory is out.
 void letNumbersThrow() {
     mp_set_memory_functions(
         [](std::size_t size) { return orThrow(std::malloc(size)); },
@@ -76,7 +76,7 @@ void letNumbersThrow() {
 
 constexpr std::string_view kNoMemory = "error: not enough memory for this input";
 
-/// Says what was thrown. \pre within a handler
+/// Prints the exception. \pre within a handler
 int sayException(const std::string& tool) {
     try {
         throw;
@@ -120,7 +120,7 @@ ToolFailure currentFailure() {
 int runTool(const std::string& tool, const std::function<void()>& body) {
     occupyStandardStreams();
     std::signal(SIGPIPE, SIG_DFL);  // a parent may have it ignored: filters end silently
-    std::signal(SIGCHLD, SIG_DFL);  // likewise: how a child ended could not be asked
+    std::signal(SIGCHLD, SIG_DFL);  // likewise: the exit status of a child could not be read
     refuseLargeFiles();
     letNumbersThrow();
     try {
@@ -134,7 +134,7 @@ int runTool(const std::string& tool, const std::function<void()>& body) {
     } catch (...) {
         try {
             return sayException(tool);
-        } catch (const std::exception&) {  // not even memory for a message
+        } catch (const std::exception&) {  // no memory even for a message
             sayMemoryIsOut(tool);
         }
     }
@@ -143,10 +143,10 @@ int runTool(const std::string& tool, const std::function<void()>& body) {
 
 namespace {
 
-/// The first part of `text` that is fit for one line.
+/// Returns the first part of `text` that fits in one line.
 std::string_view firstLine(std::string_view text) { return text.substr(0, text.find('\n')); }
 
-/// True where hardly any memory can be allocated.
+/// Returns true if hardly any memory can be allocated.
 bool isMemoryOut() {
     constexpr std::size_t kSome = std::size_t{1} << 20U;
     void* const some = std::malloc(kSome);
@@ -154,7 +154,7 @@ bool isMemoryOut() {
     return some == nullptr;
 }
 
-/// Says why, and leaves; returns where there is no reason but a mistake in the program.
+/// Prints the reason and exits; returns if the only reason is a bug.
 void sayWhy(std::string_view tool) {
     if (std::current_exception()) {
         try {
@@ -169,7 +169,7 @@ void sayWhy(std::string_view tool) {
             std::abort();
         }
     }
-    // The runtime had no memory to throw with, or nobody threw anything.
+    // The runtime had no memory to throw with, or no exception was thrown.
     if (!isMemoryOut()) std::abort();
     sayMemoryIsOut(tool);
 }
@@ -182,7 +182,7 @@ void sayWhy(std::string_view tool) {
     ::_exit(EXIT_FAILURE);
 }
 
-/// Of a program, and so run before what libraries do at their start.
+/// Runs before the initialisers of libraries, as part of a program.
 using AtStart = void (*)(int, char**, char**);
 [[gnu::used, gnu::section(".preinit_array")]] const AtStart kAtStart = [](int, char**, char**) {
     std::set_terminate(onTerminate);
@@ -219,7 +219,7 @@ void sayMemoryIsOut(std::string_view tool) noexcept {
 namespace {
 
 constexpr int kSignals[] = {SIGTERM, SIGINT};
-/// What the handler tells; it reaches nothing but what is global.
+/// Written by the handler, which can reach only globals.
 std::atomic<int> last_signal = 0;
 std::atomic<int> event = -1;
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -235,7 +235,7 @@ void onSignal(int signal) {
     const int error = errno;
     last_signal = signal;
     static_cast<void>(!::eventfd_write(event, 1));
-    // A person who presses the keys again does not want to wait.
+    // A second INT means that the user does not want to wait.
     if (signal == SIGINT) handle(signal, SIG_DFL);
     errno = error;
 }
@@ -246,8 +246,8 @@ StopSignals::StopSignals() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK
     if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
     last_signal = 0;
     event = descriptor_;
-    // Also where they were ignored, as shells do for INT in the background: what is asked of this
-    // process is meant.
+    // Also if they were ignored, as shells do for INT in the background: a request to this process
+    // is deliberate.
     for (const int signal : kSignals) handle(signal, onSignal);
 }
 
@@ -265,12 +265,12 @@ namespace {
     throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// Descriptors of those files that are regular ones, for reading and cutting.
+/// Returns descriptors of the regular files among them, for reading and truncating.
 std::vector<int> openRegular(const std::vector<std::string>& files) {
     std::vector<int> open;
     open.reserve(files.size());
     for (const std::string& file : files) {
-        // Where a link was put meanwhile is another file.
+        // Skips a link that has since replaced the file.
         const int fd = ::open(file.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
         struct stat info = {};
         if (fd >= 0 && ::fstat(fd, &info) == 0 && S_ISREG(info.st_mode))
@@ -281,9 +281,9 @@ std::vector<int> openRegular(const std::vector<std::string>& files) {
     return open;
 }
 
-// Below here runs in a copy of a process that has threads: system calls only, no memory.
+// The code below runs in a copy of a process that has threads: system calls only, no memory.
 
-/// The number of bytes up to the last newline, that included.
+/// Returns the number of bytes up to and including the last newline.
 off_t wholeLines(int fd, off_t size) {
     std::array<char, 4096> block;
     while (size > 0) {
@@ -305,8 +305,8 @@ void cutTornLine(int fd) {
     if (whole >= 0 && whole < size) static_cast<void>(!::ftruncate(fd, whole));
 }
 
-/// Closes all but `kept`, which ascend: what the other process serves must end with it, and whoever
-/// reads what it says must not wait for this one.
+/// Closes all but `kept`, which ascend: services of the other process must end with it, and readers
+/// of its output must not wait for this one.
 void closeOthers(const std::vector<int>& kept) {
     unsigned int first = 0;
     for (const int fd : kept) {
@@ -319,7 +319,7 @@ void closeOthers(const std::vector<int>& kept) {
 
 [[noreturn]] void guard(int life, const std::vector<int>& files, const std::vector<int>& kept) {
     ::setsid();
-    // Not to be taken for the process it guards by who kills by name.
+    // So that a kill by name does not mistake it for the process it guards.
     ::prctl(PR_SET_NAME, "line-guard");
     closeOthers(kept);
     for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGPIPE}) ::signal(signal, SIG_IGN);

@@ -15,26 +15,26 @@
 
 namespace ispace {
 
-/// What `--help` and `--version` ask for: text for stdout, exit status 0.
+/// Request of `--help` and `--version`: text for stdout, exit status 0.
 struct TextRequested {
     std::string text;
 };
 
-/// Runs a tool's body, prints what it throws to stderr, one line per error, and returns the exit
+/// Runs a tool's body, prints its exceptions to stderr, one line per error, and returns the exit
 /// status: 0 done; 1 bad data or failed I/O; 2 usage; 3 a stated requirement not met. A closed pipe
 /// ends the process silently.
 int runTool(const std::string& tool, const std::function<void()>& body);
 
-/// What runTool makes of an exception.
+/// Exit status and messages of an exception.
 struct ToolFailure {
     int status = 1;
     std::vector<std::string> lines = {};  ///< of its message, without the tool's name
 };
 
-/// That of the exception being handled, for who goes on after it. \pre within a handler
+/// Converts the exception being handled, for callers that go on after it. \pre within a handler
 ToolFailure currentFailure();
 
-/// Writes the pieces and a newline to stderr. Needs no memory, and waits where stderr is
+/// Writes the pieces and a newline to stderr. Requires no memory, and waits if stderr is
 /// non-blocking. May be called at any time, also before main().
 void writeErrorLine(std::initializer_list<std::string_view> pieces) noexcept;
 
@@ -52,9 +52,9 @@ class StopSignals {
     StopSignals(const StopSignals&) = delete;
     StopSignals& operator=(const StopSignals&) = delete;
 
-    /// The last signal received, 0 if none. From any thread.
+    /// Returns the last signal received, 0 if none. From any thread.
     [[nodiscard]] int signal() const;
-    /// A descriptor that becomes readable with a signal, to wait for; do not read it.
+    /// Returns a descriptor that becomes readable with a signal, to wait for; do not read it.
     [[nodiscard]] int descriptor() const { return descriptor_; }
 
   private:

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What is elsewhere is not told apart from what is nowhere.
+// Does not reveal whether a file exists elsewhere.
 constexpr const char* kNone = "there is no such file in the folder that clients may read";
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why) {
@@ -53,7 +53,7 @@ bool beginsAsRecords(const std::string& file) {
     }
 }
 
-/// Names in texts for clients, who may not know where the folder is.
+/// Converts names in texts for clients, which may not know the folder's path.
 class ClientNames {
   public:
     explicit ClientNames(const std::string& folder) : folder_(folder) {}
@@ -66,14 +66,14 @@ class ClientNames {
         replaceAll(text, folder_ == "/" ? folder_ : folder_ + "/", "");
         return text;
     }
-    /// Without what a file holds that is no scene. \pre the fence stands
+    /// Removes quotations of files that are no scene. \pre the fence stands
     [[nodiscard]] FormatError in(const FormatError& error) const {
         constexpr const char* kHidden =
             "this file cannot be used: envc --check may say why; what it names must lie in the "
             "folder that clients may read, too";
         std::vector<Diagnostic> findings = error.diagnostics();
         for (Diagnostic& finding : findings) {
-            // What a request says has no file.
+            // The text of a request has no file.
             const bool tells =
                 !fs::path(finding.file).is_absolute() || beginsAsRecords(finding.file);
             finding.message = tells ? in(finding.message) : kHidden;
