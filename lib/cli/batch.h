@@ -76,7 +76,7 @@ std::string junitXml(const std::string& tool, const std::string& suite,
 /// The file of --junit, which is written whether or not the run succeeds.
 class JunitFile {
   public:
-    /// \param file "" for none \throws std::system_error, UsageError as OutputFile
+    /// \param file "": no file \throws std::system_error, UsageError as OutputFile
     JunitFile(std::string tool, const std::string& file);
 
     /// Writes the verdicts of a suite, once.

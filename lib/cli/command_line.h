@@ -150,7 +150,7 @@ struct CommandLine::Data {
         CLI::Option* option;
         std::string value, help;
         Enters enters;
-        /// Of options whose relative order matters.
+        /// Of options that keep their relative order.
         std::function<void(const std::string&)> take = {};
     };
 

@@ -108,7 +108,7 @@ struct InputRequest {
 /// Joins all inputs: environments in their order, then layouts, whose records replace those with
 /// the same id. If only layouts are given and `compiles` is set, the environment that they name is
 /// read, too. File names are relative to the current folder; history, notes, warnings and sources
-/// are joined. \param other_rooms gets a warning for each layout whose digest differs and is no
+/// are joined. \param other_rooms gets a warning for each layout with another digest and is no
 /// error \throws as parseDocument; FormatError for doubled ids and for a digest that must not
 /// differ
 Document readInputs(const InputRequest& request, std::vector<Diagnostic>& other_rooms);

@@ -54,7 +54,7 @@ class SearchWatch final : public Progress {
     void end() override { shown_->end(); }
     [[nodiscard]] bool stopped() const override;
 
-    /// Returns the signal received, 0 if none.
+    /// Returns the signal received, or 0.
     [[nodiscard]] int signal() const { return signals_.signal(); }
 
   private:

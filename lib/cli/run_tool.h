@@ -38,7 +38,7 @@ ToolFailure currentFailure();
 /// non-blocking. May be called at any time, also before main().
 void writeErrorLine(std::initializer_list<std::string_view> pieces) noexcept;
 
-/// Reports, once, that memory ran out; allocates nothing.
+/// Reports, once, that memory ran out; allocates no memory.
 void sayMemoryIsOut(std::string_view tool) noexcept;
 
 /// Turns TERM and INT into requests to stop. While it lives only a second INT ends the process;
@@ -52,7 +52,7 @@ class StopSignals {
     StopSignals(const StopSignals&) = delete;
     StopSignals& operator=(const StopSignals&) = delete;
 
-    /// Returns the last signal received, 0 if none. From any thread.
+    /// Returns the last signal received, or 0. From any thread.
     [[nodiscard]] int signal() const;
     /// Returns a descriptor that becomes readable with a signal, to wait for; do not read it.
     [[nodiscard]] int descriptor() const { return descriptor_; }

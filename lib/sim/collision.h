@@ -46,8 +46,8 @@ class Obstacles {
     explicit Obstacles(const Slice& band);
     Obstacles(Obstacles&&) = default;  // the solids keep their addresses
 
-    /// Returns an element of Environment::elements() whose line a circle overlaps, or whose solid
-    /// contains it.
+    /// Returns an element of Environment::elements() with a line that a circle overlaps or a solid
+    /// that contains it.
     [[nodiscard]] std::optional<std::size_t> overlap(Point2 center, double radius) const;
     /// Returns the distance to the nearest line, at most `farthest`. Near lines cost least.
     [[nodiscard]] double nearest(Point2 p, double farthest) const;
@@ -55,8 +55,9 @@ class Obstacles {
     void findAbout(Point2 p, double reach, std::vector<Segment2>& lines) const;
     /// Returns true if the path comes nearer than `distance` to a line.
     [[nodiscard]] bool near(const Segment2& way, double distance) const;
-    /// Finds an element that stops a circle whose centre moves along the path: one that it enters
-    /// deeper than at its start, so that a circle that overlaps a line by rounding can leave it.
+    /// Finds an element that stops a circle with its centre moving along the path: one that it
+    /// enters deeper than at its start, so that a circle that overlaps a line by rounding can leave
+    /// it.
     [[nodiscard]] std::optional<std::size_t> stop(const Segment2& way, double radius) const;
 
   private:
@@ -158,7 +159,7 @@ class Traffic {
 
   private:
     std::vector<std::size_t> rank_;  // in settling order
-    double reach_ = 0;  // of the mover that gets farthest from its start in a step
+    double reach_ = 0;               // of the mover that gets farthest from its start in a step
     std::vector<Point2> places_;
     FloorGrid grid_;
 };

@@ -14,12 +14,12 @@
 
 namespace ispace {
 
-/// What a run is expected to do, as one sentence says it:
+/// A requirement on a run, as one sentence:
 ///
 ///     no collision|stall [of SUBJECT] [WINDOW]
 ///     SUBJECT [not] STATE [WHEN] [WINDOW]
 ///
-/// SUBJECT is the id of a robot or a person, or a glob (`r*`) whose every match is meant. WINDOW is
+/// SUBJECT is the id of a robot or a person, or a glob (`r*`) for all its matches. WINDOW is
 /// `after T`, `before T` or both, ends included. STATE and WHEN are:
 ///
 ///     within D of X,Y | within D of ID | in zone ZONE | seen [by N] | unseen
@@ -37,12 +37,13 @@ struct Expectation {
     std::string text;  ///< as given
     std::string subject = "*";
     State state = State::Collision;
-    bool is_negated = false;  ///< requires that the state does not hold
-    double amount = 0;  ///< metres, m/s, or a number of sensors
+    bool is_negated = false;      ///< requires that the state does not hold
+    double amount = 0;            ///< metres, m/s, or a number of sensors
     std::optional<Point2> place;  ///< Near: of this point,
-    std::string name;  ///< or of the mover with this id; InZone: the zone
+    std::string name;             ///< or of the mover with this id; InZone: the zone
     When when = When::Once;
-    SimTime span{};  ///< Parses a sentence. \throws UsageError that names the expected word and its position
+    SimTime span{};  ///< Parses a sentence. \throws UsageError that names the expected word and its
+                     ///< position
     SimTime after{};
     SimTime before = SimTime::max();
 };
@@ -54,8 +55,9 @@ Expectation parseExpectation(std::string_view text);
 struct RunVerdict {
     std::string expectation;
     bool is_met = false;
-    SimTime time{};  ///< why it is not met: "r1 was 1.2 m away at t=4.500, never nearer"
-    std::string reason = {};  ///< Judges a run by its expectations. The same run gets the same verdicts, at any speed and with any number of clients.
+    SimTime time{};           ///< why it is not met: "r1 was 1.2 m away at t=4.500, never nearer"
+    std::string reason = {};  ///< Judges a run by its expectations. The same run gets the same
+                              ///< verdicts, at any speed and with any number of clients.
 };
 
 /// The world must outlive the judge. \throws UsageError for subjects and zones that the world lacks
@@ -77,7 +79,7 @@ class ExpectationJudge {
     std::unique_ptr<Data> data_;
 };
 
-/// What is not met, a line each, for messages; "" if all is.
+/// Returns a line for each unmet expectation; "" if all are met.
 std::string unmetText(const std::vector<RunVerdict>& verdicts);
 
 }  // namespace ispace

@@ -268,7 +268,7 @@ Vec2 displacement(Vec2 forward, const Run& drive, const Run& side, const Run& tu
 
 void setDeviation(Advance& to, const Run& drive, const Run& side, const Run& turn,
                   double duration) {
-    // A motion whose acceleration is at most a deviates from a uniform one by at most a T^2 / 8.
+    // A motion of acceleration at most a deviates from a uniform one by at most a T^2 / 8.
     const double rate = Angle::degrees(turn.fastest()).radians();
     const double accel =
         drive.hardest() + side.hardest() + (drive.fastest() + side.fastest()) * rate;

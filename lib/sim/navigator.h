@@ -15,9 +15,9 @@ namespace ispace {
 /// Drives a mover along a path or lets it wander, by setting the goals of its motion ten times a
 /// second and whenever they are reached. It chooses a heading that is free for two seconds, or for
 /// the braking time; if the room is too narrow for its speed, it tries a half, a quarter … of it.
-/// Without a free heading it waits, and after a while tries to pass on the side. A mover whose step
-/// was cancelled turns on the spot before it goes on. Random numbers depend on the seed, the id and
-/// the number of draws.
+/// Without a free heading it waits, and after a while tries to pass on the side. After a cancelled
+/// step it turns on the spot before it goes on. Random numbers depend on the seed, the id and the
+/// number of draws.
 ///
 /// On a path it stops at the last point and at those with a pause; a robot that is not
 /// omnidirectional also stops where the path bends by more than 20 degrees, and with steps longer

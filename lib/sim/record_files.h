@@ -125,7 +125,7 @@ void appendPeopleRows(std::string& out, const World& world);
 constexpr std::string_view kSonarsHead = "t,id,ranges\n";
 void appendSonarRows(std::string& out, World& world);
 constexpr std::string_view kBumpersHead = "t,id,hit\n";
-/// Writes rows of the robots whose bumpers have changed since the last call with `felt`, which
+/// Writes rows of the robots with changed bumpers since the last call with `felt`, which
 /// holds the bumpers of each robot; empty before the first call.
 void appendBumperRows(std::string& out, const World& world, std::vector<std::vector<bool>>& felt);
 

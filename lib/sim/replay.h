@@ -47,7 +47,7 @@ class Replay {
     /// Repeats the changes that clients made to the world of the run, each after the same step as
     /// in the run.
     void makeChanges(RunChanges changes) { run_changes_.emplace(std::move(changes)); }
-    /// Returns the message of the first change that failed; "" if there is none.
+    /// Returns the message of the first change that failed; "" if all succeeded.
     [[nodiscard]] std::string failure() const {
         return run_changes_ ? run_changes_->failure() : "";
     }

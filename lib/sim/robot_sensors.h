@@ -62,7 +62,7 @@ struct Gate {
     [[nodiscard]] Segment2 beam() const;
 };
 
-/// Movers on a mat: people with a leg on it, robots whose body is over it; edges count.
+/// Movers on a mat: people with a leg on it, robots with the body over it; edges count.
 struct MatState {
     std::vector<std::string> on;  ///< robots first, in the order of the scene
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scans whose beams follow one another.
+// Scans of spinning lasers, beam after beam.
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>

@@ -62,7 +62,7 @@ struct SceneResources;
 
 /// A scene that is prepared for a world, to be adopted once. See World::preparer().
 struct NextScene {
-    /// Until then it may be replaced by one whose environment and models are the same.
+    /// Until then it may be replaced by one with the same environment and models.
     std::shared_ptr<Scene> scene;
     std::shared_ptr<SceneResources> setting;  ///< built from that scene, private to lib/sim
 };

@@ -56,9 +56,9 @@ struct MoverState {
     MotionLimits limits;
     std::optional<MotionLimits> own_limits;  // from orders to its wheels
     double clearance = 0;  // distance that it can go before it meets an obstacle, at least
-    double room = 0;  // no other mover's circle is nearer
-    int ids = 0;  // issued so far
-    int running = 0;  // id of the command that comes to an end, or 0
+    double room = 0;       // no other mover's circle is nearer
+    int ids = 0;           // issued so far
+    int running = 0;       // id of the command that comes to an end, or 0
     // Number of moments at which it was given commands, and the first and last of them.
     std::int64_t told = 0;
     SimTime told_first{}, told_last{};
@@ -127,8 +127,8 @@ struct World::Data {
         const std::unordered_set<std::string_view>& stayers) const;
 
     std::shared_ptr<SceneResources> setting;
-    std::shared_ptr<const Scene> scene;  // of the resources
-    std::shared_ptr<const Scene> start;  // of the run
+    std::shared_ptr<const Scene> scene;         // of the resources
+    std::shared_ptr<const Scene> start;         // of the run
     std::shared_ptr<const Scene> latest_start;  // of the run, or of the last restart
     RunOptions options;
     SimTime step_length, time{};
@@ -144,7 +144,7 @@ struct World::Data {
     std::vector<Angle> swings;  // of their limbs
     std::vector<Navigator> pilots;
     std::vector<Odometer> odometers;       // of robots
-    std::vector<std::size_t> kept_starts;  // whose start errors lead to no free position
+    std::vector<std::size_t> kept_starts;  // start errors lead to no free position
     std::vector<Move> moves;
     std::optional<double> longest_step;  // while it is valid
     std::vector<Chunk> chunks;

@@ -16,7 +16,7 @@ std::unique_ptr<ArrangeCommand> commandOf(const JobResults& parts, const Arrange
 /// Returns the store of the search's steps: the parts of a merge, or the results of a shard or of a
 /// run with --resume; null for other runs, and with `is_done` for an existing part.
 /// \param parts those of a merge, or null
-/// \throws UsageError for a shard whose input is a stream; as JobResults
+/// \throws UsageError for a shard that reads a stream; as JobResults
 std::unique_ptr<JobResults> resultsOf(const ArrangeCommand& command, const ArrangeWork& work,
                                       std::unique_ptr<JobResults> parts, bool& is_done);
 

@@ -38,9 +38,9 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
 /// Returns the reason why a target was not reached, as a sentence without full stop.
 std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement);
 
-/// Lists redundant sensors as a sentence without full stop; "" if there are none.
+/// Lists redundant sensors as a sentence without full stop; "" without any.
 std::string idleText(const Arrangement& arrangement);
-/// Lists sensors that share a site, where only one can be mounted; "" if there are none. The search
+/// Lists sensors that share a site, where only one can be mounted; "" without any. The search
 /// allows it: its bound holds all the more for distinct sites.
 std::string doubledText(const Arrangement& arrangement);
 

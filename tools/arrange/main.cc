@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// arrange: places sensors in a room and writes the layout.
+// arrange: arranges sensors in a room and writes the layout.
 #include <iostream>
 
 #include "arrange/arrange.h"

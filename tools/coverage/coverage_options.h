@@ -18,14 +18,14 @@ struct CoverageToolOptions {
     CoverageOptions measure;
     std::vector<Requirement> requirements;
     std::vector<std::string> zones;  ///< to report besides those of the room
-    std::string junit;               ///< file for the verdicts on requirements; "" for none
+    std::string junit;               ///< file for the verdicts on requirements; "": no file
     std::string command;             ///< its history line, without operands
     std::string batch;  ///< list of scenes whose reports are the product; "" for one scene
     Shard shard;        ///< of the list
     bool resume = false;
-    std::string other;  ///< LAYOUT to compare with; "" for none
+    std::string other;  ///< LAYOUT to compare with; "": no comparison
     bool json = false;
-    std::string report;  ///< file for the report as JSON besides stdout; "" for none
+    std::string report;  ///< file for the report as JSON besides stdout; "": no file
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of tried poses of a search, for the map; "" without
     std::string run;    ///< folder of a record of robots and people; "" without

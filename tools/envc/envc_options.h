@@ -16,7 +16,7 @@ namespace ispace {
 
 struct EnvcOptions {
     CommonOptions common;
-    std::vector<std::string> inputs;       ///< "-" if none is given
+    std::vector<std::string> inputs;       ///< "-" by default
     const ExportFormat* format = nullptr;  ///< of the product; null with info, check or list
     bool info = false, json = false, check = false;
     bool list_rooms = false;         ///< instead of writing the room; format is null then, too
@@ -33,7 +33,7 @@ struct EnvcOptions {
 /// Opens no file. \throws UsageError, TextRequested
 EnvcOptions parseEnvcOptions(int argc, const char* const* argv);
 
-/// Returns the file that accompanies the product; "" for none.
+/// Returns the file that accompanies the product; "" without one.
 std::string besideOf(const EnvcOptions& options);
 
 /// Writes the product and its accompanying file. \throws as OutputFile and the format's writer

@@ -83,7 +83,7 @@ fs::path programOf(const std::string& tool) {
 }
 
 /// Finds the file of a page, compressed or not: `scan` is man1/scan.1, `env` is
-/// man5/ispace-env.5.gz. Packages may add to the section (scan.1ispace). "" if there is none.
+/// man5/ispace-env.5.gz. Packages may add to the section (scan.1ispace). "" if it is missing.
 std::string pageFile(const std::string& page) {
     const std::array<std::string, 2> names = {page, "ispace-" + page};
     for (const std::string& name : names)

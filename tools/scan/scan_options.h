@@ -47,7 +47,7 @@ class ScanCommand : public ToolCommand<ScanToolOptions> {
     /// Opens no file. \throws UsageError, TextRequested
     ScanCommand(int argc, const char* const* argv);
 
-    /// Rejects options that apply to none of the sensors read. \throws UsageError
+    /// Rejects options that do not apply to any sensor read. \throws UsageError
     void checkSensors(const std::vector<Sensor>& read) const;
 
   private:

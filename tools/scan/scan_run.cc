@@ -66,7 +66,7 @@ SceneRequest requestOf(const ScanToolOptions& options) {
         std::find(options.operands.begin(), options.operands.end(), "-") != options.operands.end();
     if (options.poses == "-" && takes_stdin)
         throw UsageError("stdin cannot be read twice: only one of operands and --poses can be -");
-    // A receiver alone reads nothing.
+    // A receiver alone has no readings.
     return {options.operands, options.rules, wants_layout, {"laser", "ranger", "camera", "tag"}};
 }
 

@@ -50,7 +50,7 @@ void checkPoints(std::size_t points);
 SceneRequest requestOf(const ScanToolOptions& options);
 
 /// Returns the sensors of a scene that are read at their own poses. \throws UsageError or
-/// FormatError if there are none
+/// FormatError without any
 Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input);
 
 /// Readings of a run, and their output.

@@ -17,7 +17,7 @@ struct ViewToolOptions {
     std::vector<ViewSpec> views;  ///< each with a unique name
     ViewOptions drawing;
     std::optional<bool> labels;
-    std::string run;  ///< folder of a record; "": none
+    std::string run;  ///< folder of a record; "": no record
 };
 
 /// Declares --view --show --highlight --labels --run.

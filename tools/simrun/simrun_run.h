@@ -85,7 +85,7 @@ ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input);
 void announce(const Server& server, const std::string& web, const DeviceAddresses& devices);
 
 /// Draws the record of --replay to -o, as a picture or a film.
-/// \param title of the picture; "" for none
+/// \param title of the picture, may be ""
 void drawRecord(const SimrunOptions& options, const Scene& scene, const std::string& title);
 
 /// Reports collisions of robots on stderr, up to a number of lines.
