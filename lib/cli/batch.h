@@ -67,8 +67,8 @@ struct JunitCase {
     std::chrono::nanoseconds time = {};  ///< 0 if not timed
 };
 
-/// Writes the verdicts of a tool in the XML that CI servers read as JUnit's: one testsuite, whose
-/// time is that of its last verdict, with a testcase each. \param suite its name, e.g. the
+/// Writes the verdicts of a tool in the XML that CI servers read as JUnit's: one testsuite, with
+/// the time of its last verdict and a testcase for each. \param suite its name, e.g. the
 /// environment's
 std::string junitXml(const std::string& tool, const std::string& suite,
                      std::span<const JunitCase> cases);

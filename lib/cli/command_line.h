@@ -64,8 +64,8 @@ class CommandLine {
     void parsed(const std::string& names, const std::string& value,
                 std::function<void(const std::string&)> take, const std::string& help,
                 Enters enters);
-    /// Repeatable options whose relative order matters: `take` and the history line receive them in
-    /// the order of the command line.
+    /// Repeatable options that keep their relative order: `take` and the history line receive them
+    /// in the order of the command line.
     void ordered(const std::string& names, const std::string& value,
                  std::function<void(const std::string&)> take, const std::string& help);
     /// -MD and -MF FILE, as compilers have them, for the product `output`.
@@ -117,7 +117,7 @@ class CommandLine {
     std::unique_ptr<Data> data_;
 };
 
-/// A tool's options with their command line, kept for its history line, whose operands are known
+/// A tool's options with their command line, kept for its history line: operands are known
 /// only once they are read.
 template <typename Options>
 class ToolCommand {

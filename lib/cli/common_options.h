@@ -89,9 +89,9 @@ struct SuffixOf {
     std::string suffix, format;
 };
 
-/// Returns the format of a product: `to` if given, else the one whose name or usual suffix is the
-/// suffix of `output`, in any case; without a suffix the first of `known`. \param to empty for a
-/// product without --to \throws UsageError for any other suffix
+/// Returns the format of a product: `to` if given, else the one with a name or usual suffix equal
+/// to the suffix of `output`, in any case; without a suffix the first of `known`. \param to empty
+/// for a product without --to \throws UsageError for any other suffix
 std::string outputFormat(const std::optional<std::string>& to, const std::string& output,
                          const std::vector<std::string>& known,
                          const std::vector<SuffixOf>& others = {});

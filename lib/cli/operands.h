@@ -105,7 +105,7 @@ struct InputRequest {
     bool may_be_empty = false;  ///< an empty stdin is an environment without records
 };
 
-/// Joins all inputs: environments in their order, then layouts, whose records replace those with
+/// Joins all inputs: environments in their order, then layouts: their records replace those with
 /// the same id. If only layouts are given and `compiles` is set, the environment that they name is
 /// read, too. File names are relative to the current folder; history, notes, warnings and sources
 /// are joined. \param other_rooms gets a warning for each layout with another digest and is no

@@ -20,8 +20,8 @@ struct CoverageToolOptions {
     std::vector<std::string> zones;  ///< to report besides those of the room
     std::string junit;               ///< file for the verdicts on requirements; "": no file
     std::string command;             ///< its history line, without operands
-    std::string batch;  ///< list of scenes whose reports are the product; "" for one scene
-    Shard shard;        ///< of the list
+    std::string batch;               ///< list of scenes to report on; "" for one scene
+    Shard shard;                     ///< of the list
     bool resume = false;
     std::string other;  ///< LAYOUT to compare with; "": no comparison
     bool json = false;
