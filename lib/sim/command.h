@@ -34,7 +34,7 @@ struct Command {
     Verb verb = Verb::Stop;
     double value = 0;
     MotionPlan course = {};  ///< of Path: at least one point
-    double speed = 0;  ///< of Path, m/s; 0: the default
+    double speed = 0;        ///< of Path, m/s; 0: the default
     friend bool operator==(const Command&, const Command&) = default;
 };
 

@@ -19,14 +19,14 @@ class World;
 /// Kinds of events to which clients can subscribe.
 enum class EventKind {
     Collision,  ///< mover `id` ran into `other` at this point
-    Stall,  ///< `id` stands still until its next command
-    Enter,  ///< `id` entered the zone `other`
+    Stall,      ///< `id` stands still until its next command
+    Enter,      ///< `id` entered the zone `other`
     Leave,
-    Mat,  ///< `other` stepped on the mat `id` (value 1) or off it (0)
-    Gate,  ///< `other` passed the gate `id` inwards (value 1) or outwards (0)
-    Seen,  ///< `id` comes into the sight of `value` sensors, after zero
-    Lost,  ///< no sensor sees `id` any more
-    Mark,  ///< a client wrote `text`
+    Mat,     ///< `other` stepped on the mat `id` (value 1) or off it (0)
+    Gate,    ///< `other` passed the gate `id` inwards (value 1) or outwards (0)
+    Seen,    ///< `id` comes into the sight of `value` sensors, after zero
+    Lost,    ///< no sensor sees `id` any more
+    Mark,    ///< a client wrote `text`
     Change,  ///< the request `text` changed the world; `other`: file of the scene after it
 };
 constexpr std::size_t kEventKinds = 10;

@@ -34,7 +34,7 @@ class FrictionMap {
 
 /// Limits of one axis of motion: metres along the heading, or degrees about the centre of rotation.
 struct AxisLimits {
-    double top = 0;  ///< speed of commands that come to an end
+    double top = 0;    ///< speed of commands that come to an end
     double max = 0;    ///< greatest speed in either direction
     double accel = 0;  ///< of speeding up and braking
     friend bool operator==(const AxisLimits&, const AxisLimits&) = default;
@@ -55,7 +55,7 @@ MotionLimits narrowed(const MotionLimits& model, const MotionLimits& order, doub
 /// Goal of one axis.
 struct AxisGoal {
     enum class Kind {
-        Speed,  ///< reach a speed and keep it
+        Speed,    ///< reach a speed and keep it
         Distance  ///< go that far and come to rest exactly there
     } kind = Kind::Speed;
     double value = 0;  ///< the speed, or the signed distance left
@@ -111,9 +111,9 @@ struct Motion {
 /// Result of a motion, and its deviation from a uniform motion along the chord.
 struct Advance {
     Motion motion;
-    double path = 0;  ///< length of the path; an upper bound if it also moves sideways
+    double path = 0;   ///< length of the path; an upper bound if it also moves sideways
     double bulge = 0;  ///< upper bound of its distance from the chord
-    double lag = 0;  ///< upper bound of its distance from a uniform motion along the chord
+    double lag = 0;    ///< upper bound of its distance from a uniform motion along the chord
 };
 
 /// Returns the motion of a mover after `duration` seconds.
