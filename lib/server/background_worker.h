@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/server.
+// // One thread that runs slow jobs beside the server's. Private to lib/server.
 #pragma once
 
 #include <chrono>
@@ -14,35 +14,36 @@
 
 namespace ispace {
 
-/// A thread for what takes so long that clients would notice: jobs are done one after another, in
-/// the order they were given. It begins with the first job. It is there however many threads may
-/// compute (TBB's limit, which holds for what a job does): clients are served meanwhile. Where the
-/// system refuses another thread, the owner's does each job as it is given.
+/// A thread for slow jobs that would delay clients. Runs jobs one after another, in the order they
+/// were given; starts with the first job. The thread exists regardless of TBB's limit on computing
+/// threads, which still applies inside a job, so clients are served meanwhile. If the system
+/// refuses to create a thread, the owner's thread runs each job at once.
 class BackgroundWorker {
   public:
-    /// \param wake is called by that thread when a job is done
+    /// \param wake called by the worker thread when a job is finished
     explicit BackgroundWorker(std::function<void()> wake);
-    /// Waits for the job that is being done, and drops the others.
+    /// Waits for the running job and drops the others.
     ~BackgroundWorker();
     BackgroundWorker(const BackgroundWorker&) = delete;
     BackgroundWorker& operator=(const BackgroundWorker&) = delete;
 
     struct Job {
-        /// In the thread of the workshop, where what it holds also ends.
+        /// Runs in the worker thread, which also destroys the captures of `work`.
         std::function<void()> work;
-        /// In that of the owner, with what `work` threw, or null. It may throw that again.
+        /// Runs in the owner's thread with the exception that `work` threw, or null; may rethrow
+        /// it.
         std::function<void(const std::exception_ptr& failure)> deliver;
     };
     void give(Job job);
-    /// Does a job without a workshop, and delivers it.
+    /// Runs and delivers a job in the calling thread.
     static void doNow(Job job);
-    /// Jobs that were given and not delivered.
+    /// Number of jobs not delivered yet.
     [[nodiscard]] std::size_t open() const { return open_; }
-    /// Delivers those that are done. \returns false if there were none
+    /// Delivers the finished jobs. \returns false if there were none
     bool collect();
-    /// Waits for one at least, but not for longer, and delivers those that are done.
+    /// Waits up to `patience` for a finished job, then delivers all finished jobs.
     void collectWithin(std::chrono::nanoseconds patience);
-    /// Waits for all, and delivers them.
+    /// Waits for all jobs and delivers them.
     void collectAll();
 
   private:
@@ -55,14 +56,14 @@ class BackgroundWorker {
     void run();
 
     std::function<void()> wake_;
-    std::size_t open_ = 0;  // of the owner alone
-    std::mutex mutex_;      // of what follows
+    std::size_t open_ = 0;  // used by the owner only
+    std::mutex mutex_;      // guards the members below
     std::condition_variable changed_;
     std::deque<Job> waiting_;
     std::vector<Done> done_;
     bool ends_ = false;
-    bool is_refused_ = false;  // of the owner alone
-    std::thread thread_;       // the last: it uses the others
+    bool is_refused_ = false;  // used by the owner only
+    std::thread thread_;       // declared last: it uses the other members
 };
 
 }  // namespace ispace

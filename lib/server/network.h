@@ -16,30 +16,30 @@ namespace ispace {
 /// A range of addresses, as in 192.168.1.0/24 or fd00::/8.
 struct Network {
     std::array<std::uint8_t, 16> address{};  ///< IPv4 as ::ffff:a.b.c.d
-    int bits = 128;                          ///< of it that count
+    int bits = 128;                          ///< leading bits that are compared
 };
 
-/// A numeric address, alone or with the number of bits that count. \throws UsageError
+/// Parses a numeric address, alone or with a prefix length. \throws UsageError
 Network parseNetwork(const std::string& text);
 
-/// True if one of them holds this numeric address, or if it is one of this machine.
+/// True if a network contains this numeric address, or if it is an address of this machine.
 bool isAllowed(std::span<const Network> allowed, const std::string& address);
 
-/// The token in a file: its first line, of 1 to 256 characters without blanks.
+/// Reads the token from a file: its first line, of 1 to 256 characters without blanks.
 /// \throws FormatError, std::system_error
 std::string readToken(const std::string& file);
 
-/// True if others than its owner may read or replace what the file holds.
+/// True if users other than the owner may read or replace the file.
 bool isOpenToOthers(const std::string& file);
 
-/// Takes as long for any `given` of a length.
+/// Compares in time that depends only on the length of `given`.
 bool isSameSecret(std::string_view given, std::string_view secret);
 
-/// When clients that hold no place by what they do have to go, for all listeners: those without a
-/// role, and programs that let a device send nothing. See ServerLimits::roleless.
+/// Finds the connection that must make room, for all listeners: one without a role, or an idle
+/// client of a device port. See ServerLimits::roleless.
 ///
-/// Of connections with `std::optional<WallTime> idleSince() const`, nothing for those that are not
-/// idle, the one that has been idle longest, if that is so since then; else the end.
+/// Requires connections with `std::optional<WallTime> idleSince() const`, empty while not idle.
+/// \returns the one idle longest, if at least since the given time; else end
 template <typename Connections>
 auto longestIdle(const Connections& connections, WallTime since) {
     const auto time = [](const auto& connection) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/server: the Simulator TCP Protocol, its server, and the transport of device ports. Uses wire
-// and below; Asio inside. Private to lib/server, since it includes Asio.
+// lib/server: the server of the Simulator TCP Protocol, device ports and the web page. Private to
+// lib/server, since it includes Asio.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -28,10 +28,11 @@ struct Endpoint {
     std::uint16_t port = 0;
     bool is_loopback = true;  ///< other machines cannot connect
 };
-/// ADDR:PORT with a numeric address (127.0.0.1, [::1], 0.0.0.0) or localhost. \throws UsageError
+/// Parses ADDR:PORT with a numeric address (127.0.0.1, [::1], 0.0.0.0) or localhost. \throws
+/// UsageError
 Endpoint parseEndpoint(const std::string& text);
 
-/// How often something may be asked for: `rate` a second in the long run, `burst` at once.
+/// Limit on a request's frequency: `rate` a second in the long run, `burst` at once.
 struct RateLimit {
     double rate = 0;
     double burst = 0;
@@ -39,46 +40,47 @@ struct RateLimit {
 
 /// Limits that keep one client from harming the others.
 struct ServerLimits {
-    std::size_t clients = 256;  ///< the next one is answered ERR 429 and closed
-    std::size_t line = 4096;    ///< bytes of a request without its end; else ERR 413
-    /// Replies in bytes that a client may leave unread before its requests have to wait.
+    std::size_t clients = 256;  ///< further clients are answered ERR 429 and closed
+    std::size_t line =
+        4096;  ///< bytes of a request without its end; longer ones are answered ERR 413
+    /// Bytes of replies that a client may leave unread before its requests have to wait.
     std::size_t pending = std::size_t{1} << 18;
-    /// What all clients together may leave unread, in bytes: replies and scans that are no longer
-    /// the newest. Beyond it the slowest of those that hold more than an equal share have to go.
+    /// Unread bytes of all clients together: replies and outdated scans. Above it, the slowest
+    /// clients that hold more than an equal share are closed.
     std::size_t unread = std::size_t{1} << 27;
-    /// How long a connection that is to end may take to read what it was sent.
+    /// Time that a closing connection has to read its output.
     std::chrono::nanoseconds patience = std::chrono::seconds(10);
-    /// A connection without a role ends this long after its last request (or its begin), and makes
-    /// room for a new one as soon as `roleless_grace` after it when all places are taken.
+    /// A connection without a role ends this long after its last request (or its start). When the
+    /// server is full, it makes room for a new one `roleless_grace` after that request.
     std::chrono::nanoseconds roleless = std::chrono::seconds(60);
     std::chrono::nanoseconds roleless_grace = std::chrono::seconds(1);
-    /// PAUSE, and RESUME while running: for one client, and for all together.
+    /// PAUSE, and RESUME while running: per client, and for all clients together.
     RateLimit pauses = {100, 100}, all_pauses = {200, 200};
-    /// What each client still may ask for once all together have used up theirs.
+    /// Rate left to each client after the common limit is used up.
     RateLimit spare_pauses = {1, 1};
     bool shutdown = true;  ///< clients may end the run
-    bool changes = true;   ///< they may change the world, if there is a `source`
+    bool changes = true;   ///< clients may change the world, if there is a `source`
     std::shared_ptr<const SceneSource> source;
-    /// What changes of the world and the end of the run need clients to know; "": nothing.
+    /// Token required to change the world and to end the run; "": none required.
     std::string token;
-    bool token_first = false;  ///< every role needs it
+    bool token_first = false;  ///< every role requires it
     RateLimit wrong_tokens = {10, 10};
-    /// A robot or person stops when its client has been silent for so long; 0: never.
+    /// A robot or person stops when its client has been silent this long; 0: never.
     std::chrono::nanoseconds watchdog{};
-    /// Who may use device ports, besides this machine.
+    /// Networks that may use device ports, besides this machine.
     std::vector<Network> allowed;
-    bool wall_clock = false;  ///< clocks of devices show wall time, not that of the world
+    bool wall_clock = false;  ///< clocks of devices show wall time instead of simulated time
 };
 
-/// Runs a simulation and serves it to many clients. One thread does both in turn, so the world
-/// never changes while a request is answered; sensors are read on all cores.
+/// Runs a simulation and serves it to many clients. One thread does both in turn, so the world does
+/// not change while a request is answered; sensors are computed on all cores.
 ///
-/// Writing never blocks: a slow reader gets the newest scan once it reads, and its requests wait
-/// while it leaves replies unread. What all clients together leave unread is bounded, and so is the
-/// time a connection may take to choose a role.
+/// Writes never block: a slow reader receives the newest scan once it reads, and its requests wait
+/// while it leaves replies unread. The unread bytes of all clients are bounded, and so is the time
+/// in which a connection must choose a role.
 class Server {
   public:
-    /// Listens at once. \throws std::system_error naming the endpoint
+    /// Starts listening. \throws std::system_error naming the endpoint
     Server(Simulation& simulation, const Endpoint& endpoint, const ServerLimits& limits = {});
     ~Server();
     Server(const Server&) = delete;
@@ -87,32 +89,31 @@ class Server {
     /// "127.0.0.1:40123"
     [[nodiscard]] std::string address() const;
     [[nodiscard]] std::uint16_t port() const;
-    /// Shows the running world to browsers, too, at an endpoint of its own. Call at most once,
-    /// before run(). \param title of the page \returns "http://127.0.0.1:40124/"
+    /// Serves the running world to browsers at a separate endpoint. Call at most once, before
+    /// run(). \param title of the page \returns "http://127.0.0.1:40124/"
     /// \throws std::system_error naming the endpoint
     std::string serveWeb(const Endpoint& endpoint, const std::string& title);
-    /// Puts a robot or sensor behind the port of a real device, at an endpoint of its own. Call it
+    /// Serves a robot or sensor through the protocol of a real device at a separate endpoint. Call
     /// before run(). \returns "127.0.0.1:10940"
     /// \throws UsageError if the world has no such device, std::system_error naming the endpoint
     std::string serveDevice(const WireProtocol& protocol, const std::string& id,
                             const Endpoint& endpoint);
-    /// Has frames for a record made in the thread of pictures.
+    /// Returns a function that computes frames of a record in the picture thread.
     [[nodiscard]] FrameTaker frameTaker();
-    /// True if other threads are still at pictures, or at a change of the world, which the
-    /// destructor waits for.
+    /// True while background threads compute pictures or a change of the world. The destructor
+    /// waits for them.
     [[nodiscard]] bool isBusy() const;
     /// Number of clients served now; callable from any thread.
     [[nodiscard]] std::size_t clients() const;
 
-    /// Runs until the simulation is finished, waits for frames of the record and for pictures that
-    /// clients have asked for, then sends what is pending for at most half a second and closes.
-    /// Once stopOn() ends it, it waits for no picture. Call once.
+    /// Runs until the simulation is finished, waits for frames of the record and requested
+    /// pictures, then sends pending output for at most half a second and closes. Once stopOn() ends
+    /// the run, it does not wait for pictures. Call once.
     void run();
     /// Finishes the simulation. Callable from any thread, and before run(), which then returns at
     /// once.
     void stop();
-    /// The same as soon as `descriptor` is readable. It must stay open during run() and is not
-    /// read.
+    /// Calls stop() once `descriptor` is readable. It must stay open during run() and is not read.
     void stopOn(int descriptor);
 
   private:
@@ -120,7 +121,7 @@ class Server {
     std::unique_ptr<Data> data_;
 };
 
-/// Listens at an endpoint and hands over whoever connects, ready to be used without blocking.
+/// Listens at an endpoint and passes on accepted sockets in non-blocking mode.
 class Acceptor {
   public:
     using Welcome = std::function<void(boost::asio::ip::tcp::socket)>;

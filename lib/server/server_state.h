@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/server: what the sessions of a server share.
+// // State shared by the sessions of a server. Private to lib/server.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ std::vector<std::string> idsOf(const Things& things) {
     return ids;
 }
 
-/// Ids of the lasers among the sensors, in order.
+/// Ids of the lasers, in order.
 inline std::vector<std::string> laserIdsOf(const World& world) {
     std::vector<std::string> ids;
     for (const RunSensor& sensor : world.sensors())
@@ -49,14 +49,14 @@ inline std::string joined(const std::vector<std::string>& words, std::string_vie
     return out;
 }
 
-/// What is left of something that may be asked for only so often.
+/// Enforces a RateLimit: a counter that refills with time.
 class TokenBucket {
   public:
-    /// Full. \pre rate > 0, burst >= 1
+    /// Starts full. \pre rate > 0, burst >= 1
     explicit TokenBucket(const RateLimit& limits) : limits_(limits), left_(limits.burst) {}
-    /// Empty at that time.
+    /// Starts empty at `now`.
     TokenBucket(const RateLimit& limits, WallTime now) : limits_(limits), filled_(now) {}
-    /// True if one can be taken now.
+    /// True if the bucket holds a token at `now`.
     bool has(WallTime now);
     /// \pre has(now)
     void take() { left_ -= 1; }
@@ -64,16 +64,16 @@ class TokenBucket {
   private:
     RateLimit limits_;
     double left_ = 0;
-    WallTime filled_{};  // when left_ was right
+    WallTime filled_{};  // time at which left_ was computed
 };
 
-/// The steps that clients ask of a paused world, taken in the order of asking.
+/// Steps of a paused world requested by clients, taken in order of request.
 class StepQueue {
   public:
     /// Progress of one STEP.
     struct Ticket {
         std::int64_t count = 0, left = 0;
-        bool over = false;  ///< to be answered: all are taken, or no more will be
+        bool over = false;  ///< ready to answer: all steps taken, or the rest dropped
     };
 
     explicit StepQueue(Simulation& simulation);
@@ -81,9 +81,9 @@ class StepQueue {
     std::shared_ptr<const Ticket> ask(std::int64_t count);
     /// Counts the steps taken since the last call.
     void settle();
-    /// Drops the steps not yet taken, at PAUSE, RESUME or the end.
+    /// Drops the remaining steps, at PAUSE, RESUME or the end of the run.
     void cut();
-    /// Drops the steps of one ticket; null is allowed.
+    /// Drops the remaining steps of one ticket; null is allowed.
     void drop(const std::shared_ptr<const Ticket>& ticket);
 
   private:
@@ -94,94 +94,94 @@ class StepQueue {
     std::deque<std::shared_ptr<Ticket>> tickets_;
 };
 
-/// When clients' changes of the world may begin: they take half of the time at most.
+/// Limits clients' changes of the world to half of the time.
 class ChangeBudget {
   public:
     [[nodiscard]] bool mayBegin(WallTime now) const { return now >= next_; }
-    /// One is over.
+    /// Records a finished change.
     void spend(WallTime began, WallTime ended) { next_ = ended + (ended - began); }
-    /// The next one may begin then.
+    /// Earliest start of the next change.
     [[nodiscard]] WallTime next() const { return next_; }
 
   private:
     WallTime next_{};
 };
 
-/// A replay on its way to another time.
+/// A replay moving to another time.
 struct Seek {
     SimTime to{};
     bool is_over = false;
-    std::string failure;  ///< why the world stops on the way; "": it is there
+    std::string failure;  ///< the error that stopped the seek; "": no error
 };
 
-/// What all sessions share: which robots are held, and the text of the newest scans, made once for
-/// all readers.
+/// State shared by all sessions: holds on robots, and the text of the newest scans, formatted once
+/// for all readers.
 class ServerState {
   public:
     explicit ServerState(Simulation& simulation, const ServerLimits& limits = {});
     [[nodiscard]] Simulation& simulation() { return *simulation_; }
     [[nodiscard]] const ServerLimits& limits() const { return limits_; }
 
-    /// A number for the hold of this robot or person; nothing if another client has it.
+    /// Reserves a robot or person. \returns the number of this hold; empty if another client has it
     std::optional<std::int64_t> hold(std::string_view id);
-    /// False if the world has lost it since, even if there is another one of that name now.
+    /// False if the world has removed it since, even if its name was given to a new mover.
     [[nodiscard]] bool holds(std::string_view id, std::int64_t hold) const;
-    /// Frees it, and stops it.
+    /// Stops the mover and releases it.
     void release(std::string_view id, std::int64_t hold);
 
-    /// Follows changes of the world. Call it after each.
+    /// Updates the state after a change of the world. Call after each change.
     void sync();
-    /// Clients may change the world.
+    /// True if clients may change the world.
     [[nodiscard]] bool mayChange() const { return limits_.changes && editor_; }
     /// \pre mayChange()
     [[nodiscard]] WorldEditor& editor() { return *editor_; }
     [[nodiscard]] ChangeBudget& changes() { return changes_; }
-    /// False while changes leave the world time to go on, or one is under way.
+    /// False while a change is under way, or must wait to leave the world time to run.
     [[nodiscard]] bool mayChangeNow(WallTime now) const {
         return !is_changing_ && !seek_ && changes_.mayBegin(now);
     }
-    /// When that will be so; nothing: when a change is over.
+    /// Earliest time of the next change; empty while a change is under way.
     [[nodiscard]] std::optional<WallTime> nextChange() const {
         return is_changing_ || seek_ ? std::nullopt : std::optional(changes_.next());
     }
-    /// Changes the world: at once, or if makeAside() was called with what takes long in another
-    /// thread, where nobody waits for it but pictures. `end` is then called by collect(), with what
-    /// was thrown, or null, and may throw that again. \pre mayChangeNow()
+    /// Changes the world: at once, or after makeAside() with the slow part in a background thread,
+    /// during which only pictures wait. collect() then calls `end` with the exception that was
+    /// thrown, or null; `end` may rethrow it. \pre mayChangeNow()
     void change(WorldChange change, std::function<void(const std::exception_ptr& failure)> end);
-    /// Takes a replay to another time, a part now and the others in collect().
+    /// Moves a replay to another time, one part now and the rest in collect().
     /// \pre isAtRest(), Simulation::maySeek()
     std::shared_ptr<const Seek> seek(SimTime to);
-    /// True if collect() has something to do at once.
+    /// True if collect() can continue a seek at once.
     [[nodiscard]] bool isOnTheWay() const { return seek_ && !is_changing_; }
-    /// Prepares what the next step of a replay needs, in another thread if makeAside() was called.
+    /// Prepares the next step of a replay, in a background thread after makeAside().
     void prepareStep() {
         if (isAtRest()) prepare({});
     }
-    /// True if there may be news for clients since the last call: a change, a mark.
+    /// True if clients may have updates since the last call: a change or a mark.
     [[nodiscard]] bool hasUpdates();
 
     [[nodiscard]] StepQueue& steps() { return steps_; }
-    /// Of all clients together.
+    /// The common limit on pauses.
     [[nodiscard]] TokenBucket& pauses() { return pauses_; }
     [[nodiscard]] TokenBucket& wrongTokens() { return wrong_tokens_; }
 
-    /// The newest reading of a sensor as scanText writes it, of a heavy one taken now if need be;
-    /// all readers share one string. \throws FormatError as scanText does
+    /// Returns the newest reading of a sensor as scanText writes it; computes a missing reading of
+    /// a heavy sensor. All readers share one string. \throws FormatError as scanText does
     std::shared_ptr<const std::string> scan(std::size_t sensor, const ReplyForm& form);
-    /// A text that was asked for.
+    /// A requested text.
     struct Asked {
-        std::shared_ptr<const std::string> bytes;  ///< null until it is made
-        bool is_error = false;                     ///< it is a line of ERR
+        std::shared_ptr<const std::string> bytes;  ///< null until it is computed
+        bool is_error = false;                     ///< `bytes` is an ERR line
     };
-    /// The same as scan(). Of a heavy sensor, it is made in another thread if makeAside() was
-    /// called: as the sensor sees the world now. Refused if too much is waiting to be made.
+    /// Asynchronous scan(): after makeAside(), a heavy sensor is computed in a background thread
+    /// from the current world. Rejected if too many requests are pending.
     std::shared_ptr<const Asked> ask(std::size_t sensor, const ReplyForm& form);
-    /// Takes a frame for a record, likewise; those who ask() for the same one share it.
+    /// Computes a frame for a record in the same way; requests by ask() for that frame share it.
     void takeFrame(FrameJob job);
-    /// Does something, in another thread if makeAside() was called; collect() then delivers it.
+    /// Runs a job, in a background thread after makeAside(); collect() then delivers it.
     void runInBackground(BackgroundWorker::Job job);
-    /// Lets another thread make what takes long. It calls `wake` when something is ready for
-    /// collect(). \param stopped true once nobody waits for that any more
+    /// Enables background threads for slow jobs. They call `wake` when a result is ready for
+    /// collect(). \param stopped returns true once results are no longer awaited
     void makeAside(const std::function<void()>& wake, std::function<bool()> stopped) {
         workshop_.emplace(wake);
         builders_.emplace(wake);
@@ -191,17 +191,16 @@ class ServerState {
         workshop_.reset();
         builders_.reset();
     }
-    /// True if nothing is being made of the world as it is: no picture, no change, no way to
-    /// another time.
+    /// True if no picture, change or seek of the current world is under way.
     [[nodiscard]] bool isAtRest() const { return !isMaking() && !is_changing_ && !seek_; }
-    /// The world must not go on: it takes the same steps however long something takes.
+    /// True if the world must not step: the sequence of steps may not depend on computing time.
     [[nodiscard]] bool holdsWorld() const;
-    /// Completes what was asked for and is ready, between steps. \returns false if nothing is
+    /// Completes finished requests, between steps. \returns false if there were none
     bool collect();
-    /// Waits for readings that were asked for, and completes those that are ready. \returns false,
-    /// and does nothing, once nobody waits any more
+    /// Waits for requested readings and completes the finished ones. \returns false, without
+    /// completing any, once they are no longer awaited
     bool await();
-    /// True if another thread is at something, or will be.
+    /// True if a background thread has a job running or queued.
     [[nodiscard]] bool isBusy() const { return isMaking() || (builders_ && builders_->open() > 0); }
     /// Bytes of outdated scans that connections still have to send.
     [[nodiscard]] std::size_t staleBytes() const { return *alive_ - kept_; }
@@ -212,14 +211,14 @@ class ServerState {
         std::int64_t seq = -1;
         std::shared_ptr<const std::string> bytes;
     };
-    /// A text that is being made.
+    /// A text being computed.
     struct Making {
         std::size_t sensor;
-        std::int64_t changes;  // of the world
+        std::int64_t changes;  // change count of the world
         std::int64_t seq;
-        std::optional<ReplyForm> form;  // nothing: a frame for the record
+        std::optional<ReplyForm> form;  // empty: a frame for the record
         std::shared_ptr<Asked> asked;
-        std::shared_ptr<SensorReading> reading;  // once the first job of this sensor is done
+        std::shared_ptr<SensorReading> reading;  // set once the first job of this sensor is done
         double pixels = 0;
     };
     [[nodiscard]] bool isMaking() const { return workshop_ && workshop_->open() > 0; }
@@ -240,21 +239,21 @@ class ServerState {
     ServerLimits limits_;
     StepQueue steps_;
     std::map<std::string, std::int64_t, std::less<>> held_;
-    std::int64_t holds_ = 0;  // so far
+    std::int64_t holds_ = 0;  // number of holds given so far
     std::optional<WorldEditor> editor_;
     ChangeBudget changes_;
-    std::int64_t seen_changes_ = 0;                   // of the world
+    std::int64_t seen_changes_ = 0;                   // change count of the world
     std::int64_t told_changes_ = 0, told_event_ = 0;  // at the last hasUpdates()
     TokenBucket pauses_, wrong_tokens_;
-    std::vector<std::vector<Text>> texts_;  // of each sensor, in every form that was asked for
+    std::vector<std::vector<Text>> texts_;  // of each sensor, one for each requested form
     std::size_t kept_ = 0;                  // bytes in texts_
-    // Bytes of all texts that somebody has; it outlives them.
+    // Bytes of all texts still referenced; shared, since texts may outlive the state.
     std::shared_ptr<std::size_t> alive_ = std::make_shared<std::size_t>(0);
     std::vector<Making> makings_;
     bool is_changing_ = false;
-    std::shared_ptr<Seek> seek_;  // null: there is none
+    std::shared_ptr<Seek> seek_;  // null: no seek under way
     std::function<bool()> stopped_;
-    // The last, as their jobs are about the others: of pictures, and of changes of the world.
+    // Declared last, since their jobs use the other members: pictures, and changes of the world.
     std::optional<BackgroundWorker> workshop_, builders_;
 };
 

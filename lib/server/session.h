@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/server: what requests of several roles have in common.
+// // One client's session, and functions shared by the requests of all roles. Private to
+// lib/server.
 #pragma once
 
 #include <cstddef>
@@ -19,65 +20,65 @@
 
 namespace ispace {
 
-/// The words of a request and what is between them. \pre they are neighbours, one at least
+/// The text from the first word to the last. \pre the words are adjacent in one string, at least
+/// one
 inline std::string_view textOf(std::span<const std::string_view> words) {
     const std::string_view last = words.back();
     return {words.front().data(),
             static_cast<std::size_t>(last.data() + last.size() - words.front().data())};
 }
 
-/// A whole number from 1 to a thousand million, or what is wrong with it.
+/// An integer from 1 to 10^9, or the error in its text.
 struct Count {
     std::int64_t value = 0;
-    int code = 0;  ///< of the error; 0: none
+    int code = 0;  ///< code of the error; 0: no error
     std::string message;
 };
-/// `what` begins the message: "every", "the number of steps".
+/// \param what subject of an error message: "every", "the number of steps"
 Count parseCount(std::string_view text, std::string_view what);
 
-/// A measured value, with three decimals.
+/// Formats a measured value with three decimals.
 std::string measured(double value);
-/// A heading within (-180, 180], still so when rounded.
+/// Formats a heading in (-180, 180], which also holds after rounding.
 std::string headingText(Angle heading);
 
 /// "ERR 404 no robot `r9`\n"
 std::string errorLine(int code, std::initializer_list<std::string_view> text);
 
-/// Of a request that failed for want of memory, or because something cannot be written so.
+/// Error line of a request that ran out of memory or has no representation in the format.
 std::string errorLineOf(const std::exception_ptr& failure);
 
-/// "no robot `r9`" with what may have been meant, or what there is.
+/// Returns "no robot `r9`" with the most similar id, or the list of ids.
 std::string unknownThing(std::string_view kind, std::string_view id,
                          const std::vector<std::string>& known, std::string_view where = "");
 
-/// The server's end of one client's dialogue in the Simulator TCP Protocol, version 1, without a
-/// transport: lines in, bytes out. See ispace-protocol(7) for the language.
+/// The server's side of one client's dialogue in the Simulator TCP Protocol, version 1, without
+/// transport: it reads lines and writes bytes. ispace-protocol(7) describes the language.
 class Session {
   public:
     explicit Session(ServerState& state);
-    /// Frees the robot or person it holds.
+    /// Releases the robot or person it holds.
     ~Session();
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
     /// "ISPACE 1\n"
     static std::string greeting();
-    /// Answers one request (without its end of line); blank lines are ignored. A first line that is
-    /// no request comes from a client of another protocol and ends the session.
+    /// Answers one request, given without its end of line; skips blank lines. If the first line is
+    /// not a request, the client speaks another protocol and the session ends.
     /// \pre !waiting() and !closing()
     void request(std::string_view line);
-    /// Answers a request that exceeds the allowed length, and closes.
+    /// Answers a request that exceeds the permitted length, and closes.
     void tooLong(std::size_t limit);
-    /// Writes events and scans for this client, and the answer it waits for. Call it after each
-    /// step or change of the world. Without room for them, events that were asked for wait, and
-    /// some may be missed.
+    /// Writes this client's events and scans, and the awaited answer. Call after each step or
+    /// change of the world. Without room, subscribed events wait, and some may be lost.
     void stepped(bool has_room = true);
-    /// The same between steps, and answers a request that had to wait.
+    /// Continues output between steps, and answers a request that had to wait.
     void proceed();
-    /// Stops what it holds: the client has been silent for too long.
+    /// Stops the held mover after the client has been silent for too long.
     void silent();
 
-    /// Ends what is under way, at the end of the run, and says so.
+    /// Ends pending requests at the end of the run and tells the client.
     void finish();
 
     /// True while a STEP, a SEEK, a change of the world or a picture is under way; later requests
@@ -86,29 +87,29 @@ class Session {
         return steps_ != nullptr || seek_ || !held_.empty() || wanted_ || coming_;
     }
     [[nodiscard]] bool hasRole() const { return role_ != Role::None; }
-    /// True if that is a change that waits for its turn.
+    /// True if the pending request is a change of the world that awaits its turn.
     [[nodiscard]] bool waitsToChange() const { return may_go_on_ == &Session::mayChange; }
-    /// True if it drives a robot or a person.
+    /// True if the client drives a robot or a person.
     [[nodiscard]] bool drives() const {
         return !is_gone_ && (role_ == Role::Robot || role_ == Role::Person);
     }
-    /// False where roles need a token that the client has not given.
+    /// False if roles require a token that the client has not given.
     [[nodiscard]] bool mayLook() const {
         const ServerLimits& limits = state_->limits();
         return has_token_ || !limits.token_first || limits.token.empty();
     }
-    /// True after QUIT and errors that close the connection: nothing more is read.
+    /// True after QUIT and after errors that close the connection: no more input is read.
     [[nodiscard]] bool closing() const { return closing_; }
-    /// Takes what is to be sent, in order.
+    /// Returns and clears the output, in order.
     std::string take() { return std::exchange(out_, {}); }
-    /// Takes the newest scan of a stream, to be sent after everything else; null if there is none.
+    /// Returns and clears the newest scan of a stream, sent after all other output; null if none.
     std::shared_ptr<const std::string> takeScan();
     /// Bytes of that scan.
     [[nodiscard]] std::size_t scanBytes() const { return scan_ ? scan_->size() : 0; }
 
   private:
     enum class Role { None, Robot, Person, Laser, Sensor, World };
-    using Words = std::span<const std::string_view>;  // a request, the verb first
+    using Words = std::span<const std::string_view>;  // a request, verb first
     using Condition = bool (Session::*)() const;
     struct Request;
     static std::span<const Request> requests();
@@ -172,33 +173,33 @@ class Session {
 
     ServerState* state_;
     Role role_ = Role::None;
-    // The robot, person or sensor: its id, and its index since so many changes of the world.
+    // The robot, person or sensor: its id, and its index, valid for this change count of the world.
     std::string id_;
-    std::string keyword_;  // of a sensor's record
+    std::string keyword_;  // keyword of a sensor's record
     std::size_t subject_ = 0;
     std::int64_t changes_ = 0;
     std::int64_t hold_ = 0;  // of a robot or person, see ServerState::hold
-    bool is_gone_ = false;   // the world has lost it
+    bool is_gone_ = false;   // the world has removed the mover
     std::string out_;
-    std::vector<int> running_;  // commands whose end is still to be told
-    // The stream: every how many scans (0: none), the last one considered, the one to be sent.
+    std::vector<int> running_;  // motion commands whose end must be reported
+    // The stream: its divisor (0: none), the last scan considered, the scan to be sent.
     std::int64_t every_ = 0, seq_ = 0;
     ReplyForm form_;
-    bool is_stale_ = false;  // there is a newer one than that to be sent
+    bool is_stale_ = false;  // a newer scan than the one to be sent exists
     std::shared_ptr<const std::string> scan_;
-    // What is being made: the answer of a reading or a change, and a reading of the stream.
+    // Pending results: the answer of a reading or a change, and a reading of the stream.
     std::shared_ptr<const ServerState::Asked> wanted_, coming_;
-    std::shared_ptr<const StepQueue::Ticket> steps_;  // of a STEP to be answered
-    std::shared_ptr<const Seek> seek_;                // of a SEEK to be answered
-    // A request that is answered once this is so.
+    std::shared_ptr<const StepQueue::Ticket> steps_;  // of a pending STEP
+    std::shared_ptr<const Seek> seek_;                // of a pending SEEK
+    // A deferred request, answered once this condition holds.
     std::string held_;
     Condition may_go_on_ = nullptr;
-    EventKinds events_;  // that are told
+    EventKinds events_;  // subscribed events
     std::int64_t next_event_ = 0;
     bool has_token_ = false;
     int wrong_tokens_ = 0;
     TokenBucket pauses_, spare_pauses_;
-    bool first_ = true;  // nothing was asked yet
+    bool first_ = true;  // no request received yet
     bool closing_ = false;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/server: requests that change the world.
+// // Requests that change the world. Private to lib/server.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace ispace {
 
-/// Carries out a request ADD, SET, DELETE, LOAD or RESET. \returns the answer, as soon as the world
-/// has changed. \pre state.mayChange(), state.mayChangeNow()
+/// Carries out a request ADD, SET, DELETE, LOAD or RESET. \returns the answer, completed once the
+/// world has changed. \pre state.mayChange(), state.mayChangeNow()
 std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line);
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/server: readings as the protocol has them, see ispace-protocol(7).
+// // Formats readings for the protocol, see ispace-protocol(7). Private to lib/server.
 #pragma once
 
 #include <span>
@@ -10,42 +10,42 @@
 
 namespace ispace {
 
-/// What the bytes of a depth frame or a picture are.
+/// Encoding of a depth frame or a picture.
 enum class FrameFormat {
-    None,     ///< the sensor has no bytes, or only one kind of them
-    Png,      ///< a file; of depths 16-bit grey, millimetres, 0 for none
+    None,     ///< the sensor sends no bytes, or has only one encoding
+    Png,      ///< a file; depths: 16-bit grey, millimetres, 0 for no return
     Jpeg,     ///< a file
-    Rgb,      ///< a byte for each colour of each pixel
-    Depth32,  ///< float32 a pixel as the device measures, +infinity for none
-    Depth16,  ///< uint16 a pixel, millimetres, 0 for none
-    Cloud     ///< float32 x, y, z a pixel in the sensor's frame, NaN for none
+    Rgb,      ///< one byte per colour of each pixel
+    Depth32,  ///< float32 per pixel as the device measures, +infinity for no return
+    Depth16,  ///< uint16 per pixel, millimetres, 0 for no return
+    Cloud     ///< float32 x, y, z per pixel in the sensor's frame, NaN for no return
 };
 
-/// How a reading is put into a line, and bytes behind it.
+/// Form of a reading: a line, optionally followed by bytes.
 struct ReplyForm {
-    bool stream = false;  ///< sent unasked
-    bool binary = false;  ///< bytes behind the line; else all is in the line
+    bool stream = false;  ///< sent without a request
+    bool binary = false;  ///< bytes follow the line; otherwise the line holds all data
     FrameFormat format = FrameFormat::None;
     friend bool operator==(const ReplyForm&, const ReplyForm&) = default;
 };
 
-/// The formats of a sensor, the default first; none if there is no choice.
+/// Encodings that a sensor supports, the default first; empty if there is no choice.
 std::span<const FrameFormat> formatsOf(const RunSensor& sensor);
 std::string_view nameOf(FrameFormat format);
-/// True if its readings can be bytes behind a line.
+/// True if the sensor's readings can be sent as bytes after a line.
 bool hasBytes(const RunSensor& sensor);
-/// What a client is told of a laser: " angle_min=… rate=10".
+/// Describes a laser to clients: " angle_min=… rate=10".
 std::string laserFigures(const Laser& laser);
-/// Of any sensor: " kind=camera width=… rate=30".
+/// Describes any sensor: " kind=camera width=… rate=30".
 std::string sensorFigures(const RunSensor& sensor);
 
-/// A range as replies have it: three decimals as formatFixed writes them, `-` for no return.
+/// Appends a range: three decimals as formatFixed writes them, `-` for no return.
 void appendRange(std::string& out, float range);
 
-/// A reading as a SCAN line with its newline, and bytes behind it. A laser's binary line has
-/// bytes=N in place of r=, and N bytes of little-endian float32 follow, +inf for no return; a
-/// frame's has base64= in place of bytes= if it is not binary. \throws FormatError for a JPEG where
-/// OpenCV's imgcodecs cannot be opened
+/// Converts a reading to a SCAN line with its newline and the bytes after it. A laser's binary line
+/// has bytes=N instead of r=, and N bytes of little-endian float32 follow, +inf for no return; a
+/// frame that is not binary has base64= instead of bytes=. \throws FormatError for a JPEG if
+/// OpenCV's imgcodecs cannot be loaded
 std::string scanText(const RunSensor& sensor, const SensorReading& reading, const ReplyForm& form);
 
 }  // namespace ispace

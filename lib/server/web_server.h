@@ -13,26 +13,26 @@
 
 namespace ispace {
 
-/// The page that shows a running world, and the connections of its browsers. It is part of a Server
-/// and works in the same thread, within the same loop.
+/// Serves the page that shows a running world, and the connections of its browsers. Belongs to a
+/// Server and runs in its thread and event loop.
 class WebServer {
   public:
-    /// Listens at once. \throws std::system_error naming the endpoint
+    /// Starts listening. \throws std::system_error naming the endpoint
     WebServer(boost::asio::io_context& io, ServerState& state, const Endpoint& endpoint,
               std::string title);
 
     /// "http://127.0.0.1:40123/"
     [[nodiscard]] std::string url() const { return "http://" + acceptor_.address() + "/"; }
-    /// The world took a step.
+    /// Call after each step of the world.
     void stepped();
-    /// Between steps: answers STEPs that are done, and hands out frames.
+    /// Call between steps: answers finished STEPs and sends frames.
     void serve();
-    /// True if a client waits for its turn to change the world.
+    /// True if a client awaits its turn to change the world.
     [[nodiscard]] bool waitsToChange() const;
-    /// Says goodbye to all.
+    /// Sends a closing message to all browsers.
     void end();
     void closeAll();
-    /// True if there is a connection still.
+    /// True while connections remain.
     bool busy();
 
   private:
@@ -43,9 +43,9 @@ class WebServer {
     Acceptor acceptor_;
     WebOrigin origin_;
     WebShare share_;
-    boost::asio::steady_timer alarm_;  // of the next frame
+    boost::asio::steady_timer alarm_;  // wakes for the next frame
     WallTime alarm_time_{};
-    std::vector<std::shared_ptr<WebConnection>> connections_;  // in the order of their coming
+    std::vector<std::shared_ptr<WebConnection>> connections_;  // in order of arrival
 };
 
 }  // namespace ispace
