@@ -18,7 +18,7 @@ BackgroundWorker::~BackgroundWorker() {
     if (thread_.joinable()) thread_.join();
 }
 
-/// Starts it if that has not been done.
+/// Starts the thread if necessary.
 bool BackgroundWorker::hasThread() {
     if (thread_.joinable() || is_refused_) return !is_refused_;
     try {

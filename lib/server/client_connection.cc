@@ -41,7 +41,7 @@ std::string_view LineBuffer::take() {
 }
 
 void Outbox::append(std::string_view text) {
-    // What is sent goes only when it is the greater part, so that each byte moves once or so.
+    // Erase sent bytes only when they are the greater part: amortised one move per byte.
     if (!scan_ && sent_ > text_.size() / 2) text_.erase(0, std::exchange(sent_, 0));
     text_ += text;
 }
@@ -79,15 +79,15 @@ using asio::ip::tcp;
 using std::chrono::steady_clock;
 
 constexpr std::size_t kBlock = 4096;
-/// Requests of one client, and time for them, before it is the next one's turn.
+/// Requests of one client, and their time, before the next client's turn.
 constexpr int kRequestsInTurn = 64;
 constexpr auto kTurn = std::chrono::microseconds(200);
-/// How long a connection may take to close after its last message; what it sends is not read.
+/// Time limit for closing after the last message; input is discarded.
 constexpr auto kLinger = std::chrono::seconds(1);
 
 }  // namespace
 
-/// Ends the connection if it does not take a role in time.
+/// Ends the connection unless it takes a role in time.
 void ClientConnection::expectRole() {
     timer_.expires_at(heard_ + limits_.roleless);
     timer_.async_wait([self = shared_from_this()](auto aborted) {
@@ -104,7 +104,7 @@ void ClientConnection::makeWay(WallTime since) {
     refuse("ERR 408 no role taken in time: ROBOT id, SENSOR id or WORLD comes first\n");
 }
 
-/// Reads what arrived while the world took its step.
+/// Reads input that arrived during the world's step.
 void ClientConnection::catchUp() {
     if (mayAnswer() && !lines_.ready() && !eof_) receive();
 }
@@ -115,7 +115,7 @@ void ClientConnection::cutOff(std::string_view text) {
     refuse(text);
 }
 
-/// Does all that can be done now, and arranges to be called when more can.
+/// Does all work that is ready, and schedules the rest.
 void ClientConnection::pump() {
     answer();
     flush();
@@ -182,13 +182,13 @@ void ClientConnection::goOn(bool waited) {
     if (waited && !closed() && !session_->waiting()) pumpLater();
 }
 
-/// What to send next; a scan only when there is nothing else.
+/// Returns the next bytes to send; a scan only if no other output is pending.
 std::string_view ClientConnection::nextPiece() {
     if (out_.front().empty() && session_) out_.put(session_->takeScan());
     return out_.front();
 }
 
-/// Writes as much as the system takes; a handler goes on with the rest.
+/// Writes as much as the system accepts; a handler continues with the rest.
 void ClientConnection::flush() {
     while (!writing_ && !closed()) {
         const std::string_view piece = nextPiece();
@@ -214,7 +214,7 @@ void ClientConnection::flush() {
 }
 
 void ClientConnection::listen() {
-    // While a STEP is under way only to see the end of the connection, as long as there is room.
+    // During a STEP, read only to detect the end of the connection, while there is room.
     const bool waits = waiting() && !lines_.ready() && !lines_.tooLong();
     if (reading_ || eof_ || !(mayAnswer() || waits)) return;
     reading_ = true;
@@ -236,8 +236,8 @@ void ClientConnection::receive() {
     pump();
 }
 
-/// Sends what there is; then closes. With unread input that would reset the
-/// connection, and the other side might lose the last message.
+/// Sends pending output, then closes. Closing with unread input would reset the connection, and the
+/// peer might lose the last message.
 void ClientConnection::linger() {
     if (!std::exchange(ending_, true)) closeAfter(limits_.patience);
     if (writing_ || std::exchange(discarding_, true)) return;

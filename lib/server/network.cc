@@ -29,7 +29,7 @@ std::optional<ip::address_v6> asV6(const std::string& text) {
     return address.is_v6() ? address.to_v6() : ip::make_address_v6(ip::v4_mapped, address.to_v4());
 }
 
-/// With all bits behind the first ones 0.
+/// Clears all bits after the prefix.
 std::array<std::uint8_t, 16> cut(std::array<std::uint8_t, 16> address, int bits) {
     for (int i = bits; i < kBits; ++i) {
         auto& byte = address.at(static_cast<std::size_t>(i / 8));

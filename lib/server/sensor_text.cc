@@ -49,7 +49,7 @@ void addFormats(std::string& out, const RunSensor& sensor) {
 
 }  // namespace
 
-// What sensors are.
+// Descriptions of sensors.
 
 std::span<const FrameFormat> formatsOf(const RunSensor& sensor) {
     using F = FrameFormat;
@@ -245,7 +245,7 @@ std::string millimetres(std::span<const float> depths) {
     return out;
 }
 
-/// Puts readings into lines.
+/// Formats readings as lines.
 class ScanText {
   public:
     ScanText(const RunSensor& sensor, const SensorReading& reading, const ReplyForm& form)

@@ -37,13 +37,13 @@ namespace {
 using asio::ip::tcp;
 using std::chrono::steady_clock;
 
-/// Of the world, and of the clients, before it is the other's turn; of clients when the world's
-/// next step is due sooner.
+/// Time slice of the world and of the clients; that of the clients ends early when the world's next
+/// step is due.
 constexpr auto kTurn = std::chrono::milliseconds(2);
 constexpr auto kShortTurn = std::chrono::microseconds(500);
-/// Connections beyond those served that get a last message.
+/// Connections above the limit that receive a closing message.
 constexpr std::size_t kMaxLingering = 64;
-/// Marks and changes between steps are told to all so often at most.
+/// Minimum interval between updates about marks and changes between steps.
 constexpr auto kNewsEvery = std::chrono::milliseconds(10);
 constexpr auto kLastFlush = std::chrono::milliseconds(500);
 
@@ -79,14 +79,14 @@ struct Server::Data {
     Simulation& simulation;
     ServerLimits limits;
     ServerState state;
-    bool has_news = false;  // between steps, that not all clients were told
+    bool has_news = false;  // between steps, not sent to all clients yet
     WallTime next_news{};
     asio::io_context io{1};  // one thread runs it
     Acceptor acceptor;
     asio::steady_timer alarm{io};
     asio::posix::stream_descriptor stopper{io};
     std::optional<WallTime> alarm_time;
-    std::vector<std::shared_ptr<ClientConnection>> connections;  // in the order of their coming
+    std::vector<std::shared_ptr<ClientConnection>> connections;  // in order of arrival
     std::atomic<std::size_t> serving = 0;
     std::optional<WebServer> web;
     DeviceHost host{state};
@@ -97,7 +97,7 @@ void Server::Data::welcome(tcp::socket socket) {
     sweep();
     const bool full = serving >= limits.clients && !makeRoom();
     if (connections.size() >= limits.clients + kMaxLingering) {
-        // Of those that only have to close, the oldest has had the most time for it.
+        // Of closing connections, the oldest has had the most time.
         const auto told = std::find_if(connections.begin(), connections.end(),
                                        [](const auto& connection) { return connection->told(); });
         if (told == connections.end()) return;
@@ -115,7 +115,8 @@ void Server::Data::welcome(tcp::socket socket) {
     sweep();
 }
 
-/// Ends the connection that has gone longest without a role. True if there is a place now.
+/// Ends the connection that has been without a role longest. \returns true if the server has room
+/// now
 bool Server::Data::makeRoom() {
     const WallTime since = steady_clock::now() - limits.roleless_grace;
     std::vector<std::shared_ptr<ClientConnection>> idle;
@@ -133,8 +134,8 @@ bool Server::Data::makeRoom() {
 
 void Server::Data::stepped() {
     // Writing to a thousand clients takes longer than the next step may be late. Only a clock that
-    // waits leaves everybody a turn before the next scan. A few are served in any case: a machine
-    // that is busy elsewhere must not cost them a scan.
+    // waits leaves each client a turn before the next scan. A few are always served: load from
+    // other programs must not cost them a scan.
     constexpr std::size_t kFew = 32;
     const bool may_be_late =
         simulation.clock().kind != Clock::Kind::Real || connections.size() <= kFew;
@@ -148,7 +149,7 @@ void Server::Data::stepped() {
     next_news = steady_clock::now() + kNewsEvery;
 }
 
-/// When a client that says nothing has something to be done for it.
+/// Next time at which a silent client needs service.
 WallTime Server::Data::nextTurn() const {
     if (state.isOnTheWay()) return steady_clock::now();
     WallTime next = has_news ? next_news : WallTime::max();
@@ -165,7 +166,7 @@ WallTime Server::Data::nextTurn() const {
     return next;
 }
 
-/// Of the world: a single step where it may have to wait for the frames of that step.
+/// Time slice of the world: a single step if it may have to wait for frames of that step.
 std::chrono::nanoseconds Server::Data::turn() const {
     const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay() ||
                           simulation.paused();
@@ -176,7 +177,7 @@ std::chrono::nanoseconds Server::Data::turn() const {
     return has_heavy ? std::chrono::nanoseconds(0) : kTurn;
 }
 
-/// Runs handlers that are ready, for one turn at most, or until the world's next step is due.
+/// Runs ready handlers, for at most one slice or until the world's next step is due.
 void Server::Data::serveClients() {
     const WallTime now = steady_clock::now();
     WallTime end = now + kTurn;
@@ -201,8 +202,8 @@ void Server::Data::serveClients() {
     sweep();
 }
 
-/// Keeps what clients leave unread within its limit: the slowest readers go. Not one that holds no
-/// more than an equal share: all others then exceed theirs.
+/// Enforces the limit on unread output by closing the slowest readers. Clients within an equal
+/// share are kept: all others then exceed theirs.
 void Server::Data::relieve() {
     std::size_t replies = 0;
     for (const auto& connection : connections) replies += connection->memory();
@@ -221,7 +222,7 @@ void Server::Data::relieve() {
     }
 }
 
-/// Until then, or until one handler has run.
+/// Sleeps until that time or until a handler has run.
 void Server::Data::sleepUntil(WallTime time) {
     if (alarm_time != time) {
         // Once for each time: moving a timer makes a handler ready, which would end the sleep.
@@ -232,7 +233,7 @@ void Server::Data::sleepUntil(WallTime time) {
     io.run_one();
 }
 
-/// Forgets connections that are closed.
+/// Removes closed connections.
 void Server::Data::sweep() {
     std::erase_if(connections, [](const auto& connection) { return connection->closed(); });
     serving = static_cast<std::size_t>(
@@ -240,14 +241,14 @@ void Server::Data::sweep() {
                       [](const auto& connection) { return connection->serving(); }));
 }
 
-/// A signal has come, which the loop may not have noticed.
+/// Checks for a signal that the loop may not have noticed.
 bool Server::Data::isStopped() {
     if (!stopper.is_open()) return false;
     pollfd signal{stopper.native_handle(), POLLIN, 0};
     return ::poll(&signal, 1, 0) > 0;
 }
 
-/// The last step, with its frames unless a signal has ended the run.
+/// Writes the last step, with its frames unless a signal has ended the run.
 void Server::Data::finishRecord() {
     while (!simulation.finishRecord(WallTime::max()) && state.await()) continue;
 }
@@ -315,7 +316,7 @@ void Server::run() {
     while (!simulation.finished()) {
         data.serveClients();
         if (simulation.isDue(steady_clock::now())) data.state.prepareStep();
-        // Last before sleeping: what clients asked for decides for how long.
+        // Last before sleeping: pending requests determine the time to wake.
         std::optional<WallTime> next;
         next = data.state.holdsWorld() ? simulation.flushRecord()
                                        : simulation.run(steady_clock::now(), data.turn());
@@ -337,7 +338,7 @@ void Server::stop() {
 }
 
 void Server::stopOn(int descriptor) {
-    // A number of its own, for it closes what it watches.
+    // Duplicate, because the stream object closes its descriptor.
     const int own = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
     if (own < 0) throw std::system_error(errno, std::system_category(), "signals");
     data_->stopper.assign(own);
@@ -395,9 +396,9 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-/// What the system may hold for a client: much of it would be scans that are no longer new.
+/// System send buffer of a client: larger ones would hold outdated scans.
 constexpr int kSendBuffer = 1 << 16;
-/// A peer that is gone without a word: asked after a minute of silence, given up after another.
+/// Keepalive: a silent peer is probed after a minute and dropped after another.
 constexpr int kKeepIdle = 60, kKeepInterval = 10, kKeepCount = 6;
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 
@@ -455,7 +456,7 @@ void Acceptor::accept() {
             welcome_(std::move(socket));
             return accept();
         }
-        // Out of descriptors, or a client that is gone already: it may go better in a while.
+        // Out of descriptors, or the client has already gone: retry later.
         pause_.expires_after(kAcceptPause);
         pause_.async_wait([this](error_code aborted) {
             if (!aborted) accept();

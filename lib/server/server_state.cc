@@ -99,7 +99,7 @@ void ServerState::sync() {
     const World& world = simulation_->world();
     if (std::exchange(seen_changes_, world.changes()) == world.changes()) return;
     std::erase_if(held_, [&](const auto& held) { return !world.moverNamed(held.first); });
-    // The same period may have another reading now.
+    // The same period may have another reading after the change.
     texts_.clear();
     texts_.resize(world.sensors().size());
     kept_ = 0;
@@ -132,7 +132,7 @@ ServerState::Text& ServerState::textOf(std::size_t sensor, const ReplyForm& form
 }
 
 bool ServerState::holdsWorld() const {
-    // Who steps a paused world means that which was changed before.
+    // A client that steps a paused world expects earlier changes to be complete.
     const bool may_wait = simulation_->clock().kind != Clock::Kind::Real ||
                           simulation_->isReplay() || simulation_->paused();
     return may_wait && !isAtRest();
@@ -151,7 +151,7 @@ bool ServerState::collect() {
     return goOnSeeking() || has_built || has_made;
 }
 
-/// In the thread that builds, if there is one.
+/// Runs a job in the builder thread, if there is one.
 void ServerState::build(BackgroundWorker::Job job) {
     if (builders_)
         builders_->give(std::move(job));
@@ -159,7 +159,7 @@ void ServerState::build(BackgroundWorker::Job job) {
         BackgroundWorker::doNow(std::move(job));
 }
 
-/// To end a world takes long, too.
+/// Destroys a world in the background, since that takes long, too.
 void ServerState::endLater(std::shared_ptr<const void> old) {
     if (builders_ && old) builders_->give({[old = std::move(old)] {}, [](const auto&) {}});
 }
@@ -170,9 +170,9 @@ std::shared_ptr<const Seek> ServerState::seek(SimTime to) {
     return seek;
 }
 
-/// \returns true if the world has come where it was to go
+/// \returns true if the seek is complete
 bool ServerState::goOnSeeking() {
-    // A part of it takes no longer than others may wait.
+    // Time slice of a seek, which delays other clients.
     constexpr auto kPart = std::chrono::milliseconds(5);
     if (!isOnTheWay()) return false;
     try {
@@ -190,7 +190,7 @@ bool ServerState::goOnSeeking() {
     return true;
 }
 
-/// \returns false if there is nothing to prepare
+/// \returns false if no preparation is needed
 bool ServerState::prepare(std::optional<SimTime> to) {
     auto work = simulation_->preparation(to);
     if (!work) return false;
@@ -210,7 +210,7 @@ bool ServerState::prepare(std::optional<SimTime> to) {
 }
 
 bool ServerState::await() {
-    // How soon the end of all patience is noticed.
+    // Interval for checking whether waiting should end.
     constexpr auto kSlice = std::chrono::milliseconds(20);
     if (!workshop_ || (stopped_ && stopped_())) return false;
     workshop_->collectWithin(kSlice);
@@ -233,7 +233,7 @@ void ServerState::adopt(WorldChange change, std::exception_ptr failure, WallTime
                         const std::function<void(const std::exception_ptr& failure)>& end) {
     std::shared_ptr<const void> old;
     try {
-        // The record follows the sensors by their numbers; frames may come later.
+        // The record refers to sensors by index; frames may be written later.
         simulation_->finishRecord(WallTime::max());
         if (!failure) old = change.adopt();
     } catch (...) {
@@ -267,7 +267,7 @@ std::shared_ptr<const ServerState::Asked> ServerState::ask(std::size_t sensor,
     return making.asked;
 }
 
-/// Of a picture more than may wait; null: it may.
+/// Returns an error if too many pictures are pending, else null.
 std::shared_ptr<const ServerState::Asked> ServerState::refusal(std::size_t sensor) const {
     const auto sensors = simulation_->world().sensors();
     double pixels = pixelsOf(sensors[sensor]);
@@ -289,7 +289,7 @@ void ServerState::takeFrame(FrameJob job) {
     make(making, std::move(take), std::move(job));
 }
 
-/// Finds the reading, or \returns how to take it.
+/// Looks up the reading. \returns a function that captures it if there is none
 std::function<SensorReading()> ServerState::beginMaking(Making& making) {
     World& world = simulation_->world();
     for (const Making& other : makings_)
@@ -308,7 +308,7 @@ std::function<SensorReading()> ServerState::beginMaking(Making& making) {
     return take;
 }
 
-/// Jobs are done in order: later ones find the reading of the first.
+/// Jobs run in order: later ones reuse the reading of the first.
 void ServerState::make(const Making& making, std::function<SensorReading()> take, FrameJob frame) {
     World& world = simulation_->world();
     const auto text = std::make_shared<std::string>();
@@ -350,7 +350,7 @@ void ServerState::keep(Text& text, std::int64_t seq, std::shared_ptr<const std::
     text.seq = seq;
     text.bytes = std::move(bytes);
     if (kept_ <= limits_.unread / 2) return;
-    // Many big readings in every form: what nobody asks for again need not stay.
+    // Large readings in many forms: drop the ones not requested again.
     kept_ = size_of(text);
     for (auto& forms : texts_)
         for (Text& other : forms)

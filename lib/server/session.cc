@@ -18,7 +18,7 @@ namespace ispace {
 
 namespace {
 
-/// Far more than anybody waits for; sums of them stay far from overflow.
+/// Larger than practical counts; sums of them cannot overflow.
 constexpr std::int64_t kMaxCount = 1'000'000'000;
 
 }  // namespace
@@ -28,7 +28,7 @@ Count parseCount(std::string_view text, std::string_view what) {
     std::string found = ", found ";
     found += excerpt(text);
     std::string message(what);
-    // Too many digits for an integer are a number all the same.
+    // Integers with too many digits are numbers, too.
     const bool is_whole = value || text.find_first_not_of("0123456789") == std::string_view::npos;
     if (!is_whole || text.empty())
         return {0, 400, message.append(" is a whole number").append(found)};
@@ -65,7 +65,7 @@ std::string unknownThing(std::string_view kind, std::string_view id,
     std::string out = "no ";
     out.append(kind).append(" ").append(excerpt(id)).append(where);
     if (known.empty()) return out.append(": there is none");
-    // Among thousands of names one is always near, and it would take long to find.
+    // With thousands of names a similar one always exists, and the search is slow.
     if (known.size() <= kMany) {
         if (const std::string hint = didYouMean(id, known); !hint.empty()) return out.append(hint);
     }
@@ -101,14 +101,14 @@ std::string_view reasonOf(Outcome outcome) {
 
 }  // namespace
 
-/// What can be asked for. A verb may have several rows with different roles.
+/// A request of the protocol. A verb may have several rows with different roles.
 struct Session::Request {
     std::string_view verb;
-    std::string_view arguments;  // for people
-    std::optional<Role> role;    // at which it is possible; nothing: at any
+    std::string_view arguments;  // for humans
+    std::optional<Role> role;    // required role; empty: any
     std::size_t least, most;     // number of arguments
     void (Session::*answer)(Words words);
-    bool needs_token = false;  // where the run has one
+    bool needs_token = false;  // if the run has a token
 };
 
 std::span<const Session::Request> Session::requests() {
@@ -191,7 +191,7 @@ void Session::request(std::string_view line) {
     for (const Piece& piece : wordsOf(line)) words.push_back(piece.text);
     if (words.empty()) return;
     sync();
-    tellEvents();  // what happened before the request is told before its answer
+    tellEvents();  // earlier events are sent before the answer
     const bool first = std::exchange(first_, false);
     // A web page can make a browser send requests to ports of its machine: lines of them might pass
     // for those of a client.
@@ -275,7 +275,7 @@ void Session::finish() {
         may_go_on_ = nullptr;
         error(405, {"the run has ended"});
     }
-    // At last there is time to wait: for the frame before a request, and that which it asks for.
+    // Now it may wait: for frames due before the request, and for the requested one.
     while (wanted_ || coming_) {
         if (!state_->await()) {
             if (wanted_ || !held_.empty()) error(405, {"the run has ended"});
@@ -318,7 +318,7 @@ void Session::error(int code, std::initializer_list<std::string_view> text) {
     out_ += errorLine(code, text);
 }
 
-/// Why a verb is no request, or none now.
+/// Explains why a verb is unknown, or invalid now.
 void Session::refuse(std::string_view verb, bool first) {
     std::vector<std::string> verbs;
     verbs.reserve(requests().size());
@@ -344,7 +344,7 @@ void Session::refuse(std::string_view verb, bool first) {
                 ": open another one"});
 }
 
-/// Answers, if it is not so.
+/// Answers with an error unless the request is permitted.
 bool Session::mayUse(const Request& request) {
     const ServerLimits& limits = state_->limits();
     const bool needs = request.needs_token || (limits.token_first && request.role);
@@ -359,7 +359,7 @@ bool Session::mayUse(const Request& request) {
     return true;
 }
 
-/// After changes of the world: what the client has may have another index, or be gone.
+/// After changes of the world, the client's robot or sensor may have another index, or be gone.
 void Session::sync() {
     state_->sync();
     if (changes_ == world().changes()) return;
@@ -381,7 +381,7 @@ void Session::sync() {
     }
 }
 
-/// The world has lost what the client has.
+/// Handles the removal of the client's robot or sensor.
 void Session::lose() {
     const std::string time = formatMilliseconds(world().time());
     for (const int id : running_) {
@@ -396,7 +396,7 @@ void Session::lose() {
     coming_.reset();
 }
 
-/// Gives up what the client holds.
+/// Releases the client's robot or person.
 void Session::leave() {
     if (drives()) state_->release(id_, hold_);
     state_->steps().drop(std::exchange(steps_, nullptr));

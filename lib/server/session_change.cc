@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The token, changes of the world, and what happens in it.
+// // Requests for the token, changes of the world, and events.
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -15,7 +15,7 @@ namespace ispace {
 
 namespace {
 
-/// Bytes of what an event quotes: it goes to all clients who listen.
+/// Bytes of an event's quoted text, which goes to all subscribed clients.
 constexpr std::size_t kMaxText = 256;
 
 }  // namespace
@@ -40,7 +40,7 @@ void Session::token(Words words) {
     error(401, {"this is not the token of this run"});
 }
 
-/// At once, or when others' changes leave time for it.
+/// Changes the world at once, or when other clients' changes leave time for it.
 void Session::change(Words words) {
     if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
     if (!mayChange()) return hold(words, &Session::mayChange);
@@ -141,7 +141,7 @@ void appendEvent(std::string& out, const Event& event) {
 
 }  // namespace
 
-/// Events since the last ones, as far as there is room for them; the rest comes later.
+/// Writes new events while there is room; the rest waits.
 void Session::tellEvents() {
     constexpr std::size_t kRoom = std::size_t{1} << 16;
     if (events_.empty()) return;

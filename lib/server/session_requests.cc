@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The roles ROBOT and PERSON.
-// The role WORLD, but for changes.
+// Requests of the roles ROBOT, PERSON and WORLD; changes of the world.
 #include "server/session_requests.h"
 
 #include <algorithm>
@@ -28,13 +27,13 @@ namespace ispace {
 
 namespace {
 
-/// Why a change cannot be.
+/// Reason why a change is rejected.
 struct Refusal {
     int code = 400;
     std::string message;
 };
 
-/// What is wrong, without the names of options and of places in no file.
+/// The error's text, without names of options, and without positions unless in a file.
 std::string messageOf(const FormatError& error, std::string_view verb) {
     constexpr std::size_t kMost = 3;
     const auto& findings = error.diagnostics();
@@ -66,7 +65,7 @@ void checkGlobs(const std::vector<Edit>& edits) {
         throw Refusal{400, "a request has at most " + std::to_string(kMost) + " globs"};
 }
 
-/// True for records that are no part of a world.
+/// True for records that do not belong to a world.
 bool isMeta(std::string_view keyword) {
     const Schema* const schema = sceneSchemas().find(keyword);
     return schema != nullptr && schema->type == RecordType::Meta;
@@ -116,7 +115,7 @@ std::string warningOf(const World& world, const std::vector<std::string>& movers
     return joined(warnings, "; ");
 }
 
-/// A request on its way.
+/// A pending change request.
 class Changing {
   public:
     Changing(ServerState& state, const std::string& line) : state_(&state), line_(line) {
@@ -127,7 +126,7 @@ class Changing {
 
     /// \throws Refusal
     WorldChange begin();
-    /// After it was made, or failed: tells everybody. \returns the answer
+    /// Call after the change succeeded or failed: informs all sessions. \returns the answer
     std::string end(const std::exception_ptr& failure);
 
   private:
@@ -219,7 +218,7 @@ std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const 
 
 namespace {
 
-/// What commands run at and up to what they may ask, on a floor without friction.
+/// Formats default and maximum speeds of commands, on a floor without friction.
 std::string speedsText(const RobotModel& model) {
     std::string text;
     const auto add = [&text](std::string_view key, double value) {
@@ -259,7 +258,7 @@ void Session::takePerson(Words words) {
     out_.append(speedsText(mover.model)).append("\n");
 }
 
-/// Takes hold of somebody, or says that another client has.
+/// Holds a mover, or answers that another client has it.
 bool Session::seize(Role role, std::string_view id, std::size_t mover) {
     const auto hold = state_->hold(id);
     if (!hold) {
@@ -286,7 +285,7 @@ void Session::command(Words words) {
     const std::string refusal = world().refusal(subject_, *parsed.command);
     if (!refusal.empty()) return error(416, {refusal});
     double value = parsed.command->value;
-    if (parsed.command->verb == Verb::Path)  // the whole way, from here
+    if (parsed.command->verb == Verb::Path)  // the whole path, from here
         value +=
             distance(world().status(subject_).pose.position, parsed.command->course.path.front());
     const int id = world().command(subject_, *parsed.command);
@@ -373,8 +372,8 @@ void Session::poses(Words /*words*/) {
     out_ += '\n';
 }
 
-/// Answers, if it is not so. Each pause may cut short what others have asked for; two of them with
-/// no time between cost the world nothing else.
+/// Answers with an error if the rate limit is exceeded. A pause may interrupt other clients'
+/// requests; a pair without time between them costs the world no more than that.
 bool Session::mayAskFor(std::string_view verb) {
     const auto now = std::chrono::steady_clock::now();
     TokenBucket& all = state_->pauses();
@@ -394,7 +393,7 @@ bool Session::mayAskFor(std::string_view verb) {
 
 void Session::pause(Words words) {
     if (!mayAskFor(words.front())) return;
-    // A STEP under way ends here too, or nobody could end one of too many steps.
+    // Also ends a STEP under way: otherwise one with too many steps could not be stopped.
     state_->steps().cut();
     state_->simulation().pause(std::chrono::steady_clock::now());
     out_.append("OK PAUSE t=").append(formatMilliseconds(world().time())).append("\n");
@@ -423,7 +422,7 @@ void Session::seek(Words words) {
     const auto time = parseSimTime(words[1]);
     if (!time || *time < SimTime(0))
         return error(416, {excerpt(words[1]), " is no time in seconds from 0 on"});
-    // What is being made is about the world as it is now.
+    // Pending readings and changes refer to the current world.
     if (!maySeek()) return hold(words, &Session::maySeek);
     if (!mayAskFor(words.front())) return;
     state_->steps().cut();

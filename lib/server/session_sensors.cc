@@ -15,7 +15,7 @@ namespace ispace {
 
 namespace {
 
-/// What a reply has where the client has not chosen.
+/// Reply form for clients that have not chosen one.
 ReplyForm defaultForm(const RunSensor& sensor) {
     const auto formats = formatsOf(sensor);
     if (formats.empty()) return {};
@@ -70,7 +70,7 @@ void Session::scanOfRobot(Words words) {
     sendReading(*found, form);
 }
 
-/// Now, or when it is made.
+/// Sends a reading now, or once it is computed.
 void Session::sendReading(std::size_t sensor, const ReplyForm& form) {
     wanted_ = state_->ask(sensor, form);
     receiveAsked();
@@ -80,10 +80,10 @@ void Session::receiveAsked() {
     if (wanted_ && wanted_->bytes) out_ += *std::exchange(wanted_, nullptr)->bytes;
     if (!coming_ || !coming_->bytes) return;
     const auto come = std::exchange(coming_, nullptr);
-    // Nobody asked for it; the next one may be there.
+    // Streamed readings are unsolicited: skip the error, the next one may succeed.
     if (come->is_error) return;
     scan_ = come->bytes;
-    // It goes before the answer that waits for it.
+    // Sent before the pending answer.
     if (!held_.empty()) out_ += *std::exchange(scan_, nullptr);
 }
 
@@ -140,8 +140,8 @@ void Session::stream(Words words) {
     out_.append("OK STREAM every=").append(std::to_string(every)).append("\n");
 }
 
-/// Looks whether a new reading is to be sent. A heavy one is not even taken while the one before it
-/// is made, or waits for a slow reader, and none once a request waits for that.
+/// Checks for a new reading to send. A heavy sensor is not captured while its previous reading is
+/// being computed or waits for a slow reader, nor while a request waits for that.
 void Session::streamSensor() {
     const std::int64_t seq = world().period(subject_);
     if (seq != seq_ && seq % every_ == 0 && held_.empty()) {
@@ -169,8 +169,8 @@ std::shared_ptr<const std::string> Session::takeScan() {
     return std::exchange(scan_, nullptr);
 }
 
-/// A scan that was due before a request is sent before its answer. \returns false if it is still to
-/// be made, as for one who read nothing for long: then the request is held until it is.
+/// Sends a scan that was due before a request. \returns false if the scan must still be computed,
+/// e.g. for a slow reader: then the request is held until it is
 bool Session::sendsPendingScan(Words words) {
     if (const auto scan = takeScan()) out_ += *scan;
     if (coming_) hold(words, &Session::hasCome);
@@ -209,7 +209,7 @@ void Session::format(Words words) {
                       hint.empty() ? ", it has " : hint, hint.empty() ? joined(names, ", ") : ""});
     }
     if (*found == FrameFormat::Jpeg) {
-        // Better told now than with the first picture.
+        // Report the error now rather than with the first picture.
         try {
             static_cast<void>(jpegOfRgb(1, 1, std::vector<std::uint8_t>(3)));
         } catch (const FormatError& missing) {

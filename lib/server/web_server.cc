@@ -14,7 +14,7 @@ namespace {
 using boost::asio::ip::tcp;
 using std::chrono::steady_clock;
 
-/// A browser uses some six for files and one for each robot it drives.
+/// A browser uses some six connections for files and one for each robot it drives.
 constexpr std::size_t kMaxConnections = 64;
 
 }  // namespace
@@ -27,8 +27,8 @@ WebServer::WebServer(boost::asio::io_context& io, ServerState& state, const Endp
       share_{&state, &frames_, &origin_},
       alarm_(io) {}
 
-/// If all places are taken, the oldest connection goes that has not become a WebSocket, or the
-/// WebSocket that has been idle longest.
+/// When the server is full, drops the oldest connection that is not a WebSocket, else the WebSocket
+/// that has been idle longest.
 void WebServer::welcome(tcp::socket socket) {
     sweep();
     if (connections_.size() >= kMaxConnections) {
@@ -54,7 +54,7 @@ void WebServer::serve() {
     for (const auto& connection : connections_) {
         if (connection->waiting()) connection->proceed();
         connection->checkPatience(now);
-        // One that waits for a frame of a world that stands has asked for something.
+        // A client that awaits a frame of a paused world is not idle.
         const auto idle = connection->idleSince();
         if (idle && *idle <= now - share_.state->limits().roleless && !connection->wantsFrame())
             connection->dismiss();

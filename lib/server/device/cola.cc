@@ -34,7 +34,7 @@ std::uint32_t numberIn(std::string_view bytes) {
 
 }  // namespace
 
-/// From a 02 at the beginning.
+/// Parses a telegram that starts with 02.
 ColaTelegrams::Found ColaTelegrams::takeText(ColaTelegram& telegram) {
     const std::size_t end = bytes_.find_first_of("\2\3", 1);
     if (end == std::string::npos) {
@@ -51,7 +51,7 @@ ColaTelegrams::Found ColaTelegrams::takeText(ColaTelegram& telegram) {
     return Found::Telegram;
 }
 
-/// From two 02 at the beginning.
+/// Parses a telegram that starts with two 02.
 ColaTelegrams::Found ColaTelegrams::takeBinary(ColaTelegram& telegram) {
     const std::size_t known = std::min(bytes_.size(), kBinaryBegin.size());
     const bool begins = std::string_view(bytes_).substr(0, known) == kBinaryBegin.substr(0, known);

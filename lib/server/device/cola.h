@@ -25,16 +25,16 @@ struct ColaTelegram {
     friend bool operator==(const ColaTelegram&, const ColaTelegram&) = default;
 };
 
-/// Takes telegrams out of a stream of bytes. A begins with 02 and ends with 03; B has four 02, the
-/// length, the content, and the exclusive or of its bytes. What is neither is left out.
+/// Extracts telegrams from a byte stream. A starts with 02 and ends with 03; B has four 02, the
+/// length, the content, and the exclusive or of its bytes. Other bytes are skipped.
 class ColaTelegrams {
   public:
     static constexpr std::size_t kLongest = 1024;
 
     void append(std::string_view bytes) { bytes_ += bytes; }
-    /// Nothing until more bytes come.
+    /// Returns the next telegram; empty until it is complete.
     std::optional<ColaTelegram> next();
-    /// Bytes kept.
+    /// Number of buffered bytes.
     [[nodiscard]] std::size_t size() const { return bytes_.size(); }
 
   private:
@@ -45,10 +45,10 @@ class ColaTelegrams {
     std::string bytes_;
 };
 
-/// The telegram with this content, ready to be sent.
+/// Returns the framed telegram with this content.
 std::string colaFrame(std::string_view content, bool is_binary);
 
-/// Writes a telegram's content, number by number.
+/// Writes a telegram's content, field by field.
 class ColaWriter {
   public:
     /// \param begin "sRA LMDscandata"
@@ -62,7 +62,7 @@ class ColaWriter {
     ColaWriter& f32(float value);
     /// A name of known length: "DIST1".
     ColaWriter& name(std::string_view text);
-    /// A text with its length before it.
+    /// A text preceded by its length.
     ColaWriter& text(std::string_view text);
     /// \returns the telegram
     [[nodiscard]] std::string frame() const { return colaFrame(content_, is_binary_); }
@@ -77,7 +77,7 @@ class ColaWriter {
 /// Reads the arguments of a request: hexadecimal, or decimal with a sign.
 class ColaReader {
   public:
-    /// \param arguments what stands behind the name and a blank
+    /// \param arguments text after the name and a blank
     ColaReader(std::string_view arguments, bool is_binary)
         : rest_(arguments), is_binary_(is_binary) {}
     std::optional<std::int64_t> u8() { return number(1); }
@@ -92,30 +92,31 @@ class ColaReader {
     bool is_binary_;
 };
 
-/// What a laser says of its scans in CoLa: ten-thousandths of a degree, counter-clockwise, where 90
-/// degrees are straight ahead.
+/// Scan figures of a laser in CoLa: ten-thousandths of a degree, counter-clockwise; 90 degrees are
+/// straight ahead.
 struct ColaFigures {
     std::string name;                ///< "LMS111"
     std::int32_t start = 0;          ///< first beam
     std::int32_t stop = 0;           ///< last beam
-    std::int32_t step = 0;           ///< between two of them
+    std::int32_t step = 0;           ///< between neighbouring beams
     std::uint32_t frequency = 0;     ///< hundredths of a hertz
     std::uint32_t measurements = 0;  ///< hundreds of beams a second
-    float scale = 1;                 ///< millimetres of a distance of 1
+    float scale = 1;                 ///< millimetres per unit of distance
 
     /// \pre the laser does not sweep
     static ColaFigures of(const Laser& laser);
-    /// 0 for no return; `range` in metres.
+    /// Converts a range in metres to CoLa units; 0 for no return.
     [[nodiscard]] std::uint32_t number(float range) const;
 };
 
 /// A laser that speaks CoLa A and B as SICK's LMS1xx and TiM5xx do, for programs that use
 /// libLMS1xx, sick_tim, sick_scan_xd or MRPT's CLMS100Eth.
 ///
-/// It measures from the beginning, and sends scans once LMDscandata is switched on; each telegram
-/// is answered in its dialect. Rates, angles and output ranges are those of the record: setting
-/// others is answered as a device that cannot. Remissions are 200 for a return and 0 without one,
-/// as the world knows none. Dates count from 1970, as those of a device whose clock was never set.
+/// It measures from the start, and sends scans once LMDscandata is switched on; each telegram is
+/// answered in its dialect. Rates, angles and output ranges are those of the record: requests to
+/// set others are answered as by a device that does not support them. Remissions are 200 for a
+/// return and 0 without one, since the world has no remissions. Dates count from 1970, as on a
+/// device whose clock was never set.
 class ColaSession : public WireSession {
   public:
     /// \pre refusalOfCola() is ""
@@ -127,10 +128,10 @@ class ColaSession : public WireSession {
     [[nodiscard]] bool isEngaged() const override { return streams_; }
 
   private:
-    /// What LMDscandatacfg asks for.
+    /// Content of scan telegrams, set by LMDscandatacfg.
     struct Content {
         bool remission = false, wide_remission = false, time = false;
-        std::int64_t every = 1;  ///< scans
+        std::int64_t every = 1;  ///< sends every n-th scan
     };
 
     [[nodiscard]] const Laser& laser() const;
@@ -153,11 +154,11 @@ class ColaSession : public WireSession {
     std::string id_;
     ColaTelegrams telegrams_;
     ColaFigures figures_;
-    std::size_t sensor_ = 0;     // index in the world, as of:
-    std::int64_t changes_ = -1;  // of the world
+    std::size_t sensor_ = 0;     // index in the world, valid for:
+    std::int64_t changes_ = -1;  // change count of the world
     Content content_;
     bool measures_ = true, streams_ = false, binary_stream_ = false;
-    std::int64_t next_ = 0;  // period of the laser to be sent
+    std::int64_t next_ = 0;  // period of the next scan to send
     std::uint32_t sent_ = 0;
 };
 

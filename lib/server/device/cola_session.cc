@@ -10,12 +10,12 @@ namespace ispace {
 
 namespace {
 
-/// Bytes that may wait for a slow reader before scans are left out.
+/// Unsent bytes of a slow reader above which scans are skipped.
 constexpr std::size_t kRoom = std::size_t{1} << 16;
-constexpr double kAngleUnits = 10'000;  // in a degree
+constexpr double kAngleUnits = 10'000;  // per degree
 constexpr double kAhead = 90;           // degrees
 constexpr std::uint32_t kRemission = 200;
-constexpr std::uint32_t kMost = 0xFFFF;  // of a distance
+constexpr std::uint32_t kMost = 0xFFFF;  // maximum distance
 /// Codes of sFA.
 constexpr std::uint32_t kUnknownMethod = 2, kUnknownVariable = 3, kInvalid = 5;
 /// Events of evaluation fields, outputs and inputs. They can be switched on and never happen.
@@ -39,7 +39,7 @@ std::uint32_t microseconds(std::chrono::nanoseconds time) {
         std::chrono::duration_cast<std::chrono::microseconds>(time).count());
 }
 
-/// The date that a clock shows which began with 1970.
+/// Date shown by a clock that started in 1970.
 std::chrono::year_month_day dateOf(std::chrono::nanoseconds time) {
     return std::chrono::floor<std::chrono::days>(
         std::chrono::sys_time<std::chrono::nanoseconds>(time));
@@ -108,7 +108,7 @@ const Laser& ColaSession::laser() const {
     return *host_->world().sensors()[sensor_].model<Laser>();
 }
 
-/// Follows changes of the world. False once it has lost the laser.
+/// Follows changes of the world. \returns false once the laser was removed
 bool ColaSession::follow() {
     World& world = host_->world();
     if (changes_ == world.changes()) return true;
@@ -119,7 +119,7 @@ bool ColaSession::follow() {
     }
     sensor_ = *world.sensorNamed(id_);
     figures_ = ColaFigures::of(laser());
-    // Periods count anew with another rate, and when a replay goes back.
+    // Periods restart with another rate and after a replay's seek.
     next_ = std::min(next_, world.period(sensor_) + content_.every);
     return true;
 }
@@ -141,7 +141,7 @@ void ColaSession::answer(const ColaTelegram& telegram) {
     const std::string_view kind = content.substr(0, kKind);
     std::string_view rest = content.substr(kind.size());
     if (kind == "sRI") {
-        // By number: 0 is the identification. Some drivers leave out the blank.
+        // Requests by number: 0 is the identification. Some drivers omit the blank.
         while (rest.starts_with(' ')) rest.remove_prefix(1);
         if (!rest.empty() && (rest == "0" || rest.find_first_not_of('\0') == rest.npos))
             return read("DeviceIdent", "0", binary);
@@ -158,7 +158,7 @@ void ColaSession::answer(const ColaTelegram& telegram) {
     refuse(kUnknownMethod, binary);
 }
 
-/// The one answer that has no blank before its number in B.
+/// The only answer without a blank before its number in B.
 void ColaSession::refuse(std::uint32_t code, bool is_binary) {
     if (!is_binary) return send(ColaWriter("sFA", false).u16(code).frame());
     std::string content = "sFA";
@@ -227,8 +227,8 @@ void ColaSession::set(std::string_view name, std::string_view arguments, bool is
     send(ColaWriter("sWA " + std::string(name), is_binary).frame());
 }
 
-/// Channel (two numbers), remission, its resolution, unit, encoder (two), position, name, comment,
-/// time, every so many scans.
+/// Reads LMDscandatacfg: channel (two numbers), remission, its resolution, unit, encoder (two),
+/// position, name, comment, time, divisor of scans.
 void ColaSession::takeContent(std::string_view arguments, bool is_binary) {
     ColaReader in(arguments, is_binary);
     static_cast<void>(in.u8());
@@ -263,8 +263,8 @@ void ColaSession::call(std::string_view name, std::string_view arguments, bool i
     send(out.frame());
 }
 
-/// 0 if they ask for what the laser does; else which of them it cannot: 1 the frequency, 2 the
-/// resolution, 3 both, 4 the sector.
+/// Checks requested settings. \returns 0 if they match the laser; else the unsupported ones: 1 the
+/// frequency, 2 the resolution, 3 both, 4 the sector
 std::uint32_t ColaSession::scanSettings(std::string_view arguments, bool is_binary) const {
     ColaReader in(arguments, is_binary);
     const auto frequency = in.u32(), sectors = in.u16(), step = in.u32();
@@ -306,7 +306,7 @@ void ColaSession::state(bool is_binary) {
     send(out.frame());
 }
 
-/// A scan of the stream, if one is due. One that finds no room is left out.
+/// Sends the stream's scan if one is due; skips it if too many bytes are unsent.
 void ColaSession::stepped(std::size_t unsent) {
     if (closing() || !follow() || !streams_ || !measures_) return;
     const std::int64_t period = host_->world().period(sensor_);
@@ -315,7 +315,7 @@ void ColaSession::stepped(std::size_t unsent) {
     send(scan("sSN", binary_stream_));
 }
 
-/// The newest scan.
+/// Formats the newest scan.
 std::string ColaSession::scan(std::string_view kind, bool is_binary) {
     const SensorReading& reading = host_->world().reading(sensor_);
     const auto taken = host_->clock() - (host_->world().time() - reading.time);
@@ -341,7 +341,7 @@ std::string ColaSession::scan(std::string_view kind, bool is_binary) {
     return out.frame();
 }
 
-/// Distances, or remissions of one byte or two.
+/// Appends distances, or remissions of one or two bytes.
 void ColaSession::appendChannel(ColaWriter& out, std::string_view name, bool wide) const {
     const std::vector<float>& ranges = host_->world().reading(sensor_).scan().ranges;
     const bool is_distance = name == "DIST1";

@@ -24,15 +24,15 @@ using asio::ip::tcp;
 using boost::system::error_code;
 using std::chrono::steady_clock;
 
-/// Read at once: some twenty requests, so that replies to them take little room and time.
+/// Block of one read: some twenty requests, so that their replies stay small.
 constexpr std::size_t kBlock = 256;
 /// Unsent bytes at which requests begin to wait.
 constexpr std::size_t kPending = std::size_t{1} << 16;
-/// A string of this size is kept for the next packets.
+/// Capacity kept for the next packets.
 constexpr std::size_t kKept = std::size_t{1} << 16;
-/// How long a client may take nothing of what waits for it.
+/// Time limit for a client that stops reading its output.
 constexpr auto kPatience = std::chrono::seconds(10);
-/// How long a connection may take to close after its last packet; what it sends is not read.
+/// Time limit for closing after the last packet; input is discarded.
 constexpr auto kLinger = std::chrono::seconds(1);
 
 }  // namespace
@@ -42,14 +42,15 @@ DeviceConnection::DeviceConnection(tcp::socket socket, std::unique_ptr<WireSessi
       timer_(socket_.get_executor()),
       session_(std::move(session)),
       heard_(steady_clock::now()) {
-    // A peer that acknowledges nothing: devices serve one client, who must not hold it for ever.
+    // Limits the time without acknowledgement: a dead peer must not block a device that serves one
+    // client.
     using UserTimeout = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_USER_TIMEOUT>;
     error_code ignored;
     socket_.set_option(UserTimeout(static_cast<int>(std::chrono::milliseconds(kPatience).count())),
                        ignored);
 }
 
-/// Does all that can be done now, and arranges to be called when more can.
+/// Does all work that is ready, and schedules the rest.
 void DeviceConnection::pump() {
     collect();
     flush();
@@ -78,7 +79,7 @@ void DeviceConnection::checkPatience(WallTime now) {
     if (writing_ && now - stuck_ > kPatience) close();
 }
 
-/// Writes as much as the system takes; a handler goes on with the rest.
+/// Writes as much as the system accepts; a handler continues with the rest.
 void DeviceConnection::flush() {
     while (!writing_ && !closed() && unsent() > 0) {
         error_code error;
@@ -94,7 +95,7 @@ void DeviceConnection::flush() {
             close();
         }
     }
-    // What is sent goes once it is the greater part, so that each byte moves once or so.
+    // Erase sent bytes once they are the greater part: amortised one move per byte.
     if (sent_ <= out_.size() / 2) return;
     out_.erase(0, std::exchange(sent_, 0));
     if (out_.empty() && out_.capacity() > kKept) out_.shrink_to_fit();
@@ -127,8 +128,8 @@ void DeviceConnection::receive() {
     pump();
 }
 
-/// Sends what there is; then closes. With unread input that would reset the connection, and the
-/// other side might lose the last packet.
+/// Sends pending output, then closes. Closing with unread input would reset the connection, and the
+/// peer might lose the last packet.
 void DeviceConnection::linger() {
     if (writing_ || std::exchange(lingering_, true)) return;
     timer_.expires_after(kLinger);
@@ -170,7 +171,7 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 using std::chrono::steady_clock;
 
-/// Connections of a port that only have to close.
+/// Maximum closing connections of a port.
 constexpr std::size_t kMaxLeaving = 8;
 
 WireHost::Change resultOf(const std::exception_ptr& failure) {
@@ -187,7 +188,7 @@ WireHost::Change resultOf(const std::exception_ptr& failure) {
 }  // namespace
 
 DeviceHost::Change DeviceHost::change(std::span<const std::string> assignments) {
-    // Nobody shows a token here.
+    // Device protocols cannot carry a token.
     if (!state_->mayChange() || !state_->limits().token.empty()) return Change::Refused;
     const bool is_asked =
         changing_ && std::equal(assignments.begin(), assignments.end(),
@@ -235,7 +236,7 @@ bool DeviceHost::holds(std::string_view robot, std::int64_t hold) {
 }
 
 void DeviceHost::release(std::string_view robot, std::int64_t hold) {
-    // Nobody asks what became of it any more.
+    // The result is no longer awaited.
     changing_.reset();
     state_->sync();
     state_->release(robot, hold);
@@ -256,8 +257,7 @@ DevicePort::DevicePort(boost::asio::io_context& io, DeviceHost& host, const Serv
       id_(std::move(id)),
       acceptor_(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }) {}
 
-/// Who may not come, or finds no place, is closed without a word: the devices' languages have none
-/// for it.
+/// Rejected clients are disconnected silently: the devices' protocols have no such message.
 void DevicePort::welcome(tcp::socket socket) {
     error_code error;
     const auto peer = socket.remote_endpoint(error);
@@ -266,12 +266,12 @@ void DevicePort::welcome(tcp::socket socket) {
     const auto serving = std::count_if(connections_.begin(), connections_.end(),
                                        [](const auto& one) { return one->serving(); });
     if (static_cast<std::size_t>(serving) >= protocol_->clients && !makeRoom()) return;
-    // Those that only have to close are no hindrance; the first of them has had the most time.
+    // Closing connections do not count; the first has had the most time.
     if (connections_.size() >= protocol_->clients + kMaxLeaving)
         (*std::find_if(connections_.begin(), connections_.end(), [](const auto& one) {
             return !one->serving();
         }))->close();
-    if (!protocol_->refusal(host_->world(), id_).empty()) return;  // the world has lost it
+    if (!protocol_->refusal(host_->world(), id_).empty()) return;  // removed from the world
     connections_.push_back(
         std::make_shared<DeviceConnection>(std::move(socket), protocol_->open(*host_, id_)));
     connections_.back()->serve();
@@ -279,7 +279,7 @@ void DevicePort::welcome(tcp::socket socket) {
 }
 
 bool DevicePort::makeRoom() {
-    // Of those that send no more some have left, unnoticed as long as nothing is sent to them.
+    // A client that closed its sending side may have left, unnoticed while no output is sent.
     auto idle = std::find_if(connections_.begin(), connections_.end(), [](const auto& connection) {
         return connection->serving() && connection->ended();
     });

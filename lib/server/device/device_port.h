@@ -22,35 +22,35 @@
 
 namespace ispace {
 
-/// The transport of a WireSession. Nothing blocks; handlers keep it alive until it is closed.
+/// The transport of a WireSession. Non-blocking; pending handlers keep it alive until it is closed.
 ///
-/// A client that leaves much unread is not read from, and one that takes nothing of it for ten
-/// seconds is closed, as is one whose machine is gone.
+/// Stops reading from a client that leaves much output unread, and closes the connection after ten
+/// seconds without progress or if the peer's machine is gone.
 class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
   public:
     DeviceConnection(boost::asio::ip::tcp::socket socket, std::unique_ptr<WireSession> session);
 
     void serve() { pump(); }
-    /// The world took a step, or was changed.
+    /// Call after each step or change of the world.
     void stepped();
-    /// True if what its client asked for changes the world and has to wait for that.
+    /// True if the client's request changes the world and must wait for its turn.
     [[nodiscard]] bool waitsToChange() const { return session_ && session_->waitsToChange(); }
-    /// Tries again what has to wait.
+    /// Retries the waiting request.
     void proceed();
-    /// Closes it if its client takes nothing any more.
+    /// Closes the connection if the client has stopped reading.
     void checkPatience(WallTime now);
-    /// Ends the session, sends what is pending and closes.
+    /// Ends the session, sends pending output and closes.
     void end();
     void close();
     [[nodiscard]] bool closed() const { return !socket_.is_open(); }
-    /// False once its session has ended: only what is pending is still sent.
+    /// False once the session has ended: only pending output is still sent.
     [[nodiscard]] bool serving() const { return session_ != nullptr; }
-    /// Since when its client has asked nothing of a device that does nothing for it; nothing if
-    /// that is not so. Bytes that the device does not understand are no request.
+    /// Time of the last request if the session is not engaged, else empty. Bytes that the device
+    /// does not understand are not requests.
     [[nodiscard]] std::optional<WallTime> idleSince() const {
         return session_ && !session_->isEngaged() ? std::optional(heard_) : std::nullopt;
     }
-    /// True once its client sends no more, though it may read.
+    /// True once the client has closed its sending side; it may still read.
     [[nodiscard]] bool ended() const { return ended_; }
 
   private:
@@ -65,16 +65,16 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
 
     boost::asio::ip::tcp::socket socket_;
     boost::asio::steady_timer timer_;       // of lingering
-    std::unique_ptr<WireSession> session_;  // none: the connection is about to end
+    std::unique_ptr<WireSession> session_;  // null: the connection is about to end
     std::string out_;
-    std::size_t sent_ = 0;      // of out_
-    WallTime heard_, stuck_{};  // heard_: of its last request, or its beginning
+    std::size_t sent_ = 0;      // bytes of out_
+    WallTime heard_, stuck_{};  // heard_: last request, initially the start of the connection
     bool ended_ = false;
-    bool reading_ = false, writing_ = false;  // handlers on their way
+    bool reading_ = false, writing_ = false;  // handlers pending
     bool lingering_ = false;
 };
 
-/// What sessions of device ports see of a server's run.
+/// The view of a server's run for sessions of device ports.
 class DeviceHost : public WireHost {
   public:
     explicit DeviceHost(ServerState& state) : state_(&state) {}
@@ -93,11 +93,11 @@ class DeviceHost : public WireHost {
     }
 
   private:
-    /// A change that was asked for.
+    /// A requested change.
     struct Changing {
         std::vector<std::string> assignments;
         std::optional<Change> result = {};
-        std::int64_t changes = 0;  // of the world, when it was made
+        std::int64_t changes = 0;  // change count of the world after it
     };
 
     ServerState* state_;
@@ -105,25 +105,25 @@ class DeviceHost : public WireHost {
     WallTime began_ = std::chrono::steady_clock::now();
 };
 
-/// A robot or sensor of the running world behind the port of a real device. It is part of a Server
-/// and works in the same thread, within the same loop.
+/// Serves a robot or sensor of the running world through the protocol of a real device. Belongs to
+/// a Server and runs in its thread and event loop.
 class DevicePort {
   public:
-    /// Listens at once. \throws std::system_error naming the endpoint
+    /// Starts listening. \throws std::system_error naming the endpoint
     DevicePort(boost::asio::io_context& io, DeviceHost& host, const ServerLimits& limits,
                const WireProtocol& protocol, std::string id, const Endpoint& endpoint);
 
     /// "127.0.0.1:10940"
     [[nodiscard]] std::string address() const { return acceptor_.address(); }
-    /// The world took a step, or was changed.
+    /// Call after each step or change of the world.
     void stepped();
-    /// True if a client waits for its turn to change the world.
+    /// True if a client awaits its turn to change the world.
     [[nodiscard]] bool waitsToChange() const;
-    /// Between steps.
+    /// Call between steps.
     void serve(WallTime now);
     void end();
     void closeAll();
-    /// True if there is a connection still.
+    /// True while connections remain.
     bool busy();
 
   private:
@@ -137,7 +137,7 @@ class DevicePort {
     const WireProtocol* protocol_;
     std::string id_;
     Acceptor acceptor_;
-    std::vector<std::shared_ptr<DeviceConnection>> connections_;  // in the order of their coming
+    std::vector<std::shared_ptr<DeviceConnection>> connections_;  // in order of arrival
 };
 
 }  // namespace ispace

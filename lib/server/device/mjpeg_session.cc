@@ -46,7 +46,7 @@ std::string headerOf(int status, std::string_view type) {
     return out;
 }
 
-/// Of a picture, within a stream or alone.
+/// Headers of a picture, in a stream or alone.
 std::string headerOf(const PictureFile& file) {
     std::string out = "Content-Length: " + std::to_string(file.bytes.size());
     out.append("\r\nX-Timestamp: ").append(formatMilliseconds(file.time));
@@ -63,8 +63,8 @@ std::string_view lineOf(std::string_view& text) {
 
 bool isBlank(char c) { return c == ' ' || c == '\t'; }
 
-/// True where programs disagree about the name: blanks before it, which once went on with the line
-/// before, or behind it.
+/// True where parsers disagree about the header's name: blanks before it (obsolete line folding) or
+/// after it.
 bool isDoubtful(std::string_view line) {
     const std::size_t colon = line.find(':');
     if (line.empty() || colon == 0) return false;
@@ -78,8 +78,8 @@ bool isHeader(std::string_view line, std::string_view name) {
            });
 }
 
-/// A page of a stranger reaches this machine by a name that its DNS server suddenly gives to
-/// 127.0.0.1: such names have a dot, and more than numbers as addresses do.
+/// True for names that a foreign DNS server could resolve to 127.0.0.1: they contain a dot and,
+/// unlike addresses, letters.
 bool isStranger(std::string_view host) {
     while (!host.empty() && isBlank(host.front())) host.remove_prefix(1);
     while (!host.empty() && isBlank(host.back())) host.remove_suffix(1);
@@ -128,7 +128,7 @@ MjpegSession::MjpegSession(WireHost& host, std::string sensor)
 void MjpegSession::receive(std::string_view bytes) {
     if (request_) return;
     head_ += bytes;
-    // Empty lines before a request are no part of it.
+    // Skip empty lines before a request.
     head_.erase(0, std::min(head_.find_first_not_of("\r\n"), head_.size()));
     const std::size_t end = std::min(head_.find("\r\n\r\n"), head_.find("\n\n"));
     if (std::min(end, head_.size()) > kMaxHead) return refuse(kTooLong, "the request is too long");
@@ -175,7 +175,7 @@ void MjpegSession::ended() {
 
 void MjpegSession::stepped(std::size_t unsent) {
     if (!request_) return;
-    // Pictures are large: the one before has to be gone.
+    // Pictures are large: wait until the previous one is sent.
     if (unsent == 0) show();
 }
 
@@ -184,7 +184,7 @@ void MjpegSession::show() {
     const auto sensor = world.sensorNamed(id_);
     if (!sensor || !world.sensors()[*sensor].isHeavy()) return close();
     const bool streams = request_->kind == PictureRequest::Kind::Stream;
-    // A world that waits for its clients loses no time.
+    // A paused world loses no time.
     if (!coming_)
         coming_ = host_->pictures().newest(world, *sensor, std::chrono::steady_clock::now(),
                                            host_->isPaused(), [this](auto work, auto deliver) {

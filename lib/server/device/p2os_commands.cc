@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a Pioneer's commands do. Those that are not here are ignored, as robots without the part
-// that they are about ignore them.
+// Handles a Pioneer's commands. Unknown ones are ignored, as by robots without the optional part.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,11 +17,11 @@ constexpr double kMillimetres = 1000;
 // Ids that share a method.
 constexpr std::uint8_t kSeta = 5, kSetv = 6, kMove = 8, kRotate = 9, kSetrv = 10, kVel = 11,
                        kHead = 12, kDhead = 13, kRvel = 21, kSetra = 23, kStop = 29;
-// Of the laser, in the numbering of old.
+// Laser commands, in the old numbering.
 constexpr std::uint8_t kLaserOn = 35, kLaserStart = 36, kLaserEnd = 37, kLaserStep = 38,
                        kNewNumbers = 230 - kLaserOn;
 
-/// A number of a command; 0 if it carries none.
+/// Returns a command's number; 0 if it has none.
 int valueOf(const P2osPacket& packet) { return p2osNumber(packet).value_or(0); }
 
 }  // namespace
@@ -100,7 +99,7 @@ void P2osSession::config(const P2osPacket& /*packet*/) {
     send(p2osConfigPacket(type_, config));
 }
 
-/// To 0,0,0, or with six bytes to x, y in millimetres and a heading in degrees.
+/// Sets the odometry to 0,0,0, or with six bytes to x, y in millimetres and a heading in degrees.
 void P2osSession::setOrigin(const P2osPacket& packet) {
     pose();
     constexpr std::size_t kSize = 7;
@@ -181,7 +180,7 @@ void P2osSession::setLaser(const P2osPacket& packet) {
     }
 }
 
-/// Whatever the type byte says: three numbers of four bytes follow it.
+/// Ignores the type byte and reads three numbers of four bytes.
 void P2osSession::setPose(const P2osPacket& packet) {
     constexpr std::size_t kSize = 13;
     if (packet.data.size() < kSize) return;
@@ -198,8 +197,7 @@ void P2osSession::reset(const P2osPacket& /*packet*/) {
     odometer_.set({});
 }
 
-/// Puts the robot elsewhere, unless it would stand in something there. Odometry knows nothing of
-/// it.
+/// Moves the robot to another pose unless it would overlap a body there. Odometry does not change.
 void P2osSession::place() {
     pose();
     const auto& [at, heading] = *new_place_;

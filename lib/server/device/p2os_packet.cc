@@ -14,7 +14,7 @@ namespace {
 constexpr char kFirst = '\xFA', kSecond = '\xFB';
 /// FA, FB and the length; then id and checksum at least.
 constexpr std::size_t kHead = 3, kMinValue = 3, kChecksum = 2;
-/// What a length may say at most.
+/// Maximum value of the length byte.
 constexpr std::size_t kMost = 200;
 constexpr std::uint8_t kNegative = 0x1B;
 
@@ -147,7 +147,7 @@ constexpr std::uint8_t kStatus = 0x32, kConfig = 0x20, kSim = 0x62, kScan = 0x60
 
 std::int64_t rounded(double value) { return std::llround(value); }
 
-/// Millimetres as 16 bits, what is more as the most.
+/// Converts millimetres to 16 bits, saturating.
 std::int64_t range16(double millimetres) { return rounded(std::clamp(millimetres, 0.0, kMax16)); }
 
 /// Units of heading, in (-2048, 2048].
@@ -175,7 +175,7 @@ void addSonars(P2osWriter& out, const P2osType& type, const P2osStatus& status) 
     }
 }
 
-/// True if the middle of a bumper is ahead of the centre.
+/// True if the middle of a bumper lies ahead of the robot's centre.
 bool isFront(const Bumper& bumper) { return cos(0.5 * (bumper.from + bumper.to)) > 0; }
 
 }  // namespace
@@ -183,7 +183,7 @@ bool isFront(const Bumper& bumper) { return cos(0.5 * (bumper.from + bumper.to))
 std::uint16_t p2osBumpers(const RobotModel& model, const std::vector<bool>& pressed) {
     constexpr int kMaxOfASide = 7;
     unsigned bits = 0;
-    // They are counter-clockwise in the model, so the last one of each side comes first.
+    // The model stores them counter-clockwise, so the last one of each side comes first.
     int front = 0, rear = 0;
     for (std::size_t k = pressed.size(); k-- > 0;) {
         const bool is_front = isFront(model.bumpers[k]);
@@ -245,7 +245,7 @@ std::string p2osConfigPacket(const P2osType& type, const P2osConfig& config) {
     out.text(config.name).u8(config.cycle.count()).u8(0).u8(0);
     out.u16(0).u16(config.sonars ? 1 : 0).u8(config.sonars ? 1 : 0).u16(kLow).u16(0);
     out.u16(config.watchdog.count()).u8(0).u16(200).u16(50);
-    out.u16(range16(now.speed)).u16(range16(now.rotspeed));  // of joysticks
+    out.u16(range16(now.speed)).u16(range16(now.rotspeed));  // speeds of joysticks
     out.u16(range16(now.rotspeed)).u16(range16(now.speed));
     out.u16(range16(now.rotaccel)).u16(range16(now.rotdecel)).u16(0).u16(0).u16(0);
     out.u16(range16(now.accel)).u16(range16(now.decel)).u16(0).u16(0).u16(0);
@@ -263,7 +263,7 @@ std::string p2osSimPacket(const Pose2& pose, SimTime step) {
     out.u8(0).u8(0).u32(kHasMap).u16(interval).u16(interval).u16(interval);
     out.u32(rounded(pose.position.x * kMillimetres)).u32(rounded(pose.position.y * kMillimetres));
     out.u32(0).u32(rounded(wrapped(pose.heading).degrees()));
-    out.u32(0).u32(0).u32(0).u32(-1);  // no place on earth
+    out.u32(0).u32(0).u32(0).u32(-1);  // no geographic position
     out.u32(0).u32(0).u32(0);
     return out.packet(kSim);
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Packets of Pioneer robots (P2OS, ARCOS), in both directions: FA FB, a length, an id, data and a
-// checksum. Numbers are little-endian. Published in the operations manuals of these robots; the
-// clients that were looked at are ARIA (AriaCoda) and the p2os driver of Player.
-// What a Pioneer tells its client, as packets.
+// checksum. Numbers are little-endian. Source: the robots' operations manuals; checked against the
+// clients ARIA (AriaCoda) and Player's p2os driver.
 #pragma once
 
 #include <cstddef>
@@ -27,25 +26,25 @@ struct P2osPacket {
     friend bool operator==(const P2osPacket&, const P2osPacket&) = default;
 };
 
-/// Bytes of a packet's data at most: clients drop what is longer than 200 in all.
+/// Maximum bytes of a packet's data: clients drop packets longer than 200 bytes.
 constexpr std::size_t kMaxP2osData = 194;
 
-/// The checksum of id and data: the sum of their big-endian words, and a last single byte xor-ed
-/// into it.
+/// Computes the checksum of id and data: the sum of their big-endian words, xor-ed with a last
+/// single byte.
 std::uint16_t p2osChecksum(std::string_view body);
-/// The packet in its frame. \pre at most kMaxP2osData bytes of data
+/// Frames a packet. \pre at most kMaxP2osData bytes of data
 std::string p2osBytes(std::uint8_t id, std::string_view data = {});
 
-/// Finds packets in a stream of bytes, however it is cut. What is no packet, or has a wrong
-/// checksum, is passed over up to the next FA FB.
+/// Extracts packets from a byte stream, however it is split. Skips other bytes, and packets with a
+/// wrong checksum, up to the next FA FB.
 class P2osParser {
   public:
     void append(std::string_view bytes);
-    /// The next whole packet; nothing if more bytes are needed. Call it until it gives nothing.
+    /// Returns the next complete packet; empty if more bytes are needed. Call it until it is empty.
     std::optional<P2osPacket> take();
-    /// Bytes that wait for the rest of their packet.
+    /// Bytes of an incomplete packet.
     [[nodiscard]] std::size_t pending() const { return bytes_.size(); }
-    /// Gives up a packet that began but does not go on: its bytes may hold others.
+    /// Drops the start of a packet that does not continue: its bytes may hold other packets.
     void skip();
 
   private:
@@ -54,13 +53,13 @@ class P2osParser {
     std::string bytes_;  // begins with FA, or is empty, after take()
 };
 
-/// Data of a packet to be sent, field by field.
+/// Writes the data of a packet, field by field.
 class P2osWriter {
   public:
     P2osWriter& u8(std::int64_t value) { return number(value, 1); }
     P2osWriter& u16(std::int64_t value) { return number(value, 2); }
     P2osWriter& u32(std::int64_t value) { return number(value, 4); }
-    /// With its NUL.
+    /// Writes the text and its NUL.
     P2osWriter& text(std::string_view text) {
         data_.append(text).push_back('\0');
         return *this;
@@ -69,75 +68,76 @@ class P2osWriter {
     [[nodiscard]] std::string packet(std::uint8_t id) const { return p2osBytes(id, data_); }
 
   private:
-    /// The low bytes of a number, so that negative ones are in two's complement.
+    /// Writes the low bytes of a number: two's complement if it is negative.
     P2osWriter& number(std::int64_t value, int bytes);
 
     std::string data_;
 };
 
-/// The number a command carries: a type byte (3B, or 1B for one below 0) and two bytes of
-/// magnitude; nothing if they are not all there.
+/// Reads the argument of a command: a type byte (3B, or 1B for negative numbers) and two bytes of
+/// magnitude; empty if they are incomplete.
 std::optional<int> p2osNumber(const P2osPacket& command);
-/// A little-endian number of two's complement within data. \pre the bytes are there
+/// Reads a little-endian two's complement integer from data. \pre the bytes are there
 std::int32_t p2osInteger(std::string_view data, std::size_t at, std::size_t bytes);
 
-/// A type of Pioneer as clients know it: by its name they look up how to read its numbers.
+/// A model of Pioneer as clients know it: they look up the units of its packets by name.
 struct P2osType {
     std::string_view name;
-    double distance;  ///< millimetres of a unit of x and y
-    double range;     ///< millimetres of a unit of a sonar's range
-    double turn;      ///< radians a second that a millimetre a second of (right - left) / 2 makes
-    int top_speed, top_rotspeed;  ///< mm/s and deg/s that clients never exceed
-    double laser_x, laser_y;      ///< millimetres, where clients take the laser to be
+    double distance;              ///< millimetres per unit of x and y
+    double range;                 ///< millimetres per unit of a sonar's range
+    double turn;                  ///< radians per second for 1 mm/s of (right - left) / 2
+    int top_speed, top_rotspeed;  ///< mm/s and deg/s, upper limits in clients
+    double laser_x, laser_y;      ///< millimetres, position of the laser assumed by clients
 };
 
-/// All types, the usual one first. Figures: parameters of ARIA, the same in Player's p2os driver
-/// (but for the laser of the p3dx-sh, 18 mm there).
+/// All models, the default first. Figures: parameters of ARIA, identical in Player's p2os driver
+/// (except the laser of the p3dx-sh, 18 mm there).
 std::span<const P2osType> p2osTypes();
-/// Null if there is none of that name.
+/// Finds a model by name; null if unknown.
 const P2osType* p2osTypeNamed(std::string_view name);
-/// That of a robot: what its record says, else that of its model. \pre the scene has it
+/// Returns the model of a robot: from its record, else from its robot model. \pre the scene has it
 const P2osType& p2osTypeOf(const Scene& scene, std::string_view robot);
 
-/// Clients count 4096 units of heading in a turn.
+/// Units of heading per turn.
 constexpr int kP2osTurn = 4096;
 
 /// Contents of a standard status packet.
 struct P2osStatus {
     Pose2 pose;                   ///< by odometry, metres
     double speed = 0;             ///< m/s
-    Angle rotspeed;               ///< a second, counter-clockwise
+    Angle rotspeed;               ///< per second, counter-clockwise
     bool stall = false;           ///< a motor is blocked
-    bool motors = false;          ///< they are on
-    bool sonars = false;          ///< they are on
-    bool stopped = false;         ///< by an emergency stop that lasts
+    bool motors = false;          ///< switched on
+    bool sonars = false;          ///< switched on
+    bool stopped = false;         ///< by an active emergency stop
     std::vector<float> ranges;    ///< of the sonars, metres; +infinity for no echo
-    std::size_t first_sonar = 0;  ///< where a packet begins that cannot hold all of them
+    std::size_t first_sonar = 0;  ///< first sonar of this packet, if one packet cannot hold all
     std::uint16_t bumpers = 0;    ///< see p2osBumpers()
 };
 
-/// Sonars that fit into one packet.
+/// Maximum number of sonars in one packet.
 constexpr std::size_t kMaxP2osSonars = 32;
 
 std::string p2osStatusPacket(const P2osType& type, const P2osStatus& status);
 
-/// Pressed bumpers as clients have them, clockwise: the front ones in bits 9 to 15, the rear ones
-/// in bits 1 to 7. Bits 0 and 8 are left for stalled motors. \pre as many as the model has
+/// Converts pressed bumpers to the clients' order, clockwise: the front ones in bits 9 to 15, the
+/// rear ones in bits 1 to 7. Bits 0 and 8 are reserved for stalled motors. \pre as many as the
+/// model has
 std::uint16_t p2osBumpers(const RobotModel& model, const std::vector<bool>& pressed);
-/// How many of a model's bumpers are in front or at the rear.
+/// Counts a model's front or rear bumpers.
 int p2osBumperCount(const RobotModel& model, bool front);
 
-/// What can be set of the way a robot moves: mm/s, mm/s^2, deg/s, deg/s^2.
+/// Adjustable limits on a robot's motion: mm/s, mm/s^2, deg/s, deg/s^2.
 struct P2osLimits {
     double speed = 0, accel = 0, decel = 0;
     double rotspeed = 0, rotaccel = 0, rotdecel = 0;
     friend bool operator==(const P2osLimits&, const P2osLimits&) = default;
 };
-/// As it starts; and the most that can be set.
+/// Initial limits, and the maximum that can be set.
 P2osLimits p2osUsualLimits(const RobotModel& model);
 P2osLimits p2osTopLimits(const P2osType& type, const RobotModel& model);
 
-/// What the robot is and can do, and how it is set.
+/// Identity, features and settings of the robot.
 struct P2osConfig {
     std::string name;
     P2osLimits top, now;
@@ -148,22 +148,22 @@ struct P2osConfig {
 
 std::string p2osConfigPacket(const P2osType& type, const P2osConfig& config);
 
-/// The true pose, and steps of that length.
+/// Packet of the true pose and the step length.
 std::string p2osSimPacket(const Pose2& pose, SimTime step);
 
-/// A laser that the simulator has in place of a device: what clients ask of it.
+/// The simulated laser, which stands for a device: settings requested by clients.
 struct P2osLaser {
     Angle first = Angle::degrees(-90), last = Angle::degrees(90), step = Angle::degrees(1);
     int mode = 0;  ///< 0: off; 1: ranges alone; 2: with reflectance and flags
     friend bool operator==(const P2osLaser&, const P2osLaser&) = default;
 
-    /// Readings of a scan; 0 if it is none that can be, or has more than kMaxReadings.
+    /// Readings per scan; 0 if the settings are invalid or exceed kMaxReadings.
     [[nodiscard]] int readings() const;
     static constexpr int kMaxReadings = 3601;
 };
 
-/// A scan in as many packets as it needs. \param ranges metres; +infinity is `max_range`
-/// \param pose of the robot, by odometry
+/// Splits a scan into packets. \param ranges metres; +infinity is sent as `max_range` \param pose
+/// of the robot, by odometry
 std::string p2osLaserPackets(int mode, const P2osType& type, const Pose2& pose,
                              std::span<const float> ranges, double max_range);
 

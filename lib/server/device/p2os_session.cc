@@ -12,7 +12,7 @@ namespace {
 constexpr double kMillimetres = 1000;
 constexpr SimTime kRetryAfter = std::chrono::milliseconds(500);
 
-/// How fast an axis may be and change its speed now.
+/// Computes an axis' current limits of speed and acceleration.
 AxisLimits limitsFor(const AxisGoal& goal, double speed, double max, double accel, double decel) {
     if (goal.kind == AxisGoal::Kind::Distance) return {max, max, std::min(accel, decel)};
     const double wanted = std::clamp(goal.value, -max, max);
@@ -102,7 +102,7 @@ void P2osDrive::hush(bool silent) {
 }
 
 void P2osDrive::renew() {
-    // What is left of a distance is not known.
+    // The remaining distance is unknown.
     if (drive_.kind == AxisGoal::Kind::Distance) drive_ = {};
     new_drive_ = new_turn_ = is_resumed_ = true;
 }
@@ -145,14 +145,14 @@ void P2osDrive::stepped(const World& world, std::size_t robot) {
     const bool hit = std::any_of(world.collisions().begin(), world.collisions().end(),
                                  [robot](const Collision& one) { return one.robot == robot; });
     if (hit) {
-        // It stands, where it was to turn as well.
+        // Standing also ends a turn.
         stalled_ = wants(drive_);
         stall_place_ = status.pose.position;
         retry_ = world.time() + kRetryAfter;
         new_turn_ = is_resumed_ = wants(turn_);
         if (drive_.kind == AxisGoal::Kind::Distance) drive_.value = 0;
     }
-    // Up to a step away from the thing it can go, which frees it from nothing.
+    // A robot that can move only up to a step away from the body remains stalled.
     constexpr double kFree = 0.02;
     if (distance(status.pose.position, stall_place_) > kFree) stalled_ = false;
     if (stalled_ && drive_.kind == AxisGoal::Kind::Speed && world.time() >= retry_)
@@ -162,7 +162,7 @@ void P2osDrive::stepped(const World& world, std::size_t robot) {
 namespace {
 
 constexpr std::uint8_t kLastSync = 2;
-/// Of names that are sent.
+/// Maximum length of names sent.
 constexpr std::size_t kMaxName = 24;
 
 Pose2 product(const Pose2& a, const Pose2& b) {
@@ -215,7 +215,7 @@ std::string P2osSession::name() const { return id_.substr(0, kMaxName); }
 
 Pose2 P2osSession::pose() {
     const World& world = host_->world();
-    // Twice as far as in a step, as the step before may be new, too.
+    // Twice the distance of a step, since the previous step may be unseen, too.
     const double step = seconds(world.stepLength());
     const double speed = std::max(model().max_speed, model().max_rotspeed.radians());
     constexpr double kSlack = 0.01;
@@ -223,7 +223,8 @@ Pose2 P2osSession::pose() {
     return odometer_.pose();
 }
 
-/// Changes by others may put the robot elsewhere at rest, and a replay goes back.
+/// Handles displacements by other clients' changes, which leave the robot at rest, and by a
+/// replay's seek.
 void P2osSession::follow() {
     const World& world = host_->world();
     if (changes_ == world.changes()) return;
@@ -234,7 +235,7 @@ void P2osSession::follow() {
     if (status.speed != 0 || status.rotspeed != Angle()) return;
     const bool is_elsewhere =
         status.pose.position != seen_.position || status.pose.heading != seen_.heading;
-    // A robot that stays goes on, and may have been told of a distance just now.
+    // A robot that was not moved continues, and may have received a distance just now.
     if (is_elsewhere || !drive_.hasDistance()) drive_.renew();
 }
 
@@ -249,7 +250,7 @@ void P2osSession::watch() {
     if (wall_clock_() - fed_wall_ >= kWatchdog) drive_.hush(true);
 }
 
-/// Takes the packets that are there. A damaged head asks for bytes that never come.
+/// Processes arrived packets. A damaged header may announce bytes that never arrive.
 void P2osSession::listen() {
     if (parser_.pending() == 0) return;
     const auto now = wall_clock_();
@@ -294,7 +295,7 @@ void P2osSession::stepped(std::size_t unsent) {
     seen_ = world.status(robot()).pose;
     if (!opened_ || world.time() < next_) return;
     while (next_ <= world.time()) next_ += kCycle;
-    // What nobody reads now is old news when it is read.
+    // Unread packets would be outdated when they are read.
     constexpr std::size_t kMaxUnsent = 16384;
     if (unsent > kMaxUnsent) return;
     if (tells_sim_) sendSim();
@@ -329,7 +330,7 @@ void P2osSession::sendStatus() {
     status.sonars = sonars_;
     if (sonars_) status.ranges = world.sonar(robot());
     status.first_sonar = first_sonar_;
-    // Those that were pressed stay so while it tries to get nearer.
+    // Pressed bumpers stay pressed while the robot tries to move on.
     if (!status.stall || world.status(robot()).stall)
         bumpers_ = p2osBumpers(model(), world.bumper(robot()));
     status.bumpers = bumpers_;
@@ -338,8 +339,8 @@ void P2osSession::sendStatus() {
         first_sonar_ = (first_sonar_ + kMaxP2osSonars) % status.ranges.size();
 }
 
-/// The laser of the robot, where there is one, else one where clients take it to be; with the beams
-/// that the client has asked for.
+/// Sends a scan of the robot's laser, or of a simulated one at the position that clients assume,
+/// with the requested beams.
 void P2osSession::sendScan() {
     const int readings = laser_.readings();
     if (laser_.mode == 0 || readings == 0) return;

@@ -16,99 +16,100 @@
 
 namespace ispace {
 
-/// The motion controller of a Pioneer: it keeps what is to be reached along the heading and about
-/// the centre, each by itself, and gives it to the wheels. Numbers are in millimetres and degrees.
+/// The motion controller of a Pioneer: stores separate goals for translation and rotation, and
+/// converts them to wheel commands. Numbers are in millimetres and degrees.
 ///
 /// Speeds keep to the limits that are set. Distances and headings are reached with the lower of
-/// acceleration and deceleration. Who runs into something stands, is stalled as long as a speed
-/// along the heading is wanted, and tries again twice a second.
+/// acceleration and deceleration. A robot that runs into a body stands, reports a stall as long as
+/// a translation is requested, and retries twice a second.
 class P2osDrive {
   public:
     P2osDrive(const P2osType& type, const RobotModel& model);
 
     [[nodiscard]] const P2osLimits& limits() const { return limits_; }
     [[nodiscard]] const P2osLimits& top() const { return top_; }
-    /// One of them, up to the top one; nothing but 1 is less than 1.
+    /// Sets one limit, clamped to [1, maximum].
     void limit(double P2osLimits::*which, double value);
 
-    // What is to be reached. Ignored while the motors are off, or an emergency stop lasts.
+    // Goals. Ignored while the motors are off or during an emergency stop.
     void setSpeed(double speed);
     void setRotspeed(double rotspeed);
     void move(double distance);
-    /// \param heading by odometry, as `now` is
+    /// \param heading by odometry, as is `now`
     void turnTo(Angle heading, Angle now);
     void turnBy(Angle angle, Angle now);
-    /// \param by their wheels, mm/s
+    /// Speeds of the wheels, mm/s.
     void setWheels(double left, double right);
     void stop();
-    /// Stops as hard as can be; nothing else until it stands.
+    /// Stops with maximum deceleration; ignores goals until the robot stands.
     void stopHard();
     /// Turns the motors on or off, which stops the robot hard.
     void enable(bool on);
-    /// Stands while the client is silent, and goes on then.
+    /// Stops while the client is silent, and resumes afterwards.
     void hush(bool silent);
-    /// The robot was put elsewhere, at rest: reaches for the same again.
+    /// Restarts the goals after the robot was moved to another pose, at rest.
     void renew();
 
     [[nodiscard]] bool motors() const { return motors_; }
     [[nodiscard]] bool isStopping() const { return stopping_; }
     [[nodiscard]] bool isStalled() const { return stalled_; }
     [[nodiscard]] bool isHushed() const { return hushed_; }
-    /// True if it is to go a distance.
+    /// True if a distance remains to be driven.
     [[nodiscard]] bool hasDistance() const {
         return drive_.kind == AxisGoal::Kind::Distance && drive_.value != 0;
     }
 
-    /// Gives the wheels what is new.
+    /// Sends changed goals to the wheels.
     void apply(World& world, std::size_t robot, Angle now);
-    /// After each step; what is new then waits for apply().
+    /// Updates the goals after a step; changes take effect with apply().
     void stepped(const World& world, std::size_t robot);
 
   private:
     [[nodiscard]] bool mayMove() const { return motors_ && !stopping_; }
     void halt();
-    /// The limits that fit what the axes do.
+    /// Returns the wheel limits for the current goals.
     [[nodiscard]] WheelOrder order(const RobotStatus& status) const;
 
     P2osType type_;
     P2osLimits top_, limits_;
     AxisGoal drive_, turn_;         // metres, degrees
-    std::optional<Angle> heading_;  // to be reached, by odometry
+    std::optional<Angle> heading_;  // goal, by odometry
     bool new_drive_ = false, new_turn_ = false;
-    bool is_resumed_ = false;  // the turn goes on after a stop
-    bool owns_ = false;        // the motors were on: until then the robot goes its own way
+    bool is_resumed_ = false;  // the turn continues after a stop
+    bool owns_ = false;  // the motors have been on: before that the robot moves as the scene says
     bool motors_ = false, moving_ = false, stopping_ = false, hushed_ = false, stalled_ = false;
     SimTime retry_{};
     Point2 stall_place_;
-    AxisLimits drive_limits_, turn_limits_;  // that the wheels have
+    AxisLimits drive_limits_, turn_limits_;  // limits of the wheels
 };
 
-/// Where a robot believes to be, in a frame that its client sets: it starts at 0,0 with each
-/// session, and is not moved by what moves the robot without its wheels.
+/// A robot's pose by odometry in a frame set by its client: it starts at 0,0 with each session, and
+/// ignores displacements not made by the wheels.
 class P2osOdometer {
   public:
     explicit P2osOdometer(const Pose2& counted) : counted_(counted), origin_(counted) {}
     [[nodiscard]] Pose2 pose() const;
-    /// From now on this is where it is.
+    /// Sets the current pose.
     void set(const Pose2& pose);
-    /// What the robot has counted by now. \param most metres and radians that it can have gone
+    /// Updates the pose from the robot's odometry. \param most upper bound of the motion since the
+    /// last call, in metres and radians
     void follow(const Pose2& counted, double most);
 
   private:
-    Pose2 counted_;  // by the robot since its start
-    Pose2 origin_;   // of the client's frame, in the frame of that
+    Pose2 counted_;  // odometry since the robot's start
+    Pose2 origin_;   // of the client's frame, in that of counted_
 };
 
-/// A Pioneer's end of a dialogue: three SYNC packets, then commands; status packets every tenth of
-/// a simulated second once the client has opened it. The robot is held as long as the session
-/// lives; one that is held already closes the session at once.
+/// A Pioneer's side of a dialogue: three SYNC packets, then commands; after the open command,
+/// status packets every tenth of a simulated second. The session holds the robot until it ends; it
+/// closes at once if another client holds the robot.
 ///
-/// The watchdog stands the robot still once the client has been silent for kWatchdog of wall time
-/// and of simulated time, so that neither a slow world nor a fast one trips it.
+/// The watchdog stops the robot once the client has been silent for kWatchdog of wall time and of
+/// simulated time, so that a slow or fast world does not trip it.
 class P2osSession : public WireSession {
   public:
     static constexpr std::chrono::milliseconds kWatchdog{2000}, kCycle{100};
-    /// Of wall time: a packet that is not whole by then is none.
+    /// Wall time in which a packet must be complete; otherwise its bytes are dropped.
     static constexpr std::chrono::milliseconds kPacketTime{500};
     using WallClock = std::function<std::chrono::steady_clock::time_point()>;
 
@@ -134,7 +135,7 @@ class P2osSession : public WireSession {
     [[nodiscard]] const RobotModel& model() const;
     [[nodiscard]] bool isLost();
     [[nodiscard]] std::string name() const;
-    /// Odometry as of now.
+    /// Current pose by odometry.
     Pose2 pose();
     void follow();
     void listen();
@@ -170,9 +171,9 @@ class P2osSession : public WireSession {
     WallClock wall_clock_;
     std::optional<std::int64_t> hold_;
     Pose2 start_;
-    std::int64_t changes_ = 0;        // of the world, that are known
-    Pose2 seen_;                      // where the robot stood by then
-    std::optional<Pose2> new_place_;  // where it is to be put
+    std::int64_t changes_ = 0;        // change count of the world seen last
+    Pose2 seen_;                      // the robot's true pose at that count
+    std::optional<Pose2> new_place_;  // pose to which it must be moved
     P2osParser parser_;
     P2osDrive drive_;
     P2osOdometer odometer_;
@@ -181,10 +182,10 @@ class P2osSession : public WireSession {
     std::uint16_t bumpers_ = 0;
     P2osLaser laser_;
     bool tells_sim_ = false;
-    SimTime next_{};  // status
-    SimTime fed_{};   // the watchdog, in simulated time
+    SimTime next_{};  // next status packet
+    SimTime fed_{};   // watchdog, in simulated time
     std::chrono::steady_clock::time_point fed_wall_;
-    std::chrono::steady_clock::time_point begun_;  // the packet that is not whole yet
+    std::chrono::steady_clock::time_point begun_;  // start of the incomplete packet
 };
 
 /// The row of `--p2os`.

@@ -41,7 +41,7 @@ std::shared_ptr<const PictureFiles::Asked> PictureFiles::newest(World& world, st
     if (is_newest || (entry.asked && !is_made && entry.changes == changes)) return entry.asked;
     if (!at_once && (now < next_ || now < entry.next)) return nullptr;
     entry = {std::make_shared<Asked>(), seq, changes, now + kMinGap};
-    // Of `entry` no more: another thread may be done before this one goes on.
+    // Do not use `entry` below: the other thread may finish first.
     const auto asked = entry.asked;
     make(world, sensor, entry, does);
     return asked;

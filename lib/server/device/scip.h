@@ -15,98 +15,98 @@
 
 namespace ispace {
 
-/// What a laser says of itself in SCIP 2.0, and how its ranges become numbers. Steps of a turn
-/// count counter-clockwise; `front` is that of bearing 0, the first beam is step `first`.
+/// Description of a laser in SCIP 2.0, and conversion of its ranges to numbers. Steps of a turn
+/// count counter-clockwise; `front` is the step of bearing 0, `first` that of the first beam.
 ///
-/// Figures of the models are those that devices report, as public logs of `PP` have them:
-/// urg_library's and MRPT's documentation, Hokuyo's SCIP 2.0 specification (URG-04LX). A laser
-/// without a model of Hokuyo's is described by its own keys.
+/// Figures of the models are those reported by devices, from public logs of `PP`: urg_library's and
+/// MRPT's documentation, Hokuyo's SCIP 2.0 specification (URG-04LX). A laser without a Hokuyo model
+/// is described by its own keys.
 struct ScipModel {
     std::string name, product;
     int min_mm = 0, max_mm = 0;
-    int turn = 0;  ///< steps of 360 degrees
+    int turn = 0;  ///< steps per 360 degrees
     int first = 0, last = 0, front = 0;
     int rpm = 0;
-    /// Numbers in place of a distance: nothing in range; nearer than min_mm; steps without beam.
+    /// Codes sent instead of a distance: no return; nearer than min_mm; steps without beam.
     int none = 0, near = 0, unused = 0;
     bool has_intensity = false;
-    bool has_echoes = false;  ///< knows HD, HE, ND and NE
+    bool has_echoes = false;  ///< supports HD, HE, ND and NE
 
-    /// What keeps a laser from being one of these ("360 degrees are no whole number of steps"), or
+    /// Reason why a laser cannot be served by SCIP ("360 degrees are no whole number of steps"), or
     /// "".
     static std::string refusal(const Laser& laser);
-    /// \pre there is no refusal
+    /// \pre refusal() is ""
     static ScipModel of(const Laser& laser);
 
-    /// Millimetres, or the number in place of them; `range` in metres, +infinity for none.
+    /// Converts a range in metres (+infinity: no return) to millimetres, or to a code.
     [[nodiscard]] int number(float range) const;
-    /// Of the steps [start, end], merged `cluster` at a time to the least of them that is a
-    /// distance. \param ranges of the beams
+    /// Numbers of the steps [start, end], merged in clusters to their least distance. \param ranges
+    /// of the beams
     [[nodiscard]] std::vector<int> numbers(const std::vector<float>& ranges, int start, int end,
                                            int cluster) const;
     [[nodiscard]] bool isDistance(int number) const { return number >= min_mm && number <= max_mm; }
 };
 
-/// The check character of a line's content.
+/// Computes the check character of a line's content.
 char scipCheck(std::string_view content);
 
-/// Appends the low 6 * characters bits of the value, six in each character, the greatest first.
+/// Appends the low 6 * characters bits of the value, six per character, most significant first.
 void appendScipNumber(std::string& out, std::uint32_t value, int characters);
 
-/// Appends a line with its check character: "00P\n". Of "KEY:value" lines a semicolon stands
-/// between them that the check leaves out.
+/// Appends a line with its check character: "00P\n". In "KEY:value" lines a semicolon precedes the
+/// check character, which does not cover it.
 void appendScipLine(std::string& out, std::string_view content);
 void appendScipField(std::string& out, std::string_view key, std::string_view value);
 /// Appends encoded values in lines of 64 characters, each with its check character.
 void appendScipData(std::string& out, std::string_view values);
 
-/// Takes requests out of a stream of bytes. A request ends with LF, CR or both; empty ones are
-/// left out.
+/// Extracts requests from a byte stream. A request ends with LF, CR or both; empty requests are
+/// skipped.
 class ScipLines {
   public:
-    /// The longest request that is one; of a longer one only so much is kept.
+    /// Maximum length of a request; longer ones are truncated.
     static constexpr std::size_t kLongest = 64;
 
     void append(std::string_view bytes) { bytes_ += bytes; }
-    /// The next request, without its end; nothing until more bytes come.
+    /// Returns the next request without its end; empty until it is complete.
     std::optional<std::string> next();
-    /// Bytes kept.
+    /// Number of buffered bytes.
     [[nodiscard]] std::size_t size() const { return line_.size() + bytes_.size(); }
 
   private:
-    std::string line_;   // up to kLongest + 1 bytes of the one that has not ended
-    std::string bytes_;  // not looked at yet
+    std::string line_;   // up to kLongest + 1 bytes of an unfinished request
+    std::string bytes_;  // unread input
 };
 
 /// A request in its parts: "MD", "0044072501000", ";text" with its semicolon.
 struct ScipRequest {
     std::string_view command, parameters, text;
-    /// "0G" or "0H" if the text is none, "0F" if all is too long; else "".
+    /// "0G" or "0H" if the text is invalid, "0F" if the request is too long; else "".
     std::string_view fault;
 
-    /// The commands of two letters, "SCIP2.0" and "%SL". \pre the line outlives it
+    /// Parses two-letter commands, "SCIP2.0" and "%SL". \pre the line outlives the result
     static ScipRequest of(std::string_view line);
 };
 
-/// What MD, MS, ME, GD, GS and GE ask for.
+/// Parameters of MD, MS, ME, GD, GS and GE.
 struct ScipSweep {
     int start = 0, end = 0, cluster = 1;
-    int interval = 0;  ///< scans left out between two
-    int count = 0;     ///< scans; 0: until told otherwise
+    int interval = 0;  ///< scans skipped after each one sent
+    int count = 0;     ///< scans; 0: until stopped
 };
 
-/// Reads the parameters of a sweep; of GD and its kin there is neither interval nor count.
-/// \param last greatest step \param status "00", or what is wrong with them
+/// Parses the parameters of a sweep; GD and GS have neither interval nor count. \param last
+/// greatest step \param status "00", or the error
 ScipSweep parseScipSweep(std::string_view parameters, bool streams, int last, std::string& status);
 
 /// A laser that speaks SCIP 2.0 as Hokuyo's do over Ethernet, for programs that use urg_library,
 /// MRPT's CHokuyoURG, ROS' urg_node or ARIA's urg2.0.
 ///
-/// It knows BM, QT, RS, RT, RB, TM, CR, HS, SS, VV, PP, II, %ST, %SL, MD, MS, ME, GD, GS, GE and
-/// SCIP2.0, and models with multi-echo HD, HE, ND and NE; anything else is answered 0E. Beams have
-/// one echo, whose intensity is 1000, or 0 without a return, as the world knows no others. What
-/// lies nearer than the laser's least range is told as no return. Each connection has a laser of
-/// its own that is off at first.
+/// Supports BM, QT, RS, RT, RB, TM, CR, HS, SS, VV, PP, II, %ST, %SL, MD, MS, ME, GD, GS, GE and
+/// SCIP2.0, and for models with multi-echo HD, HE, ND and NE; other commands are answered 0E. Each
+/// beam has one echo, with intensity 1000, or 0 without a return, since the world has no
+/// intensities. Ranges below the laser's minimum are reported as no return. Each connection has a
+/// separate laser state, initially off.
 class ScipSession : public WireSession {
   public:
     /// \pre refusalOfScip() is ""
@@ -118,11 +118,11 @@ class ScipSession : public WireSession {
     [[nodiscard]] bool isEngaged() const override { return stream_.on; }
 
   private:
-    /// What a stream of scans sends. Values of three characters, or two; with intensities.
+    /// Parameters of a stream: values of three or two characters, with or without intensities.
     struct Stream {
         std::string command, parameters, text;  ///< "MD", "0044072501000", ";text"
         ScipSweep sweep;
-        std::int64_t next = 0;  ///< period of the laser
+        std::int64_t next = 0;  ///< period of the next scan
         bool on = false;
         bool endless = false;
     };
@@ -150,8 +150,8 @@ class ScipSession : public WireSession {
     std::string id_;
     ScipLines lines_;
     ScipModel model_;
-    std::size_t sensor_ = 0;     // index in the world, as of:
-    std::int64_t changes_ = -1;  // of the world
+    std::size_t sensor_ = 0;     // index in the world, valid for:
+    std::int64_t changes_ = -1;  // change count of the world
     Stream stream_;
     bool laser_on_ = false, asleep_ = false, time_mode_ = false;
     bool sensitive_ = false, rebooting_ = false;

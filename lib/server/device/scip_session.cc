@@ -9,19 +9,19 @@ namespace ispace {
 
 namespace {
 
-/// Bytes that may wait for a slow reader before scans are left out: some ten of the largest.
+/// Unsent bytes of a slow reader above which scans are skipped: some ten of the largest.
 constexpr std::size_t kRoom = std::size_t{1} << 16;
 constexpr std::uint32_t kTimeMask = 0xFFFFFF;
 constexpr int kIntensity = 1000;
 constexpr int kMaxOfTwo = 4095;
-constexpr std::string_view kUnknown = "0E";  // status: no such command
+constexpr std::string_view kUnknown = "0E";  // status: unknown command
 
 std::uint32_t milliseconds(std::chrono::nanoseconds time) {
     const auto count = std::chrono::duration_cast<std::chrono::milliseconds>(time).count();
     return static_cast<std::uint32_t>(count) & kTimeMask;
 }
 
-/// Seven digits that tell lasers apart (FNV-1a).
+/// A seven-digit serial number computed from the id (FNV-1a).
 std::string serialOf(std::string_view id) {
     constexpr std::uint32_t kBasis = 2166136261U, kPrime = 16777619U, kDigits = 10'000'000;
     std::uint32_t hash = kBasis;
@@ -63,7 +63,7 @@ ScipSession::ScipSession(WireHost& host, std::string id) : host_(&host), id_(std
     static_cast<void>(follow());
 }
 
-/// Follows changes of the world. False once it has lost the laser, or that is another one.
+/// Follows changes of the world. \returns false once the laser was removed or replaced
 bool ScipSession::follow() {
     World& world = host_->world();
     if (changes_ == world.changes()) return true;
@@ -75,7 +75,7 @@ bool ScipSession::follow() {
     sensor_ = *world.sensorNamed(id_);
     model_ = ScipModel::of(*world.sensors()[sensor_].model<Laser>());
     if (stream_.sweep.end > model_.last) rest();
-    // Periods count anew with another rate, and when a replay goes back.
+    // Periods restart with another rate and after a replay's seek.
     stream_.next = std::min(stream_.next, world.period(sensor_) + 1 + stream_.sweep.interval);
     return true;
 }
@@ -89,7 +89,7 @@ void ScipSession::receive(std::string_view bytes) {
     }
 }
 
-/// Echo, status, data and an empty line.
+/// Writes echo, status, data and an empty line.
 void ScipSession::reply(std::string_view line, std::string_view status, std::string_view data) {
     std::string out(line.substr(0, ScipLines::kLongest));
     out += '\n';
@@ -125,7 +125,7 @@ void ScipSession::answer(const std::string& line) {
     if (request.command == "RB" && status == "00") close();
 }
 
-/// Carries out what has no data.
+/// Carries out commands without data.
 std::string_view ScipSession::statusOf(const ScipRequest& request) {
     const std::string_view command = request.command;
     if (command == "TM") return timeMode(request);
@@ -156,7 +156,7 @@ std::string_view ScipSession::statusOf(const ScipRequest& request) {
     return kUnknown;
 }
 
-/// In this mode the time is told, and nothing measured.
+/// Handles time mode, in which the laser does not measure.
 std::string_view ScipSession::timeMode(const ScipRequest& request) {
     if (request.parameters == "0") {
         if (time_mode_) return "02";
@@ -175,7 +175,7 @@ std::string_view ScipSession::reboot() {
     return "00";
 }
 
-/// Of a serial line; here it is only remembered.
+/// Handles the bit rate of a serial line: stored without effect.
 std::string_view ScipSession::bitRate(std::string_view parameters) {
     constexpr std::array<std::string_view, 7> kRates{"019200", "038400", "057600", "115200",
                                                      "250000", "500000", "750000"};
@@ -188,7 +188,7 @@ std::string_view ScipSession::bitRate(std::string_view parameters) {
     return "00";
 }
 
-/// The motor has one speed, that of the record.
+/// Handles the motor speed: only the record's rate is valid.
 std::string_view ScipSession::motor(std::string_view parameters) const {
     if (parameters.size() != 2 ||
         parameters.find_first_not_of("0123456789") != std::string_view::npos)
@@ -197,7 +197,7 @@ std::string_view ScipSession::motor(std::string_view parameters) const {
     return parameters <= "10" ? "04" : "02";
 }
 
-/// A mode that changes nothing here.
+/// Handles the sensitivity: no effect here.
 std::string_view ScipSession::sensitivity(std::string_view parameters) {
     if (parameters != "0" && parameters != "1") return "01";
     const bool wanted = parameters == "1";
@@ -236,7 +236,7 @@ void ScipSession::takeSweep(const ScipRequest& request, std::string_view line) {
     reply(line, status);
 }
 
-/// A scan of a stream, if one is due. One that finds no room is left out, and not counted.
+/// Sends the stream's scan if one is due. A scan that finds no room is skipped and not counted.
 void ScipSession::stepped(std::size_t unsent) {
     if (closing() || !follow() || !stream_.on) return;
     const std::int64_t period = host_->world().period(sensor_);
@@ -247,7 +247,7 @@ void ScipSession::stepped(std::size_t unsent) {
         --sweep.count;
         stream_.on = sweep.count > 0;
     }
-    // The echo ends in the number of scans still to come.
+    // The echo ends in the number of remaining scans.
     constexpr int kTen = 10;
     std::string& parameters = stream_.parameters;
     parameters[parameters.size() - 2] = static_cast<char>('0' + sweep.count / kTen);
@@ -269,7 +269,7 @@ std::string_view ScipSession::stateCode() const {
     return laser_on_ ? "003" : "000";
 }
 
-/// Time stamp and data of the newest scan.
+/// Returns time stamp and data of the newest scan.
 std::string ScipSession::scan(std::string_view command, const ScipSweep& sweep) const {
     const SensorReading& reading = host_->world().reading(sensor_);
     const int characters = command[1] == 'S' ? 2 : 3;

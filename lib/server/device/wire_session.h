@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/server/device: the languages of real devices, for programs that know nothing of simulations.
-// Bytes in, bytes out, no transport. Uses sim and below.
+// lib/server/device: protocols of real devices, for programs written for hardware. Sessions convert
+// bytes to bytes, without transport. Uses sim and below.
 #pragma once
 
 #include <chrono>
@@ -20,8 +20,7 @@
 
 namespace ispace {
 
-/// What a session sees of the run it is part of, and what it may do there. Everything happens
-/// between steps, in the thread that takes them.
+/// A session's interface to the run. All calls happen between steps, in the thread that takes them.
 class WireHost {
   public:
     WireHost() = default;
@@ -29,75 +28,75 @@ class WireHost {
     WireHost(const WireHost&) = delete;
     WireHost& operator=(const WireHost&) = delete;
 
-    /// To be read; commands are for the robot that the session holds.
+    /// Read-only use, except commands for the robot that the session holds.
     [[nodiscard]] virtual World& world() = 0;
-    /// True if robots go as recorded, whatever they are told.
+    /// True if robots move as recorded and ignore commands.
     [[nodiscard]] virtual bool isReplay() const = 0;
-    /// True while the world waits to be told to go on, as always with the clock `step`.
+    /// True while the world is paused, as always with the clock `step`.
     [[nodiscard]] virtual bool isPaused() const = 0;
     enum class Change {
         Done,
-        Refused,  ///< clients may not change the world, or it cannot be like that
-        Later     ///< changes leave the world time to go on: ask again after the next step
+        Refused,  ///< clients may not change the world, or the change is invalid
+        Later     ///< the world must run first: ask again after the next step
     };
-    /// Changes the world as requests `SET ID.key=value` do, all at once.
+    /// Applies all assignments of `SET ID.key=value` requests in one change.
     virtual Change change(std::span<const std::string> assignments) = 0;
 
-    /// A number for the hold of this robot; nothing if another client, of any protocol, has it.
+    /// Reserves this robot. \returns the number of the hold; empty if another client, of any
+    /// protocol, has it
     virtual std::optional<std::int64_t> hold(std::string_view robot) = 0;
-    /// False once the world has lost it.
+    /// False once the world has removed it.
     [[nodiscard]] virtual bool holds(std::string_view robot, std::int64_t hold) = 0;
-    /// Frees the robot, and stops it.
+    /// Stops the robot and releases it.
     virtual void release(std::string_view robot, std::int64_t hold) = 0;
 
-    /// What clocks of devices show: the time since the start of the run, simulated or of the wall.
+    /// Time shown by device clocks: since the start of the run, simulated or wall time.
     [[nodiscard]] virtual std::chrono::nanoseconds clock() const = 0;
 
-    /// Does what takes long: now, or where there is another thread, in that while others are
-    /// served. `deliver` is then called between steps, with what was thrown or null, and stepped()
-    /// of all sessions after it.
+    /// Runs slow work: in a background thread if there is one, while clients are served. Then calls
+    /// `deliver` between steps, with the exception that was thrown or null, and afterwards
+    /// stepped() of all sessions.
     virtual void runInBackground(std::function<void()> work,
                                  std::function<void(const std::exception_ptr& failure)> deliver);
-    /// Of all sessions together.
+    /// Shared by all sessions.
     [[nodiscard]] PictureFiles& pictures() { return pictures_; }
 
   private:
     PictureFiles pictures_;
 };
 
-/// The device's end of one client's dialogue.
+/// The device's side of one client's dialogue.
 ///
-/// What a session sends goes out in order, and whole: each call's bytes with one write if the
-/// system takes them. A client that does not read keeps its session from sending what it may miss
-/// (see stepped()), and its requests unread.
+/// Output is sent in order and without gaps: one write per call if the system accepts all bytes.
+/// While a client does not read, its requests stay unread and its session skips optional output
+/// (see stepped()).
 class WireSession {
   public:
     WireSession() = default;
-    /// The connection is gone: frees what it holds.
+    /// Called when the connection is gone: releases held robots.
     virtual ~WireSession() = default;
     WireSession(const WireSession&) = delete;
     WireSession& operator=(const WireSession&) = delete;
 
-    /// The next bytes of the client, in whatever pieces they arrived. \pre !closing()
+    /// Processes the client's next bytes, split arbitrarily. \pre !closing()
     virtual void receive(std::string_view bytes) = 0;
-    /// Call it after each step or change of the world. `unsent` bytes of earlier packets wait for a
-    /// slow reader: a session that has something newer to say leaves it out as a whole if they are
-    /// many.
+    /// Call after each step or change of the world. `unsent` bytes of earlier packets wait for a
+    /// slow reader: if they are many, the session skips its new packet.
     virtual void stepped(std::size_t unsent) = 0;
-    /// The client sends no more; it may still read.
+    /// Call once the client has closed its sending side; it may still read.
     virtual void ended() { close(); }
     /// True while a change of the world that the client asked for waits for its turn.
     [[nodiscard]] virtual bool waitsToChange() const { return false; }
-    /// Asks for it again. \pre waitsToChange()
+    /// Retries the change. \pre waitsToChange()
     virtual void proceed() {}
-    /// True while it does something lasting for its client: sends by itself, or holds a robot. Any
-    /// other has no claim to a port that others want unless it has just been asked something.
+    /// True while the session sends unasked or holds a robot. Any other session yields a contested
+    /// port unless it received a request recently.
     [[nodiscard]] virtual bool isEngaged() const = 0;
-    /// True once the client has said something in the device's language.
+    /// True once the client has sent a valid request.
     [[nodiscard]] bool understood() const { return understood_; }
-    /// True once nothing more is read: the connection ends when all is sent.
+    /// True once no more input is read: the connection ends when all output is sent.
     [[nodiscard]] bool closing() const { return closing_; }
-    /// Takes what is to be sent, in order.
+    /// Returns and clears the output, in order.
     std::string take() { return std::exchange(out_, {}); }
 
   protected:
@@ -110,29 +109,30 @@ class WireSession {
     bool closing_ = false, understood_ = false;
 };
 
-/// One language: what simrun needs to know of it. Who adds one writes its session and such a row,
-/// and lists it in wireProtocols().
+/// Registration of one protocol. A new protocol needs its session, such a row, and an entry in
+/// wireProtocols().
 struct WireProtocol {
     std::string_view name;    ///< of the option (--scip) and of the key in simrun's first line
-    std::string_view device;  ///< what it is a port of: "ROBOT", "LASER", "CAMERA"
+    std::string_view device;  ///< kind of device: "ROBOT", "LASER", "CAMERA"
     std::string_view help;    ///< of the option
-    std::uint16_t port = 0;   ///< where programs look for such a device
-    /// Served at once on a port; more are turned away, as the devices do.
+    std::uint16_t port = 0;   ///< default port of clients
+    /// Clients served at once on a port; more are disconnected, as by the devices.
     std::size_t clients = 1;
-    /// Why this robot or sensor of the world cannot have such a port ("no laser `l9`"), or "".
+    /// Reason why this robot or sensor cannot have such a port ("no laser `l9`"), or "".
     std::string (*refusal)(const World& world, std::string_view id) = nullptr;
-    /// \pre the host outlives the session, and there is no refusal
+    /// \pre refusal() is ""; the host outlives the session
     std::unique_ptr<WireSession> (*open)(WireHost& host, const std::string& id) = nullptr;
 };
 
-/// All of them, in the order of the options.
+/// All protocols, in the order of the options.
 std::span<const WireProtocol* const> wireProtocols();
 
-// For refusal().
+// Helpers for refusal().
 
-/// "no laser `l9`, did you mean `l1`?" of the sensors with this keyword, or "" if it is one.
+/// Returns "no laser `l9`, did you mean `l1`?" unless a sensor with this keyword has the id, else
+/// "".
 std::string refusalOfSensor(const World& world, std::string_view keyword, std::string_view id);
-/// The same of robots.
+/// The same for robots.
 std::string refusalOfRobot(const World& world, std::string_view id);
 
 }  // namespace ispace

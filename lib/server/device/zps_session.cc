@@ -40,7 +40,7 @@ ZpsSession::ZpsSession(WireHost& host, std::string sensor) : host_(&host), id_(s
     follow();
 }
 
-/// Looks up what is told of.
+/// Looks up the tags to report.
 void ZpsSession::follow() {
     const World& world = host_->world();
     changes_ = world.changes();

@@ -31,13 +31,13 @@ using asio::ip::tcp;
 using beast::error_code;
 using std::chrono::steady_clock;
 
-/// Bytes of a request's header.
+/// Maximum bytes of a request's header.
 constexpr std::uint32_t kMaxHeader = 8192;
-/// For a request, a response, the next request.
+/// Time limit for a request, a response, the next request.
 constexpr auto kHttpPatience = std::chrono::seconds(10);
-/// A WebSocket whose other side does not even answer pings.
+/// Time limit for a WebSocket whose peer does not answer pings.
 constexpr auto kSilence = std::chrono::seconds(60);
-/// Requests that wait for the end of a STEP.
+/// Maximum requests that wait for the end of a STEP.
 constexpr std::size_t kMaxHeld = 64;
 constexpr std::string_view kSocketPath = "/ws";
 
@@ -109,16 +109,16 @@ class Browser final : public WebConnection, public std::enable_shared_from_this<
     beast::flat_buffer in_;
     std::optional<http::request_parser<http::empty_body>> parser_;
     std::optional<Response> response_;
-    // From the upgrade on:
+    // Set by the upgrade:
     std::optional<websocket::stream<beast::tcp_stream>> socket_;
     std::optional<Session> session_;
-    std::deque<std::string> held_;  // requests that are not answered yet
-    std::string out_;               // replies that are not sent yet
+    std::deque<std::string> held_;  // unanswered requests
+    std::string out_;               // unsent replies
     std::shared_ptr<const std::string> sending_;
-    WallTime writing_since_{}, heard_{};  // heard_: of its last message
+    WallTime writing_since_{}, heard_{};  // heard_: last message
     std::int64_t known_frame_ = 0, known_scene_ = -1;
     bool wants_frame_ = false;
-    bool reading_ = false, writing_ = false;  // handlers on their way
+    bool reading_ = false, writing_ = false;  // handlers pending
     bool ending_ = false, closed_ = false;
 };
 
@@ -156,7 +156,7 @@ void Browser::requested(error_code error) {
     if (request.count(http::field::origin) > 1 ||
         !share_.origin->mayConnect(view(request[http::field::origin])))
         return refuse(http::status::forbidden, "only the page of this server may connect");
-    // Beast would take them for the beginning of the first message.
+    // Beast would read them as the beginning of the first message.
     if (in_.size() > 0)
         return refuse(http::status::bad_request, "frames follow the answer to the upgrade");
     upgrade(request);
@@ -186,7 +186,7 @@ void Browser::respond(const Request& request, http::status status, std::string_v
     send(std::move(response));
 }
 
-/// Answers a request that is not to be trusted, and closes. \param why must stay valid
+/// Rejects an untrusted request and closes. \param why must stay valid
 void Browser::refuse(http::status status, std::string_view why) {
     Response response(status, 11);
     response.set(http::field::content_type, "text/plain; charset=utf-8");
@@ -245,7 +245,7 @@ void Browser::listen() {
 }
 
 void Browser::received() {
-    if (!session_) return;  // it came after the goodbye
+    if (!session_) return;  // arrived after the closing message
     heard_ = steady_clock::now();
     const auto data = in_.cdata();
     std::string_view lines(static_cast<const char*>(data.data()), data.size());

@@ -12,48 +12,48 @@
 
 namespace ispace {
 
-/// What the connections of one web server share.
+/// State shared by the connections of one web server.
 struct WebShare {
     ServerState* state;
     WebFrames* frames;
     const WebOrigin* origin;
 };
 
-/// A browser's connection: requests of HTTP for the page's files, until one of them makes it a
-/// WebSocket. There each message is a request of the Simulator TCP Protocol (or several lines),
-/// answered by a Session as there, with one more: FRAME is answered by the next frame, a JSON
-/// object, as soon as it is newer than the last one; a new scene comes before it.
+/// A browser's connection: HTTP requests for the page's files, until one upgrades it to a
+/// WebSocket. Each message there holds one or more requests of the Simulator TCP Protocol, answered
+/// by a Session, and one addition: FRAME is answered by the next frame, a JSON object, as soon as
+/// it is newer than the last one; a new scene is sent before it.
 ///
-/// Nothing blocks, and what one connection takes of memory is bounded: one message each way,
-/// replies up to a limit, one frame. Handlers keep it alive until it is closed.
+/// Non-blocking. Memory per connection is bounded: one message each way, replies up to a limit, one
+/// frame. Pending handlers keep it alive until it is closed.
 class WebConnection {
   public:
     virtual ~WebConnection() = default;
 
-    /// Like those of Session.
+    /// As in Session.
     virtual void stepped() = 0;
     virtual void proceed() = 0;
     [[nodiscard]] virtual bool waiting() const = 0;
     [[nodiscard]] virtual bool waitsToChange() const = 0;
-    /// True if it is to get the next frame.
+    /// True if a FRAME request is pending.
     [[nodiscard]] virtual bool wantsFrame() const = 0;
-    /// Sends it the newest frame, if it has not got that.
+    /// Sends the newest frame unless it was sent already.
     virtual void offerFrame() = 0;
-    /// Closes it if the other side has not read for too long.
+    /// Closes it if the peer has not read for too long.
     virtual void checkPatience(WallTime now) = 0;
     /// True once it is a WebSocket.
     [[nodiscard]] virtual bool isSocket() const = 0;
-    /// Of a WebSocket without a role: since when nothing has been asked; else nothing.
+    /// Time of the last request of a WebSocket without a role; otherwise empty.
     [[nodiscard]] virtual std::optional<WallTime> idleSince() const = 0;
-    /// Says why, and closes.
+    /// Sends the reason and closes.
     virtual void dismiss() = 0;
-    /// Ends what is under way, sends what is pending and closes.
+    /// Ends pending requests, sends pending output and closes.
     virtual void end() = 0;
     virtual void close() = 0;
     [[nodiscard]] virtual bool closed() const = 0;
 };
 
-/// Serves a browser from now on.
+/// Serves a browser on this socket.
 std::shared_ptr<WebConnection> serveBrowser(boost::asio::ip::tcp::socket socket,
                                             const WebShare& share);
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-// The assembler copies the files into the program. They stand in lib/net/web, which CMake names.
+// The assembler copies the files into the program; CMake passes their folder.
 // NOLINTBEGIN(hicpp-no-assembler,bugprone-macro-parentheses)
 #define ISPACE_WEB_FILE(symbol, file)                                                       \
     asm(".pushsection .rodata\n" #symbol ":\n.incbin \"" ISPACE_WEB "/" file "\"\n" #symbol \

@@ -8,38 +8,38 @@
 
 namespace ispace {
 
-/// A file of the page that --web serves; it is part of the program.
+/// A file of the page that --web serves; embedded in the program.
 struct WebFile {
     std::string_view path;  ///< in a request, e.g. "/map.js"
     std::string_view type;  ///< MIME type
     std::string_view bytes;
 };
 
-/// Null if there is none of that path.
+/// Finds a file by path; null if unknown.
 const WebFile* webFile(std::string_view path);
 
-/// Who may ask a web server on this machine.
+/// Checks the origin of requests to a web server on this machine.
 ///
-/// A page of a stranger can make a browser connect to 127.0.0.1, by its number or by a name that a
-/// stranger's DNS server suddenly gives that address (DNS rebinding). Both show: in the header
-/// Origin, which browsers set whenever they open a WebSocket, and in Host.
+/// A foreign page can make a browser connect to 127.0.0.1, by its number or by a name that a DNS
+/// server suddenly resolves to that address (DNS rebinding). Both are detected: by the header
+/// Origin, which browsers send whenever they open a WebSocket, and by Host.
 class WebOrigin {
   public:
-    /// \param address as a URL has it: an IPv6 one in brackets
+    /// \param address in the form of a URL: IPv6 in brackets
     WebOrigin(const std::string& address, std::uint16_t port);
 
-    /// True if a request of this header Host is meant for this server.
+    /// True if this Host header names the server.
     [[nodiscard]] bool isHost(std::string_view host) const;
-    /// True if a WebSocket may be opened for a page of this origin. Programs that are no browser
-    /// have none.
+    /// True if a page of this origin may open a WebSocket. Programs other than browsers send no
+    /// origin.
     [[nodiscard]] bool mayConnect(std::string_view origin) const;
 
   private:
     std::vector<std::string> hosts_;
 };
 
-/// The Content-Security-Policy of all that such a server sends: scripts, styles and connections of
-/// its own, nothing else, and never within another page. \pre the host was accepted
+/// Returns the Content-Security-Policy of all responses: scripts, styles and connections of this
+/// server only, and no embedding in other pages. \pre the host was accepted
 std::string contentPolicy(std::string_view host);
 
 }  // namespace ispace

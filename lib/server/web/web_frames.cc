@@ -107,9 +107,9 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr auto kMinInterval = std::chrono::milliseconds(33);
-/// While no step is taken, requests may still change what there is to see.
+/// While the world is paused, requests may still change it.
 constexpr auto kIdleInterval = std::chrono::milliseconds(100);
-/// Frames take at most such a share of the time.
+/// Frames take at most one part in kShare of the time.
 constexpr int kShare = 20;
 /// Numbers of readings in one frame; the reading that exceeds them is still in it.
 constexpr std::size_t kMaxNumbers = 60'000;
@@ -120,7 +120,7 @@ void append(std::string& out, std::int64_t number) {
     out.append(digits.data(), end);
 }
 
-/// Thousandths, of degrees hundredths.
+/// Converts to thousandths, degrees to hundredths.
 std::int64_t fixed(double value) { return std::llround(value * 1000); }
 std::int64_t fixed(Angle angle) { return std::llround(angle.degrees() * 100); }
 
@@ -151,7 +151,8 @@ void appendScan(std::string& out, const Laser& laser, const SensorReading& readi
     out += ']';
 }
 
-/// What the page shows of a reading; its size in numbers, 0 for what it shows nothing of.
+/// Appends the part of a reading that the page shows. \returns its size in numbers, 0 if the page
+/// does not show this sensor
 std::size_t appendReading(std::string& out, const RunSensor& sensor, const SensorReading& reading) {
     const auto* const laser = sensor.model<Laser>();
     const auto* const mat = std::get_if<MatState>(&reading.value);
@@ -196,7 +197,7 @@ void WebFrames::look(WallTime now) {
 }
 
 WebFrames::Text WebFrames::frame(std::int64_t known) {
-    // Both at once: what is new is told once.
+    // Combines both texts, so that each reading is sent once.
     const bool has_last = known == number_ - 1 && known > 0;
     Text& text = has_last ? changes_ : whole_;
     if (!text) {
@@ -250,7 +251,7 @@ std::string WebFrames::withReadings(bool all) {
     append(out, number_);
     out.append(state_).append(",\"all\":").append(all ? "true" : "false").append(",\"readings\":[");
     std::size_t numbers = 0;
-    // The scene may have changed since: the next frame is about that.
+    // If the scene has changed since, the next frame describes it.
     const std::size_t count = version_ == world.changes() ? sent_.size() : 0, first = turn_;
     for (std::size_t i = 0; i < count && numbers < kMaxNumbers; ++i) {
         const std::size_t sensor = (first + i) % count;
