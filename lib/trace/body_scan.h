@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to MovingBodies: where single rays, scans and pictures meet bodies.
-// Private to MovingBodies: where level scans meet bodies.
+// Intersects single rays, level scans and pictures with moving bodies. Private to MovingBodies.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +15,8 @@
 
 namespace ispace {
 
-/// The stretch of a ray within a closed set, in multiples of its direction, with |slopes| of the
-/// surfaces at its ends: their normals times the direction.
+/// The part of a ray inside a closed set, in multiples of its direction, with |slopes| of the
+/// surfaces at its ends: |normal times direction|.
 struct Stretch {
     double from = -std::numeric_limits<double>::infinity();
     double to = std::numeric_limits<double>::infinity();
@@ -37,7 +36,7 @@ struct Stretch {
         from = std::numeric_limits<double>::infinity();
         to = -from;
     }
-    /// A ray parallel to two planes lies between them, or it does not.
+    /// Clips by two planes; a ray parallel to them is kept whole or rejected.
     void cutSlab(double origin, double direction, double low, double high) {
         if (direction != 0) {
             const double a = (low - origin) / direction, b = (high - origin) / direction;
@@ -46,7 +45,8 @@ struct Stretch {
             clear();
         }
     }
-    /// Of a cylinder whose level cuts move along x by `lean` per metre: the ray as seen from them.
+    /// Clips by a cylinder whose level cuts move along x by `lean` per metre; the ray is given in
+    /// the frame of these cuts.
     void cutDisc(Vec2 origin, Vec2 direction, double radius, double lean) {
         const double a = dot(direction, direction), b = dot(origin, direction);
         const double side = cross(origin, direction);
@@ -75,13 +75,13 @@ struct Stretch {
     }
 };
 
-/// Where a ray meets a surface.
+/// Intersection of a ray with a body's surface.
 struct BodyMeeting {
-    double multiple = std::numeric_limits<double>::infinity();  ///< of the ray's direction
-    double slope = 0;  ///< |normal times direction|: the cosine, if that is a unit vector
+    double multiple = std::numeric_limits<double>::infinity();  ///< multiple of the ray's direction
+    double slope = 0;  ///< |normal times direction|: the cosine if the direction is a unit vector
 };
 
-/// A body as seen from one place; what its rays share is computed once.
+/// A body as seen from one origin; stores the values that its rays share.
 class BodyFrame {
   public:
     BodyFrame(const MovingBody& body, CosSin axes, Point3 origin)
@@ -108,7 +108,7 @@ class BodyFrame {
         }
         return stretch;
     }
-    /// The first place on its surface, at no less than `least`: from inside where the ray leaves.
+    /// Finds the first intersection at a multiple of at least `least`; from inside, the exit.
     [[nodiscard]] BodyMeeting meet(Vec3 direction, double least = 0) const {
         const Stretch stretch = within(direction);
         if (stretch.from > stretch.to || stretch.to < least) return {};
@@ -118,11 +118,11 @@ class BodyFrame {
 
     [[nodiscard]] const MovingBody& body() const { return body_; }
     [[nodiscard]] CosSin axes() const { return axes_; }
-    /// Where the rays leave, in its frame, from the middle of the level cut there.
+    /// Origin of the rays in the body's frame, relative to the centre of the level cut there.
     [[nodiscard]] Vec2 offset() const { return offset_; }
 
   private:
-    /// From the world into the body's frame.
+    /// Converts from the world to the body's frame.
     [[nodiscard]] Vec2 turned(Vec2 v) const {
         return {axes_.cos * v.x + axes_.sin * v.y, axes_.cos * v.y - axes_.sin * v.x};
     }
@@ -133,16 +133,16 @@ class BodyFrame {
     double height_;
 };
 
-/// Ranges that bodies shorten, and their cosines.
+/// Ranges shortened by bodies, and their cosines.
 class ShortenedRanges {
   public:
     ShortenedRanges(double most, std::span<float> ranges, std::span<float> cosines)
         : far_(static_cast<float>(most)), ranges_(ranges), cosines_(cosines) {}
 
     [[nodiscard]] float operator[](std::size_t i) const { return ranges_[i]; }
-    /// `size`: the direction's length.
+    /// \param size length of the direction
     void shorten(std::size_t i, const BodyMeeting& met, double size) {
-        // As float32: what begins exactly at the limit is met.
+        // Compare as float32, so that a body exactly at the limit is met.
         const auto range = static_cast<float>(met.multiple);
         if (!(range <= far_ && range < ranges_[i])) return;
         ranges_[i] = range;
@@ -154,17 +154,18 @@ class ShortenedRanges {
     std::span<float> ranges_, cosines_;
 };
 
-/// Neighbouring rays of a scan whose ranges bodies shorten. They leave from one origin, or from one
+/// Neighbouring rays of a scan whose ranges bodies shorten, with a common origin or one origin
 /// each.
 class BodyScan {
   public:
-    static constexpr std::size_t kBlock = 32;  ///< rays whose box is searched for bodies
+    static constexpr std::size_t kBlock = 32;  ///< rays whose bounding box is searched for bodies
 
-    /// Rays `begin` to before `end`. \pre origins.size() is 1 or directions.size(); begin < end
+    /// Holds rays `begin` to before `end`. \pre origins.size() is 1 or directions.size(); begin <
+    /// end
     BodyScan(std::span<const Point3> origins, const Directions& directions, std::size_t begin,
              std::size_t end, double max_range, const ShortenedRanges& ranges);
 
-    /// Bodies outside this part of the floor are not met.
+    /// Bounding box of the rays on the floor: bodies outside it are not met.
     [[nodiscard]] const Box2& box() const { return box_; }
     void meet(const MovingBody& body, const BodyExtent& extent);
 
@@ -177,11 +178,12 @@ class BodyScan {
     std::size_t begin_, end_;
     ShortenedRanges ranges_;
     Box2 box_;
-    // A cone on the floor about all rays, of less than half a turn if it has sides: unit vectors.
+    // A cone on the floor that holds all rays; if below half a turn, its sides as unit vectors.
     Vec2 right_, left_;
-    Point2 middle_;                  // of the origins
-    double spread_ = 0, reach_ = 0;  // radius about it that holds them, and how far rays go
-    double low_, high_;              // heights of the rays
+    Point2 middle_;  // centre of the origins
+    double spread_ = 0,
+           reach_ = 0;   // radius about it that holds the origins, and maximum length of rays
+    double low_, high_;  // range of the rays' heights
 };
 
 /// The pixels [left, right) x [top, bottom) of a picture.
@@ -194,15 +196,15 @@ class BodyPicture {
   public:
     BodyPicture(Point3 origin, const RayGrid& grid, double most, const ShortenedRanges& ranges);
 
-    /// Bodies outside this part of the floor are not met.
+    /// Bounding box of the rays on the floor: bodies outside it are not met.
     [[nodiscard]] Box2 box() const;
     void meet(const MovingBody& body, const BodyExtent& extent);
 
-    /// Pixels whose rays may meet the body: all if it holds the origin.
+    /// Returns the pixels whose rays may meet the body; all if the body holds the origin.
     [[nodiscard]] PixelBox pixelsOf(const MovingBody& body, const BodyExtent& extent) const;
 
   private:
-    /// A place as the picture has it: multiples of right, down and corner that lead to it.
+    /// Converts a vector to multiples of right, down and corner.
     [[nodiscard]] Vec3 projected(Vec3 way) const {
         return {dot(to_right_, way), dot(to_down_, way), dot(to_corner_, way)};
     }
@@ -211,13 +213,13 @@ class BodyPicture {
     const RayGrid& grid_;
     double far_;  // metres
     ShortenedRanges ranges_;
-    bool is_plane_ = false;  // else its rays lie in a plane through the origin
+    bool is_plane_ = false;  // false: the rays lie in a plane through the origin
     Vec3 to_right_, to_down_, to_corner_;
 };
 
-/// A level scan of equal steps whose ranges bodies shorten. Bodies are collected in growing
-/// squares about it and met from the nearest on. Bodies whose beams all end nearer, at walls or
-/// other bodies, are passed over: in rooms and crowds nearly all.
+/// A level scan of equal steps whose ranges bodies shorten. Bodies are collected in growing squares
+/// around the scanner and intersected from the nearest on. Skips bodies whose beams all end nearer,
+/// at walls or other bodies: in rooms and crowds nearly all.
 class BodyArc {
   public:
     /// \pre directions.arc, with a step above 0
@@ -225,23 +227,22 @@ class BodyArc {
             std::span<const MovingBody> bodies, std::span<const BodyExtent> extents,
             const ShortenedRanges& ranges);
 
-    /// Meets all bodies but those of `own`, cells near to the scan before those that are farther
-    /// away.
+    /// Intersects all bodies except those of `own`, visiting near grid cells before farther ones.
     void meetFrom(const FloorGrid& grid, std::uint32_t own);
 
   private:
     static constexpr std::size_t kBlock = 8, kMost = 256;
 
-    /// A body, how near it is at least, and the beams that may point at it: those from first to
-    /// last, and from other_first to other_last if the scan's ends are near to each other.
+    /// A body, the lower bound of its distance, and the beams that may meet it: from first to last,
+    /// and from other_first to other_last if the body spans both ends of the scan.
     struct Waiting {
         double nearest;
         std::uint32_t body;
         std::int32_t first, last, other_first, other_last;
     };
-    /// The part of the floor where bodies still matter.
+    /// Returns the part of the floor where bodies may still shorten a beam.
     [[nodiscard]] Box2 view() const;
-    /// Collects those of these bodies that may shorten a beam.
+    /// Collects those of the given bodies that may shorten a beam.
     void look(std::span<const std::uint32_t> bodies, std::uint32_t own);
     void meetCollected();
     [[nodiscard]] bool isSeen(const Waiting& waiting) const;
@@ -254,12 +255,12 @@ class BodyArc {
     std::span<const MovingBody> bodies_;
     std::span<const BodyExtent> extents_;
     double far_;
-    float most_;  // that and a little more
+    float most_;  // that plus a margin
     ShortenedRanges ranges_;
     CosSin middle_;                 // of the arc
-    double rate_ = 0;               // beams a radian
-    double count_ = 0;              // of beams
-    std::vector<float>& farthest_;  // the greatest range of each block of beams
+    double rate_ = 0;               // beams per radian
+    double count_ = 0;              // number of beams
+    std::vector<float>& farthest_;  // the maximum range of each block of beams
     std::array<Waiting, kMost> waiting_;
     std::size_t size_ = 0;
 };

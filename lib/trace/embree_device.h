@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How lib/trace and lib/trace/render set Embree up.
+// // Creates Embree's devices and triangle scenes for lib/trace and lib/trace/render.
 #pragma once
 
 #include <cstddef>
@@ -19,18 +19,18 @@ struct EmbreeRelease {
 using EmbreeDevice = std::unique_ptr<RTCDeviceTy, EmbreeRelease>;
 using EmbreeSceneHandle = std::unique_ptr<RTCSceneTy, EmbreeRelease>;
 
-/// A device that reads no configuration file in the user's home.
+/// Creates a device that ignores configuration files in the user's home.
 /// \throws as throwIfEmbreeFailed()
 EmbreeDevice makeEmbreeDevice();
 
-/// Reports the first error of this thread's calls since the last report.
-/// \throws std::runtime_error with Embree's own text, std::bad_alloc if it has no memory
+/// Throws the first error of this thread's calls since the last check.
+/// \throws std::runtime_error with Embree's message, std::bad_alloc if it is out of memory
 void throwIfEmbreeFailed(RTCDeviceTy* device);
 
-/// Rays that the processor traces together: 4, 8 or 16.
+/// Number of rays that the processor traces together: 4, 8 or 16.
 std::size_t nativeWidthOf(RTCDeviceTy* device);
 
-/// A scene of the enlarged triangles, ROBUST and of high quality, hits of which have this geometry
+/// Builds a scene of the enlarged triangles, ROBUST and of high quality; hits hold this geometry
 /// id. O(n log n)
 /// \throws as throwIfEmbreeFailed()
 EmbreeSceneHandle buildTriangles(RTCDeviceTy* device, const TriangleSet& triangles,

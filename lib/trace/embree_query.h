@@ -20,8 +20,8 @@
 
 namespace ispace {
 
-// One query of Embree 3 or 4. Its context is the first member, so that a filter gets the query
-// back.
+// A query for Embree 3 or 4. Its context is the first member, so that filter callbacks can cast
+// back to the query.
 #if RTC_VERSION_MAJOR >= 4
 constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 struct EmbreeQuery {
@@ -67,8 +67,8 @@ struct EmbreeQuery {
 };
 #endif
 
-/// A scene of one geometry, ROBUST and of high quality, with primitives that fill(geometry) sets;
-/// empty for a count of 0.
+/// Builds a scene of one geometry, ROBUST and of high quality, with primitives set by
+/// fill(geometry); empty for a count of 0.
 /// \throws as throwIfEmbreeFailed()
 template <typename Fill>
 EmbreeSceneHandle buildScene(RTCDevice device, RTCGeometryType type, std::size_t count,
@@ -90,13 +90,13 @@ EmbreeSceneHandle buildScene(RTCDevice device, RTCGeometryType type, std::size_t
     return scene;
 }
 
-/// As far as Embree traces.
+/// Maximum length of Embree's rays.
 constexpr double kMaxRayReach = 1e30;
 
-/// Packets are made and read in this many lanes, however many Embree traces together.
+/// Number of lanes in a packet, independent of the width in which Embree traces it.
 constexpr std::size_t kLanes = 16;
 
-/// Traces the lanes of a packet in parts as wide as Rays; trace(valid, rays) does one.
+/// Traces the lanes of a packet in parts as wide as Rays by calling trace(valid, rays).
 template <typename Rays, std::size_t kWidth, typename Packet, typename Trace>
 void traceParts(const int* valid, Packet& packet, Trace trace) {
     // All fields are arrays of four bytes a lane.
@@ -115,7 +115,7 @@ void traceParts(const int* valid, Packet& packet, Trace trace) {
     }
 }
 
-/// Traces a packet in parts of 1, 4, 8 or 16 lanes. \pre those that are valid come first
+/// Traces a packet in parts of 1, 4, 8 or 16 lanes. \pre valid lanes come first
 inline void tracePacket(EmbreeQuery& query, RTCScene scene, std::size_t width, const int* valid,
                         RTCRayHit16& packet) {
     switch (width) {
@@ -137,7 +137,7 @@ inline void tracePacket(EmbreeQuery& query, RTCScene scene, std::size_t width, c
     }
 }
 
-/// Sets tfar of the rays that meet anything to -infinity; parts and lanes as above.
+/// Sets tfar of the rays that hit a surface to -infinity; parts and lanes as in tracePacket().
 inline void traceShadows(EmbreeQuery& query, RTCScene scene, std::size_t width, const int* valid,
                          RTCRay16& packet) {
     switch (width) {
@@ -154,15 +154,15 @@ inline void traceShadows(EmbreeQuery& query, RTCScene scene, std::size_t width, 
     }
 }
 
-/// The surfaces that stop no ray of an origin: those within `ray_epsilon` of it, those that
-/// continue the plane of one of these within it, and those seen exactly from their edge.
+/// The surfaces ignored by rays of one origin: those within `ray_epsilon` of it, those that
+/// continue the plane of such a surface within that distance, and those seen exactly edge-on.
 class IgnoredSurfaces {
   public:
-    /// A surface whose plane is this near to the origin is seen from its edge: what float32 moves a
-    /// corner by in a building, in metres.
+    /// A surface whose plane is this near to the origin, in metres, is seen edge-on: the error of a
+    /// corner in float32 for coordinates of a building.
     static constexpr double kEdgeOn = 5e-6;
 
-    /// Of an origin that no surface is near to.
+    /// For an origin without surfaces nearby.
     IgnoredSurfaces(const TriangleSet& set, double ray_epsilon)
         : set_(set), ray_epsilon_(ray_epsilon) {}
     IgnoredSurfaces(RTCScene scene, const TriangleSet& set, double ray_epsilon, Point3 origin);
@@ -171,7 +171,7 @@ class IgnoredSurfaces {
     /// Surfaces whose planes are farther from the origin than this stop rays.
     [[nodiscard]] double reach() const { return touches() ? ray_epsilon_ : kEdgeOn; }
     [[nodiscard]] bool contains(std::size_t triangle, Point3 origin) const;
-    /// Where a ray meets a triangle that Embree has found on its way, if that stops it.
+    /// Computes the intersection with a triangle found by Embree, if it stops the ray.
     [[nodiscard]] RayHit meet(std::size_t triangle, const Ray& ray) const {
         if (!set_.isRound(triangle) && contains(triangle, ray.origin)) return {};
         return set_.meet(triangle, ray, ray_epsilon_);
@@ -183,7 +183,7 @@ class IgnoredSurfaces {
     std::vector<Vec3> normals_;  // of the surfaces within ray_epsilon_
 };
 
-/// A query for rays from one origin that passes the surfaces they ignore.
+/// A query for rays from one origin that skips ignored surfaces.
 struct PassingQuery : EmbreeQuery {
     const IgnoredSurfaces& ignored;
     Point3 origin;
@@ -191,7 +191,7 @@ struct PassingQuery : EmbreeQuery {
     PassingQuery(const IgnoredSurfaces& surfaces, Point3 from);
 };
 
-/// A query for one ray that passes all that does not stop it.
+/// A query for one ray that skips surfaces which do not stop it.
 struct SingleQuery : EmbreeQuery {
     const IgnoredSurfaces& ignored;
     const Ray& ray;
@@ -199,22 +199,22 @@ struct SingleQuery : EmbreeQuery {
     SingleQuery(const IgnoredSurfaces& surfaces, const Ray& asked);
 };
 
-/// Rays traced together, in doubles, and what comes of them.
+/// Rays traced together, in doubles, and their hits.
 struct alignas(64) RayPacket {
     using Lanes = std::array<double, kLanes>;
 
     Lanes x, y, z;                       ///< of the directions
     Lanes origin_x, origin_y, origin_z;  ///< of the rays
-    Lanes reach;                         ///< in multiples of the directions, inclusive
-    /// To where they meet a surface, of its direction: +infinity if a ray meets none.
+    Lanes reach;                         ///< limit in multiples of the directions, inclusive
+    /// Multiples of the directions at the hits: +infinity if a ray meets no surface.
     std::array<float, kLanes> multiples;
-    std::array<float, kLanes> slopes;  ///< |normal times direction|; +infinity likewise
+    std::array<float, kLanes> slopes;  ///< |normal times direction|; +infinity without hit
 
-    /// A ray along `way` that ends `before` its end.
+    /// Sets a ray along `way` that ends `before` its end.
     void aim(std::size_t lane, Vec3 way, double before) {
-        // Squares of what fits in float32 fit in double: no need of hypot, which takes longer.
+        // Squares of float32 values fit in double: no need for hypot, which is slower.
         const double distance = std::sqrt(dot(way, way));
-        // Nothing stands on a way so short: a ray of no length meets nothing.
+        // Too short for an obstacle: a ray without length has no hit.
         const bool is_short = distance <= 2 * before;
         const Vec3 direction = is_short ? Vec3{1, 0, 0} : (1 / distance) * way;
         x[lane] = direction.x;
@@ -229,45 +229,45 @@ struct alignas(64) RayPacket {
     }
 };
 
-/// The rays of a picture go in square tiles of so many columns and rows; beyond its edges those at
-/// the edge.
+/// Pictures are traced in square tiles of this many columns and rows; tiles at the edges repeat the
+/// outermost rays.
 constexpr int kTile = 4;
 
-/// What the rays of a row of tiles share.
+/// Values shared by the rays of a row of tiles.
 struct TileRow {
     Vec3 corner, right;
     double last_column;
-    alignas(64) RayPacket::Lanes x, y, z;  ///< what its row of pixels adds to each ray
+    alignas(64) RayPacket::Lanes x, y, z;  ///< part of each ray that depends on its row of pixels
 
     TileRow(const RayGrid& grid, int row);
 };
 
-/// For Embree, in float32: where the rays begin.
+/// Converts the origins to float32 for Embree.
 void roundOrigins(const RayPacket& packet, RTCRayHit16& rays);
-/// How far they go. `tail` is added to the reach, which decides once the hits are known.
+/// Converts the limits. `tail` is added to the reach; the exact limit is applied to the hits.
 void roundReach(const RayPacket& packet, double tail, std::array<float, kLanes>& far);
-/// The rest of the rays, as far as `far`.
+/// Converts the rest of the rays, up to `far`.
 void roundRays(const RayPacket& packet, const std::array<float, kLanes>& far, RTCRayHit16& rays);
-/// The same with the rays of a tile, which are set.
+/// The same for the rays of a tile, which it computes.
 void aimTile(const TileRow& row, int column, const std::array<float, kLanes>& far,
              RayPacket& packet, RTCRayHit16& rays);
 
-/// Where the rays meet the planes of the triangles hit; multiples are at most `most`.
-/// Planes nearer than `clear` to the origin need a closer look, as do hits near an edge.
-/// \return a bit for each lane that does
+/// Computes the intersections with the planes of the triangles hit; multiples are at most `most`.
+/// \return a bit for each lane that needs the exact test, because its plane is nearer than `clear`
+/// to the origin or its hit is near an edge
 std::uint32_t meetPlanes(const RTCRayHit16& hits, const Plane* planes, const double* margins,
                          double clear, float most, RayPacket& packet);
 
-/// What tells that rays from one origin meet a plane for sure.
+/// Limits within which rays from one origin need no exact test.
 struct SureMeeting {
-    double clear;    ///< planes farther from the origin than this
-    double longest;  ///< no ray's direction is longer
-    float near;      ///< multiples below this
+    double clear;    ///< minimum distance of planes from the origin
+    double longest;  ///< upper bound of the directions' lengths
+    float near;      ///< upper bound of multiples
 };
 
-/// The same as meetPlanes() for what most packets come upon: all rays hit the one triangle, each
-/// for sure, or none hits any. \pre all rays have one origin, and the geometry hit is number 0
-/// \return whether it is so; otherwise nothing is set
+/// A fast path of meetPlanes() for the usual packets: all rays hit one triangle without needing the
+/// exact test, or all rays miss. \pre all rays have one origin, and the geometry hit is number 0
+/// \return false if the packet is of another kind; then the output is unchanged
 bool meetOnePlane(const RTCRayHit16& hits, const Plane* planes, const double* margins,
                   const SureMeeting& sure, RayPacket& packet);
 

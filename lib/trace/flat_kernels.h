@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/trace: lines and round bodies as seen from the origin of a ray, and three ways to
-// find what level rays meet first, which agree to the last bit.
+// Lines and round bodies relative to the origin of a ray, and three algorithms for the first hit of
+// level rays, which agree to the last bit. Private to lib/trace.
 #pragma once
 
 #include <algorithm>
@@ -18,20 +18,21 @@
 namespace ispace {
 
 // All decisions about rays and lines, in plain doubles. Scans and single rays compute in the same
-// order, so that they agree to the last bit. Everything is relative to the origin and in inverse
-// ranges: the nearest is the largest, and lines cost no division per beam.
+// order, so that they agree to the last bit. Coordinates are relative to the origin; distances are
+// inverse ranges: the nearest is the largest, and lines need no division per beam.
 
-/// Put before a loop over lanes, keeps it from being unrolled, so that it can be vectorised.
+/// Prevents a loop over lanes from being unrolled, so that it is vectorised.
 #define ISPACE_LANES _Pragma("GCC unroll 1")
 
-/// A line whose straight continuation passes this near to the origin is seen edge-on; a ray that
-/// passes an end of a line this near meets it. Exceeds the rounding of coordinates of a town.
+/// A line whose straight continuation passes within this distance of the origin is seen edge-on; a
+/// ray that passes within it of a line's end meets the line. Exceeds the rounding of coordinates of
+/// a town.
 constexpr double kFlatEdge = 1e-9;
-/// No ray meets an end farther aside than this times the distance of the line's straight
-/// continuation: of a line seen almost from its edge it would meet that far before or behind the
-/// end. So it is never more of the turn, in radians.
+/// Rays meet ends within at most this fraction of the distance from the origin to the line's
+/// straight continuation: an almost edge-on line would otherwise be met far before or behind its
+/// end. It also bounds that angle, in radians.
 constexpr double kFlatEdgeAngle = 1e-6;
-/// Least |cosine| between lines of one direction.
+/// Minimum |cosine| between parallel lines.
 constexpr double kFlatParallel = 1 - 1e-6;
 
 template <typename Real>
@@ -42,7 +43,7 @@ template <typename Real>
 ISPACE_INLINE Real flatMax(Real a, Real b) {
     return a > b ? a : b;
 }
-/// Chooses between two computed values without a branch, which would prevent vectorising: the
+/// Selects one of two computed values without a branch, which would prevent vectorising: the
 /// compiler assumes that all arithmetic may trap.
 ISPACE_INLINE double flatChoice(bool first, double a, double b) {
     const std::uint64_t mask = first ? ~std::uint64_t{0} : 0;
@@ -50,9 +51,9 @@ ISPACE_INLINE double flatChoice(bool first, double a, double b) {
                                  (std::bit_cast<std::uint64_t>(b) & ~mask));
 }
 
-/// A lower bound of the distance to a box, 0 if the origin is in it, at most 8 % too small: that of
-/// the octagon about the origin that touches the box. A box within another is never nearer, even
-/// with rounding, so skipping boxes changes nothing.
+/// Computes a lower bound of the distance to a box, 0 if the origin is inside, at most 8 % too
+/// small: that of the octagon about the origin that touches the box. Monotone even with rounding: a
+/// box inside another is never nearer, so skipping boxes does not change results.
 template <typename Real>
 ISPACE_INLINE Real distanceOf(Real left, Real right, Real low, Real high) {
     constexpr auto kDiagonal = static_cast<Real>(0.70710678);
@@ -61,7 +62,7 @@ ISPACE_INLINE Real distanceOf(Real left, Real right, Real low, Real high) {
     return flatMax(flatMax(x, y), kDiagonal * (x + y));
 }
 
-/// Direction of (x, y) in [-pi, pi], within 1e-5; 0 for the null vector (Abramowitz &
+/// Computes the direction of (x, y) in [-pi, pi], within 1e-5; 0 for the null vector (Abramowitz &
 /// Stegun, 4.4.47 and the quadrants).
 template <typename Real>
 ISPACE_INLINE Real angleOf(Real x, Real y) {
@@ -75,21 +76,21 @@ ISPACE_INLINE Real angleOf(Real x, Real y) {
                  square * (Real(-0.3302995) +
                            square * (Real(0.1801410) +
                                      square * (Real(-0.0851330) + square * Real(0.0208351)))));
-    // Only constants are chosen between: that leaves no branches.
+    // Selecting between constants needs no branches.
     const bool is_steep = wide > far, is_behind = x < 0;
     const Real quarter = (is_steep ? kPi / 2 : Real{0}) + (is_steep ? Real{-1} : Real{1}) * octant;
     const Real half = (is_behind ? kPi : Real{0}) + (is_behind ? Real{-1} : Real{1}) * quarter;
     return std::copysign(half, y);
 }
 
-/// A line as seen from an origin.
+/// A line relative to an origin.
 struct FlatLine {
     double ax, ay, bx, by;  ///< its ends, counter-clockwise about the origin
     double ux, uy;          ///< from a to b, times the inverse range of the line at a unit angle
-    double nearest;         ///< upper bound of its inverse range
-    double height;          ///< distance of its straight continuation
-    double edge;            ///< how near to an end a ray meets it
-    bool stops;             ///< not seen from its edge
+    double nearest;         ///< upper bound of the inverse range
+    double height;          ///< distance of the straight continuation
+    double edge;            ///< distance from an end within which a ray meets it
+    bool stops;             ///< false: seen edge-on
 };
 
 ISPACE_INLINE FlatLine lineFrom(const FlatTree::Leaf& leaf, int i, double ox, double oy) {
@@ -114,22 +115,21 @@ ISPACE_INLINE FlatLine lineFrom(const FlatTree::Leaf& leaf, int i, double ox, do
     return line;
 }
 
-/// Inverse range of the place where a ray along (x, y), which passes between its ends, meets a
-/// line.
+/// Computes the inverse range at which a ray along (x, y), between the line's ends, meets the line.
 ISPACE_INLINE double inverseRangeBetween(const FlatLine& line, double x, double y) {
     return flatMin(x * line.uy - y * line.ux, line.nearest);
 }
 
-/// Inverse range of the place where a ray along (x, y) meets the closed line; not positive if it
-/// does not.
+/// Computes the inverse range at which a ray along (x, y) meets the closed line; not positive if it
+/// misses.
 ISPACE_INLINE double inverseRangeAlong(const FlatLine& line, double x, double y) {
     const double from_a = line.ax * y - line.ay * x, to_b = x * line.by - y * line.bx;
     const bool is_between = (from_a >= -line.edge) & (to_b >= -line.edge);
     return flatChoice(is_between, inverseRangeBetween(line, x, y), 0.0);
 }
 
-/// True if the straight continuation of a line may pass within `ray_epsilon` of the origin: then
-/// ask continuesTouched().
+/// True if the straight continuation of a line may pass within `ray_epsilon` of the origin;
+/// continuesTouched() decides.
 inline bool mayContinueTouched(double height, double ray_epsilon) {
     // Distances of lines and of their continuations round differently.
     return height < ray_epsilon * (1 + 1e-9);
@@ -155,8 +155,7 @@ inline bool isNear(const FlatTree::Node& node, int i, double ox, double oy, doub
            node.low[i] - oy <= ray_epsilon && oy - node.high[i] <= ray_epsilon;
 }
 
-/// True if some line nearer to the origin than `ray_epsilon` has the direction of line i of the
-/// leaf.
+/// True if a line nearer to the origin than `ray_epsilon` is parallel to line i of the leaf.
 inline bool continuesTouched(const FlatTree& tree, const FlatTree::Leaf& leaf, int i, double ox,
                              double oy, double ray_epsilon) {
     std::int32_t waiting[FlatTree::kStack];
@@ -179,12 +178,12 @@ inline bool continuesTouched(const FlatTree& tree, const FlatTree::Leaf& leaf, i
     return false;
 }
 
-/// A round body as seen from an origin: rays meet the curve itself, from outside where they enter,
-/// from inside where they leave. From an origin within `ray_epsilon` of the curve, outgoing rays
-/// pass and ingoing ones meet its far side.
+/// A round body relative to an origin. Rays meet the exact curve, from outside at the entry, from
+/// inside at the exit. From an origin within `ray_epsilon` of the curve, outgoing rays pass and
+/// ingoing rays meet the far side.
 ///
-/// All in the frame where the body is the unit disc. There the ray q + t d meets the curve where
-/// a t^2 + 2 b t + c = 0; written so that neither root cancels.
+/// Computed in the frame where the body is the unit disc. There the ray q + t d meets the curve
+/// where a t^2 + 2 b t + c = 0, solved so that neither root cancels.
 class RoundFrom {
   public:
     ISPACE_INLINE RoundFrom(const FlatTree::Round& round, double ox, double oy, double ray_epsilon)
@@ -193,12 +192,12 @@ class RoundFrom {
         qx_ = round.xx * x + round.xy * y;
         qy_ = round.yx * x + round.yy * y;
         c_ = qx_ * qx_ + qy_ * qy_ - 1;
-        // c is, near the curve, the distance from it times the length of its gradient.
+        // Near the curve, c is the distance from it times the length of its gradient.
         touches_ = std::fabs(c_) <= 2 * ray_epsilon * gradientAt(qx_, qy_);
     }
 
-    /// One over the distance along the unit vector (x, y), and the |cosine| there; inverse range is
-    /// not positive if the ray does not meet it.
+    /// Inverse distance along the unit vector (x, y), and the |cosine| there; the inverse range is
+    /// not positive if the ray misses.
     struct Hit {
         double inverse_range, cosine;
     };
@@ -222,7 +221,7 @@ class RoundFrom {
     }
 
   private:
-    /// Half of the length, in the world, of the gradient of c.
+    /// Half the length of the gradient of c, in the world.
     [[nodiscard]] ISPACE_INLINE double gradientAt(double ux, double uy) const {
         const double x = round_.xx * ux + round_.yx * uy, y = round_.xy * ux + round_.yy * uy;
         return std::sqrt(x * x + y * y);
@@ -234,18 +233,19 @@ class RoundFrom {
     bool touches_;
 };
 
-/// What lines are seen from.
+/// The viewpoint from which lines are seen.
 struct FlatView {
     double x, y;
     double ray_epsilon;
 };
 
-/// False if nothing at this distance or beyond is as near as what was met, whatever the rounding.
+/// False if lines at this distance or beyond cannot be nearer than the current hit, allowing for
+/// rounding.
 ISPACE_INLINE bool mayBeNearer(double distance, double inverse_range_met) {
     return distance * inverse_range_met <= 1 + 1e-12;
 }
 
-/// Children of nodes to be visited, the nearest of a node first.
+/// Stack of nodes to visit, pushing the children of a node nearest last.
 class FlatStack {
   public:
     struct Entry {
@@ -255,7 +255,7 @@ class FlatStack {
 
     [[nodiscard]] bool empty() const { return count_ == 0; }
     ISPACE_INLINE Entry pop() { return entries_[--count_]; }
-    /// Those whose distance is not negative.
+    /// Pushes the children whose distance is not negative.
     ISPACE_INLINE void push(const FlatTree::Node& node, const double* distances) {
         const int bottom = count_;
         for (int i = 0; i < node.count; ++i) {
@@ -272,10 +272,10 @@ class FlatStack {
     int count_ = 0;
 };
 
-/// Ranges end at max_range as float32, so that what rounds to it is met. \pre max_range >= 0
+/// Ranges end at max_range as float32, so that hits that round to it count. \pre max_range >= 0
 struct FlatLimit {
     float range;
-    double inverse_range;  ///< of the first float32 beyond
+    double inverse_range;  ///< of the first float32 above
 
     explicit FlatLimit(double max_range)
         : range(static_cast<float>(max_range)),
@@ -291,27 +291,27 @@ struct FlatLimit {
     }
 };
 
-/// Beams from one origin at equal steps counter-clockwise, at most a full turn, and what they have
-/// met so far.
+/// Beams from one origin at equal steps counter-clockwise, at most a full turn, and their hits so
+/// far.
 struct alignas(64) FlatScan {
-    static constexpr int kBlock = 8;  ///< beams whose least inverse range is kept
+    static constexpr int kBlock = 8;  ///< beams that share one minimum of the inverse range
     static constexpr int kMax = 2048;
-    /// Least number of beams, and most of the step in radians: the middle of a scan is that of its
-    /// middle beams.
+    /// Minimum number of beams, and maximum step in radians: the centre of a scan is that of its
+    /// central beams.
     static constexpr int kMin = 3;
     static constexpr double kMaxStep = 3, kMinStep = 1e-10;
-    /// Greatest coordinate, of lines and origin, that float32 leaves room for.
+    /// Maximum coordinate, of lines and origin, that float32 leaves room for.
     static constexpr double kMaxCoordinate = 1e15;
 
-    const double *x, *y;                    ///< unit vectors, as the ranges shall be for
+    const double *x, *y;                    ///< unit vectors, for which the ranges are computed
     double inverse_range[kMax];             ///< one over the range
-    double* cosine;                         ///< kMax of them, if wanted
-    double last_x[kBlock], last_y[kBlock];  ///< of the last block if it is not full
-    /// Of a block's beams: nothing with an inverse range less than this shortens any.
+    double* cosine;                         ///< kMax of them, or null
+    double last_x[kBlock], last_y[kBlock];  ///< the last block if it is not full
+    /// Minimum of a block's inverse ranges: a line with a smaller one shortens none of its beams.
     float least[kMax / kBlock];
     int count;
-    float cos, sin;  ///< a vector along the middle
-    float rate;      ///< beams a radian
+    float cos, sin;  ///< a vector along the centre of the scan
+    float rate;      ///< beams per radian
 
     [[nodiscard]] int blocks() const { return (count + kBlock - 1) / kBlock; }
     [[nodiscard]] ISPACE_INLINE const double* blockOfX(int block) const {
@@ -322,7 +322,7 @@ struct alignas(64) FlatScan {
     }
 };
 
-/// What castScan() is given: unit vectors, and where the readings go.
+/// Arguments of castScan(): unit vectors, and output arrays.
 struct FlatBeams {
     const double *x, *y;
     int count;
@@ -331,26 +331,26 @@ struct FlatBeams {
     float* cosines;  ///< or null
 };
 
-/// Casts a scan: draws all lines into it, front to back. Cosines are the largest among lines met at
-/// the same place. \pre no coordinate exceeds FlatScan::kMaxCoordinate
+/// Casts a scan: rasterises all lines into it, front to back. Cosines are the largest among lines
+/// met at the same point. \pre no coordinate exceeds FlatScan::kMaxCoordinate
 void castScan(const FlatTree& tree, const FlatView& view, const FlatLimit& limit,
               const FlatBeams& beams);
 
-/// Rays with an origin each, and what they have met so far.
+/// Rays with an origin each, and their hits so far.
 struct alignas(64) FlatPacket {
-    static constexpr int kBlock = 8;  ///< rays drawn to at once
+    static constexpr int kBlock = 8;  ///< rays updated at once
     static constexpr int kMax = 64;
     /// Fewer rays are faster one by one.
     static constexpr int kMin = 3;
 
-    double x[kMax], y[kMax];  ///< unit vectors, as the ranges shall be for
+    double x[kMax], y[kMax];  ///< unit vectors, for which the ranges are computed
     double origin_x[kMax], origin_y[kMax];
     double inverse_range[kMax];  ///< one over the range
-    double cosine[kMax];         ///< only if wanted
-    int count;                   ///< a multiple of kBlock, not 0; rays may be repeated to get there
+    double cosine[kMax];         ///< only if requested
+    int count;                   ///< a positive multiple of kBlock, padded by repeated rays
 };
 
-/// How far apart origins may lie for a packet to be faster than single rays.
+/// Computes the maximum distance between origins for which a packet is faster than single rays.
 double widestPacket(const FlatTree& tree);
 
 struct FlatPacketLimits {
@@ -359,20 +359,20 @@ struct FlatPacketLimits {
     double widest;
 };
 
-/// Draws all lines into the packet, front to back. Its rays meet what they would meet alone.
-/// Returns false and does nothing if the packet is too wide to be fast, or has numbers that are not
-/// finite.
+/// Rasterises all lines into the packet, front to back, with the results of single rays.
+/// \returns false, without changes, if the packet is too wide to be fast or holds numbers that are
+/// not finite
 bool drawLines(const FlatTree& tree, const FlatPacketLimits& limits, FlatPacket& packet);
-/// The same with cosines: the largest among lines met at the same place.
+/// The same with cosines: the largest among lines met at the same point.
 bool drawLinesAndCosines(const FlatTree& tree, const FlatPacketLimits& limits, FlatPacket& packet);
 
-/// What a ray met first.
+/// First hit of a ray.
 struct FlatHit {
     double inverse_range;  ///< one over the range
-    double cosine = 0;     ///< the largest among lines met at the same place
+    double cosine = 0;     ///< the largest among lines met at the same point
 };
 
-/// The nearest line or round body along the unit vector (x, y), if it is nearer than
+/// Finds the nearest line or round body along the unit vector (x, y) whose inverse range exceeds
 /// `min_inverse_range`.
 FlatHit firstLine(const FlatTree& tree, const FlatView& view, double x, double y,
                   double min_inverse_range);

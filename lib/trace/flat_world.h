@@ -14,11 +14,11 @@
 namespace ispace {
 
 /// A bounding volume hierarchy over lines on the floor, with eight boxes or lines per node, one
-/// array per component, as vector units want them. Lines without length are left out. Round bodies
-/// have a hierarchy of their own in the same nodes, to be traversed after that of the lines.
+/// array per component for vector units. Skips lines without length. Round bodies form a second
+/// hierarchy in the same nodes, traversed after that of the lines.
 struct FlatTree {
     static constexpr int kWidth = 8;
-    /// Greatest depth; traversals keep fewer than kWidth nodes per level waiting.
+    /// Maximum depth; traversals stack fewer than kWidth nodes per level.
     static constexpr int kDepth = 24;
     static constexpr int kStack = kWidth * kDepth;
 
@@ -29,12 +29,12 @@ struct FlatTree {
         std::int32_t child[kWidth];
         std::int32_t count;
     };
-    /// Up to kWidth lines; what lies behind them has no length. a lies before b by lexLess, so that
-    /// a line and its reverse are computed with alike.
+    /// Up to kWidth lines, padded by lines without length. a precedes b by lexLess, so that a line
+    /// and its reverse give identical results.
     struct alignas(64) Leaf {
         double ax[kWidth], ay[kWidth], bx[kWidth], by[kWidth], length[kWidth];
 
-        /// Of the lines.
+        /// Number of lines.
         [[nodiscard]] int count() const {
             int lines = 0;
             for (const double one : length) lines += one > 0 ? 1 : 0;
@@ -42,15 +42,15 @@ struct FlatTree {
         }
     };
 
-    /// The map of a round body's plane that makes it the unit disc: from (x - cx, y - cy).
+    /// Maps a round body's plane, as (x - cx, y - cy), to the frame of the unit disc.
     struct Round {
         double cx, cy, xx, xy, yx, yy;
     };
 
-    /// Lines that are points are left out. O(n log n)
+    /// Builds the tree, skipping lines that are points. O(n log n)
     explicit FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies = {});
 
-    /// Of a child.
+    /// Returns the node of a child.
     [[nodiscard]] const Node& node(std::int32_t child) const {
         return nodes[static_cast<std::uint32_t>(child)];
     }
@@ -58,34 +58,34 @@ struct FlatTree {
         return leaves[~static_cast<std::uint32_t>(child)];
     }
 
-    /// Child of a node among those of round bodies.
+    /// Returns the round body of a child among those of round bodies.
     [[nodiscard]] const Round& round(std::int32_t child) const {
         return rounds[~static_cast<std::uint32_t>(child)];
     }
 
-    /// The first is the root of the lines, without children if there are none; no nodes at all
-    /// without lines and round bodies.
+    /// The first node is the root of the lines, without children if there are none; empty without
+    /// lines and round bodies.
     std::vector<Node> nodes;
     std::vector<Leaf> leaves;
-    std::int32_t round_root = -1;  ///< of the round bodies, whose leaves are one each; -1: none
+    std::int32_t round_root =
+        -1;  ///< root of the round bodies, with one body per leaf; -1: no round bodies
     std::vector<Round> rounds;
 };
 
 /// The lines and round bodies of a slice, for level rays: exact to rounding of doubles, and faster
 /// than a general ray tracer.
 ///
-/// A scan is drawn like a picture with one row: a bounding volume hierarchy is traversed front to
-/// back, boxes behind the farthest range they could shorten are skipped, and each remaining line is
-/// drawn into the beams between its ends. A beam meets a line if it crosses it or passes one of its
-/// ends within a nanometre (less if it sees the line almost edge-on, see flat_kernels.h), decided
-/// in doubles per beam and line: no beam slips between lines with a common end, and one that just
+/// A scan is rasterised like a picture with one row: a bounding volume hierarchy is traversed front
+/// to back, boxes behind the farthest range they could shorten are skipped, and each remaining line
+/// is drawn into the beams between its ends. A beam meets a line if it crosses it or passes one of
+/// its ends within a nanometre (less for lines seen almost edge-on, see flat_kernels.h), decided in
+/// doubles per beam and line: beams cannot slip between lines with a common end, and a beam that
 /// touches a corner meets it.
 ///
-/// Lines nearer to the origin than `ray_epsilon` stop nothing, nor do those that continue them
-/// within it; a round body that near is met at its far side only. Nor does a line seen exactly
-/// edge-on (its straight continuation passes the origin within a nanometre). Thread-safe; results
-/// depend only on the lines and the ray, not on the order of lines, the scan a ray is part of, or
-/// the processor.
+/// Rays ignore lines nearer to the origin than `ray_epsilon` and their continuations within it, and
+/// lines seen exactly edge-on (whose straight continuation passes the origin within a nanometre); a
+/// round body that near is met at its far side only. Thread-safe; results depend only on the lines
+/// and the ray, not on the order of lines, the scan a ray is part of, or the processor.
 class FlatWorld {
   public:
     explicit FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});
@@ -93,10 +93,10 @@ class FlatWorld {
     FlatWorld& operator=(FlatWorld&&) noexcept;
     ~FlatWorld();
 
-    /// Distance of the first line or round body along each direction (x and y count), up to
-    /// max_range inclusive; +infinity if there is none. Fastest for directions with an arc, fast
-    /// for neighbours alike. `cosines`, if not empty: |cosine| of the angle between ray and normal,
-    /// 1 without return; the larger where two lines are met at once. \pre ranges.size() ==
+    /// Computes the distance to the first line or round body along each direction (x and y count),
+    /// up to max_range inclusive; +infinity without return. Fastest for directions with an arc,
+    /// fast for similar neighbours. `cosines`, if not empty: |cosine| of the angle between ray and
+    /// normal, 1 without return; the larger one where two lines meet. \pre ranges.size() ==
     /// directions.size(), cosines.size() as well or 0
     void cast(Point2 origin, const Directions& directions, double max_range, double ray_epsilon,
               std::span<float> ranges, std::span<float> cosines) const;

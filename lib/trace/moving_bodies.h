@@ -15,62 +15,62 @@
 
 namespace ispace {
 
-/// A box, ball or cylinder, upright or slanted, that moves on the floor: what rays see of robots
-/// and people.
+/// A box, ball or cylinder, upright or slanted, that moves on the floor: the geometry of robots and
+/// people for rays.
 struct MovingBody {
-    Pose2 pose;                              ///< of its level cut at middle()
+    Pose2 pose;                              ///< of the level cut at middle()
     double half_length = 0, half_width = 0;  ///< of a box, along and across the heading
     double radius = 0;                       ///< of a cylinder or ball; 0: a box
     double bottom = 0, top = 0;              ///< heights, both included
-    std::uint32_t owner = 0;                 ///< whose sensors do not see it
+    std::uint32_t owner = 0;                 ///< body id whose own sensors ignore it
     double lean = 0;       ///< of a slanted cylinder, along the heading, see BodyPart
     bool is_ball = false;  ///< of `radius`
 
     [[nodiscard]] double middle() const { return 0.5 * (bottom + top); }
     /// Radius of the smallest circle that encloses each of its level cuts, about the cut's middle.
     [[nodiscard]] double reach() const;
-    /// How far its level cuts move on either side of its middle.
+    /// Maximum displacement of its level cuts from its middle.
     [[nodiscard]] double sway() const;
-    /// An upright body of the same level cut at a height. \pre bottom <= z <= top
+    /// Returns an upright body with the same level cut at a height. \pre bottom <= z <= top
     [[nodiscard]] MovingBody cutAt(double z) const;
-    /// The outward unit normal at a place on its surface.
+    /// Returns the outward unit normal at a point of its surface.
     [[nodiscard]] Vec3 normalAt(Point3 place) const;
-    /// Distance along the ray to the surface, +infinity if it misses; from inside, to where it
-    /// leaves. \pre direction is a unit vector
+    /// Computes the distance along the ray to the surface, +infinity if it misses; from inside, to
+    /// the exit. \pre direction is a unit vector
     [[nodiscard]] double meet(Point3 origin, Vec3 direction) const;
 };
 
-/// A part of a body whose frame stands at this pose. `axes`: of the pose's heading.
+/// Converts a part of a body whose frame has this pose. \param axes of the pose's heading
 MovingBody movingBody(const BodyPart& part, const Pose2& pose, CosSin axes, std::uint32_t owner);
 
-/// What all rays need to know of a body, computed once.
+/// Values of a body shared by all rays.
 struct BodyExtent {
     CosSin axes;       ///< of its heading
     double reach = 0;  ///< MovingBody::reach()
-    double whole = 0;  ///< radius of a circle about its middle that encloses all level cuts
+    double whole = 0;  ///< radius of a circle about its middle that contains all level cuts
 };
 
-/// Finds what is near on the floor: a uniform grid over the places of moving things, rebuilt by
-/// counting sort, O(n + cells), whenever they have moved. It has at most 2 n + 1 cells, none
-/// smaller than the widest thing.
+/// Finds neighbours on the floor: a uniform grid over the positions of movers, rebuilt by counting
+/// sort, O(n + cells), after each motion. It has at most 2 n + 1 cells, none smaller than the
+/// widest mover.
 class FloorGrid {
   public:
-    /// `reach`: how far the widest thing extends from its place. \pre places are finite
+    /// \param reach maximum extent of a mover from its position \pre positions are finite
     void rebuild(std::span<const Point2> places, double reach);
-    /// Calls visit(index) once for each thing that may extend into the box, in a fixed order.
+    /// Calls visit(index) once for each mover that may extend into the box, in a fixed order.
     template <typename Visit>
     void forEachNear(const Box2& box, Visit visit) const;
-    /// The same in runs of order(), without the cells of another box: calls visit(begin, end).
+    /// The same in runs of order(), excluding the cells of another box: calls visit(begin, end).
     template <typename Visit>
     void forEachRun(const Box2& box, const Box2& without, Visit visit) const;
     /// Side of a cell.
     [[nodiscard]] double cellSize() const { return size_; }
     [[nodiscard]] bool empty() const { return indices_.empty(); }
-    /// The indices of all things, those of one cell one after the other.
+    /// Indices of all movers, grouped by cell.
     [[nodiscard]] std::span<const std::uint32_t> order() const { return indices_; }
 
   private:
-    /// Cells from low to high, both included; none if `right` is less than `left`.
+    /// Cells from low to high, inclusive; empty if `right` is less than `left`.
     struct Cells {
         std::size_t left = 1, right = 0, low = 1, high = 0;
     };
@@ -83,25 +83,25 @@ class FloorGrid {
     std::vector<std::uint32_t> first_ = {0, 0}, indices_;
 };
 
-/// The moving bodies at one moment. Moving them leaves the ray worlds of the environment alone.
+/// The moving bodies at one time. Moving them does not change the ray worlds of the environment.
 class MovingBodies {
   public:
     static constexpr std::uint32_t kNoOwner = std::numeric_limits<std::uint32_t>::max();
 
     MovingBodies() = default;
     explicit MovingBodies(std::vector<MovingBody> bodies);
-    /// Takes new bodies, or old ones at new places. \pre `bodies` does not alias bodies()
+    /// Replaces the bodies. \pre `bodies` does not alias bodies()
     void rebuild(std::span<const MovingBody> bodies);
     [[nodiscard]] std::span<const MovingBody> bodies() const { return bodies_; }
 
-    /// Shortens the ranges of rays from the sensor's position where bodies are in the way, except
-    /// those owned by `own`. `cosines`, if not empty, become those at the bodies met, as in
-    /// RayWorld::cast. Level directions with an arc are fastest.
+    /// Shortens the ranges of rays from the sensor's position that meet bodies, except those owned
+    /// by `own`. `cosines`, if not empty, are updated at the bodies met, as in RayWorld::cast.
+    /// Level directions with an arc are fastest.
     /// \pre directions.size() == ranges.size()
     void shorten(Point3 origin, const Directions& directions, double max_range, std::uint32_t own,
                  std::span<float> ranges, std::span<float> cosines = {}) const;
-    /// The same with an origin for each ray, of rays `begin` to before `end` alone. Fastest for
-    /// neighbours that leave near each other.
+    /// The same with an origin for each ray, for rays `begin` to before `end` only. Fastest for
+    /// neighbours with nearby origins.
     void shorten(std::span<const Point3> origins, const Directions& directions, std::size_t begin,
                  std::size_t end, double max_range, std::uint32_t own, std::span<float> ranges,
                  std::span<float> cosines = {}) const;
@@ -109,7 +109,7 @@ class MovingBodies {
     /// near a body.
     void shorten(Point3 origin, const RayGrid& grid, double most, std::uint32_t own,
                  std::span<float> multiples, std::span<float> cosines = {}) const;
-    /// True if a body stands between two places or contains one of them. \pre they differ
+    /// True if a body separates two points or contains one of them. \pre they differ
     [[nodiscard]] bool between(Point3 a, Point3 b, std::uint32_t own) const;
 
   private:
@@ -120,7 +120,7 @@ class MovingBodies {
 
     std::vector<MovingBody> bodies_;
     std::vector<BodyExtent> extents_;
-    std::vector<Point2> places_;  // of the bodies; kept for its memory
+    std::vector<Point2> places_;  // of the bodies; kept to reuse its memory
     FloorGrid grid_;
 };
 
@@ -135,7 +135,7 @@ template <typename Visit>
 void FloorGrid::forEachRun(const Box2& box, const Box2& without, Visit visit) const {
     if (indices_.empty() || box.empty()) return;
     const Cells cells = cellsAbout(box), done = cellsAbout(without);
-    // The cells of a row lie behind each other.
+    // The cells of a row are contiguous.
     const auto run = [&](std::size_t row, std::size_t from, std::size_t to) {
         const std::size_t begin = first_[row * columns_ + from], end = first_[row * columns_ + to];
         if (begin < end) visit(begin, end);

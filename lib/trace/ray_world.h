@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/trace: rays against everything that stands still, and against moving bodies. Uses layout and
-// below; Embree inside.
+// lib/trace: rays against static surfaces and moving bodies. Uses layout and below; Embree inside.
 #pragma once
 
 #include <cstddef>
@@ -21,19 +20,19 @@ namespace ispace {
 
 /// Rays against a slice (a FlatWorld) or against the whole mesh (an EmbreeScene).
 ///
-/// Surfaces are closed sets without thickness: one seen exactly edge-on stops nothing (within the
-/// rounding of float32 in the mesh). Surfaces within kRayEpsilon of a ray's origin do not stop it,
-/// nor do their coplanar continuations: a sensor drawn on a wall sees out of it on both sides and
-/// along it. No ray slips between surfaces that touch. Ranges are computed in doubles, and round
-/// bodies are met on their exact curves. Coordinates are kept relative to the middle of the plan,
-/// so that float32, in which the mesh is searched, is exact to micrometres in any building.
-/// Thread-safe once built; results do not depend on the number of threads.
+/// Surfaces are closed sets without thickness. Rays ignore surfaces seen exactly edge-on (within
+/// the rounding of float32 in the mesh), surfaces within kRayEpsilon of their origin, and coplanar
+/// continuations of these: a sensor drawn on a wall sees out of it on both sides and along it. Rays
+/// cannot slip between touching surfaces. Ranges are computed in doubles, and round bodies are met
+/// on their exact curves. Coordinates are stored relative to the middle of the plan, so that
+/// float32, in which the mesh is searched, is exact to micrometres in any building. Thread-safe
+/// once built; results do not depend on the number of threads.
 class RayWorld {
   public:
-    /// For level rays that start at `slice.height`; their z is ignored.
+    /// Builds a world for level rays that start at `slice.height`; their z is ignored.
     static RayWorld ofSlice(const Slice& slice);
-    /// For rays of any direction, against these surfaces of all bodies and the floor. Opaque ones
-    /// stop light, which passes clear glass.
+    /// Builds a world for rays of any direction, against these surfaces of all bodies and the
+    /// floor. Opaque surfaces stop light, which passes clear glass.
     /// \param packet_width rays Embree traces together: 1, 4, 8, 16, or 0 for the processor's best;
     ///        see cast() for how it may affect results
     /// \throws std::runtime_error if Embree fails (no memory)
@@ -43,13 +42,13 @@ class RayWorld {
     RayWorld& operator=(RayWorld&&) noexcept;
     ~RayWorld();
 
-    /// Distance to the first surface along each direction, up to max_range inclusive; +infinity if
-    /// there is none. Fastest for neighbouring directions, and in a slice for directions with an
-    /// arc. Packet width and the grouping of rays do not matter, except for rays of the mesh that
-    /// pass an edge within the resolution of float32: see EmbreeScene for the accuracy of a range.
-    /// In a slice ranges are exact to rounding of doubles.
-    /// `cosines`, if not empty: |cosine| of the angle between ray and surface normal, 1 without
-    /// return. \pre ranges.size() == directions.size(), cosines.size() as well or 0
+    /// Computes the distance to the first surface along each direction, up to max_range inclusive;
+    /// +infinity without return. Fastest for neighbouring directions, and in a slice for directions
+    /// with an arc. Packet width and the grouping of rays do not matter, except for rays of the
+    /// mesh that pass an edge within the resolution of float32: see EmbreeScene for the accuracy of
+    /// a range. In a slice ranges are exact up to rounding of doubles. `cosines`, if not empty:
+    /// |cosine| of the angle between ray and surface normal, 1 without return. \pre ranges.size()
+    /// == directions.size(), cosines.size() as well or 0
     void cast(Point3 origin, const Directions& directions, double max_range,
               std::span<float> ranges, std::span<float> cosines = {}) const;
     /// The same with an origin for each ray.
@@ -60,8 +59,8 @@ class RayWorld {
     void cast(Point3 origin, const RayGrid& grid, double most, std::span<float> multiples,
               std::span<float> cosines = {}) const;
 
-    /// Sets seen[i] to 1 if nothing stands between origin and target i, apart from the last
-    /// kRayEpsilon metres. Fastest if targets that are near each other follow each other.
+    /// Sets seen[i] to 1 if the way from the origin to target i is free, apart from its last
+    /// kRayEpsilon metres. Fastest if nearby targets are adjacent in the list.
     /// \pre not of a slice; seen.size() == targets.size()
     void query(Point3 origin, std::span<const Point3> targets, std::span<std::uint8_t> seen) const;
 
@@ -74,44 +73,45 @@ class RayWorld {
 /// The ray worlds of one environment: one slice per height for level sensors, the mesh for all
 /// others, with and without clear glass.
 ///
-/// One thread prepares, for the poses that are to come; any thread asks at() for poses that were
-/// prepared, also while others are. A world stays where it is until the end.
+/// One thread prepares worlds for coming poses; any thread may call at() for prepared poses, also
+/// meanwhile. Worlds keep their address.
 class Worlds {
   public:
-    /// A stream of poses may have any number of heights. Level poses at heights beyond these, in
-    /// the order of prepare(), are traced in the mesh.
+    /// Maximum number of slices. Level poses at further heights, in the order of prepare(), are
+    /// traced in the mesh.
     static constexpr std::size_t kMaxSlices = 64;
 
-    /// Which meshes there are.
+    /// Prepared meshes.
     struct Meshes {
         bool opaque = false, solid = false;
     };
 
     explicit Worlds(const Environment& environment);
     void prepare(const Pose3& pose);
-    /// For sensors that look in all directions: what stops light, or (Solid) sound.
+    /// Builds the mesh for sensors that look in all directions: surfaces that stop light, or
+    /// (Solid) sound.
     void prepareMesh(Surfaces surfaces = Surfaces::Opaque);
-    /// The slice of a level pose's height if one is kept, else the mesh.
-    /// \pre one of them was prepared: the slice by prepare() for a pose of this height, the mesh by
-    ///      prepareMesh() or by prepare() for a pose that is not level or beyond kMaxSlices
+    /// Returns the slice of a level pose's height if there is one, else the mesh.
+    /// \pre it was prepared: the slice by prepare() for a pose of this height, the mesh by
+    /// prepareMesh() or by prepare() for a pose that is not level or beyond kMaxSlices
     [[nodiscard]] const RayWorld& at(const Pose3& pose) const;
-    /// The mesh as light meets it, or (Solid) sound, which clear glass stops.
+    /// Returns the mesh for light, or (Solid) for sound, which clear glass stops.
     /// \pre it was prepared, see at()
     [[nodiscard]] const RayWorld& mesh(Surfaces surfaces = Surfaces::Opaque) const;
-    /// Those prepared so far, as the thread that prepares knows it.
+    /// Prepared meshes, as known to the preparing thread.
     [[nodiscard]] Meshes meshes() const { return {mesh_.has_value(), solid_.has_value()}; }
 
   private:
-    /// True where these surfaces stop more than opaque ones do.
+    /// True if these surfaces stop more rays than the opaque ones.
     [[nodiscard]] bool hearsMore(Surfaces surfaces) const {
         return has_clear_ && surfaces == Surfaces::Solid;
     }
 
     const Environment* environment_;
-    mutable std::shared_mutex mutex_;  // of what follows; only prepare() adds to it
+    mutable std::shared_mutex mutex_;  // guards the members below; only prepare() adds to them
     std::map<double, RayWorld> slices_;
     std::optional<RayWorld> mesh_;
-    std::optional<RayWorld> solid_;  // where it is not the same as mesh_
+    std::optional<RayWorld> solid_;  // if it differs from mesh_
     bool has_clear_;
 };
 

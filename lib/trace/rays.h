@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rays as all of lib/trace takes them.
+// // Sets of rays and their conventions, for all of lib/trace.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 
 namespace ispace {
 
-/// The range of a ray that meets nothing.
+/// Range of a ray without return.
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 
-/// Slack for rounding at the far end of a ray, or about a body, relative to the distance.
+/// Margin for rounding at the far end of a ray, or around a body, relative to the distance.
 constexpr double kFarSlack = 1e-6;
 
 /// Unit vectors, one array per component.
@@ -26,8 +26,8 @@ struct Directions {
     };
 
     std::vector<double> x, y, z;
-    /// Set if they form an arc of at most a full turn, which a slice is traced by faster; z is 0
-    /// then.
+    /// Set if the directions form an arc of at most a full turn, for which slices are faster; then
+    /// z is 0.
     std::optional<Arc> arc = {};
 
     [[nodiscard]] std::size_t size() const { return x.size(); }
@@ -44,8 +44,8 @@ struct Directions {
     [[nodiscard]] Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 
-/// The rays of a picture through one origin: that of pixel (column, row) points along
-/// corner + column * right + row * down, which need not be of unit length.
+/// The rays of a picture through one origin: pixel (column, row) has direction corner + column *
+/// right + row * down, not necessarily of unit length.
 struct RayGrid {
     Vec3 corner, right, down;
     int columns = 0, rows = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to EmbreeScene: round bodies and packets of rays.
+// // Intersects round bodies with packets of rays. Private to EmbreeScene.
 #pragma once
 
 #include <array>
@@ -9,18 +9,18 @@
 
 namespace ispace {
 
-/// A round body as seen from a place well outside of it. What TriangleSet::meet() finds for one ray
-/// this finds for a packet, to the last bit.
+/// A round body as seen from a point well outside of it. Computes TriangleSet::meet() for a packet
+/// of rays, with identical results to the last bit.
 class RoundView {
   public:
     RoundView() = default;
-    /// `ray_epsilon` as TriangleSet::meet() has it.
+    /// \param ray_epsilon as in TriangleSet::meet()
     RoundView(const RoundBody& body, Point3 origin, double ray_epsilon);
 
     [[nodiscard]] const RoundBody* body() const { return body_; }
-    /// Where the packet's rays meet it, +infinity where they do not. Only the first ray's origin
-    /// counts.
-    /// \return false if a ray, or the place, needs a closer look; then nothing is set
+    /// Computes the packet's intersections, +infinity for rays that miss. Uses the first ray's
+    /// origin for all.
+    /// \return false, without results, if a ray or the origin needs the exact test
     [[nodiscard]] bool meet(const RayPacket& packet, std::array<float, kLanes>& multiples) const;
 
   private:

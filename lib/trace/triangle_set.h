@@ -20,8 +20,8 @@ struct RoundBody {
     Ellipse curve;
     double bottom = 0, top = 0;
 
-    /// True only if p lies farther outside than `distance`, along the floor or upright: a quick
-    /// bound, which may be false for what lies a little farther. `unit`: p in the frame where the
+    /// True only if p lies outside by more than `distance`, along the floor or upright: a quick
+    /// bound, which may be false for points slightly farther. `unit`: p in the frame where the
     /// curve is the unit disc.
     [[nodiscard]] bool isFarOutside(Vec2 unit, double z, double distance) const {
         if (z - top > distance || bottom - z > distance) return true;
@@ -34,14 +34,14 @@ struct RoundBody {
     }
 };
 
-/// Triangles in any order; vertices may be shared or not.
+/// Triangles in any order, with or without shared vertices.
 struct TriangleSoup {
     static constexpr std::uint32_t kFlat = ~0U;
 
     std::vector<Point3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<RoundBody> rounds = {};
-    /// For each triangle, the round body it stands for, or kFlat; triangles beyond the end of this
+    /// For each triangle, the round body it represents, or kFlat; triangles beyond the end of this
     /// list are flat, too. The triangles of a round body enclose it.
     std::vector<std::uint32_t> round_of = {};
 
@@ -59,7 +59,7 @@ struct Ray {
     double reach = 0;
 };
 
-/// A plane: where dot(normal, p) = offset.
+/// The plane dot(normal, p) = offset.
 struct alignas(32) Plane {
     Vec3 normal;  ///< unit length
     double offset = 0;
@@ -70,9 +70,9 @@ struct alignas(32) Plane {
     }
 };
 
-/// Where a ray meets a surface.
+/// Intersection of a ray with a surface.
 struct RayHit {
-    double multiple = std::numeric_limits<double>::infinity();  ///< of the ray's direction
+    double multiple = std::numeric_limits<double>::infinity();  ///< multiple of the ray's direction
     double slope = 0;                                           ///< |normal times direction|
 
     [[nodiscard]] bool isNone() const {
@@ -80,43 +80,43 @@ struct RayHit {
     }
 };
 
-/// Triangles in doubles. Embree decides in float32 which of them a ray meets. It gets them enlarged
-/// by tolerance() on each side, which exceeds its error, so a ray that touches a surface or passes
-/// between two that touch meets one. The distance is computed here, in doubles.
+/// Triangles in doubles. Embree finds the triangle of a ray in float32. It stores them enlarged by
+/// tolerance() on each side, which exceeds its error, so that a ray that touches a surface or
+/// passes between two touching ones has a hit. The distance is computed here, in doubles.
 class TriangleSet {
   public:
-    /// Triangles thinner than a nanometre are left out.
+    /// Skips triangles thinner than a nanometre.
     explicit TriangleSet(const TriangleSoup& soup);
 
     [[nodiscard]] std::size_t size() const { return corners_.size(); }
     [[nodiscard]] const std::array<Point3, 3>& corners(std::size_t triangle) const {
         return corners_[triangle];
     }
-    /// Which of the soup's triangles it is.
+    /// Returns the triangle's index in the soup.
     [[nodiscard]] std::size_t source(std::size_t triangle) const { return sources_[triangle]; }
     [[nodiscard]] std::span<const Plane> planes() const { return planes_; }
     /// Upper bound of Embree's error, in metres: 2^-21 of the scene's diagonal.
     [[nodiscard]] double tolerance() const { return tolerance_; }
     /// A hit whose smallest barycentric coordinate times the cosine of ray and normal exceeds this
-    /// lies in the triangle itself. Infinite for round bodies.
+    /// lies in the original triangle. Infinite for round bodies.
     [[nodiscard]] std::span<const double> margins() const { return margins_; }
     using FloatTriangle = std::array<std::array<float, 3>, 3>;
-    /// The enlarged triangles' corners, in float32. \pre out.size() == size()
+    /// Computes the corners of the enlarged triangles, in float32. \pre out.size() == size()
     void enlarge(std::span<FloatTriangle> out) const;
 
-    /// Where a ray through the enlarged triangle meets its plane, no nearer or farther than the
-    /// triangle itself extends; or where it meets the round body that the triangle stands for, if
-    /// it does. The latter from inside, or going in from within `ray_epsilon` of its surface, is
-    /// where it leaves; going out from there it meets nothing.
+    /// Intersects a ray through the enlarged triangle with its plane, clamped to the triangle's
+    /// extent along the ray; or with the round body that the triangle represents. From inside a
+    /// round body, or going in from within `ray_epsilon` of its surface, returns the exit; going
+    /// out from there the ray misses.
     [[nodiscard]] RayHit meet(std::size_t triangle, const Ray& ray, double ray_epsilon) const;
     [[nodiscard]] bool isRound(std::size_t triangle) const {
         return round_of_[triangle] != TriangleSoup::kFlat;
     }
-    /// The round body that the triangle stands for; null if it stands for itself.
+    /// Returns the round body that the triangle represents; null for a flat triangle.
     [[nodiscard]] const RoundBody* roundOf(std::size_t triangle) const {
         return isRound(triangle) ? &rounds_[round_of_[triangle]] : nullptr;
     }
-    /// From p to the closed triangle.
+    /// Computes the distance from p to the closed triangle.
     [[nodiscard]] double distance(std::size_t triangle, Point3 p) const;
 
   private:
@@ -131,10 +131,10 @@ class TriangleSet {
     double tolerance_ = 0;
 };
 
-/// A mesh that just encloses a round prism, see TriangleSoup::round_of.
+/// Builds a mesh that closely encloses a round prism, see TriangleSoup::round_of.
 Mesh meshAround(Prism round);
 
-/// Eight triangles, an array per component, as vector units want them.
+/// Eight triangles, one array per component for vector units.
 struct TriangleLanes {
     static constexpr std::size_t kSize = 8;
 
@@ -150,17 +150,17 @@ struct TriangleLanes {
     }
 };
 
-/// What a TriangleSet keeps of eight triangles: their planes.
+/// Planes of eight triangles, as stored in a TriangleSet.
 struct TriangleLanePlanes {
     TriangleLanes::Vectors normals;
     alignas(64) double offsets[TriangleLanes::kSize];
-    /// Height over the longest side; no number, or 0, where there is no triangle.
+    /// Height over the longest side; NaN or 0 for unused lanes.
     alignas(64) double thin[TriangleLanes::kSize];
 };
 void findPlanes(const TriangleLanes& triangles, TriangleLanePlanes& planes);
 
-/// Moves the corners outwards, each by `tolerance` away from the sides that meet there; sharp ones
-/// by no more than 16 times that.
+/// Moves the corners outwards by `tolerance` from the adjacent sides; sharp corners by at most 16
+/// times that.
 void enlarge(TriangleLanes& triangles, double tolerance);
 
 }  // namespace ispace

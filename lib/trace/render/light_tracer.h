@@ -11,32 +11,32 @@
 
 namespace ispace {
 
-/// Sixteen places on surfaces, relative to the middle of the plan, and the light that falls there.
+/// Sixteen points on surfaces, relative to the middle of the plan, and their light.
 struct alignas(64) LitPlaces {
     using Lanes = std::array<float, kLanes>;
 
     std::array<bool, kLanes> is_wanted{};
-    Lanes x{}, y{}, z{};                       ///< a hair above the surface
+    Lanes x{}, y{}, z{};                       ///< slightly above the surface
     Lanes normal_x{}, normal_y{}, normal_z{};  ///< unit, towards the viewer
-    /// What a white surface there shines with, by lamps or the sun, and by all else.
+    /// Radiance of a white surface there, by lamps or the sun, and by all other light.
     std::array<Rgb, kLanes> direct{}, bounced{};
 
     void set(std::size_t lane, Point3 place, Vec3 normal, double lift);
 };
 
-/// Uniform numbers that one sample of light at one place takes.
+/// Uniform random numbers per light sample of a point.
 constexpr std::size_t kLightDraws = 5;
 
-/// Gathers light; one for each thread.
+/// Computes the light at surface points; one instance per thread.
 class LightTracer {
   public:
     /// \param light not Auto
     LightTracer(const RenderScene::Data& scene, Illumination light, int samples);
 
     [[nodiscard]] int samples() const { return samples_; }
-    /// Fills in the light. Lanes stand for the pixels of a tile of 4 x 4, whose samples are points
+    /// Computes the light. Lanes stand for the pixels of a tile of 4 x 4, whose samples are points
     /// of one net: the mean over any such square has little noise.
-    /// `draws` has kLightDraws numbers for each sample of each lane.
+    /// `draws` holds kLightDraws numbers for each sample of each lane.
     void gather(LitPlaces& places, std::span<const float> draws);
 
   private:
@@ -54,7 +54,7 @@ class LightTracer {
     alignas(64) RTCRay16 shadows_{};
     alignas(64) RTCRayHit16 hits_{};
     alignas(64) std::array<int, kLanes> valid_{};
-    std::array<Rgb, kLanes> strength_{};  ///< of the light at the end of each shadow ray
+    std::array<Rgb, kLanes> strength_{};  ///< light at the end of each shadow ray
 };
 
 }  // namespace ispace

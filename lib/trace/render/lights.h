@@ -14,12 +14,12 @@
 
 namespace ispace {
 
-/// Square panels that shine downwards, evenly spread over each part of the indoor region.
+/// Square panels that shine downwards, evenly distributed over each part of the indoor region.
 class Lamps {
   public:
     struct Lamp {
-        float x = 0, y = 0;  ///< of its middle, relative to the middle of the plan
-        float strength = 0;  ///< what a white surface one metre below it shines with
+        float x = 0, y = 0;  ///< centre, relative to the middle of the plan
+        float strength = 0;  ///< radiance of a white surface one metre below it
     };
     /// Half the side of a panel, metres.
     static constexpr float kHalf = 0.35F;
@@ -29,10 +29,11 @@ class Lamps {
 
     [[nodiscard]] std::span<const Lamp> all() const { return lamps_; }
     [[nodiscard]] float height() const { return height_; }
-    /// Those that matter at a place, as indices; and how far one does: light fades out there.
+    /// Returns the indices of the lamps that reach a point. Light fades out at their maximum
+    /// distance.
     [[nodiscard]] std::span<const std::uint32_t> near(float x, float y) const;
     [[nodiscard]] float reach() const { return reach_; }
-    /// True for places on a panel, seen from below.
+    /// True for points on a panel, seen from below.
     [[nodiscard]] bool shinesAt(float x, float y) const;
 
   private:
@@ -47,25 +48,25 @@ class Lamps {
     std::vector<std::uint32_t> first_ = {0, 0}, near_;
 };
 
-/// Sun and sky as a clear afternoon has them.
+/// Sun and sky of a clear afternoon.
 struct Sky {
     static constexpr float kSunHeight = 0.72F;  ///< sine of its elevation
-    /// Unit vector to the sun.
+    /// Returns the unit vector to the sun.
     static Vec3 sun();
-    /// What a white surface that faces it shines with, of the sun alone.
+    /// Radiance of a white surface that faces the sun, by the sun alone.
     static constexpr Rgb kSunlight{0.95F, 0.90F, 0.80F};
-    /// Tangent of half the angle under which the sun is seen: more than it is, for softer shadows.
+    /// Tangent of half the sun's apparent angle: enlarged for softer shadows.
     static constexpr float kSunRadius = 0.025F;
-    /// Radiance of a direction as light.
+    /// Computes the radiance of a direction as a light source.
     static Rgb light(float up);
-    /// The same as one sees it; below the horizon, the haze over the ground.
+    /// Computes its visible colour; below the horizon, the haze over the ground.
     static Rgb seen(float up);
 };
 
-/// What lies about a building.
+/// Colour of the ground around a building.
 constexpr Rgb kGround{0.30F, 0.31F, 0.27F};
 
-/// A place on a surface and the direction it faces, in float32.
+/// A point on a surface and its normal, in float32.
 struct FacingPlace {
     std::array<float, 3> place{}, normal{};
 
@@ -75,7 +76,8 @@ struct FacingPlace {
                  static_cast<float>(facing.z)} {}
 };
 
-/// The light on what the pixels' centres show, plane by plane. Pixels may be set by any threads.
+/// The light at the pixels' centres, in one plane per component. Threads may set pixels
+/// concurrently.
 class LightField {
   public:
     LightField() = default;
@@ -85,12 +87,11 @@ class LightField {
     void setPlace(std::size_t pixel, const FacingPlace& surface, float depth);
     void setLight(std::size_t pixel, const Rgb& direct, const Rgb& bounced);
 
-    /// Once all pixels are set. Shadows of lamps are smoothed within a tile, what surfaces throw
-    /// back over several; never across edges.
+    /// Call once all pixels are set. Smooths lamp shadows within a tile and bounced light over
+    /// several tiles; never across edges.
     void smooth();
 
-    /// True if the surface that the pixel shows goes on at another place: that then has the same
-    /// light.
+    /// True if the pixel's surface continues at another point, which then has the same light.
     [[nodiscard]] bool reaches(std::size_t pixel, const FacingPlace& to) const {
         if (depth_[pixel] < 0) return false;
         float cosine = 0, height = 0;
@@ -100,7 +101,7 @@ class LightField {
         }
         return cosine > kSameFacing && std::fabs(height) < heightOfOne(depth_[pixel]);
     }
-    /// The least cosine between normals of one surface, and how far off its plane it goes on.
+    /// Minimum cosine between normals of one surface, and maximum distance from its plane.
     static constexpr float kSameFacing = 0.9F;
     static constexpr float heightOfOne(float depth) { return 0.003F + 0.002F * depth; }
     /// \pre smooth() was called
@@ -111,7 +112,7 @@ class LightField {
 
   private:
     using Plane = std::vector<float>;
-    /// Direct light of three colours, then what surfaces throw back.
+    /// Direct light of three colours, then bounced light.
     using LightPlanes = std::array<Plane, 6>;
 
     template <std::size_t kFirst>
@@ -119,7 +120,7 @@ class LightField {
 
     int columns_ = 0, rows_ = 0;
     std::array<Plane, 3> place_, normal_;
-    Plane depth_;  ///< below 0: there is nothing
+    Plane depth_;  ///< below 0: no surface
     LightPlanes light_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/trace/render: pictures of a scene as light makes them. Uses trace and below; Embree inside.
+// // lib/trace/render: renders lit pictures of a scene. Uses trace and below; Embree inside.
 #pragma once
 
 #include <array>
@@ -20,13 +20,13 @@ namespace ispace {
 /// Red, green and blue, linear.
 using Rgb = std::array<float, 3>;
 
-/// A surface that only pictures have, in the world: seen from both sides, without shadow, label
-/// and depth.
+/// A surface for pictures only, in world coordinates: visible from both sides, without shadow,
+/// label and depth.
 struct PaintedMesh {
     Mesh mesh;
     Rgb color{};
     float opacity = 1;
-    bool is_lit = true;  ///< false: has its colour in light and shade, as signs have
+    bool is_lit = true;  ///< false: keeps its colour in light and shade, as signs do
 };
 
 struct RenderSceneOptions {
@@ -36,62 +36,63 @@ struct RenderSceneOptions {
     bool devices = true;
     /// Records (indices in Scene::records) of sensors whose fields of view are drawn, see viewOf().
     std::vector<std::size_t> views = {};
-    /// Records that have this colour all over.
+    /// Records drawn in this colour.
     struct Tint {
         std::size_t record = 0;
         Rgb color{};
     };
     std::vector<Tint> tints = {};
     std::vector<PaintedMesh> paint = {};
-    /// Parts of elements that are left out, by their footprint (two points: of a sheet): walls
-    /// between a viewer outside and the room.
+    /// Selects parts of elements to omit, by their footprint (two points: of a sheet), e.g. walls
+    /// between an outside viewer and the room.
     std::function<bool(const Element&, std::span<const Point2> footprint)> leaves_out = {};
 };
 
-/// What lights a scene.
+/// Light source of a scene.
 enum class Illumination {
-    Auto,   ///< lamps where the scene has a ceiling, else sun and sky
+    Auto,   ///< lamps if the scene has a ceiling, else sun and sky
     Lamps,  ///< square panels under the ceiling, or at the height of the walls
     Sky,    ///< the sun, half-way up in the south-west, and a clear sky
 };
 
 struct RenderOptions {
-    /// Lines of sight for each pixel: smooth edges. Light follows: more samples, less noise.
+    /// Lines of sight per pixel: smooth edges. Light follows: more samples, less noise.
     int samples = 4;
     std::uint64_t seed = 1;
     Illumination light = Illumination::Auto;
     bool labels = false, depths = false;
-    bool colors = true;  ///< false: labels and depths alone, far quicker
-    /// Records whose bodies the viewpoint does not see, though they cast shadows: the camera that
-    /// looks and what carries it, see ownRecords().
+    bool colors = true;  ///< false: labels and depths only, far faster
+    /// Records whose bodies are invisible to the viewpoint but cast shadows: the camera and the
+    /// body that carries it, see ownRecords().
     std::vector<std::size_t> hidden = {};
-    /// What is seen where nothing is; without it the sky, and the ground about the building.
+    /// Background colour; by default the sky, and the ground around the building.
     std::optional<Rgb> background = std::nullopt;
-    /// Surfaces with smaller depths are not seen: what a camera on a wall is on.
+    /// Surfaces with smaller depths are ignored, e.g. the wall behind a camera.
     double min_depth = 1e-3;
 };
 
 /// A picture, row by row from the top.
 struct Rendering {
     int columns = 0, rows = 0;
-    std::vector<Rgb> radiance;  ///< 1 is a white surface in the light of the whole room
-    /// Index in Scene::records of what the pixel's centre shows, plus 1; 0: nothing, or what no
-    /// record is (the floor). One looks through clear glass. Empty if not asked for.
+    std::vector<Rgb> radiance;  ///< 1: a white surface in the light of the whole room
+    /// Record at the pixel's centre, as index in Scene::records plus 1; 0: no record (background or
+    /// floor). Clear glass is transparent. Empty if not requested.
     std::vector<std::uint16_t> labels;
-    /// Of the pixel's centre, in multiples of its line of sight; +infinity: nothing. As `labels`.
+    /// Depth at the pixel's centre, in multiples of its line of sight; +infinity: no surface. Empty
+    /// if not requested.
     std::vector<float> depths;
 };
 
-/// A scene, ready to be rendered. Copies share what they hold; thread-safe.
+/// A scene prepared for rendering. Copies share their data; thread-safe.
 class RenderScene {
   public:
-    /// Reads the textures that records name, relative to the current folder.
-    /// \throws FormatError for a texture that cannot be read
+    /// Reads the textures named by records, relative to the current folder.
+    /// \throws FormatError for an unreadable texture
     explicit RenderScene(const Scene& scene, const RenderSceneOptions& options = {});
 
-    /// The same environment with what is placed at other poses, one for each of Scene::placed, in
-    /// the world. `swings` of the people's limbs, in their order, if they walk: see humanParts().
-    /// Takes far less time than a new scene.
+    /// Returns the same environment with placed elements at other poses, one for each of
+    /// Scene::placed, in the world. `swings`: of the limbs of walking people, in their order, see
+    /// humanParts(). Takes far less time than a new scene.
     [[nodiscard]] RenderScene at(std::span<const Pose3> poses,
                                  std::span<const Angle> swings = {}) const;
 
@@ -103,25 +104,25 @@ class RenderScene {
     std::shared_ptr<const Data> data_;
 };
 
-/// The picture is the same, byte by byte, for any number of threads.
+/// Renders a picture; identical bytes for any number of threads.
 /// \pre options.samples > 0
 Rendering render(const RenderScene& scene, const Viewpoint& viewpoint,
                  const RenderOptions& options = {});
 
-/// The files of the textures that a scene names, each once: what a picture depends on.
+/// Lists the texture files named by a scene, each once: further inputs of its pictures.
 std::vector<std::string> textureFiles(const Scene& scene);
 
-/// Records of the sensor and of the robot or person that carries it, see RenderOptions::hidden.
+/// Returns the records of the sensor and of its robot or person, see RenderOptions::hidden.
 std::vector<std::size_t> ownRecords(const Scene& scene, const Sensor& sensor);
 
-/// Red, green and blue bytes for screens and files: radiance times exposure, highlights rolled off
-/// softly, in sRGB.
+/// Converts to red, green and blue bytes for screens and files: radiance times exposure, highlights
+/// rolled off softly, in sRGB.
 std::vector<std::uint8_t> toSrgb8(const Rendering& picture, double exposure = 1);
-/// Of one colour, without the roll-off.
+/// Converts one colour, without the roll-off.
 std::array<std::uint8_t, 3> toSrgb8(const Rgb& color);
 
-/// render() band by band: what it needs for each pixel while it works (some 150 bytes) is needed
-/// for a band alone. Bands overlap where light is smoothed, so that no seam is seen.
+/// Renders band by band: the working memory per pixel (some 150 bytes) is needed for one band only.
+/// Bands overlap where light is smoothed, so that seams are invisible.
 Rendering renderInBands(const RenderScene& scene, const Viewpoint& viewpoint,
                         const RenderOptions& options, int most_pixels = 1'000'000);
 

@@ -19,13 +19,13 @@
 
 namespace ispace {
 
-/// What a triangle belongs to, and how it looks.
+/// Record and appearance of a triangle.
 struct SurfaceFinish {
     static constexpr std::uint32_t kNoFace = ~0U;
 
     std::uint32_t label = 0;       ///< index of its record, plus 1
-    std::uint32_t paint = 0;       ///< of RenderScene::Data
-    std::uint32_t face = kNoFace;  ///< the textured one it is a part of
+    std::uint32_t paint = 0;       ///< index in StillSurfaces::paints
+    std::uint32_t face = kNoFace;  ///< the textured face that contains it
 };
 
 /// Triangles with their finish, in coordinates relative to the middle of the plan.
@@ -42,21 +42,21 @@ struct FinishedBodies {
     std::vector<SurfaceFinish> finishes;
 };
 
-/// Triangles, or bodies, ready to be traced. Hits of it have this geometry id. Bodies are traced by
-/// a BodyQuery.
+/// Triangles or bodies, ready to be traced. Its hits hold this geometry id. Bodies require a
+/// BodyQuery.
 class SurfaceSet {
   public:
-    /// \throws std::runtime_error if Embree fails, std::bad_alloc if it has no memory
+    /// \throws std::runtime_error if Embree fails, std::bad_alloc if it is out of memory
     SurfaceSet(RTCDeviceTy* device, const FinishedSoup& soup, unsigned geometry);
     SurfaceSet(RTCDeviceTy* device, FinishedBodies bodies, unsigned geometry);
 
     [[nodiscard]] bool empty() const { return finishes_.empty(); }
     [[nodiscard]] const TriangleSet& triangles() const { return triangles_; }
     [[nodiscard]] const TracedBody& body(std::size_t index) const { return bodies_[index]; }
-    /// Of a triangle, or of a body.
+    /// Returns the finish of a triangle or body.
     [[nodiscard]] const SurfaceFinish& finish(std::size_t index) const { return finishes_[index]; }
-    /// Labels of the triangles or bodies as pictures hold them: 65535 stands for all from there on.
-    /// Kept apart, since pictures of labels read nothing else of a finish.
+    /// Labels of the triangles or bodies in the pictures' range: 65535 stands for all larger ones.
+    /// Stored separately, since label pictures read only these.
     [[nodiscard]] std::span<const std::uint16_t> labels() const { return labels_; }
     [[nodiscard]] RTCSceneTy* scene() const { return scene_.get(); }
 
@@ -65,51 +65,51 @@ class SurfaceSet {
 
     TriangleSet triangles_;
     std::vector<TracedBody> bodies_;
-    std::vector<SurfaceFinish> finishes_;  // of the set's triangles, or of its bodies
+    std::vector<SurfaceFinish> finishes_;  // of the triangles or bodies
     std::vector<std::uint16_t> labels_;
     EmbreeSceneHandle scene_;
 };
 
-/// How surfaces of one material, or of one record, look.
+/// Appearance of the surfaces of one material, or of one record.
 struct Paint {
     Rgb color{};
     float opacity = 1;
     bool is_lit = true, is_ceiling = false, is_floor = false;
 };
 
-/// A covering of the floor, in one colour or in squares. It has no height of its own, so that it
-/// does not lift what is measured.
+/// A floor covering, in one colour or in squares. Without thickness, so that measured depths do not
+/// change.
 struct Covering {
     std::uint32_t label = 0;
     Point2 corner;       ///< relative to the middle of the plan
-    Vec2 along, across;  ///< whole extents, at right angles
+    Vec2 along, across;  ///< full extents, perpendicular
     std::size_t columns = 1;
     std::vector<std::uint32_t> paints;  ///< of the squares, row by row
     std::uint32_t face = SurfaceFinish::kNoFace;
 
-    /// The paint at a place; nothing beside it.
+    /// Returns the paint at a point; empty outside.
     [[nodiscard]] std::optional<std::uint32_t> paintAt(Point2 place) const;
 };
 
-/// What does not move, and the shapes of what does.
+/// Static surfaces, and the shapes of movable ones.
 struct StillSurfaces {
     /// In the frame of Scene::placed, by its index.
     struct Figure {
         std::vector<Mesh> body;
         std::optional<Mesh> view;
         SurfaceFinish finish;
-        std::optional<std::uint32_t> paint;  ///< of the body, if it is not that of its materials
-        std::optional<double> person_height = {};  ///< of a person, who is humanParts()
+        std::optional<std::uint32_t> paint;        ///< of the body, if different from its materials
+        std::optional<double> person_height = {};  ///< set for a person, modelled by humanParts()
     };
 
     EmbreeDevice device;
-    Vec3 shift;                       ///< takes places of the world to those of the surfaces
+    Vec3 shift;                       ///< offset from world coordinates to those of the surfaces
     std::vector<Paint> paints;        ///< those of Material first, in its order
-    std::vector<Covering> coverings;  ///< later ones lie on earlier ones
+    std::vector<Covering> coverings;  ///< later ones cover earlier ones
     std::vector<Texture> textures;
     std::vector<TexturedFace> faces;  ///< relative to the middle of the plan
-    std::optional<SurfaceSet> solid;  ///< what stops light
-    std::optional<SurfaceSet> glass;  ///< clear one, which light passes
+    std::optional<SurfaceSet> solid;  ///< surfaces that stop light
+    std::optional<SurfaceSet> glass;  ///< clear glass, which light passes
     std::optional<SurfaceSet> paint;  ///< see PaintedMesh
     Lamps lamps;
     std::vector<Figure> figures;
@@ -127,7 +127,7 @@ struct RenderScene::Data {
 
     Data(std::shared_ptr<const StillSurfaces> surfaces, std::span<const Pose3> poses,
          std::span<const Angle> swings = {});
-    /// The finish of a triangle at a place: coverings lie on the floor.
+    /// Returns the finish of a triangle at a point: floor coverings replace the floor's finish.
     [[nodiscard]] SurfaceFinish finishAt(const SurfaceFinish& finish, Point3 place) const;
     [[nodiscard]] const SurfaceSet& set(SurfaceKind kind) const {
         switch (kind) {

@@ -11,21 +11,21 @@
 
 namespace ispace {
 
-/// A square tile of a picture's lines of sight, relative to the middle of the plan, and what they
-/// meet: `multiples` are depths.
+/// A square tile of a picture's lines of sight, relative to the middle of the plan, and their hits:
+/// `multiples` are depths.
 struct RayTile : RayPacket {
     std::array<bool, kLanes> is_black{};
     std::array<std::uint32_t, kLanes> triangle{};
     std::array<SurfaceKind, kLanes> kind{};
-    bool has_new_origins = true;   ///< since it was traced last
-    bool is_one_triangle = false;  ///< that all lanes meet, but for black ones
+    bool has_new_origins = true;   ///< changed since the last trace
+    bool is_one_triangle = false;  ///< hit by all lanes that are not black
 
     RayTile() {
         reach.fill(kMaxRayReach);
         origin_x.fill(std::numeric_limits<double>::quiet_NaN());
     }
     void set(std::size_t lane, const PixelRay& line, Vec3 shift);
-    /// Those of the places from `first` on, also beyond the picture.
+    /// Sets the lines of sight of a tile whose first pixel is `first`; may exceed the picture.
     void set(const EvenSightLines& lines, PixelPoint first, Vec3 shift);
     [[nodiscard]] Vec3 direction(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
     [[nodiscard]] Point3 origin(std::size_t lane) const {
@@ -35,27 +35,27 @@ struct RayTile : RayPacket {
         return static_cast<double>(multiples[lane]);
     }
     [[nodiscard]] bool meets(std::size_t lane) const { return multiples[lane] < kNoReturn; }
-    /// \pre it meets something
+    /// \pre the lane has a hit
     [[nodiscard]] Point3 place(std::size_t lane) const {
         return origin(lane) + depth(lane) * direction(lane);
     }
 };
 
-/// Places in a pixel that lie apart in either direction: edges along rows and columns have as many
-/// shades as there are samples (Hammersley's points by their ranks, so that their mean is the
-/// centre).
+/// Sample positions in a pixel, all different in either direction: edges along rows and columns
+/// have as many shades as there are samples (Hammersley's points by their ranks, so that their mean
+/// is the centre).
 std::vector<PixelPoint> placesInPixel(int count);
 
-/// Finds what a picture's lines of sight meet; one for each thread.
+/// Traces the lines of sight of a picture; one instance per thread.
 class TileTracer {
   public:
-    /// `hidden`: for each label, whether its bodies are not seen; may be shorter.
+    /// \param hidden for each label, whether its bodies are invisible; may be shorter
     TileTracer(const RenderScene::Data& scene, const std::vector<bool>& hidden, double min_depth);
 
     void trace(RayTile& tile);
 
   private:
-    /// The depth of what a lane's ray has hit, with care.
+    /// Computes the depth of a lane's hit by the exact test.
     [[nodiscard]] double resolve(const RayTile& tile, std::size_t lane) const;
 
     const RenderScene::Data& scene_;
@@ -69,30 +69,30 @@ class TileTracer {
     alignas(64) std::array<float, kLanes> far_{};
 };
 
-/// A surface where a line of sight meets it.
+/// A surface at the hit of a line of sight.
 struct SurfacePoint {
     Point3 place;        ///< relative to the middle of the plan
     Vec3 normal;         ///< unit, towards the viewer
-    Rgb color{};         ///< what it throws back of white light
-    Rgb glow{};          ///< its own light
-    float haze = 0;      ///< how much of it the distance hides
-    double lift = 1e-4;  ///< rays that leave it begin this far above it
+    Rgb color{};         ///< reflected share of white light
+    Rgb glow{};          ///< emitted light
+    float haze = 0;      ///< share hidden by haze
+    double lift = 1e-4;  ///< offset of secondary rays above the surface
 };
 
-/// Colours of surfaces, and of what lies between them and the viewer.
+/// Computes colours of surfaces and of clear layers before them.
 class Shading {
   public:
     /// \param light not Auto
     Shading(const RenderScene::Data& scene, Illumination light, const RenderOptions& options);
 
-    /// What the lane shows behind everything clear: a surface, or nothing but background. Lanes
-    /// that look down at nothing see the ground about the building.
+    /// True if the lane meets an opaque surface, else it shows background. Lanes that look down
+    /// past all surfaces see the ground around the building.
     [[nodiscard]] bool meetsSurface(const RayTile& tile, std::size_t lane) const;
     /// \pre meetsSurface
     [[nodiscard]] SurfacePoint surface(const RayTile& tile, std::size_t lane) const;
-    /// What a lane shows that meets no surface.
+    /// Returns the background colour of a lane without a surface.
     [[nodiscard]] Rgb background(const RayTile& tile, std::size_t lane) const;
-    /// What a surface in this light looks like.
+    /// Returns the colour of a surface in this light.
     [[nodiscard]] Rgb lit(const SurfacePoint& point, const Rgb& light) const;
 
   private:
@@ -103,25 +103,25 @@ class Shading {
     const RenderScene::Data& scene_;
     Illumination light_;
     const RenderOptions& options_;
-    double far_;  ///< where the haze over the ground becomes thick
+    double far_;  ///< distance at which the haze over the ground becomes thick
 };
 
-/// Something clear before a surface.
+/// A clear layer before a surface.
 struct ClearLayer {
     float depth;
-    Rgb light{};   ///< what it adds
-    Rgb passes{};  ///< what share of the light from behind it lets through
-    bool is_lit;   ///< `light` is a colour, in the light of what is behind it
+    Rgb light{};   ///< light that it adds
+    Rgb passes{};  ///< share of the light behind it that it transmits
+    bool is_lit;   ///< `light` is a colour, lit by the light behind it
 };
 
-/// Finds the clear layers before the surfaces of a tile; one for each thread.
+/// Finds the clear layers before the surfaces of a tile; one instance per thread.
 class ClearTracer {
   public:
     ClearTracer(const RenderScene::Data& scene, double min_depth);
 
-    /// True if nothing in the scene is clear.
+    /// True if the scene has no clear surfaces.
     [[nodiscard]] bool isIdle() const { return sets_.empty(); }
-    /// Layers of each lane, nearest first.
+    /// Returns the layers of each lane, nearest first.
     const std::array<std::vector<ClearLayer>, kLanes>& trace(const RayTile& tile);
 
   private:

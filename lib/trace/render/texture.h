@@ -13,14 +13,14 @@
 
 namespace ispace {
 
-/// A picture that covers a surface from edge to edge: of w pixels side by side, the middle of the
-/// first lies half of 1 / w from the edge. Bilinear between the middles, in linear light.
+/// A picture that covers a surface from edge to edge: with w pixels across, the centre of the first
+/// lies 1 / (2 w) from the edge. Bilinear between the centres, in linear light.
 class Texture {
   public:
     explicit Texture(ColorPicture picture) : picture_(std::move(picture)) {}
 
-    /// The colour at (u, v), (0, 0) being the upper left corner; beyond the edges that of the edge.
-    /// Where the picture is clear, `behind` shows.
+    /// Returns the colour at (u, v), with (0, 0) the upper left corner; clamped at the edges. Where
+    /// the picture is transparent, returns `behind`.
     [[nodiscard]] Rgb at(double u, double v, const Rgb& behind) const;
 
   private:
@@ -30,12 +30,12 @@ class Texture {
 /// A rectangle in space that a texture covers.
 struct TexturedFace {
     Point3 corner;     ///< the upper left one of the picture
-    Vec3 right, down;  ///< whole extents; a viewer who looks along their cross product sees it so,
-                       ///< from the other side the picture is turned to be upright and readable
-    double reach = 0;  ///< parallel triangles this near to the plane are parts of it
+    Vec3 right, down;  ///< full extents; seen upright from the side their cross product points away
+                       ///< from; on the other side the picture is turned to be readable
+    double reach = 0;  ///< maximum distance of parallel triangles that belong to the face
     std::uint32_t texture = 0;
 
-    /// True if a triangle of these corners is a part of it.
+    /// True if a triangle with these corners belongs to the face.
     [[nodiscard]] bool holds(const Point3& a, const Point3& b, const Point3& c) const;
     [[nodiscard]] Rgb colorAt(Point3 place, Vec3 direction, const std::vector<Texture>& textures,
                               const Rgb& behind) const;
@@ -43,14 +43,15 @@ struct TexturedFace {
 
 bool hasTexture(const Record& record);
 
-/// The faces of an element that its texture covers, in the world; of a floor, its rectangle.
+/// Returns the faces of an element that its texture covers, in the world; of a floor, its
+/// rectangle.
 std::vector<TexturedFace> texturedFaces(const Element& element);
 
 /// Reads textures, each file once.
 class TextureReader {
   public:
-    /// Index of the texture that the record names in `textures`. What is wrong with the file is a
-    /// finding, and the index that of a white picture.
+    /// Reads the record's texture. \returns its index in `textures`. An unreadable file is reported
+    /// as a finding and replaced by a white picture.
     std::uint32_t read(const Record& record, std::vector<Texture>& textures, Diagnostics& findings);
 
   private:
