@@ -41,8 +41,7 @@ struct RateLimit {
 /// Limits that keep one client from harming the others.
 struct ServerLimits {
     std::size_t clients = 256;  ///< further clients are answered ERR 429 and closed
-    std::size_t line =
-        4096;  ///< bytes of a request without its end; longer ones are answered ERR 413
+    std::size_t line = 4096;    ///< bytes of a request without its end; else ERR 413
     /// Bytes of replies that a client may leave unread before its requests have to wait.
     std::size_t pending = std::size_t{1} << 18;
     /// Unread bytes of all clients together: replies and outdated scans. Above it, the slowest
