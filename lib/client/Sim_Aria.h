@@ -13,10 +13,10 @@
 /// ms. Time is the room's (sim_aria/clock.h): with `--clock real:20` all goes twenty times as fast,
 /// and with `--clock step` the world advances while the program sleeps, the same way each time.
 ///
-/// There are the classes of a program that drives by itself: Aria, ArRobot, ArPose, ArSonarDevice,
-/// ArBumpers, ArSerialConnection, ArTcpConnection, ArSimpleConnector, ArRobotConnector,
-/// ArArgumentParser, ArSignalHandler, ArCommands, ArUtil, ArMath, ArTime, ArLog and functors.
-/// Actions, lasers of ARIA and ArNetworking are not there.
+/// Supports programs that use direct motion: Aria, ArRobot, ArPose, ArSonarDevice, ArBumpers,
+/// ArSerialConnection, ArTcpConnection, ArSimpleConnector, ArRobotConnector, ArArgumentParser,
+/// ArSignalHandler, ArCommands, ArUtil, ArMath, ArTime, ArLog and functors. Actions, ARIA's lasers
+/// and ArNetworking are missing.
 #ifndef SIM_ARIA_H
 #define SIM_ARIA_H
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Drives the robots and people of simrun and reads its sensors, from C++11 on; standard library
-/// and sockets alone, headers alone.
+/// Drives the robots and people of simrun and reads its sensors. C++11, header-only; requires only
+/// the standard library and sockets.
 ///
 ///     #include <ispace_client.h>
 ///     using namespace ispace::client;
@@ -11,10 +11,10 @@
 ///     LaserSensor laser("127.0.0.1:7001", "l1");
 ///     for (float range : laser.scan().ranges) …
 ///
-/// Robot and Person drive, LaserSensor, Camera and their kin read, World has the clock, changes and
-/// events. Units are those of the protocol: metres, degrees, simulated seconds; frames are
-/// right-handed and headings counter-clockwise. Functions block until the server has answered, at
-/// most for Options::timeout seconds of wall time; what goes wrong is an exception of
+/// Robot and Person drive; LaserSensor, Camera and similar classes read; World holds the clock,
+/// changes and events. Units are those of the protocol: metres, degrees, simulated seconds; frames
+/// are right-handed and headings counter-clockwise. Functions block until the server has answered,
+/// for at most Options::timeout seconds of wall time; errors are exceptions of
 /// <ispace_client/error.h> with the server's text. In CMake: find_package(ispace_client),
 /// ispace::client.
 #ifndef ISPACE_CLIENT_H

@@ -12,14 +12,14 @@
 namespace ispace {
 namespace client {
 
-/// How to connect, and how long to wait.
+/// Settings of a connection.
 struct Options {
     double timeout = 10;  ///< seconds to wait for each answer
-    std::string token;    ///< of a server with --token-file; empty: none
+    std::string token;    ///< required by a server with --token-file
 };
 
-/// A dialogue in the Simulator TCP Protocol, version 1 (simrun(1)): requests, their answers, and
-/// what the server says of itself in between, which is kept until it is asked for.
+/// A dialogue in the Simulator TCP Protocol, version 1 (simrun(1)): requests, answers, and
+/// unsolicited messages, which are stored until they are requested.
 ///
 /// One thread at a time may use it. Open a connection for each robot and sensor.
 class Connection {
@@ -42,7 +42,7 @@ class Connection {
     /// Sends one request and waits for its answer, for Options::timeout.
     /// \throws Refused, Timeout, ConnectionError, ProtocolError
     Message ask(const std::string& request) { return ask(request, options_.timeout); }
-    /// \param timeout seconds; infinity waits for ever
+    /// \param timeout seconds; infinity: no limit
     Message ask(const std::string& request, double timeout) {
         if (request.find('\n') != std::string::npos)
             throw Error("a request is one line, found two in `" + request + "`");
@@ -51,7 +51,7 @@ class Connection {
         ++awaited_;
         while (answers_.empty() || awaited_ > 1) {
             if (!answers_.empty()) {
-                // Of an earlier request whose caller did not wait for it.
+                // Answers an earlier request whose caller gave up.
                 answers_.pop_front();
                 --awaited_;
                 continue;
@@ -64,22 +64,22 @@ class Connection {
         return answer;
     }
 
-    /// Ends the dialogue; what was held is free when this returns. Nothing can be asked after it.
-    /// Without it the server learns of the end of a connection a moment later.
+    /// Ends the dialogue; held robots are released when this returns. Later requests fail. Without
+    /// it the server detects the end of a connection slightly later.
     void quit() { ask("QUIT"); }
 
-    /// The next DONE or FAIL, EVENT, or scan of a stream; waits for it.
-    /// \return false if none came within so many seconds
+    /// Waits for the next DONE or FAIL, EVENT, or scan of a stream.
+    /// \return false if none came within this many seconds
     bool nextEnd(Message& message, double timeout) { return next(ends_, message, timeout); }
     bool nextEvent(Message& message, double timeout) { return next(events_, message, timeout); }
     bool nextScan(Message& message, double timeout) { return next(scans_, message, timeout); }
-    /// Drops the scans of a stream that nobody has asked for.
+    /// Drops unread scans of a stream.
     void dropScans() { scans_.clear(); }
 
     const Options& options() const { return options_; }
 
   private:
-    static constexpr std::size_t kMaxKept = 10000;  // events and ends that nobody asks for
+    static constexpr std::size_t kMaxKept = 10000;  // maximum stored events and ends
     static constexpr std::size_t kMaxScans = 64;
 
     [[noreturn]] static void throwRefusal(const Message& message) {
@@ -105,7 +105,7 @@ class Connection {
         return true;
     }
 
-    /// Takes one message to where it belongs; false if none came in time.
+    /// Reads one message and stores it by kind; false if none came in time.
     bool take(const Deadline& deadline) {
         Message message;
         if (!read(message, deadline)) return false;
@@ -118,7 +118,8 @@ class Connection {
         } else if (streamed) {
             keep(scans_, message, kMaxScans);
         } else if (kind == "OK" || kind == "ERR" || kind == "SCAN") {
-            // The server speaks first only to close: of too many clients, of one without a role.
+            // The server sends ERR unasked only before closing: too many clients, or no role in
+            // time.
             if (awaited_ == 0 && kind == "ERR") throwRefusal(message);
             answers_.push_back(message);
         } else {
@@ -132,7 +133,7 @@ class Connection {
         where.push_back(message);
     }
 
-    /// Reads a line and its bytes; false if they are not there in time (what came is kept).
+    /// Reads a line and its bytes; false if incomplete in time (keeps the partial input).
     bool read(Message& message, const Deadline& deadline) {
         std::size_t end = 0;
         while ((end = buffer_.find('\n', searched_)) == std::string::npos) {
@@ -160,9 +161,9 @@ class Connection {
     Options options_;
     Socket socket_;
     std::string buffer_;
-    std::size_t searched_ = 0;  // bytes of the buffer before this have no end of line
+    std::size_t searched_ = 0;  // the buffer before this holds no end of line
     std::deque<Message> answers_, ends_, events_, scans_;
-    std::size_t awaited_ = 0;  // answers to requests that were sent
+    std::size_t awaited_ = 0;  // outstanding answers
 };
 
 }  // namespace client

@@ -8,26 +8,25 @@
 namespace ispace {
 namespace client {
 
-/// Base of everything this library throws.
+/// Base of all exceptions of this library.
 class Error : public std::runtime_error {
   public:
     explicit Error(const std::string& what) : std::runtime_error(what) {}
 };
 
-/// No server there, or it has closed the connection.
+/// No server at this address, or it has closed the connection.
 class ConnectionError : public Error {
   public:
     explicit ConnectionError(const std::string& what) : Error(what) {}
 };
 
-/// The answer has not come in time. The connection can still be used: the answer is dropped when it
-/// comes.
+/// The answer has not arrived in time. The connection remains usable: a late answer is dropped.
 class Timeout : public Error {
   public:
     explicit Timeout(const std::string& what) : Error(what) {}
 };
 
-/// The server said something that is not in the protocol as this library knows it.
+/// The server's message does not follow the protocol known to this library.
 class ProtocolError : public Error {
   public:
     explicit ProtocolError(const std::string& what) : Error(what) {}

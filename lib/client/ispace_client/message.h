@@ -16,8 +16,8 @@
 namespace ispace {
 namespace client {
 
-/// The number that `text` is, whatever the locale; "-" is infinity, which stands for no return.
-/// \throws ProtocolError if it is none
+/// Parses a number, independent of the locale; "-" is infinity, which means no return.
+/// \throws ProtocolError for other texts
 inline double numberOf(const std::string& text) {
     if (text == "-") return std::numeric_limits<double>::infinity();
     // Up to 15 digits, as the server writes measured values, one division rounds correctly.
@@ -45,7 +45,7 @@ inline double numberOf(const std::string& text) {
     return value;
 }
 
-/// The shortest text that a double is read from again, whatever the locale.
+/// Returns the shortest text that converts back to the same double, independent of the locale.
 inline std::string textOf(double value) {
     if (!std::isfinite(value)) throw Error("a request has a number that is not finite");
     for (int digits = 6;; ++digits) {
@@ -60,7 +60,7 @@ inline std::string textOf(double value) {
     }
 }
 
-/// The parts of `text` between separators; none of an empty text.
+/// Splits `text` at separators; empty for an empty text.
 inline std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts;
     for (std::size_t begin = 0; begin < text.size() || !parts.empty();) {
@@ -72,13 +72,13 @@ inline std::vector<std::string> split(const std::string& text, char separator) {
     return parts;
 }
 
-/// Where something is in the room, metres and degrees. A heading is in (-180, 180],
-/// counter-clockwise, 0 along x.
+/// A pose in the room, metres and degrees. A heading is in (-180, 180], counter-clockwise, 0 along
+/// x.
 struct Pose {
     double x = 0, y = 0, heading = 0;
 };
 
-/// The same in space. Tilt is positive upward.
+/// A pose in space. Tilt is positive upward.
 struct Pose3 {
     double x = 0, y = 0, z = 0, heading = 0, tilt = 0, roll = 0;
 };
@@ -90,7 +90,7 @@ class Fields {
         pairs_.push_back(std::make_pair(key, value));
     }
     bool has(const std::string& key) const { return find(key) != nullptr; }
-    /// \throws ProtocolError if there is no such key; so do all below
+    /// \throws ProtocolError if the key is missing, as do all functions below
     const std::string& text(const std::string& key) const {
         const std::string* const value = find(key);
         if (!value) throw ProtocolError("the server's answer has no `" + key + "`");
@@ -103,7 +103,7 @@ class Fields {
     double number(const std::string& key) const { return numberOf(text(key)); }
     long integer(const std::string& key) const { return std::lround(number(key)); }
     bool flag(const std::string& key) const { return text(key) == "1"; }
-    /// Parts between commas.
+    /// Splits a value at commas.
     std::vector<std::string> list(const std::string& key) const { return split(text(key), ','); }
     std::vector<double> numbers(const std::string& key) const {
         std::vector<double> values;
@@ -121,18 +121,18 @@ class Fields {
     std::vector<std::pair<std::string, std::string>> pairs_;
 };
 
-/// One line of the server, and the bytes that came with it.
+/// A line of the server, and its bytes.
 struct Message {
-    std::string line;  ///< as it came
+    std::string line;  ///< unchanged
     std::vector<std::string>
-        words;  ///< what is no pair; the first is OK, ERR, SCAN, DONE, FAIL, EVENT
+        words;  ///< words that are not pairs; the first is OK, ERR, SCAN, DONE, FAIL, EVENT
     Fields fields;
-    std::string data;  ///< the bytes behind a line with `bytes=`, or in its `base64=`
+    std::string data;  ///< bytes after a line with `bytes=`, or decoded from its `base64=`
 
     std::string word(std::size_t i) const { return i < words.size() ? words[i] : std::string(); }
 };
 
-/// The bytes that a text in base64 stands for.
+/// Decodes base64.
 inline std::string fromBase64(const std::string& text) {
     std::string bytes;
     unsigned bits = 0;
@@ -156,7 +156,7 @@ inline std::string fromBase64(const std::string& text) {
     return bytes;
 }
 
-/// A line taken apart. `text=` and `what=`, in events, and `warning=` go to the end of their line.
+/// Parses a line. `text=` and `what=`, in events, and `warning=` extend to the end of their line.
 inline Message parseMessage(const std::string& line) {
     Message message;
     message.line = line;

@@ -13,14 +13,14 @@
 namespace ispace {
 namespace client {
 
-/// A place on the floor, metres.
+/// A point on the floor, metres.
 struct Point {
     double x = 0, y = 0;
     Point() = default;
     Point(double east, double north) : x(east), y(north) {}
 };
 
-/// What a robot or person does: its true pose in the room.
+/// State of a robot or person: its true pose in the room.
 struct Status {
     double time = 0;      ///< simulated seconds
     Pose pose;            ///< m, degrees
@@ -28,23 +28,23 @@ struct Status {
     double rotspeed = 0;  ///< degrees/s, counter-clockwise
     double accel = 0;     ///< m/s²
     double rotaccel = 0;  ///< degrees/s²
-    bool stall = false;   ///< it has run into something, and stands until its next motion
-    Fields fields;        ///< all that the server says
+    bool stall = false;   ///< it has run into a body, and stands until its next motion
+    Fields fields;        ///< all fields of the answer
 };
 
-/// How fast a robot or person goes on a floor without friction.
+/// Speeds of a robot or person on a floor without friction.
 struct Limits {
     double speed = 0;          ///< m/s of forward() and backward()
     double rotspeed = 0;       ///< degrees/s of left() and right()
     double max_speed = 0;      ///< m/s, forward and backward
     double max_rotspeed = 0;   ///< degrees/s, either way
-    double max_sidespeed = 0;  ///< m/s, to either side; 0: it cannot
+    double max_sidespeed = 0;  ///< m/s, to either side; 0: not supported
     double accel = 0;          ///< m/s², speeding up and braking
     double rotaccel = 0;       ///< degrees/s²
 };
 
-/// What a robot's wheels tell it, from (0, 0, 0) where it started; differs from Status::pose where
-/// the run has noise.
+/// A robot's odometry from its wheels, starting at (0, 0, 0); differs from Status::pose if the run
+/// has noise.
 struct Odometry {
     double time = 0;
     Pose pose;            ///< m, degrees
@@ -52,7 +52,7 @@ struct Odometry {
     double rotspeed = 0;  ///< degrees/s
 };
 
-/// A motion with an end: what forward(), left(), path() and their kin began.
+/// A motion with an end, started by forward(), left(), path() and similar functions.
 struct Motion {
     int id = 0;
     double length = 0;  ///< of a path, m
@@ -61,30 +61,30 @@ struct Motion {
 /// How a motion ended.
 struct End {
     int id = 0;
-    bool done = false;   ///< it got where it was to go
+    bool done = false;   ///< it has reached its goal
     std::string reason;  ///< otherwise: stall, unreached, replaced, stopped or deleted
     double time = 0;     ///< simulated seconds
 };
 
 /// How to drive a path.
 struct PathOptions {
-    double speed = 0;   ///< m/s; 0: as the robot or person does by itself
+    double speed = 0;   ///< m/s; 0: the mover's own speed
     double pause = 0;   ///< s at each point
-    bool loop = false;  ///< from the last point to the first, again and again
+    bool loop = false;  ///< repeats from the last point to the first
 };
 
-/// A robot or person that this client drives. Only one client can; others are refused (409). When
-/// the object is gone, or its program dies, the robot brakes and is free. A motion replaces the one
-/// that runs.
+/// A robot or person driven by this client. Only one client can drive it; others are refused (409).
+/// When the object is destroyed, or its program dies, the robot brakes and is released. A new
+/// motion replaces the current one.
 class Mover {
   public:
     Mover(const Mover&) = delete;
     Mover& operator=(const Mover&) = delete;
 
     const std::string& id() const { return id_; }
-    /// What the server said of it when it was taken: model, radius …
+    /// The server's description at the start: model, radius …
     const Fields& info() const { return info_; }
-    /// \throws ProtocolError if the server is too old to say
+    /// \throws ProtocolError if the server is too old to report it
     Limits limits() const {
         Limits limits;
         limits.speed = info_.number("speed");
@@ -97,16 +97,16 @@ class Mover {
         return limits;
     }
 
-    /// So far, at the model's own speed.
+    /// Drives this distance at the model's own speed.
     /// \param metres not negative
     Motion forward(double metres) { return begin("FORWARD " + textOf(metres)); }
     Motion backward(double metres) { return begin("BACKWARD " + textOf(metres)); }
-    /// On the spot, counter-clockwise.
+    /// Turns on the spot, counter-clockwise.
     /// \param degrees not negative
     Motion left(double degrees) { return begin("LEFT " + textOf(degrees)); }
-    /// Clockwise.
+    /// Turns on the spot, clockwise.
     Motion right(double degrees) { return begin("RIGHT " + textOf(degrees)); }
-    /// Along straight lines from where it stands.
+    /// Follows straight lines from the current position.
     Motion path(const std::vector<Point>& points, const PathOptions& options = PathOptions()) {
         std::string request = "PATH ";
         for (std::size_t i = 0; i < points.size(); ++i)
@@ -116,11 +116,12 @@ class Mover {
         if (options.loop) request += " loop=yes";
         return begin(request);
     }
-    /// A speed to keep, m/s, negative backward; leaves the rotation as it is.
+    /// Sets a constant speed, m/s, negative backward; keeps the rotation.
     void speed(double metres_per_second) { ask("SPEED " + textOf(metres_per_second)); }
-    /// A rotation to keep, degrees/s, counter-clockwise; leaves the speed as it is.
+    /// Sets a constant rotation, degrees/s, counter-clockwise; keeps the speed.
     void rotspeed(double degrees_per_second) { ask("ROTSPEED " + textOf(degrees_per_second)); }
-    /// A speed to the left to keep, m/s: of people, and of robots with an omnidirectional drive.
+    /// Sets a constant speed to the left, m/s: of people, and of robots with an omnidirectional
+    /// drive.
     void sidespeed(double metres_per_second) { ask("SIDESPEED " + textOf(metres_per_second)); }
     /// Brakes.
     void stop() { ask("STOP"); }
@@ -139,8 +140,8 @@ class Mover {
         return status;
     }
 
-    /// Waits for the end of a motion of this client; ends of others are kept until they are asked
-    /// for. \param timeout seconds of wall time \throws Timeout
+    /// Waits for the end of a motion of this client; stores other ends until they are requested.
+    /// \param timeout seconds of wall time \throws Timeout
     End wait(const Motion& motion, double timeout = std::numeric_limits<double>::infinity()) {
         const Deadline deadline(timeout);
         for (;;) {
@@ -158,14 +159,14 @@ class Mover {
             keepEnd(message);
         }
     }
-    /// Whether a motion has ended, as far as the server has said; wait() then returns at once.
+    /// True if the server has reported the end of a motion; wait() then returns at once.
     bool ended(const Motion& motion) {
         Message message;
         while (connection_.nextEnd(message, 0)) keepEnd(message);
         return ends_.count(motion.id) > 0;
     }
 
-    /// For requests that this class has no function for.
+    /// For requests without a function in this class.
     Connection& connection() { return connection_; }
 
   protected:
@@ -201,7 +202,7 @@ class Mover {
         end.reason = message.fields.text("reason", "");
         end.time = message.fields.number("t");
         ends_[end.id] = end;
-        // Nobody may ever ask for most of them.
+        // Bounded: most ends are never requested.
         if (ends_.size() > 10000) ends_.erase(ends_.begin());
     }
 

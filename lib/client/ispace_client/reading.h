@@ -14,13 +14,13 @@
 namespace ispace {
 namespace client {
 
-/// What every reading has; Reading itself is that of a sensor of any kind, as the server sent it.
+/// Common part of all readings; used alone for a sensor of any kind.
 struct Reading {
     std::string sensor;  ///< id
     double time = 0;     ///< simulated seconds
-    long seq = 0;        ///< number of the reading; a gap shows what was missed
+    long seq = 0;        ///< number of the reading; gaps show missed readings
     Fields fields;
-    std::string data;  ///< bytes of the frame, if it has any
+    std::string data;  ///< bytes of the frame, if any
 
     static Reading from(const Message& message) {
         Reading reading;
@@ -31,7 +31,7 @@ struct Reading {
         reading.data = message.data;
         return reading;
     }
-    /// Of `pose=x,y,z,heading,tilt,roll`: where the sensor was in the room.
+    /// Returns the sensor's pose in the room, from `pose=x,y,z,heading,tilt,roll`.
     Pose3 pose() const {
         const std::vector<double> v = fields.numbers("pose");
         if (v.size() != 6)
@@ -41,7 +41,7 @@ struct Reading {
         pose.heading = v[3], pose.tilt = v[4], pose.roll = v[5];
         return pose;
     }
-    /// The data as little-endian float32.
+    /// Converts the data from little-endian float32.
     std::vector<float> floats() const {
         std::vector<float> values(data.size() / 4);
         for (std::size_t i = 0; i < values.size(); ++i) {
@@ -82,7 +82,7 @@ struct Scan : Reading {
     }
 };
 
-/// What a camera took, or a ranger's depths as a picture.
+/// A camera's picture, or a ranger's depths as a picture.
 struct Picture : Reading {
     std::string format;  ///< png, jpeg or rgb (8 bits each, rows from the top)
     int width = 0, height = 0;
@@ -131,8 +131,8 @@ struct Depths : Reading {
     }
 };
 
-/// A point for each pixel of a ranger (format cloud), in its own frame: x ahead, y left, z up;
-/// metres, NaN where there is none.
+/// A point for each pixel of a ranger (format cloud), in the sensor's frame: x ahead, y left, z up;
+/// metres, NaN without return.
 struct Cloud : Reading {
     struct Point3 {
         float x = 0, y = 0, z = 0;
@@ -152,7 +152,7 @@ struct Cloud : Reading {
     }
 };
 
-/// What an ultrasonic receiver heard of each tag.
+/// Times of flight from each tag to an ultrasonic receiver.
 struct Burst : Reading {
     std::vector<std::string> tags;
     std::vector<double> times_of_flight;  ///< s, in the order of tags; infinity: not heard
@@ -166,10 +166,10 @@ struct Burst : Reading {
     }
 };
 
-/// Where the receivers place a tag.
+/// Position of a tag computed from the receivers.
 struct Fix : Reading {
     int heard = 0;                             ///< receivers that heard it
-    bool solved = false;                       ///< false: too few, and the rest is 0
+    bool solved = false;                       ///< false: too few receivers; the figures are 0
     double x = 0, y = 0, z = 0, residual = 0;  ///< m
 
     static Fix from(const Message& message) {
@@ -187,7 +187,7 @@ struct Fix : Reading {
     }
 };
 
-/// Who stands on a mat.
+/// Movers on a mat.
 struct Load : Reading {
     std::vector<std::string> on;  ///< ids
 
@@ -199,12 +199,12 @@ struct Load : Reading {
     }
 };
 
-/// Who has passed a gate, since the run began.
+/// Movers that have passed a gate since the start of the run.
 struct Passages : Reading {
     long in = 0, out = 0;
-    std::string last;     ///< id of the last one; empty: nobody yet
+    std::string last;     ///< id of the last one; empty: no passage yet
     std::string way;      ///< its way, in or out
-    bool broken = false;  ///< something stands in the beam now
+    bool broken = false;  ///< the beam is interrupted now
 
     static Passages from(const Message& message) {
         Passages passages;

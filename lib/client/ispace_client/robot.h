@@ -13,7 +13,7 @@ namespace client {
 
 /// One of the sonars of a robot.
 struct Sonar {
-    Pose place;        ///< on the robot: m, degrees, in its own frame
+    Pose place;        ///< pose on the robot: m, degrees, in the robot's frame
     double range = 0;  ///< m; infinity: no echo
 };
 
@@ -29,10 +29,10 @@ class Robot : public Mover {
     Robot(const Address& address, const std::string& id, const Options& options = Options())
         : Mover("ROBOT", address, id, options) {}
 
-    /// The newest scan of a laser that rides on it.
+    /// Returns the newest scan of a laser on the robot.
     Scan scan(const std::string& laser) { return reading<Scan>(laser); }
-    /// The newest reading of a sensor that rides on it; T is Picture, Depths … or Reading of any
-    /// kind.
+    /// Returns the newest reading of a sensor on the robot; T is Picture, Depths … or Reading for
+    /// any kind.
     template <class T>
     T reading(const std::string& sensor) {
         return T::from(ask("SCAN " + sensor));
@@ -47,7 +47,7 @@ class Robot : public Mover {
         odometry.rotspeed = fields.number("rotspeed");
         return odometry;
     }
-    /// Its ring of sonars; empty if it has none.
+    /// Reads the sonars; empty if it has none.
     std::vector<Sonar> sonar() {
         const Fields fields = ask("SONAR").fields;
         std::vector<Sonar> ring;
@@ -65,13 +65,13 @@ class Robot : public Mover {
         for (std::size_t i = 0; i < ring.size(); ++i) ring[i].range = ranges[i];
         return ring;
     }
-    /// Which of its bumpers are pressed.
+    /// Returns the state of each bumper: true if pressed.
     std::vector<bool> bumpers() {
         std::vector<bool> hit;
         for (const Bumper& bumper : rim()) hit.push_back(bumper.hit);
         return hit;
     }
-    /// Its bumpers, and which are pressed; empty if it has none.
+    /// Returns the bumpers and their states; empty if it has none.
     std::vector<Bumper> rim() {
         const Fields fields = ask("BUMPER").fields;
         std::vector<Bumper> rim;

@@ -10,7 +10,7 @@
 namespace ispace {
 namespace client {
 
-/// A sensor of the room or on a robot; any number of clients may read one. T is what it reads.
+/// A sensor of the room or on a robot; shared by any number of clients. T is its reading.
 ///
 ///     Camera camera("127.0.0.1:7001", "c1");
 ///     camera.stream();
@@ -24,16 +24,16 @@ class SensorOf {
     SensorOf& operator=(const SensorOf&) = delete;
 
     const std::string& id() const { return id_; }
-    /// What the server said of it: kind, rate, and the figures of its kind.
+    /// The server's description: kind, rate, and the figures of its kind.
     const Fields& info() const { return info_; }
 
-    /// The newest reading, up to a period old.
+    /// Returns the newest reading, up to a period old.
     T scan() { return T::from(connection_.ask("SCAN")); }
 
-    /// From now on the server sends every new reading whose number is a multiple of `every`; a
-    /// client that does not keep up gets the newest.
+    /// Starts a stream: the server sends each new reading whose number is a multiple of `every`; a
+    /// slow client receives the newest.
     void stream(int every = 1) { connection_.ask("STREAM every=" + std::to_string(every)); }
-    /// The next reading of the stream.
+    /// Returns the next reading of the stream.
     /// \param timeout seconds of wall time
     /// \throws Timeout
     T next(double timeout) {
@@ -42,19 +42,19 @@ class SensorOf {
         return T::from(message);
     }
     T next() { return next(connection_.options().timeout); }
-    /// Ends the stream; readings that are on their way are dropped.
+    /// Ends the stream; drops readings under way.
     void stop() {
         connection_.ask("STOP");
         connection_.dropScans();
     }
 
-    /// Whether frames come as bytes behind their line, or as text in it. Both are understood; bytes
+    /// Selects frames as bytes after their line, or as text in it. The library reads both; bytes
     /// are several times as fast.
     void binary(bool on) { connection_.ask(on ? "BINARY on" : "BINARY off"); }
     /// Cameras: png, jpeg, rgb. Rangers: depth32, depth16, cloud, png.
     void format(const std::string& name) { connection_.ask("FORMAT " + name); }
 
-    /// For requests that this class has no function for.
+    /// For requests without a function in this class.
     Connection& connection() { return connection_; }
 
   protected:
@@ -70,17 +70,17 @@ class SensorOf {
     Fields info_;
 };
 
-/// Of any kind, see Reading::fields.
+/// A sensor of any kind, see Reading::fields.
 using Sensor = SensorOf<Reading>;
 using Camera = SensorOf<Picture>;
-/// In the formats depth32 and depth16.
+/// A ranger in the formats depth32 and depth16.
 using Ranger = SensorOf<Depths>;
 using Ultrasound = SensorOf<Burst>;
 using Tag = SensorOf<Fix>;
 using Mat = SensorOf<Load>;
 using Gate = SensorOf<Passages>;
 
-/// A ranger whose points are wanted.
+/// A ranger that returns points.
 class CloudSensor : public SensorOf<Cloud> {
   public:
     CloudSensor(const Address& address, const std::string& id, const Options& options = Options())
@@ -89,7 +89,7 @@ class CloudSensor : public SensorOf<Cloud> {
     }
 };
 
-/// A laser range finder (role LASER). Its scans come as bytes unless binary(false) says otherwise.
+/// A laser range finder (role LASER). Requests scans as bytes unless binary(false) is called.
 class LaserSensor : public SensorOf<Scan> {
   public:
     LaserSensor(const Address& address, const std::string& id, const Options& options = Options())
@@ -98,7 +98,7 @@ class LaserSensor : public SensorOf<Scan> {
     }
     double rangeMin() const { return info().number("range_min"); }  ///< m
     double rangeMax() const { return info().number("range_max"); }  ///< m
-    double rate() const { return info().number("rate"); }           ///< scans a simulated second
+    double rate() const { return info().number("rate"); }           ///< scans per simulated second
 };
 
 }  // namespace client

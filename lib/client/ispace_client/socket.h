@@ -25,15 +25,15 @@
 namespace ispace {
 namespace client {
 
-/// Where a server listens.
+/// Address of a server.
 struct Address {
     std::string host = "127.0.0.1";
     unsigned short port = 0;
 
     Address() = default;
     Address(const std::string& server, unsigned short number) : host(server), port(number) {}
-    /// "HOST:PORT", as in `listen` of the first line of simrun; "[::1]:7001" works as well.
-    /// \throws Error if it is none
+    /// Parses "HOST:PORT", as in `listen` of the first line of simrun, or "[::1]:7001".
+    /// \throws Error for other texts
     Address(const std::string& text) {  // NOLINT: a text is an address
         const std::size_t colon = text.rfind(':');
         const std::string number = colon == std::string::npos ? "" : text.substr(colon + 1);
@@ -51,10 +51,10 @@ struct Address {
     std::string text() const { return host + ":" + std::to_string(port); }
 };
 
-/// A moment by which something must have happened.
+/// Time limit of an operation.
 class Deadline {
   public:
-    /// \param seconds from now on; infinity: never
+    /// \param seconds from now; infinity: no limit
     explicit Deadline(double seconds) {
         if (seconds < 1e9) {
             end_ = std::chrono::steady_clock::now() +
@@ -64,7 +64,8 @@ class Deadline {
             never_ = true;
         }
     }
-    /// For poll(): milliseconds left, rounded up, 0 if it has passed, -1 for never.
+    /// Returns the remaining time for poll(): milliseconds, rounded up, 0 after the limit, -1
+    /// without one.
     int left() const {
         if (never_) return -1;
         const auto time = end_ - std::chrono::steady_clock::now();
@@ -78,7 +79,7 @@ class Deadline {
     bool never_ = false;
 };
 
-/// A TCP connection that never blocks longer than it is told.
+/// A TCP connection whose calls block no longer than their deadline.
 class Socket {
   public:
     /// \throws ConnectionError, Timeout
@@ -105,7 +106,7 @@ class Socket {
     Socket(const Socket&) = delete;
     Socket& operator=(const Socket&) = delete;
 
-    /// \throws ConnectionError, Timeout (then only a part may have gone out: close the connection)
+    /// \throws ConnectionError, Timeout (after a partial write: close the connection)
     void send(const std::string& bytes, const Deadline& deadline) {
         for (std::size_t sent = 0; sent < bytes.size();) {
             const ssize_t n = ::send(fd_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
@@ -119,7 +120,7 @@ class Socket {
         }
     }
 
-    /// Appends what there is to `bytes`. \return false if nothing came in time
+    /// Appends available input to `bytes`. \return false if none came in time
     /// \throws ConnectionError
     bool receive(std::string& bytes, const Deadline& deadline) {
         char buffer[65536];
@@ -139,7 +140,7 @@ class Socket {
     }
 
   private:
-    /// \return 0, or why it cannot be opened
+    /// \return 0, or the error of opening it
     int open(const addrinfo& at, const Deadline& deadline) {
         fd_ = ::socket(at.ai_family, at.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, at.ai_protocol);
         if (fd_ < 0) return errno;
@@ -153,7 +154,7 @@ class Socket {
             }
         }
         if (error == 0) {
-            // Requests are short, and the answer is waited for.
+            // Requests are short, and each awaits its answer.
             const int on = 1;
             ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
             return 0;

@@ -12,13 +12,13 @@
 namespace ispace {
 namespace client {
 
-/// Something that happened in the world.
+/// An event in the world.
 struct Event {
-    /// collision, stall, enter, leave, mat, gate, seen, lost, mark, change; missed: so many (n=)
-    /// were dropped, as the client did not read them
+    /// collision, stall, enter, leave, mat, gate, seen, lost, mark, change; missed: number (n=) of
+    /// events dropped because the client did not read them
     std::string kind;
     double time = 0;  ///< simulated seconds
-    Fields fields;    ///< id=, into=, zone= and what else belongs to its kind
+    Fields fields;    ///< id=, into=, zone= and further fields of its kind
 };
 
 /// The simulated world and its clock (role WORLD).
@@ -33,10 +33,10 @@ class World {
 
     double dt() const { return info_.number("dt"); }           ///< length of a step, s
     std::string clock() const { return info_.text("clock"); }  ///< real, fast or step
-    /// Simulated seconds in a second of wall time; 1 unless the clock is real.
+    /// Simulated seconds per second of wall time; 1 unless the clock is real.
     double rate() const { return info_.has("rate") ? info_.number("rate") : 1; }
 
-    /// The ids of what is there, by what LIST calls it: robots, lasers, people, sensors …
+    /// Returns ids by the categories of LIST: robots, lasers, people, sensors …
     std::map<std::string, std::vector<std::string>> list() {
         std::map<std::string, std::vector<std::string>> ids;
         const Message answer = ask("LIST");
@@ -46,12 +46,12 @@ class World {
     /// Simulated seconds since the run began.
     double time() { return ask("TIME").fields.number("t"); }
     long steps() { return ask("TIME").fields.integer("steps"); }
-    /// When a replay ends, simulated seconds; infinity where that is not known, and of other runs.
+    /// End of a replay, simulated seconds; infinity if unknown, and for other runs.
     double end() {
         const Fields fields = ask("TIME").fields;
         return fields.has("end") ? fields.number("end") : std::numeric_limits<double>::infinity();
     }
-    /// Where the robots and people are, m and degrees.
+    /// Poses of robots and people, m and degrees.
     std::map<std::string, Pose> poses() {
         std::map<std::string, Pose> poses;
         const Fields fields = ask("POSES").fields;
@@ -71,14 +71,14 @@ class World {
     /// Stops the clock, for all clients.
     void pause() { ask("PAUSE"); }
     void resume() { ask("RESUME"); }
-    /// Advances a paused world, or one with the clock `step`, and waits until it has.
+    /// Advances a world that is paused or has the clock `step`, and waits until it has.
     /// \param timeout seconds of wall time
-    /// \return how many steps were taken: fewer if somebody else pauses or the run ends
+    /// \return steps taken: fewer if another client pauses or the run ends
     long step(long steps = 1, double timeout = std::numeric_limits<double>::infinity()) {
         return connection_.ask("STEP " + std::to_string(steps), timeout).fields.integer("n");
     }
-    /// Takes a replay to its last step at or before so many simulated seconds, back or forth.
-    /// \param timeout seconds of wall time: going back reads the record anew
+    /// Moves a replay to its last step at or before this simulated time.
+    /// \param timeout seconds of wall time: a seek back reads the record again
     /// \return the time of that step
     double seek(double seconds, double timeout = std::numeric_limits<double>::infinity()) {
         return connection_.ask("SEEK " + textOf(seconds), timeout).fields.number("t");
@@ -86,7 +86,7 @@ class World {
     /// Ends the run.
     void shutdown() { ask("SHUTDOWN"); }
 
-    /// Robots and people go back to where they started; time goes on.
+    /// Returns robots and people to their initial poses; time continues.
     void reset() { change("RESET"); }
     /// Changes a key of a record: set("r1", "speed", "0.3").
     void set(const std::string& id, const std::string& key, const std::string& value) {
@@ -96,24 +96,24 @@ class World {
     /// \return its id
     std::string add(const std::string& record) { return change("ADD " + record).text("id"); }
     void remove(const std::string& id) { change("DELETE " + id); }
-    /// Another room. Names of files as the server sees them; without `layout` there is none.
+    /// Loads another room. The server opens the files; an empty `layout` means none.
     void load(const std::string& environment, const std::string& layout = "") {
         const std::string files = environment + (layout.empty() ? "" : " " + layout);
         warning_ = connection_.ask("LOAD " + files, kLoadTimeout).fields.text("warning", "");
     }
-    /// What the server warned of at the last change, as of a robot outside the room; "" of nothing.
+    /// The server's warning about the last change, e.g. a robot outside the room; "" without one.
     const std::string& warning() const { return warning_; }
-    /// Writes a line into the records and to all who follow events.
+    /// Writes a line into the records and to all clients that follow events.
     void mark(const std::string& text) { ask("MARK " + text); }
 
-    /// Follow events of these kinds from now on, or of all.
+    /// Subscribes to events of these kinds, or of all kinds.
     void events(const std::vector<std::string>& kinds = std::vector<std::string>()) {
         std::string request = "EVENTS";
         for (std::size_t i = 0; i < kinds.size(); ++i) request += (i > 0 ? "," : " ") + kinds[i];
         ask(request);
     }
     void eventsOff() { ask("EVENTS off"); }
-    /// The next event; waits for it.
+    /// Waits for the next event.
     /// \param timeout seconds of wall time
     /// \return false if none came in time
     bool nextEvent(Event& event, double timeout = std::numeric_limits<double>::infinity()) {
@@ -125,11 +125,11 @@ class World {
         return true;
     }
 
-    /// For requests that this class has no function for.
+    /// For requests without a function in this class.
     Connection& connection() { return connection_; }
 
   private:
-    static constexpr double kLoadTimeout = 600;  // of a building
+    static constexpr double kLoadTimeout = 600;  // time to load a building
 
     Message ask(const std::string& request) { return connection_.ask(request); }
 

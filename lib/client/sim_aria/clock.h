@@ -16,20 +16,19 @@
 
 namespace sim_aria {
 
-/// The time that the program lives in: that of the simulated world once it is connected to one,
-/// before that wall time. What the program calls milliseconds are milliseconds of the room, however
-/// fast the run is. In a world that goes by steps the program makes the time itself: the world
-/// advances while it sleeps, and the robots' cycles run then, in the same thread, so that a run is
-/// the same every time.
+/// The program's clock: simulated time while connected to a world, wall time before. The program's
+/// milliseconds are simulated milliseconds, independent of the speed of the run. With the clock
+/// `step` the program drives the time: the world advances while it sleeps, and the robots' cycles
+/// run then, in the same thread, so that runs are reproducible.
 class Clock {
   public:
     static Clock& get() {
-        // Never destroyed: a robot that is may still ask it.
+        // Never destroyed: robots destroyed later may still use it.
         static Clock* const clock = new Clock;
         return *clock;
     }
 
-    /// Takes the time of this world, unless it has it already.
+    /// Adopts the time of this world unless already adopted.
     void follow(const ispace::client::Address& address, const ispace::client::Options& options) {
         const std::lock_guard<std::recursive_mutex> lock(mutex_);
         if (world_ && address.text() == address_) return;
@@ -58,10 +57,10 @@ class Clock {
         return before_ + rate_ * std::chrono::duration<double, std::milli>(wall).count();
     }
 
-    /// \param ms milliseconds of the room
+    /// \param ms simulated milliseconds
     void sleep(double ms) {
         if (bySteps()) return advance(ms);
-        // As fast as it goes: nothing but the world knows how fast that is.
+        // Poll: only the world knows the speed of the clock `fast`.
         const double end = now() + ms;
         while (pace() == Pace::World && now() < end) std::this_thread::yield();
         if (pace() != Pace::Wall) return;
@@ -69,7 +68,7 @@ class Clock {
         std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(wall));
     }
 
-    /// In a world by steps: calls `cycle` every so many milliseconds while the program sleeps.
+    /// With the clock `step`: calls `cycle` at this period while the program sleeps.
     void add(const void* owner, double period, std::function<void()> cycle) {
         const std::lock_guard<std::recursive_mutex> lock(mutex_);
         Cycle& entry = cycles_[owner];
@@ -104,7 +103,7 @@ class Clock {
             double next = end;
             for (const auto& cycle : cycles_) next = std::min(next, cycle.second.due);
             ask("STEP " + std::to_string(std::max(1L, std::lround((next - time_) / dt_))));
-            const std::map<const void*, Cycle> cycles = cycles_;  // one may end itself
+            const std::map<const void*, Cycle> cycles = cycles_;  // copy: a cycle may remove itself
             for (const auto& cycle : cycles) {
                 if (bySteps() && cycle.second.due > time_ + dt_ / 2) continue;
                 const auto found = cycles_.find(cycle.first);
@@ -114,7 +113,7 @@ class Clock {
         }
     }
 
-    /// A request that is answered with the world's time.
+    /// Sends a request whose answer holds the world's time.
     void ask(const std::string& request) {
         const std::lock_guard<std::recursive_mutex> lock(mutex_);
         if (!world_) return;
@@ -124,7 +123,7 @@ class Clock {
             const std::lock_guard<std::mutex> times(times_);
             time_ = answer.fields.number("t") * 1000;
         } catch (const ispace::client::Error&) {
-            // The run is over: the program lives on in wall time, and its robots are lost.
+            // The run is over: the program continues in wall time, and its robots are lost.
             const std::lock_guard<std::mutex> times(times_);
             before_ += time_ - begun_;
             pace_ = Pace::Wall;

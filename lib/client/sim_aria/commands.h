@@ -2,8 +2,8 @@
 #ifndef SIM_ARIA_COMMANDS_H
 #define SIM_ARIA_COMMANDS_H
 
-/// Numbers of the commands that a Pioneer knows. ArRobot::comInt obeys ENABLE, SONAR, VEL, RVEL,
-/// MOVE, ROTATE, HEAD, DHEAD, STOP, ESTOP and SETO; the others are taken and have no effect here.
+/// Command numbers of a Pioneer. ArRobot::comInt supports ENABLE, SONAR, VEL, RVEL, MOVE, ROTATE,
+/// HEAD, DHEAD, STOP, ESTOP and SETO; others are accepted without effect.
 class ArCommands {
   public:
     enum Commands {

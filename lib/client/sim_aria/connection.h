@@ -9,7 +9,7 @@
 
 namespace sim_aria {
 
-/// The variable of the environment that names the server, HOST:PORT; empty without it.
+/// Reads the environment variable that names the server, HOST:PORT; empty if unset.
 inline std::string serverName() {
     const char* const name = std::getenv("ISPACE_SIMRUN");
     return name ? name : "";
@@ -17,9 +17,9 @@ inline std::string serverName() {
 
 }  // namespace sim_aria
 
-/// A way to the robot. All lead to simrun: that of the variable ISPACE_SIMRUN (HOST:PORT), or else
-/// to 127.0.0.1:7001; TCP goes to the host and port it is given unless the variable names another.
-/// Which robot it is, ArRobot decides.
+/// A connection to the robot. All lead to simrun: at ISPACE_SIMRUN (HOST:PORT), by default
+/// 127.0.0.1:7001; TCP uses its host and port unless the variable is set. ArRobot chooses the
+/// robot.
 class ArDeviceConnection {
   public:
     enum Status {
@@ -40,7 +40,7 @@ class ArDeviceConnection {
         myStatus = STATUS_CLOSED_NORMALLY;
         return true;
     }
-    /// Bytes are nothing here: requests go the way of ArRobot.
+    /// Raw bytes are not supported: ArRobot sends requests.
     virtual int read(const char*, unsigned int, unsigned int = 0) { return -1; }
     virtual int write(const char*, unsigned int) { return -1; }
     virtual int getStatus() { return myStatus; }
@@ -61,12 +61,12 @@ class ArDeviceConnection {
                 return "Unknown";
         }
     }
-    /// Where simrun is; of an open connection.
+    /// Address of simrun, once open.
     const std::string& simulator() const { return myServer; }
     void setStatus(int status) { myStatus = status; }
 
   protected:
-    /// Whether a simrun answers there; its time is the program's from now on.
+    /// Checks that simrun answers there, and adopts its time.
     /// \throws ispace::client::Error
     void reach(const std::string& server) {
         myStatus = STATUS_OPEN_FAILED;

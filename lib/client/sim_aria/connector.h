@@ -9,20 +9,20 @@
 
 #include <sim_aria/robot.h>
 
-/// The words of the command line, less those that were asked for.
+/// The words of the command line, without those already parsed.
 class ArArgumentParser {
   public:
     ArArgumentParser(int* argc, char** argv) : myCount(argc), myWords(argv) {}
 
     void loadDefaultArguments(int = 1) {}
-    /// Whether `-word` or `--word` is there; takes it.
+    /// Finds and removes `-word` or `--word`.
     bool checkArgument(const char* word) {
         const int i = find(word);
         if (i < 0) return false;
         take(i, 1);
         return true;
     }
-    /// The word behind it; null without one.
+    /// Finds and removes an option; returns its value, null if missing.
     const char* checkParameterArgument(const char* word) {
         const int i = find(word);
         if (i < 0) return nullptr;
@@ -61,8 +61,8 @@ class ArArgumentParser {
     char** myWords;
 };
 
-/// Connects a robot as the command line says: -remoteHost (-rh), -remoteRobotTcpPort (-rrtp),
-/// -robotPort (-rp). The variable ISPACE_SIMRUN names the server all the same.
+/// Connects a robot by the command line: -remoteHost (-rh), -remoteRobotTcpPort (-rrtp), -robotPort
+/// (-rp). The variable ISPACE_SIMRUN overrides the server.
 class ArSimpleConnector {
   public:
     ArSimpleConnector(int* argc, char** argv) : myOwn(argc, argv), myParser(&myOwn) {}
@@ -111,7 +111,7 @@ class ArSimpleConnector {
     ArSerialConnection mySerial;
 };
 
-/// The same, of today's ARIA.
+/// The same class in newer versions of ARIA.
 class ArRobotConnector {
   public:
     ArRobotConnector(ArArgumentParser* parser, ArRobot* robot, bool /*autoParseArgs*/ = true)

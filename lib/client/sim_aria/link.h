@@ -17,7 +17,7 @@
 
 namespace sim_aria {
 
-/// What a status packet tells, in ARIA's units.
+/// Contents of a status packet, in ARIA's units.
 struct Packet {
     ArPose pose;         ///< odometry since the connection, mm and degrees
     double vel = 0;      ///< whole mm/s
@@ -30,8 +30,8 @@ struct Packet {
 /// One robot of simrun in ARIA's units. Functions throw ispace::client::Error.
 class Link {
   public:
-    /// The robots of the variable ISPACE_ROBOT ("r1,r2"), or else all of the world: the first that
-    /// nobody else drives.
+    /// Takes the first robot that no other client drives: of the variable ISPACE_ROBOT ("r1,r2"),
+    /// or else of the whole world.
     Link(const std::string& server, double timeout) {
         ispace::client::Options options;
         options.timeout = timeout;
@@ -63,7 +63,7 @@ class Link {
     double rotAccel() const { return limits_.rotaccel; }
     int frontBumpers() const { return front_bumpers_; }
     int rearBumpers() const { return rear_bumpers_; }
-    /// Where its sonars sit, mm and degrees in its own frame.
+    /// Poses of the sonars, mm and degrees in the robot's frame.
     const std::vector<ArPose>& sonars() const { return sonars_; }
 
     Packet read(bool sonar) {
@@ -76,7 +76,7 @@ class Link {
         packet.vel = std::round(1000 * odometry.speed);
         packet.rot_vel = odometry.rotspeed;
         packet.stalled = robot_->status().stall;
-        // It touches nothing before it has run into something.
+        // Bumpers are released before a stall.
         if (packet.stalled && !bits_.empty()) packet.bumpers = bumpersHit();
         if (sonar && !sonars_.empty()) {
             for (const ispace::client::Sonar& sonar : robot_->sonar())
@@ -91,7 +91,7 @@ class Link {
     /// degrees/s
     void rotVel(double value) { robot_->rotspeed(value); }
     void stop() { robot_->stop(); }
-    /// Brakes, and frees it before this returns.
+    /// Brakes, and releases the robot before it returns.
     void close() {
         robot_->stop();
         robot_->connection().quit();
@@ -106,18 +106,18 @@ class Link {
                 sonars_.push_back(
                     ArPose(1000 * sonar.place.x, 1000 * sonar.place.y, sonar.place.heading));
         } catch (const ispace::client::Refused&) {
-            // It has none.
+            // no sonars
         }
     }
 
-    /// A Pioneer counts its bumpers clockwise: those in front in bits 9 to 15, those behind in 1
+    /// Numbers the bumpers as a Pioneer does, clockwise: front ones in bits 9 to 15, rear ones in 1
     /// to 7.
     void findBumpers() {
         std::vector<ispace::client::Bumper> rim;
         try {
             rim = robot_->rim();
         } catch (const ispace::client::Refused&) {
-            // It has none.
+            // no bumpers
         }
         std::vector<std::pair<double, std::size_t>> front, rear;
         for (std::size_t i = 0; i < rim.size(); ++i) {
@@ -153,7 +153,7 @@ class Link {
     std::unique_ptr<ispace::client::Robot> robot_;
     ispace::client::Pose start_;
     std::vector<ArPose> sonars_;
-    std::vector<int> bits_;  // of each bumper
+    std::vector<int> bits_;  // bit of each bumper
     int front_bumpers_ = 0, rear_bumpers_ = 0;
     ispace::client::Limits limits_;
 };

@@ -23,7 +23,7 @@ class ArMath {
     }
     static double addAngle(double a, double b) { return fixAngle(a + b); }
     static double subAngle(double a, double b) { return fixAngle(a - b); }
-    /// Whether `angle` lies on the way from `start` counter-clockwise to `end`.
+    /// True if `angle` lies between `start` and, counter-clockwise, `end`.
     static bool angleBetween(double angle, double start, double end) {
         return positive(angle - start) <= positive(end - start);
     }
@@ -33,7 +33,7 @@ class ArMath {
     static double squaredDistanceBetween(double x1, double y1, double x2, double y2) {
         return (x2 - x1) * (x2 - x1) + (y2 - y1) * (y2 - y1);
     }
-    /// Halves away from zero.
+    /// Rounds halves away from zero.
     static int roundInt(double value) { return static_cast<int>(std::lround(value)); }
     static short roundShort(double value) { return static_cast<short>(std::lround(value)); }
     static double fabs(double value) { return std::fabs(value); }
@@ -79,7 +79,7 @@ class ArPose {
     double squaredFindDistanceTo(ArPose to) const {
         return ArMath::squaredDistanceBetween(myX, myY, to.myX, to.myY);
     }
-    /// Direction of another place from here, in the world.
+    /// Direction to another position, in the world.
     double findAngleTo(ArPose to) const { return ArMath::atan2(to.myY - myY, to.myX - myX); }
 
     ArPose operator+(const ArPose& o) const {

@@ -9,9 +9,9 @@
 
 namespace sim_aria {
 
-/// Direct motion: what the program wants of speed and of rotation, each of its own, and the speeds
-/// that follow from it in each cycle. Speeds are whole mm/s and degrees/s, as a Pioneer is told
-/// them; distances and headings are held as its firmware does, by speeds that fall towards the end.
+/// Direct motion: stores separate goals of translation and rotation, and computes the speeds of
+/// each cycle. Speeds are whole mm/s and degrees/s, as in a Pioneer's commands; like its firmware,
+/// it reaches distances and headings with speeds that decrease towards the goal.
 class Motion {
   public:
     double max_vel = 1600, max_rot_vel = 300;  ///< mm/s, degrees/s
@@ -27,7 +27,7 @@ class Motion {
         turn_ = Vel;
         rot_vel_ = value;
     }
-    /// \param at where the robot is
+    /// \param at the robot's pose
     void move(double distance, const ArPose& at) {
         move_ = Goal;
         distance_ = distance;
@@ -37,7 +37,7 @@ class Motion {
         turn_ = Goal;
         heading_ = ArMath::fixAngle(heading);
     }
-    /// Nothing is wanted any more.
+    /// Removes both goals.
     void clear() { move_ = turn_ = None; }
 
     bool isMoveDone(const ArPose& at, double delta) const {
@@ -50,7 +50,7 @@ class Motion {
                (delta == 0 ? kHeadingDone : delta);
     }
 
-    /// The speed that is right now.
+    /// Computes the current speed.
     double vel(const ArPose& at) const {
         if (move_ != Goal) return move_ == Vel ? rounded(vel_, max_vel) : 0;
         const double rest = std::fabs(distance_) - travelled(at);
@@ -67,23 +67,23 @@ class Motion {
     static double rounded(double value, double most) {
         return std::round(std::max(-most, std::min(most, value)));
     }
-    /// Half of what it can brake, as it learns a cycle late where it is.
+    /// Uses half of the deceleration, since poses arrive one cycle late.
     static double approach(double rest, double most, double accel) {
         const double left = std::fabs(rest);
         const double speed = std::min(std::min(most, std::sqrt(accel * left)), left / kSettle);
         return std::copysign(left < kStill ? 0 : speed, rest);
     }
-    /// Along the way it faced when the motion began.
+    /// Distance travelled along the initial heading.
     double travelled(const ArPose& at) const {
         const double ahead = (at.getX() - from_.getX()) * ArMath::cos(from_.getTh()) +
                              (at.getY() - from_.getY()) * ArMath::sin(from_.getTh());
-        // On a curve the distance counts.
+        // On a curve, use the distance instead.
         const double distance = from_.findDistanceTo(at);
         return turn_ == None ? std::copysign(1.0, distance_) * ahead : distance;
     }
 
-    static constexpr double kSettle = 0.3;  // s in which the last bit is covered
-    static constexpr double kStill = 0.5;   // mm or degrees that are not worth a motion
+    static constexpr double kSettle = 0.3;  // s to cover the remainder
+    static constexpr double kStill = 0.5;   // mm or degrees below which no motion starts
 
     Wanted move_ = None, turn_ = None;
     double vel_ = 0, rot_vel_ = 0, distance_ = 0, heading_ = 0;

@@ -66,12 +66,12 @@ class ArListPos {
 
 namespace sim_aria {
 
-/// What all robots of the process share: who is to be stopped and disconnected at its end, and
-/// signals, which a thread of their own waits for, as a handler may not do either.
+/// State of the process shared by all robots: the robots to stop and disconnect at its end, and a
+/// thread that waits for signals, since a signal handler may do neither.
 class Process {
   public:
     static Process& get() {
-        // Never destroyed: the thread may still look at it while the process ends.
+        // Never destroyed: the thread may still use it while the process ends.
         static Process* const process = new Process;
         return *process;
     }
@@ -106,7 +106,7 @@ class Process {
         return running_;
     }
 
-    /// From now on this signal ends the process in order.
+    /// Lets this signal end the process in order.
     void handle(int signal) {
         {
             const std::lock_guard<std::mutex> lock(mutex_);
@@ -184,7 +184,7 @@ class Aria {
         sim_aria::Process::get().runExitCallbacks();
         sim_aria::Process::get().setRunning(false);
     }
-    /// The same, and ends the process.
+    /// Stops all robots and ends the process.
     static void exit(int code = 0) {
         shutdown();
         std::exit(code);
@@ -197,7 +197,7 @@ class Aria {
     static void remExitCallback(ArFunctor* functor) { sim_aria::Process::get().remove(functor); }
 };
 
-/// Which signals end the process in order; Aria::init() has chosen already.
+/// Signals that end the process in order; Aria::init() sets the usual ones.
 class ArSignalHandler {
   public:
     enum Signal {
@@ -218,7 +218,7 @@ class ArSignalHandler {
         SigTERM
     };
     static void handle(Signal signal) { sim_aria::Process::get().handle(signal); }
-    /// Back to what the system does with it.
+    /// Restores the default action of a signal.
     static void unhandle(Signal signal) { ::signal(signal, SIG_DFL); }
     static void block(Signal signal) { mask(SIG_BLOCK, signal); }
     static void unblock(Signal signal) { mask(SIG_UNBLOCK, signal); }

@@ -12,30 +12,30 @@
 
 class ArRobot;
 
-/// What one sonar measured last.
+/// Last measurement of one sonar.
 class ArSensorReading {
   public:
-    /// \param x, y, th where the sonar sits on the robot, mm and degrees
+    /// \param x, y, th pose of the sonar on the robot, mm and degrees
     ArSensorReading(double x = 0, double y = 0, double th = 0) : mySensor(x, y, th) {}
 
     /// mm from the sonar; 5000 if there was no echo.
     int getRange() const { return myRange; }
-    /// Where the echo came from, in the frame of the robot's odometry, mm.
+    /// Position of the echo in the frame of the robot's odometry, mm.
     double getX() const { return myHit.getX(); }
     double getY() const { return myHit.getY(); }
     ArPose getPose() const { return myHit; }
-    /// The same, in the robot's own frame.
+    /// The same in the robot's frame.
     double getLocalX() const { return myLocal.getX(); }
     double getLocalY() const { return myLocal.getY(); }
     double getSensorX() const { return mySensor.getX(); }
     double getSensorY() const { return mySensor.getY(); }
     double getSensorTh() const { return mySensor.getTh(); }
-    /// Where the robot was.
+    /// Pose of the robot at that time.
     ArPose getPoseTaken() const { return myTaken; }
     bool isNew(unsigned int counter) const { return counter == myCounter; }
     unsigned int getCounterTaken() const { return myCounter; }
 
-    /// For ArRobot: a new range, taken by the robot at this pose in this cycle.
+    /// For ArRobot: stores a range, measured at this pose of the robot in this cycle.
     void newData(int range, ArPose robot, unsigned int counter) {
         myRange = range;
         myTaken = robot;
@@ -54,8 +54,8 @@ class ArSensorReading {
     unsigned int myCounter = 0;
 };
 
-/// Something on a robot that measures distances: what it has seen of late, as points in the frame
-/// of the robot's odometry.
+/// A device on a robot that measures distances: stores recent points in the frame of the robot's
+/// odometry.
 class ArRangeDevice {
   public:
     ArRangeDevice(std::size_t currentBufferSize, std::size_t cumulativeBufferSize, const char* name,
@@ -114,7 +114,7 @@ class ArRangeDevice {
         add(myCumulative, x, y);
     }
 
-    /// For ArRobot, in each cycle.
+    /// Called by ArRobot in each cycle.
     virtual void processReadings(const std::vector<ArSensorReading>&, const ArPose& robot) {
         myPose = robot;
         forget(myCurrent);
@@ -127,8 +127,8 @@ class ArRangeDevice {
   private:
     struct Buffer {
         std::size_t size;
-        int seconds;      // 0: for ever
-        double distance;  // mm from the robot; 0: anywhere
+        int seconds;      // 0: no limit
+        double distance;  // mm from the robot; 0: no limit
         std::list<ArPoseWithTime*> points;
     };
 

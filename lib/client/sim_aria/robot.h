@@ -18,10 +18,10 @@
 #include <sim_aria/process.h>
 #include <sim_aria/range_device.h>
 
-/// A robot of simrun as ARIA's: mm, degrees, mm/s, degrees/s. Which one: the first that is free, or
-/// the first free one of the variable ISPACE_ROBOT ("r1,r2"). Its pose is what its odometry says
-/// since the connection. Commands take effect, and what the getters say is renewed, in cycles of
-/// 100 ms; hold the lock around both. There are no actions: direct motion is all there is.
+/// A robot of simrun as ARIA's: mm, degrees, mm/s, degrees/s. Takes the first free robot, of those
+/// in the variable ISPACE_ROBOT ("r1,r2") if set. Its pose is its odometry since the connection.
+/// Commands take effect and getters are updated in cycles of 100 ms; hold the lock around both.
+/// Supports direct motion, not actions.
 class ArRobot {
   public:
     enum WaitState {
@@ -49,7 +49,7 @@ class ArRobot {
     // Connection.
     void setDeviceConnection(ArDeviceConnection* connection) { myConnection = connection; }
     ArDeviceConnection* getDeviceConnection() const { return myConnection; }
-    /// Opens the device if it is not open.
+    /// Opens the device if it is closed.
     bool blockingConnect(bool tryHarder = true);
     bool disconnect();
     bool isConnected() const { return myConnected; }
@@ -88,7 +88,7 @@ class ArRobot {
     void enableSonar() { comInt(ArCommands::SONAR, 1); }
     void disableSonar() { comInt(ArCommands::SONAR, 0); }
 
-    // Direct motion: holds until it changes.
+    // Direct motion: stays in effect until changed.
     void setVel(double mmPerSec) { myMotion.setVel(mmPerSec); }
     void setRotVel(double degPerSec) { myMotion.setRotVel(degPerSec); }
     void setVel2(double left, double right) {
@@ -126,13 +126,13 @@ class ArRobot {
     double getX() const { return myPose.getX(); }
     double getY() const { return myPose.getY(); }
     double getTh() const { return myPose.getTh(); }
-    /// The robot is here from now on, as far as the program knows.
+    /// Sets the pose that the program sees.
     void moveTo(ArPose pose);
     /// A simulated robot stalls as a whole.
     bool isLeftMotorStalled() const { return myPacket.stalled; }
     bool isRightMotorStalled() const { return myPacket.stalled; }
-    /// Bits 0 and 8: the motors; bumpers clockwise, those in front from bit 9 on, those behind
-    /// from bit 1 on.
+    /// Bits 0 and 8: the motors; bumpers clockwise, front ones from bit 9 on, rear ones from bit 1
+    /// on.
     int getStallValue() const {
         return myPacket.bumpers | (myPacket.stalled ? ArUtil::BIT0 | ArUtil::BIT8 : 0);
     }
@@ -142,7 +142,7 @@ class ArRobot {
     unsigned int getNumRearBumpers() const { return static_cast<unsigned int>(myRearBumpers); }
     int getFlags() const { return myMotorsEnabled ? ArUtil::BIT0 : 0; }
     bool areMotorsEnabled() const { return myMotorsEnabled; }
-    /// Those of a full battery.
+    /// Voltage of a full battery.
     double getBatteryVoltage() const { return 13; }
     double getRealBatteryVoltage() const { return 13; }
 
@@ -165,22 +165,22 @@ class ArRobot {
         if (number < 0 || number >= getNumSonar()) return nullptr;
         return const_cast<ArSensorReading*>(&mySonars[static_cast<std::size_t>(number)]);
     }
-    /// The least range of the sonars that face these directions, mm; -1 if none does.
+    /// Minimum range of the sonars that face these directions, mm; -1 if there are none.
     int getClosestSonarRange(double startDeg, double endDeg) const;
 
-    // What it is.
+    // Identity and dimensions.
     const char* getName() const { return myName.c_str(); }
     void setName(const char* name) { myName = name; }
     const char* getRobotName() const { return myRobotName.c_str(); }
     const char* getRobotType() const { return "Pioneer"; }
     const char* getRobotSubType() const { return mySubType.c_str(); }
     double getRobotRadius() const { return myRadius; }
-    /// Of the circle around it.
+    /// Diameter of its circle.
     double getRobotLength() const { return 2 * myRadius; }
     double getRobotWidth() const { return 2 * myRadius; }
 
   private:
-    /// Of wheels that turn by a mm each, one forward and one backward: of a Pioneer 2 and 3 DX.
+    /// Rotation by wheels that turn by a mm each, in opposite directions: of a Pioneer 2 and 3 DX.
     static constexpr double kRadiansPerMm = 0.0056;
 
     double wheelVel() const { return ArMath::degToRad(myPacket.rot_vel) / kRadiansPerMm; }
@@ -218,7 +218,7 @@ class ArRobot {
     sim_aria::Motion myMotion;
     sim_aria::Packet myPacket;
     ArPose myPose, myMoved,
-        myMovedFrom;  // a packet's pose at myMovedFrom is myMoved to the program
+        myMovedFrom;  // a packet's pose at myMovedFrom is reported as myMoved
     bool myMotorsEnabled = false, mySonarEnabled = true;
     double mySentVel = 0, mySentRotVel = 0;
     ArTime mySent;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What ArRobot does: connecting, the cycle, commands. Part of sim_aria/robot.h.
+// // Implementation of ArRobot: connecting, the cycle, commands. Part of sim_aria/robot.h.
 #ifndef SIM_ARIA_ROBOT_CYCLE_H
 #define SIM_ARIA_ROBOT_CYCLE_H
 
@@ -43,7 +43,7 @@ inline bool ArRobot::disconnect() {
     try {
         myLink->close();
     } catch (const ispace::client::Error&) {
-        // It is gone already.
+        // Already gone.
     }
     lose();
     if (myConnection) myConnection->close();
@@ -75,8 +75,8 @@ inline void ArRobot::read() {
     }
 }
 
-/// Speeds hold on the other side, so they are sent when they change. A robot that is stalled is
-/// told again twice a second, both, as a Pioneer goes on pushing.
+/// Sends changed speeds; the server keeps them. Repeats both twice a second to a stalled robot,
+/// since a Pioneer keeps pushing.
 inline void ArRobot::send() {
     const double vel = myMotorsEnabled ? myMotion.vel(myPose) : 0;
     const double rot_vel = myMotorsEnabled ? myMotion.rotVel(myPose) : 0;
@@ -91,9 +91,9 @@ inline void ArRobot::send() {
     mySent.setToNow();
 }
 
-/// \return false if the connection was lost in it
+/// \return false if the connection was lost
 inline bool ArRobot::cycle() {
-    // A program that stops the robot while it holds the lock, or sleeps, must not wait for ever.
+    // Do not wait for ever if the program stops the robot while it holds the lock, or sleeps.
     const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     while (!myMutex.try_lock()) {
         if (!myRunning || std::chrono::steady_clock::now() > patience) return true;
@@ -172,7 +172,7 @@ inline void ArRobot::stopRunning(bool doDisconnect) {
 
 inline void ArRobot::end() {
     stopRunning(true);
-    // A robot that ends in its own cycle is joined by nobody.
+    // A robot destroyed within its own cycle cannot be joined.
     if (myThread.joinable()) myThread.detach();
 }
 

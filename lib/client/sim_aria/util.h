@@ -14,7 +14,7 @@
 #include <sim_aria/clock.h>
 #include <sim_aria/math.h>
 
-/// Small things. Time is that of the room, see sim_aria::Clock.
+/// Utilities. Time is simulated, see sim_aria::Clock.
 class ArUtil {
   public:
     enum BITS {
@@ -71,7 +71,7 @@ class ArUtil {
     }
 };
 
-/// A moment, to the millisecond.
+/// A time stamp in milliseconds.
 class ArTime {
   public:
     ArTime() : myTime(std::floor(sim_aria::Clock::get().now())) {}
@@ -94,7 +94,7 @@ class ArTime {
     double myTime;
 };
 
-/// A pose at a moment.
+/// A pose with a time stamp.
 class ArPoseWithTime : public ArPose {
   public:
     ArPoseWithTime(double x = 0, double y = 0, double th = 0, ArTime time = ArTime())
@@ -107,7 +107,7 @@ class ArPoseWithTime : public ArPose {
     ArTime myTime;
 };
 
-/// Says something, on standard output.
+/// Writes messages to standard output.
 class ArLog {
   public:
     enum LogLevel { Terse, Normal, Verbose };

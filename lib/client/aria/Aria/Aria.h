@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For programs that say "Aria/Aria.h": this folder in their include path is all they need.
+// // For programs that include "Aria/Aria.h": add this folder to the include path.
 #include <Sim_Aria.h>
