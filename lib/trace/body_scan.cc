@@ -12,7 +12,7 @@ namespace ispace {
 
 namespace {
 
-/// The smallest range of pixels about some places, for one axis.
+/// The minimal range of pixels around some points, for one axis.
 struct PixelRange {
     double low = std::numeric_limits<double>::infinity(), high = -low;
 
@@ -26,15 +26,14 @@ struct PixelRange {
         return static_cast<int>(
             std::clamp(std::ceil(low - kSlack), 0.0, static_cast<double>(count)));
     }
-    /// One past the last.
+    /// End of the range, exclusive.
     [[nodiscard]] int last(int count) const {
         return static_cast<int>(
             std::clamp(std::floor(high + kSlack) + 1, 0.0, static_cast<double>(count)));
     }
 };
 
-/// The corners of a box about the body, which leans as it does; corners i and i + 4 stand over each
-/// other.
+/// Corners of a box around the body, with the same lean; corner i + 4 lies above corner i.
 std::array<Vec3, 8> cornersOf(const MovingBody& body, const BodyExtent& extent, Point3 origin) {
     const bool is_round = body.radius > 0;
     const double half_length = is_round ? body.radius : body.half_length;
@@ -91,7 +90,7 @@ BodyScan::BodyScan(std::span<const Point3> origins, const Directions& directions
     Vec2 right = ahead, left = ahead;
     for (std::size_t k = begin; k < end; ++k) {
         const Vec2 flat{directions.x[k], directions.y[k]};
-        // Within some 84 degrees: upright rays point nowhere.
+        // Within some 84 degrees: upright rays have no direction on the floor.
         if (!(dot(ahead, flat) > 0.1 * std::fabs(cross(ahead, flat)))) return;
         if (cross(right, flat) < 0) right = flat;
         if (cross(left, flat) > 0) left = flat;
@@ -108,7 +107,7 @@ void BodyScan::meet(const MovingBody& body, const BodyExtent& extent) {
         cross(left_, there) > around || dot(there, there) > far * far)
         return;
     for (std::size_t k = begin_; k < end_; ++k) {
-        // Most rays pass by the circle about it, or end before.
+        // Most rays miss the circle about it, or end before it.
         const Point3 from = origin(k);
         const Vec2 way = body.pose.position - from.onFloor();
         const Vec2 flat{directions_.x[k], directions_.y[k]};
@@ -161,7 +160,7 @@ PixelBox BodyPicture::pixelsOf(const MovingBody& body, const BodyExtent& extent)
         corner = projected(corner);
         depth = std::max(depth, corner.z);
     }
-    // What lies before the picture's eye, cut off just in front of it.
+    // The part in front of the picture's eye, cut off at a small distance.
     const double front = 1e-9 * depth;
     PixelRange columns, rows;
     const auto add = [&](Vec3 p) {
@@ -201,10 +200,10 @@ void BodyPicture::meet(const MovingBody& body, const BodyExtent& extent) {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-/// Radians added to each side of a body as a sensor sees it: more than angleOf() errs three times.
+/// Margin in radians on each side of a body: more than three times the error of angleOf().
 constexpr double kAngularSlack = 5e-5;
 
-/// Kept for its memory: threads read many scans.
+/// Kept to reuse its memory: threads read many scans.
 std::vector<float>& farthestOfThread() {
     thread_local std::vector<float> farthest;
     return farthest;
@@ -247,7 +246,7 @@ Box2 BodyArc::view() const {
         const Vec2 margin{far_ * (1 + kFarSlack), far_ * (1 + kFarSlack)};
         return {origin_.onFloor() - margin, origin_.onFloor() + margin};
     }
-    // The ends of a block, so far away that the chord between them lies behind its arc.
+    // Ends of a block, so distant that the chord between them lies beyond its arc.
     const double beyond = (1 + kFarSlack) / std::cos(half);
     for (std::size_t block = 0; block < farthest_.size(); ++block) {
         const double far = static_cast<double>(farthest_[block]) * beyond;
@@ -311,13 +310,13 @@ void BodyArc::look(std::span<const std::uint32_t> bodies, std::uint32_t own) {
         const double wide = extent.reach * (1 + kFarSlack);
         const double angle = angleOf(way.x * middle_.cos + way.y * middle_.sin,
                                      way.y * middle_.cos - way.x * middle_.sin);
-        // Half of the angle that its circle takes up; all of the turn from within.
+        // Half the angle of its circle; a full turn from inside.
         const double tangent = std::sqrt(std::max(square - wide * wide, 0.0));
         const double half = distance <= wide ? kTurn : angleOf(tangent, wide) + kAngularSlack;
         const double from = angle - half, to = angle + half;
         waiting.first = beam(from);
         waiting.last = beam(to) - 1;
-        // A body across the cut of the turn, behind the middle, is at the other end, too.
+        // A body across the cut of the turn, behind the middle, also appears at the other end.
         const double shift = to > std::numbers::pi ? -kTurn : kTurn;
         if (to > std::numbers::pi || from < -std::numbers::pi) {
             waiting.other_first = beam(from + shift);

@@ -9,7 +9,7 @@ namespace ispace {
 
 namespace {
 
-/// The box about a body, enlarged by more than float32 rounds rays and corners by.
+/// Bounding box of the body, enlarged by more than the float32 rounding of rays and corners.
 void boundsOf(const RTCBoundsFunctionArguments* args) {
     const auto* const bodies = static_cast<const TracedBody*>(args->geometryUserPtr);
     const MovingBody& body = bodies[args->primID].body;
@@ -73,7 +73,7 @@ EmbreeSceneHandle buildBodies(RTCDeviceTy* device, std::span<const TracedBody> b
     return buildScene(
         device, RTC_GEOMETRY_TYPE_USER, bodies.size(), geometry_id, [&](RTCGeometry geometry) {
             rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(bodies.size()));
-            // Read only; Embree has no word for that.
+            // Read-only use; Embree's interface lacks const.
             rtcSetGeometryUserData(geometry, const_cast<TracedBody*>(bodies.data()));  // NOLINT
             rtcSetGeometryBoundsFunction(
                 geometry, [](const RTCBoundsFunctionArguments* args) { boundsOf(args); }, nullptr);

@@ -11,7 +11,7 @@ namespace ispace {
 
 namespace {
 
-/// Collects surfaces whose bounds come near the point of a query.
+/// Collects surfaces whose bounds are near the query's point.
 bool collect(RTCPointQueryFunctionArguments* args) {
     static_cast<std::vector<unsigned>*>(args->userPtr)->push_back(args->primID);
     return false;
@@ -72,12 +72,12 @@ SingleQuery::SingleQuery(const IgnoredSurfaces& surfaces, const Ray& asked)
 
 namespace {
 
-/// More than rounding adds to a distance, relative to it.
+/// Upper bound of the relative rounding error of a distance.
 constexpr double kFar = 1 + 2e-6;
 
-/// What a packet hit, and the planes of that.
+/// Hits of a packet, and their planes.
 struct alignas(64) Hits {
-    std::array<std::int64_t, kLanes> triangle;  ///< some triangle if none was hit
+    std::array<std::int64_t, kLanes> triangle;  ///< any valid triangle if the ray missed
     std::array<float, kLanes> edge;             ///< least barycentric coordinate
     RayPacket::Lanes x, y, z, offset, margin;
 };
@@ -256,7 +256,7 @@ ISPACE_SIMD_CLONES bool meetOnePlane(const RTCRayHit16& hits, const Plane* plane
         multiples[lane] = static_cast<float>(height / slope);
         slopes[lane] = static_cast<float>(std::fabs(slope));
     }
-    // By more than rounding adds.
+    // Margin for rounding.
     const auto least = static_cast<float>(margins[triangle] * sure.longest * kFar);
     std::uint32_t doubt = 0;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {

@@ -50,7 +50,7 @@ void copyLanes(const Directions& directions, std::size_t first, std::size_t lane
 
 }  // namespace
 
-/// Traces packet after packet of one thread.
+/// Traces the packets of one thread.
 struct EmbreeScene::Caster {
     const EmbreeScene& scene;
     const IgnoredSurfaces& ignored;
@@ -64,7 +64,7 @@ struct EmbreeScene::Caster {
     alignas(64) std::array<int, kLanes> valid{};
     RayPacket packet;
     bool needs_slopes = true;
-    RoundView round;  ///< the body met last
+    RoundView round;  ///< the round body of the previous hit
 
     Caster(const EmbreeScene& traced, const IgnoredSurfaces& surfaces, Point3 origin,
            double farthest)
@@ -76,7 +76,7 @@ struct EmbreeScene::Caster {
           sure{.clear = std::max(surfaces.reach(), traced.set_.tolerance()),
                .longest = 1 + kFarSlack,
                .near = static_cast<float>(farthest >= 0 ? farthest * (1 - kFarSlack) : -1)} {
-        // A limit that is no number, like a negative one, is never reached.
+        // A NaN limit, like a negative one, is never reached.
         packet.reach.fill(farthest >= 0 ? farthest * (1 + kFarSlack) : -1);
         roundReach(packet, tail, far);
         setOrigins({&origin, 1});
@@ -87,14 +87,14 @@ struct EmbreeScene::Caster {
         }
     }
 
-    /// Lengths of the rays' directions.
+    /// Computes the lengths of the rays' directions.
     void setLengths(double shortest, double longest) {
         tail = shortest > 0 ? tail / shortest : kMaxRayReach;
         sure.longest = longest * (1 + kFarSlack);
         roundReach(packet, tail, far);
     }
 
-    /// The last one for all further lanes.
+    /// Repeats the last ray in all further lanes.
     void setOrigins(std::span<const Point3> origins) {
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             const Point3 origin = origins[std::min(lane, origins.size() - 1)];
@@ -105,7 +105,7 @@ struct EmbreeScene::Caster {
         roundOrigins(packet, hits);
     }
 
-    /// Only the first lanes count.
+    /// Uses the first lanes only.
     void keep(std::size_t lanes) {
         for (std::size_t lane = 0; lane < kLanes; ++lane) valid[lane] = lane < lanes ? -1 : 0;
     }
@@ -132,8 +132,8 @@ struct EmbreeScene::Caster {
             lookCloser(static_cast<std::size_t>(std::countr_zero(care)));
     }
 
-    /// Round bodies that several rays hit.
-    /// \return the lanes that need a closer look still
+    /// Intersects round bodies hit by several rays.
+    /// \return the lanes that still need the exact test
     std::uint32_t meetRounds(std::uint32_t care) {
         std::uint32_t rest = 0;
         while (care != 0) {
@@ -153,8 +153,8 @@ struct EmbreeScene::Caster {
         return rest;
     }
 
-    /// Of these lanes those that hit the same round body as the first, which becomes `round`; the
-    /// first alone if that is flat.
+    /// Selects the lanes that hit the same round body as the first lane, and stores it in `round`;
+    /// the first lane alone if its triangle is flat.
     std::uint32_t lanesAlike(std::uint32_t lanes) {
         const std::uint32_t first = lanes & (0U - lanes);
         const auto body = [this](std::uint32_t lane) {
@@ -173,7 +173,7 @@ struct EmbreeScene::Caster {
         return alike;
     }
 
-    /// A hit near a triangle's rim, on a round body, or on what may be ignored.
+    /// True for hits near a triangle's rim, on a round body, or on a surface that may be ignored.
     void lookCloser(std::size_t lane) {
         const Ray ray = packet.ray(lane);
         RayHit hit = ignored.meet(hits.hit.primID[lane], ray);
@@ -188,7 +188,7 @@ struct EmbreeScene::Caster {
         packet.slopes[lane] = static_cast<float>(hit.slope);
     }
 
-    /// Traces a ray of the packet again, past all that does not stop it.
+    /// Traces one ray of the packet again, skipping surfaces that do not stop it.
     [[nodiscard]] RayHit traceAlone(std::size_t lane, const Ray& ray) const {
         RTCRayHit one{};
         one.ray.org_x = hits.ray.org_x[lane];
@@ -217,7 +217,7 @@ struct EmbreeScene::Caster {
             results.cosines[first + lane] = std::min(1.0F, packet.slopes[lane]);
     }
 
-    /// The first lanes of row `k` of a tile, to where they lie in the picture.
+    /// Copies the first lanes of row `k` of a tile to the picture.
     void writeTileRow(std::size_t k, std::size_t first, std::size_t lanes,
                       const Results& results) const {
         const std::size_t begin = k * std::size_t{kTile};
@@ -273,7 +273,7 @@ void EmbreeScene::cast(std::span<const Point3> origins, const Directions& direct
     for (std::size_t first = 0; first < directions.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, directions.size() - first);
         if (may_touch && mayTouch(origins.subspan(first, lanes))) {
-            // Each ray has its own surfaces in contact.
+            // Each ray ignores other surfaces.
             for (std::size_t i = first; i < first + lanes; ++i) {
                 const Directions one{{directions.x[i]}, {directions.y[i]}, {directions.z[i]}};
                 cast(origins[i], one, most,

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kWidth = FlatTree::kWidth;
 constexpr int kBlock = FlatPacket::kBlock;
-/// Least cosine between a ray and the middle of its packet, of one block and of more: wide packets
-/// are quick if they are small. Not less than cos 45 degrees.
+/// Minimum cosine between a ray and the middle of its packet, for one block and for more: wide
+/// packets are fast only if they are small. Not less than cos 45 degrees.
 constexpr double kMinAlongOfBlock = 0.72, kMinAlong = 0.975;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -31,22 +31,22 @@ ISPACE_INLINE double sumOf(const double* eight) {
     return (four[0] + four[2]) + (four[1] + four[3]);
 }
 
-/// More than what a ray meets beyond an end, seen along the sides of a cone, and what cross
-/// products with those round by.
+/// Exceeds the distance beyond an end at which rays meet a line, seen along the sides of a cone,
+/// plus the rounding of cross products with these.
 ISPACE_INLINE double slackOf(double x, double y) {
     return 4 * kFlatEdge + 1e-12 * (std::fabs(x) + std::fabs(y));
 }
 
-/// What holds the rays of a packet: a box around the origins, and a cone around the directions.
+/// Bounds of a packet's rays: a box around the origins, and a cone around the directions.
 struct Cone {
     double left, right, low, high;
-    double x, y, half_width, half_height;  ///< of that box
+    double x, y, half_width, half_height;  ///< of the box
     double right_x, right_y, left_x, left_y, ahead_x, ahead_y;
-    /// How much moving the origin within its box changes products with these.
+    /// Maximum change of products with these when the origin moves within its box.
     double right_reach, left_reach, ahead_reach;
 
     ISPACE_INLINE void setOrigins(const FlatPacket& packet);
-    /// \return least cosine between a ray and the middle of the cone, infinite if there is none
+    /// \return minimum cosine between a ray and the middle of the cone, infinite without a cone
     ISPACE_INLINE double setDirections(const FlatPacket& packet);
 };
 
@@ -121,7 +121,7 @@ class Walk {
     ISPACE_INLINE Walk(const FlatTree& tree, const FlatPacketLimits& limits, FlatPacket& packet)
         : tree_(tree), limits_(limits), packet_(packet) {}
 
-    /// False if the packet is too wide for it.
+    /// False if the packet is too wide.
     ISPACE_INLINE bool run();
 
   private:
@@ -139,9 +139,9 @@ class Walk {
     const FlatPacketLimits& limits_;
     FlatPacket& packet_;
     Cone cone_;
-    double least_;  ///< inverse range of the ray that sees farthest
+    double least_;  ///< inverse range of the ray with the farthest hit
     FlatStack stack_;
-    /// Whether a line may touch an origin; found when first asked for.
+    /// True if a line may touch an origin; computed on first use.
     enum class Contact : std::uint8_t { Unknown, None, Some } touching_ = Contact::Unknown;
 };
 
@@ -153,14 +153,14 @@ bool Walk<kCosines>::enclose() {
            cone_.right - cone_.left < limits_.widest && cone_.high - cone_.low < limits_.widest;
 }
 
-/// Puts those children on the stack that rays may meet, the nearest on top.
+/// Pushes the children that rays may meet, the nearest on top.
 template <bool kCosines>
 void Walk<kCosines>::visit(const FlatTree::Node& node) {
     const Cone cone = cone_;
     const double least = least_;
     alignas(64) double distance[kWidth];
     ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
-        // As seen from all origins at once.
+        // Valid for all origins.
         const double left = node.left[i] - cone.right, right = node.right[i] - cone.left;
         const double low = node.low[i] - cone.high, high = node.high[i] - cone.low;
         const double right_side = flatMax(cone.right_x * low, cone.right_x * high) -
@@ -179,7 +179,7 @@ void Walk<kCosines>::visit(const FlatTree::Node& node) {
     stack_.push(node, distance);
 }
 
-/// Of all origins at once: exact enough, as it is only whether to ask for each.
+/// For all origins at once: exact enough, since each candidate is tested afterwards.
 template <bool kCosines>
 bool Walk<kCosines>::mayTouch() {
     if (touching_ != Contact::Unknown) return touching_ == Contact::Some;
@@ -210,7 +210,7 @@ bool Walk<kCosines>::mayTouch() {
     return touching_ == Contact::Some;
 }
 
-/// Draws a line into a block; returns the least inverse range of it.
+/// Draws a line into a block. \returns the block's minimum inverse range
 template <bool kCosines>
 template <bool kRayEpsilon>
 double Walk<kCosines>::drawBlock(const FlatTree::Leaf& leaf, int i, int begin) {
@@ -360,7 +360,7 @@ double widestPacket(const FlatTree& tree) {
         low = std::min(low, root.low[i]);
         high = std::max(high, root.high[i]);
     }
-    // How far leaves are apart, by and large.
+    // Typical distance between leaves.
     const auto leaves = static_cast<double>(tree.leaves.size());
     return 0.35 * (right - left + high - low) / std::sqrt(std::max(leaves, 1.0));
 }

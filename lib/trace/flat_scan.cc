@@ -18,13 +18,13 @@ constexpr int kWidth = FlatTree::kWidth;
 constexpr int kBlock = FlatScan::kBlock, kBlockBits = 3;
 static_assert(kBlock == 1 << kBlockBits);
 constexpr float kPi = std::numbers::pi_v<float>;
-/// Beams within this angle of a line's ends are tested, in radians: more than kFlatEdgeAngle and
-/// what angleOf() and the directions err.
+/// Beams within this angle of a line's ends are tested, in radians: more than kFlatEdgeAngle plus
+/// the errors of angleOf() and of the directions.
 constexpr float kSlack = 2.5e-5F;
-/// More than what float32 rounds distances by.
+/// More than the float32 rounding of distances.
 constexpr float kRounding = 1 + 2e-6F;
 
-/// What of a scan the loops over lanes need.
+/// Values of a scan for the loops over lanes.
 struct Frame {
     float cos, sin, rate, middle, count;
     std::int32_t margin;  ///< beams by which spans may be too wide, at each end
@@ -35,11 +35,11 @@ struct Frame {
           middle(static_cast<float>(scan.count + 1) * 0.5F),
           count(static_cast<float>(scan.count)),
           margin(static_cast<std::int32_t>(flatMin(2 * kSlack * rate, count)) + 2) {}
-    /// Of a direction, from the middle of the scan.
+    /// Returns the angle of a direction from the middle of the scan.
     [[nodiscard]] ISPACE_INLINE float angle(float x, float y) const {
         return angleOf(x * cos + y * sin, y * cos - x * sin);
     }
-    /// The number of beams before this angle, and a fraction.
+    /// Returns the fractional number of beams before this angle.
     [[nodiscard]] ISPACE_INLINE float beam(float angle) const {
         return flatMin(flatMax(angle * rate + middle, 0.0F), count);
     }
@@ -50,11 +50,11 @@ struct alignas(64) Corners {
     float ax[kWidth], ay[kWidth], bx[kWidth], by[kWidth];
 };
 
-/// Blocks of a scan, first > last if none; an angle behind the middle of the scan cuts the turn, so
-/// that there may be others at its other end.
+/// Range of blocks, first > last if empty. The turn is cut at an angle behind the middle of the
+/// scan, so that a span may have a second range at the other end.
 struct alignas(64) Spans {
     std::int32_t first[kWidth], last[kWidth], other_first[kWidth], other_last[kWidth];
-    /// Of the first span, those whose beams lie all well between a and b.
+    /// Blocks of the first range whose beams all lie well between a and b.
     std::int32_t inner_first[kWidth], inner_last[kWidth];
 
     ISPACE_INLINE void set(const Frame& frame, const Corners& corners) {
@@ -63,7 +63,7 @@ struct alignas(64) Spans {
         ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
             const float from = frame.angle(corners.ax[i], corners.ay[i]);
             const float end = frame.angle(corners.bx[i], corners.by[i]);
-            // By half a turn at least, or it is rounding.
+            // At least half a turn, else it is rounding.
             const float whole = end < from - 1 ? 2 * kPi : 0.0F;
             begin[i] = from - kSlack;
             stop[i] = end + whole + kSlack;
@@ -76,7 +76,7 @@ struct alignas(64) Spans {
             first[i] = low >> kBlockBits;
             last[i] = low < high ? (high - 1) >> kBlockBits : -1;
             inner_first[i] = (low + margin + kBlock - 1) >> kBlockBits;
-            // A line on the cut and seen from its edge may seem to span a full turn.
+            // An edge-on line across the cut may seem to span a full turn.
             inner_last[i] =
                 stop[i] - begin[i] < kPi + 0.1F ? ((high - margin) >> kBlockBits) - 1 : -1;
         }
@@ -89,7 +89,7 @@ struct alignas(64) Spans {
     }
 };
 
-/// A node or leaf to be visited, and the blocks of beams it may shorten.
+/// A node or leaf to visit, and the blocks of beams that it may shorten.
 struct Waiting {
     float inverse_range;
     std::int32_t child;
@@ -107,7 +107,7 @@ ISPACE_INLINE bool isSeen(const FlatScan& scan, const Waiting& box) {
            isSeen(scan, box.other_first, box.other_last, box.inverse_range);
 }
 
-/// Lines of a leaf, a component an array.
+/// Lines of a leaf, one array per component.
 struct alignas(64) Lines {
     double ax[kWidth], ay[kWidth], bx[kWidth], by[kWidth], ux[kWidth], uy[kWidth];
     double nearest[kWidth], height[kWidth], edge[kWidth];
@@ -147,12 +147,12 @@ ISPACE_INLINE void drawBlock(FlatScan& scan, int block, const FlatLine& line) {
         least[i] = flatMax(here, old);
         inverse_range[i] = least[i];
     }
-    // Between two of its beams a line is nowhere farther than at both of them.
+    // Between two beams the distance of a line does not exceed that at both.
     const auto ends = static_cast<float>(flatMin(met[0], met[kBlock - 1]));
     scan.least[block] = kInner ? flatMax(ends, scan.least[block]) : leastOf(least);
 }
 
-/// Draws a line into those of some blocks that it may shorten.
+/// Draws a line into the given blocks that it may shorten.
 template <bool kCosines, bool kInner>
 ISPACE_INLINE void drawBlocks(FlatScan& scan, int first, int last, float most,
                               const FlatLine& line) {
@@ -182,7 +182,7 @@ ISPACE_INLINE void drawLeaf(const FlatTree& tree, const FlatView& view, const Fl
     Lines lines;
     Corners corners;
     Spans spans;
-    // Nearer than this to being seen from its edge, a line may stop nothing.
+    // Below this distance a line may be edge-on and ignored.
     const double thin = flatMax(2 * kFlatEdge, 1.001 * view.ray_epsilon);
     ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
         const FlatLine line = lineFrom(leaf, i, view.x, view.y);
@@ -245,7 +245,7 @@ struct Stack {
     int count = 0;
 };
 
-/// Puts those children on the stack that may shorten beams, the nearest on top.
+/// Pushes the children that may shorten beams, the nearest on top.
 ISPACE_INLINE void visit(const FlatTree::Node& node, const FlatView& view, const Frame& frame,
                          const FlatScan& scan, Stack& stack) {
     alignas(64) float inverse_range[kWidth];
@@ -257,7 +257,7 @@ ISPACE_INLINE void visit(const FlatTree::Node& node, const FlatView& view, const
         const auto low = static_cast<float>(node.low[i] - view.y);
         const auto high = static_cast<float>(node.high[i] - view.y);
         inverse_range[i] = kRounding / distanceOf(left, right, low, high);
-        // The corners between which the box is seen.
+        // The corners that bound the box as seen from the origin.
         const bool above = low > 0, below = high<0, east = left> 0, west = right < 0;
         corners.ax[i] = above ? right : (below ? left : (east ? left : right));
         corners.bx[i] = above ? left : (below ? right : (east ? left : right));
@@ -265,8 +265,8 @@ ISPACE_INLINE void visit(const FlatTree::Node& node, const FlatView& view, const
         corners.by[i] = east ? high : (west ? low : (above ? low : high));
     }
     spans.set(frame, corners);
-    // Sorted without branches, as none could be foreseen: by distance, not exactly, and those that
-    // no beam sees last. Keys of one node differ.
+    // Sorts without branches, which would be unpredictable: by approximate distance, boxes without
+    // beams last. Keys of one node differ.
     alignas(32) std::int32_t key[kWidth], rank[kWidth], last[kWidth];
     const int blocks = scan.blocks();
     int count = 0;

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kWidth = FlatTree::kWidth;
 static_assert(kWidth == BoxOrder::kWidth && FlatTree::kDepth == BoxOrder::kDepth);
 
-/// Makes nodes as an order has them.
+/// Builds nodes in a given order.
 class Builder {
   public:
     Builder(const BoxOrder& order, FlatTree& tree) : order_(order), tree_(tree) {}
@@ -80,7 +80,7 @@ double squareOf(const Segment2& line) {
     return dot(along, along);
 }
 
-/// The shortest lines count as points, too.
+/// Shortest lengths also count as points.
 bool isPoint(const Segment2& line) { return squareOf(line) == 0; }
 
 FlatTree::Leaf leafOf(std::span<const std::uint32_t> items, std::span<const Segment2> lines) {
@@ -94,7 +94,7 @@ FlatTree::Leaf leafOf(std::span<const std::uint32_t> items, std::span<const Segm
         made.ay[i] = line.a.y;
         made.bx[i] = b.x;
         made.by[i] = b.y;
-        // Not std::hypot, whose last bit is nobody's promise.
+        // Not std::hypot, whose last bit is unspecified.
         made.length[i] = std::sqrt(squareOf({line.a, b}));
     }
     return made;
@@ -112,7 +112,7 @@ Box2 boxOf(const FlatTree::Leaf& leaf) {
     return box;
 }
 
-/// What rays meet of round bodies, computed with rounding, lies in these boxes.
+/// Bounding boxes of round bodies, enlarged by the rounding of intersections.
 Box2 boxOf(const Ellipse& round) {
     constexpr double kMargin = 1e-9;
     const Box2 box = round.box();
@@ -172,12 +172,12 @@ struct UnitVector {
     double x, y;
 };
 
-/// More than kFlatEdge and what cross products with unit vectors round by.
+/// More than kFlatEdge plus the rounding of cross products with unit vectors.
 ISPACE_INLINE double slackOf(double x, double y) {
     return 2 * kFlatEdge + 1e-12 * (std::fabs(x) + std::fabs(y));
 }
 
-/// Puts those children on the stack that the ray may meet, the nearest on top.
+/// Pushes the children that the ray may meet, the nearest on top.
 ISPACE_INLINE void visit(const FlatTree::Node& node, const FlatView& view, const UnitVector& ray,
                          const FlatHit& hit, FlatStack& stack) {
     alignas(64) double distance[kNodeWidth];
@@ -274,7 +274,7 @@ FlatHit firstLine(const FlatTree& tree, const FlatView& view, double x, double y
 
 namespace {
 
-/// Rays, and where their readings go.
+/// Rays and their output arrays.
 struct Cast {
     const Point2* origins;
     bool is_one_origin;
@@ -302,7 +302,7 @@ bool isForScan(const FlatTree::Node& node) {
     return true;
 }
 
-/// Whether all of it is.
+/// True if all rays are.
 bool isForScan(const FlatTree& tree) {
     return (tree.nodes.empty() || isForScan(tree.nodes.front())) &&
            (tree.round_root < 0 || isForScan(tree.node(tree.round_root)));
@@ -329,7 +329,8 @@ struct FlatWorld::Data {
             cast.cosines[i] = cast.limit.cosineOf(cast.ranges[i], hit.cosine);
     }
 
-    /// Rays begin .. begin + count - 1; false, and nothing done, if they are better cast singly.
+    /// Casts rays begin .. begin + count - 1. \returns false, without changes, if single rays are
+    /// faster
     [[nodiscard]] bool castPacket(const Cast& cast, std::size_t begin, std::size_t count) const {
         if (count < FlatPacket::kMin) return false;
         constexpr std::size_t kBlock = FlatPacket::kBlock;
@@ -358,7 +359,7 @@ struct FlatWorld::Data {
         return true;
     }
 
-    /// In packets as large as rays are near to one another.
+    /// Casts in packets as large as the distance between rays permits.
     void castRays(const Cast& cast) const {
         const std::size_t size = cast.directions.size();
         std::size_t most = FlatPacket::kMax;
@@ -379,7 +380,7 @@ struct FlatWorld::Data {
         }
     }
 
-    /// Beams begin .. begin + count - 1 of a scan.
+    /// Casts beams begin .. begin + count - 1 of a scan.
     void castPart(const FlatView& view, const Directions& directions, const FlatLimit& limit,
                   std::size_t begin, std::size_t count, float* ranges, float* cosines) const {
         const double step = directions.arc->step.radians();
@@ -392,7 +393,7 @@ struct FlatWorld::Data {
         step > 0 ? castScan(tree, view, limit, beams) : castReversed(view, limit, beams);
     }
 
-    /// Of beams at clockwise steps.
+    /// Casts beams at clockwise steps.
     [[gnu::noinline]] void castReversed(const FlatView& view, const FlatLimit& limit,
                                         const FlatBeams& beams) const {
         FlatBeams reversed = beams;
@@ -426,7 +427,7 @@ void FlatWorld::cast(Point2 origin, const Directions& directions, double max_ran
     const FlatView view{origin.x, origin.y, ray_epsilon};
     const std::size_t size = directions.size();
     if (isScan(directions) && data_->is_for_scan && isForScan(origin.x) && isForScan(origin.y)) {
-        // Of one size, so that none has too few beams.
+        // Equal sizes, so that each part has enough beams.
         const std::size_t parts = (size + FlatScan::kMax - 1) / FlatScan::kMax;
         for (std::size_t part = 0; part < parts; ++part) {
             const std::size_t begin = size * part / parts, end = size * (part + 1) / parts;

@@ -36,7 +36,7 @@ Vec3 MovingBody::normalAt(Point3 place) const {
         return 1 / length(n) * Vec3{flat.x, flat.y, n.z};
     };
     if (is_ball) return in_world({at.x, at.y, place.z - middle()});
-    // Of the face that lies farthest out.
+    // Normal of the face that lies farthest out.
     struct Face {
         double height;
         Vec3 normal;
@@ -74,7 +74,7 @@ double MovingBody::meet(Point3 origin, Vec3 direction) const {
 }
 
 void FloorGrid::rebuild(std::span<const Point2> places, double reach) {
-    // A hair more, so that rounding loses nothing that just touches.
+    // Small margin, so that rounding cannot lose a touching body.
     constexpr double kSlack = 1e-9;
     reach_ = reach * (1 + kSlack) + kSlack;
     box_ = {};
@@ -133,7 +133,7 @@ void MovingBodies::index() {
     double reach = 0;
     for (const MovingBody& body : bodies_) {
         places_.push_back(body.pose.position);
-        // The parts of a person face the same way.
+        // The parts of a person have the same heading.
         const bool is_alike =
             !extents_.empty() && body.pose.heading == bodies_[extents_.size() - 1].pose.heading;
         const double own = body.reach();

@@ -22,7 +22,7 @@ struct MovingBody {
     double half_length = 0, half_width = 0;  ///< of a box, along and across the heading
     double radius = 0;                       ///< of a cylinder or ball; 0: a box
     double bottom = 0, top = 0;              ///< heights, both included
-    std::uint32_t owner = 0;                 ///< body id whose own sensors ignore it
+    std::uint32_t owner = 0;                 ///< owner; its own sensors ignore the body
     double lean = 0;       ///< of a slanted cylinder, along the heading, see BodyPart
     bool is_ball = false;  ///< of `radius`
 

@@ -19,7 +19,7 @@ namespace ispace {
 
 namespace {
 
-/// The middle of what is built from; coordinates are kept relative to it.
+/// Middle of the input geometry; coordinates are stored relative to it.
 Point3 middleOf(const Box2& plan) {
     if (plan.empty()) return {};
     return {plan.center().x, plan.center().y, 0};
@@ -32,7 +32,7 @@ Body withoutRounds(Body body) {
     return body;
 }
 
-/// What lies a hair beyond max_range lies at it.
+/// Clamps ranges that rounding puts slightly above max_range.
 ISPACE_SIMD_CLONES void limit(std::span<float> ranges, float far) {
     float* const range = ranges.data();
     const std::size_t count = ranges.size();
@@ -74,7 +74,7 @@ RayWorld RayWorld::ofSlice(const Slice& slice) {
 
 namespace {
 
-/// Adds a mesh, whose triangles stand for a round body or for themselves.
+/// Adds a mesh, whose triangles represent a round body or flat surfaces.
 void addMesh(const Mesh& mesh, std::uint32_t round, TriangleSoup& soup) {
     const auto first = static_cast<std::uint32_t>(soup.vertices.size());
     soup.vertices.insert(soup.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
@@ -83,7 +83,7 @@ void addMesh(const Mesh& mesh, std::uint32_t round, TriangleSoup& soup) {
     soup.round_of.resize(soup.triangles.size(), round);
 }
 
-/// These surfaces of all bodies, then the floor, then what is round.
+/// Adds the given surfaces of all bodies, then the floor, then round bodies.
 TriangleSoup soupOf(const Environment& environment, Surfaces surfaces) {
     TriangleSoup soup;
     std::vector<const Prism*> rounds;
@@ -175,8 +175,8 @@ bool hasClearGlass(const Environment& environment) {
 
 }  // namespace
 
-// Only the thread that prepares adds worlds, so that it reads without a lock; others read on while
-// it builds one.
+// Only the preparing thread adds worlds, so it reads without a lock; other threads may read while
+// it builds.
 
 Worlds::Worlds(const Environment& environment)
     : environment_(&environment), has_clear_(hasClearGlass(environment)) {}

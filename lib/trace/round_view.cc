@@ -11,15 +11,14 @@ namespace ispace {
 
 namespace {
 
-/// A body and the origin of rays; what meetRound() in triangle_set.cc has of them.
+/// Values of a body and the rays' origin, as in meetRound() in triangle_set.cc.
 struct RoundTask {
     Ellipse curve;
     Vec2 q;
     double c, low_end, high_end;
 };
 
-// The steps of TriangleSet::meetRound() without a branch, which do not matter for rays that are
-// neither upright nor level.
+// Omits branches of TriangleSet::meetRound() that matter only for upright or level rays.
 ISPACE_SIMD_CLONES bool meetAll(const RoundTask& task, const RayPacket& packet, float* out) {
     const Vec2 axis = task.curve.axis, q = task.q;
     const double wide = task.curve.half_length, deep = task.curve.half_width;
@@ -32,7 +31,7 @@ ISPACE_SIMD_CLONES bool meetAll(const RoundTask& task, const RayPacket& packet, 
         const double a = dx * dx + dy * dy, b = q.x * dx + q.y * dy;
         special |= (a > 0 ? 0 : 1) | (rise != 0 ? 0 : 1);
         const double side = q.x * dy - q.y * dx;
-        const double root = std::sqrt(a - side * side);  // no number if it passes
+        const double root = std::sqrt(a - side * side);  // NaN if the ray misses
         const bool nears = b > 0;
         const double right = -b - root, left = root - b, far = flatChoice(nears, right, left);
         const double one = far / a, two = c / far;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Triangles thinner than this are none, in metres.
+/// Triangles thinner than this are skipped, in metres.
 constexpr double kThinnest = 1e-9;
 
 /// Rounding of corners, origins and directions to float32 and of Embree's products, relative to the
@@ -105,7 +105,7 @@ RayHit TriangleSet::meetFlat(std::size_t triangle, const Ray& ray) const {
     }
     const Plane& plane = planes_[triangle];
     const double slope = dot(plane.normal, d);
-    // No number where the ray runs in the plane: the near end.
+    // NaN if the ray lies in the plane: return the near end.
     const double unlimited = plane.heightOver(ray.origin) / slope;
     const double multiple = unlimited > near ? std::min(unlimited, far) : near;
     if (!(multiple >= 0 && multiple <= ray.reach)) return {};
@@ -192,7 +192,7 @@ ISPACE_INLINE Point3 pointAt(const Vectors& v, std::size_t lane) {
     return {v.x[lane], v.y[lane], v.z[lane]};
 }
 
-/// To the last bit what std::hypot of libstdc++ gives, but without a branch.
+/// Computes the same bits as std::hypot of libstdc++, without a branch.
 ISPACE_INLINE double sizeOf(Vec3 v) {
     const double x = std::fabs(v.x), y = std::fabs(v.y), z = std::fabs(v.z);
     const double most = flatMax(flatMax(x, y), z);
@@ -223,7 +223,7 @@ ISPACE_SIMD_CLONES void findPlanes(const TriangleLanes& triangles, TriangleLaneP
 
 namespace {
 
-/// Where a corner moves to. \param left, right unit vectors along its sides
+/// Returns the moved position of a corner. \param left, right unit vectors along its sides
 ISPACE_INLINE Point3 movedOut(Point3 p, Vec3 left, Vec3 right, double tolerance) {
     // Sharper corners would move far away.
     constexpr double kMinSine = 1.0 / 16;

@@ -10,18 +10,18 @@ namespace ispace {
 
 namespace {
 
-/// Surfaces throw back this share of the light of a bright room, less where they are near: corners
-/// and what stands close together is darker.
+/// Share of a bright room's light that surfaces reflect; less from nearby ones, so that corners and
+/// narrow gaps are darker.
 constexpr float kBounce = 0.90F, kNearBounce = 0.35F, kNear = 0.9F;
-/// Where there is no ceiling, lamps are thought to have a bright one above them.
+/// Without a ceiling, a bright one is assumed above the lamps.
 constexpr float kOpen = 0.50F;
-/// Clear glass lets this much light pass.
+/// Share of light transmitted by clear glass.
 constexpr Rgb kGlass{0.80F, 0.88F, 0.88F};
 
 /// The point of a net (Sobol) that a pixel of a tile takes: neighbours take points far apart.
 constexpr std::array<std::uint8_t, kLanes> kOrder{0, 8,  2, 10, 12, 4, 14, 6,
                                                   3, 11, 1, 9,  15, 7, 13, 5};
-/// Light meets all people.
+/// Bodies of people are never hidden from light.
 const std::vector<bool> kNotHidden;
 
 using Directions4 = std::array<unsigned, 4>;
@@ -36,7 +36,7 @@ float inNet(std::size_t dimension, std::size_t lane, int sample, float within) {
     return (static_cast<float>(cell) + within) / 16;
 }
 
-/// A place in the unit disc.
+/// A point in the unit disc.
 struct InDisc {
     float a, b, height;  ///< height: of the half sphere over it
 
@@ -132,7 +132,7 @@ void LightTracer::towardsLamps(const LitPlaces& places, std::span<const float> d
         for (std::size_t i = 0; i < near.size(); ++i) {
             const Lamps::Lamp& lamp = lamps.all()[near[i]];
             const float dx = lamp.x - x, dy = lamp.y - y, flat = dx * dx + dy * dy;
-            // Near a panel its size matters: its middle is not as near as it.
+            // Near a panel its size matters: its centre is too near as a point source.
             const float square = flat + z * z + Lamps::kHalf * Lamps::kHalf;
             const float facing =
                 places.normal_x[lane] * dx + places.normal_y[lane] * dy + places.normal_z[lane] * z;
@@ -181,7 +181,7 @@ void LightTracer::addDirect(LitPlaces& places) {
     const std::size_t width = scene_.still->packet_width;
     BodyQuery query(kNotHidden);
     query.makeIncoherent();
-    RTCRay16 through = shadows_;  // before it is spent
+    RTCRay16 through = shadows_;  // copied before it is traced
     traceShadows(query, scene_.still->solid->scene(), width, valid_.data(), shadows_);
     if (!scene_.bodies.empty())
         traceShadows(query, scene_.bodies.scene(), width, valid_.data(), shadows_);

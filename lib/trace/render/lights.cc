@@ -16,10 +16,11 @@ namespace ispace {
 
 namespace {
 
-/// Distance between lamps, of the height; and the most of them, and of places looked at for them.
+/// Distance between lamps, as a share of their height; maximum number of lamps, and of candidate
+/// positions.
 constexpr double kSpacing = 1.1, kMinSpacing = 1.8;
 constexpr double kMaxLamps = 4000, kMaxPlaces = 200'000;
-/// What a white floor shines with below many lamps, without what surfaces throw back.
+/// Radiance of a white floor below many lamps, without bounced light.
 constexpr double kBrightness = 0.72;
 
 }  // namespace
@@ -72,7 +73,7 @@ void Lamps::index() {
                                      static_cast<double>(cell_)) +
             1;
     first_.assign(1, 0);
-    // Counted, and then laid behind one another.
+    // Counting sort.
     const auto for_each_cell = [this](const Lamp& lamp, auto visit) {
         const auto cell = [this](float offset, std::size_t count) {
             return std::min(static_cast<std::size_t>(std::max(0.0F, offset / cell_)), count - 1);
@@ -141,7 +142,7 @@ namespace {
 /// Pixels of a row that are smoothed together.
 constexpr int kBlock = 64;
 
-/// What the pixels of a block show, and what those show that lie some way aside.
+/// Values of a block's pixels, and of the pixels at some distance from them.
 struct Block {
     std::array<const float*, 3> place{}, normal{};
     const float* depth = nullptr;
@@ -153,8 +154,8 @@ struct Sums {
     alignas(64) std::array<float, kBlock> whole{};
 };
 
-/// Adds the light aside to `count` pixels of a block, from its pixel `begin` on, where both show
-/// one surface.
+/// Adds the distant light to `count` pixels of a block, from its pixel `begin` on, where both
+/// pixels show one surface.
 template <std::size_t kPlanes>
 ISPACE_INLINE void addAside(const Block& here, const Block& aside,
                             const std::array<const float*, kPlanes>& light, std::size_t begin,
@@ -225,9 +226,10 @@ void LightField::setLight(std::size_t pixel, const Rgb& direct, const Rgb& bounc
     }
 }
 
-/// The mean of what lies `step` and two steps aside, the outermost for half, so that each point of
-/// a tile's net counts the same (Keller and Heidrich, Interleaved Sampling, 2001), and then each
-/// tile about (Dammertz et al., Edge-Avoiding A-Trous Wavelet Transform, 2010).
+/// Computes the mean of the pixels at `step` and two steps, the outermost at half weight, so that
+/// each point of a tile's net counts the same (Keller and Heidrich, Interleaved Sampling, 2001),
+/// and then of each tile's neighbourhood (Dammertz et al., Edge-Avoiding A-Trous Wavelet Transform,
+/// 2010).
 template <std::size_t kFirst>
 void LightField::smoothRow(const LightPlanes& from, LightPlanes& to, int row, int step) const {
     constexpr std::size_t kPlanes = 6 - kFirst;
@@ -251,7 +253,7 @@ void LightField::smoothRow(const LightPlanes& from, LightPlanes& to, int row, in
             const int line = row + step * j;
             if (line < 0 || line >= rows_) continue;
             for (int i = -2; i <= 2; ++i) {
-                // Beyond the picture's edges there is nothing.
+                // No pixels beyond the picture's edges.
                 const int first = std::max(column, -step * i);
                 const int end = std::min(column + count, columns_ - step * i);
                 if (first >= end) continue;
@@ -287,7 +289,7 @@ void LightField::smooth() {
     for (Plane& plane : near) plane.resize(depth_.size());
     tbb::parallel_for(0, rows_, [&](int row) { smoothRow<0>(light_, near, row, 1); });
     std::swap(light_, near);
-    // Direct light stays as it is by now.
+    // Direct light is complete at this point.
     tbb::parallel_for(0, rows_, [&](int row) { smoothRow<3>(light_, near, row, kTile); });
     for (std::size_t k = 3; k < 6; ++k) std::swap(light_[k], near[k]);
 }

@@ -17,7 +17,7 @@ namespace ispace {
 
 namespace {
 
-/// All that the threads of one picture share.
+/// State shared by the threads of one picture.
 struct Job {
     const RenderScene::Data& scene;
     const Viewpoint& viewpoint;
@@ -36,7 +36,7 @@ struct Job {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(out.columns) +
                static_cast<std::size_t>(column);
     }
-    /// Samples of light that each pixel gathers.
+    /// Light samples per pixel.
     [[nodiscard]] int lightSamples() const { return std::max(1, options.samples / 4); }
 };
 
@@ -71,7 +71,7 @@ Job::Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptio
     if (options.depths) out.depths.resize(pixels);
 }
 
-/// Works on one tile after another; one for each thread.
+/// Renders tiles; one instance per thread.
 class TileWorker {
   public:
     explicit TileWorker(Job& job)
@@ -80,14 +80,14 @@ class TileWorker {
           clear_(job.scene, job.options.min_depth),
           lights_(job.scene, job.light, job.lightSamples()) {}
 
-    /// Finds what the centres of the tile's pixels show.
+    /// Finds the surfaces at the centres of the tile's pixels.
     void measure(int column, int row) {
         aim(column, row, {});
         tracer_.trace(tile_);
         writeMeasures(column, row);
     }
 
-    /// The same, and the light there.
+    /// Finds the surfaces and computes their light.
     void gatherLight(int column, int row) {
         aim(column, row, {});
         tracer_.trace(tile_);
@@ -138,8 +138,8 @@ class TileWorker {
         }
     }
 
-    /// The line of sight a part of a pixel beside a pixel's centre, taken as even between the
-    /// centres about it where all have one: those are known.
+    /// Returns the line of sight at a fraction of a pixel beside its centre, interpolated between
+    /// the surrounding centres if all have one: those are stored.
     [[nodiscard]] std::optional<PixelRay> sightLineNear(PixelPoint place, PixelPoint at) const {
         const Viewpoint& from = job_.viewpoint;
         const bool is_inner = place.column > 0 && place.column + 1 < job_.out.columns &&
@@ -198,7 +198,7 @@ class TileWorker {
             std::copy_n(from, count, to);
     }
 
-    /// Of all lanes. Most tiles show one triangle, whose label is then read once.
+    /// Reads the labels of all lanes. Most tiles show one triangle, whose label is then read once.
     void findLabels() {
         const bool is_one = tile_.is_one_triangle && !has_coverings_;
         const std::uint16_t label = is_one ? labelAt(0) : std::uint16_t{0};
@@ -216,7 +216,7 @@ class TileWorker {
             std::min(job_.scene.finishAt(finish, tile_.place(lane)).label, 65535U));
     }
 
-    /// By the pixel alone, whatever the threads.
+    /// Seeded by the pixel alone, independent of threads.
     void drawNumbers(int column, int row) {
         const std::size_t each = kLightDraws * static_cast<std::size_t>(lights_.samples());
         draws_.resize(each * kLanes);
@@ -241,7 +241,8 @@ class TileWorker {
         return job_.shading.lit(point, light);
     }
 
-    /// The light on a surface: that of the pixel or of one beside it, if it shows the same.
+    /// Returns the light on a surface: that of the pixel or of a neighbour that shows the same
+    /// surface.
     Rgb lightAt(const SurfacePoint& point, std::size_t pixel, PixelPoint at) {
         const FacingPlace surface(point.place, point.normal);
         if (job_.field.reaches(pixel, surface)) return job_.field.light(pixel);
@@ -259,7 +260,7 @@ class TileWorker {
         return lightAlone(point, column, row);
     }
 
-    /// The light on what no centre of a pixel shows: sixteen samples of their own.
+    /// Computes the light on a surface that no pixel centre shows, from sixteen separate samples.
     Rgb lightAlone(const SurfacePoint& point, std::size_t column, std::size_t row) {
         const int x = static_cast<int>(column) / kTile * kTile,
                   y = static_cast<int>(row) / kTile * kTile;
@@ -330,7 +331,7 @@ Rendering render(const RenderScene& scene, const Viewpoint& viewpoint,
 
 namespace {
 
-/// Rows of a picture.
+/// Rows of the picture in this band.
 class Band final : public Viewpoint {
   public:
     Band(const Viewpoint& whole, int first, int rows)
@@ -388,7 +389,7 @@ Rendering renderInBands(const RenderScene& scene, const Viewpoint& viewpoint,
 
 namespace {
 
-/// sRGB of a value from 0 to 1.
+/// Converts a value from 0 to 1 to sRGB.
 std::uint8_t srgb(float linear) {
     const float x = std::clamp(linear, 0.0F, 1.0F);
     const float y = x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1 / 2.4F) - 0.055F;

@@ -68,7 +68,7 @@ std::vector<Paint> paintsOfMaterials() {
     return paints;
 }
 
-/// The plates of a pattern on the floor as one covering: they come row by row.
+/// Combines the plates of a floor pattern into one covering: they are in row order.
 Covering coveringOf(const std::vector<Plate>& plates, std::uint32_t label, Vec3 shift) {
     const Polygon& first = plates.front().outline;
     const Point2 far = plates.back().outline[2];
@@ -89,8 +89,8 @@ Covering coveringOf(const std::vector<Plate>& plates, std::uint32_t label, Vec3 
     return covering;
 }
 
-/// Tells which sides of boxes lie in sheets: the ends of thick walls in thin ones, cupboards at
-/// walls. A ray would meet either of both.
+/// Finds sides of boxes that lie in sheets, e.g. the ends of thick walls in thin ones, or cupboards
+/// at walls. A ray could meet either surface.
 class SheetSides {
   public:
     SheetSides(const Environment& environment, const RenderSceneOptions& options)
@@ -136,7 +136,7 @@ class SheetSides {
     SegmentGrid grid_;
 };
 
-/// Puts what stands still together.
+/// Collects the static surfaces.
 class StillBuilder {
   public:
     StillBuilder(const Scene& scene, const RenderSceneOptions& options)
@@ -180,7 +180,7 @@ class StillBuilder {
         return tint == tints_.end() ? paintOf(material) : tint->second;
     }
 
-    /// First and one past the last.
+    /// First, and end (exclusive).
     struct FaceRange {
         std::size_t begin, end;
     };
@@ -271,14 +271,14 @@ class StillBuilder {
         return mesh;
     }
 
-    /// The triangles added last stand for a round body.
+    /// Assigns the triangles added last to a round body.
     void makeRound(const Prism& prism) {
         RoundBody round{*prism.curve, prism.bottom, prism.top};
         round.curve.center = round.curve.center + Vec2{still_.shift.x, still_.shift.y};
         TriangleSoup& soup = solid_.triangles;
         const auto index = static_cast<std::uint32_t>(soup.rounds.size());
         soup.rounds.push_back(round);
-        // As many as a prism of this footprint has.
+        // Same number as of a prism with this footprint.
         const std::size_t count = 4 * prism.footprint.size() - 4;
         std::fill(soup.round_of.end() - static_cast<std::ptrdiff_t>(count), soup.round_of.end(),
                   index);

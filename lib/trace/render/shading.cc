@@ -14,11 +14,11 @@ namespace ispace {
 
 namespace {
 
-/// What a lamp's panel shines with.
+/// Radiance of a lamp's panel.
 constexpr Rgb kPanel{3, 3, 2.9F};
-/// Light that clear glass throws back, and lets pass.
+/// Shares of light that clear glass reflects and transmits.
 constexpr Rgb kGlassShine{0.05F, 0.06F, 0.07F}, kGlassPasses{0.80F, 0.89F, 0.90F};
-/// A clear pane, or a cone of vision, that is seen so often through itself is thick enough.
+/// Maximum number of layers of one clear pane or field of view.
 constexpr std::size_t kMaxLayers = 32;
 
 }  // namespace
@@ -106,7 +106,7 @@ Rgb Shading::lit(const SurfacePoint& point, const Rgb& light) const {
     return out;
 }
 
-/// Collects everything on the way, and stops at nothing.
+/// Collects all layers on the way without stopping the ray.
 struct ClearTracer::Query : EmbreeQuery {
     ClearTracer& tracer;
     SurfaceKind kind;
@@ -184,7 +184,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A query of the bodies that passes the hidden ones.
+/// A query that skips hidden bodies.
 struct PassingHidden : EmbreeQuery {
     const SurfaceSet& bodies;
     const std::vector<bool>& hidden;
@@ -339,7 +339,7 @@ double TileTracer::resolve(const RayTile& tile, std::size_t lane) const {
     const Plane& plane = set.planes()[triangle];
     const double depth =
         plane.heightOver(tile.origin(lane)) / dot(plane.normal, tile.direction(lane));
-    // What is seen almost edge-on is met at the rim of its enlarged triangle.
+    // Surfaces seen almost edge-on are hit at the rim of their enlarged triangle.
     return std::fabs(depth - found) <= 1e-4 * (1 + found) ? depth : found;
 }
 

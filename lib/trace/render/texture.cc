@@ -17,7 +17,7 @@ namespace ispace {
 
 namespace {
 
-/// Pixels of all textures of a scene together.
+/// Maximum pixels of all textures of a scene.
 constexpr std::int64_t kMostPixels = 120'000'000;
 
 /// From sRGB.
@@ -34,7 +34,7 @@ const std::array<float, 256>& linearOf() {
     return table;
 }
 
-/// Between which two pixels a place lies, and how far from the first.
+/// The two pixels around a position, and its distance from the first.
 struct Between {
     std::size_t low = 0, high = 0;
     float share = 0;
@@ -114,7 +114,7 @@ TexturedFace levelFace(Point2 low_left, Vec2 along, Vec2 across, double z) {
 
 std::vector<TexturedFace> wallFaces(const Record& record) {
     std::vector<TexturedFace> faces;
-    Diagnostics ignored;  // said where the environment is built
+    Diagnostics ignored;  // reported when the environment is built
     for (const WallLine& wall : wallLinesOf(record, ignored)) {
         const auto& [a, b] = wall.line;
         faces.push_back({{a.x, a.y, wall.top},
