@@ -51,7 +51,7 @@ class Outbox {
     void append(std::string_view text);
     /// \pre front() is empty
     void put(std::shared_ptr<const std::string> scan) { scan_ = std::move(scan); }
-    /// The next bytes to send, "" if there are none. Valid until the next call of another function.
+    /// The next bytes to send, or "". Valid until the next call of another function.
     [[nodiscard]] std::string_view front() const;
     /// Removes the sent bytes from front().
     void pop(std::size_t bytes);

@@ -181,7 +181,7 @@ class Session {
     std::int64_t hold_ = 0;  // of a robot or person, see ServerState::hold
     bool is_gone_ = false;   // the world has removed the mover
     std::string out_;
-    std::vector<int> running_;  // motion commands whose end must be reported
+    std::vector<int> running_;  // motion commands with an end to report
     // The stream: its divisor (0: none), the last scan considered, the scan to be sent.
     std::int64_t every_ = 0, seq_ = 0;
     ReplyForm form_;

@@ -403,7 +403,7 @@ void Session::resume(Words words) {
     Simulation& simulation = state_->simulation();
     if (simulation.clock().kind == Clock::Kind::Step)
         return error(405, {"the clock is `step`: use STEP n"});
-    // What PAUSE began can always be ended.
+    // A pause can always be ended.
     if (!simulation.paused()) {
         if (!mayAskFor(words.front())) return;
     } else {

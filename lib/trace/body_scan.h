@@ -154,11 +154,12 @@ class ShortenedRanges {
     std::span<float> ranges_, cosines_;
 };
 
-/// Neighbouring rays of a scan whose ranges bodies shorten, with a common origin or one origin
+/// Neighbouring rays of a scan, shortened by bodies, with a common origin or one origin
 /// each.
 class BodyScan {
   public:
-    static constexpr std::size_t kBlock = 32;  ///< rays whose bounding box is searched for bodies
+    static constexpr std::size_t kBlock =
+        32;  ///< rays per bounding box in which bodies are searched
 
     /// Holds rays `begin` to before `end`. \pre origins.size() is 1 or directions.size(); begin <
     /// end
@@ -191,7 +192,7 @@ struct PixelBox {
     int left = 0, top = 0, right = 0, bottom = 0;
 };
 
-/// A picture whose ranges bodies shorten.
+/// A picture with ranges shortened by bodies.
 class BodyPicture {
   public:
     BodyPicture(Point3 origin, const RayGrid& grid, double most, const ShortenedRanges& ranges);
@@ -200,7 +201,7 @@ class BodyPicture {
     [[nodiscard]] Box2 box() const;
     void meet(const MovingBody& body, const BodyExtent& extent);
 
-    /// Returns the pixels whose rays may meet the body; all if the body holds the origin.
+    /// Returns the pixels with rays that may meet the body; all if the body holds the origin.
     [[nodiscard]] PixelBox pixelsOf(const MovingBody& body, const BodyExtent& extent) const;
 
   private:
@@ -217,9 +218,9 @@ class BodyPicture {
     Vec3 to_right_, to_down_, to_corner_;
 };
 
-/// A level scan of equal steps whose ranges bodies shorten. Bodies are collected in growing squares
-/// around the scanner and intersected from the nearest on. Skips bodies whose beams all end nearer,
-/// at walls or other bodies: in rooms and crowds nearly all.
+/// A level scan of equal steps, shortened by bodies. Bodies are collected in growing squares
+/// around the scanner and intersected from the nearest on. Skips bodies if all their beams end
+/// nearer, at walls or other bodies: in rooms and crowds nearly all.
 class BodyArc {
   public:
     /// \pre directions.arc, with a step above 0

@@ -24,7 +24,7 @@ struct TracedBody {
     }
 };
 
-/// A query that ignores bodies whose owner is `hidden`. \pre `owners` outlives it
+/// A query that ignores bodies with a `hidden` owner. \pre `owners` outlives it
 struct BodyQuery : EmbreeQuery {
     const std::vector<bool>& hidden;  ///< by owner; may be shorter than the list of owners
 

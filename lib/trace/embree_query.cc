@@ -11,7 +11,7 @@ namespace ispace {
 
 namespace {
 
-/// Collects surfaces whose bounds are near the query's point.
+/// Collects surfaces with bounds near the query's point.
 bool collect(RTCPointQueryFunctionArguments* args) {
     static_cast<std::vector<unsigned>*>(args->userPtr)->push_back(args->primID);
     return false;

@@ -255,7 +255,7 @@ class FlatStack {
 
     [[nodiscard]] bool empty() const { return count_ == 0; }
     ISPACE_INLINE Entry pop() { return entries_[--count_]; }
-    /// Pushes the children whose distance is not negative.
+    /// Pushes the children at a distance of at least 0.
     ISPACE_INLINE void push(const FlatTree::Node& node, const double* distances) {
         const int bottom = count_;
         for (int i = 0; i < node.count; ++i) {
@@ -307,7 +307,7 @@ struct alignas(64) FlatScan {
     double inverse_range[kMax];             ///< one over the range
     double* cosine;                         ///< kMax of them, or null
     double last_x[kBlock], last_y[kBlock];  ///< the last block if it is not full
-    /// Minimum of a block's inverse ranges: a line with a smaller one shortens none of its beams.
+    /// Minimum of a block's inverse ranges: a line with a smaller one does not shorten its beams.
     float least[kMax / kBlock];
     int count;
     float cos, sin;  ///< a vector along the centre of the scan

@@ -54,7 +54,7 @@ struct alignas(64) Corners {
 /// scan, so that a span may have a second range at the other end.
 struct alignas(64) Spans {
     std::int32_t first[kWidth], last[kWidth], other_first[kWidth], other_last[kWidth];
-    /// Blocks of the first range whose beams all lie well between a and b.
+    /// Blocks of the first range with all beams well between a and b.
     std::int32_t inner_first[kWidth], inner_last[kWidth];
 
     ISPACE_INLINE void set(const Frame& frame, const Corners& corners) {

@@ -74,7 +74,7 @@ RayWorld RayWorld::ofSlice(const Slice& slice) {
 
 namespace {
 
-/// Adds a mesh, whose triangles represent a round body or flat surfaces.
+/// Adds a mesh. Its triangles represent a round body or flat surfaces.
 void addMesh(const Mesh& mesh, std::uint32_t round, TriangleSoup& soup) {
     const auto first = static_cast<std::uint32_t>(soup.vertices.size());
     soup.vertices.insert(soup.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());

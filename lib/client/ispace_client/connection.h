@@ -51,7 +51,7 @@ class Connection {
         ++awaited_;
         while (answers_.empty() || awaited_ > 1) {
             if (!answers_.empty()) {
-                // Answers an earlier request whose caller gave up.
+                // Answers an earlier request that timed out.
                 answers_.pop_front();
                 --awaited_;
                 continue;
@@ -69,7 +69,7 @@ class Connection {
     void quit() { ask("QUIT"); }
 
     /// Waits for the next DONE or FAIL, EVENT, or scan of a stream.
-    /// \return false if none came within this many seconds
+    /// \return false on timeout, in seconds
     bool nextEnd(Message& message, double timeout) { return next(ends_, message, timeout); }
     bool nextEvent(Message& message, double timeout) { return next(events_, message, timeout); }
     bool nextScan(Message& message, double timeout) { return next(scans_, message, timeout); }
@@ -105,7 +105,7 @@ class Connection {
         return true;
     }
 
-    /// Reads one message and stores it by kind; false if none came in time.
+    /// Reads one message and stores it by kind; false on timeout.
     bool take(const Deadline& deadline) {
         Message message;
         if (!read(message, deadline)) return false;

@@ -47,7 +47,7 @@ class Robot : public Mover {
         odometry.rotspeed = fields.number("rotspeed");
         return odometry;
     }
-    /// Reads the sonars; empty if it has none.
+    /// Reads the sonars; empty for a robot without sonars.
     std::vector<Sonar> sonar() {
         const Fields fields = ask("SONAR").fields;
         std::vector<Sonar> ring;
@@ -71,7 +71,7 @@ class Robot : public Mover {
         for (const Bumper& bumper : rim()) hit.push_back(bumper.hit);
         return hit;
     }
-    /// Returns the bumpers and their states; empty if it has none.
+    /// Returns the bumpers and their states; empty for a robot without bumpers.
     std::vector<Bumper> rim() {
         const Fields fields = ask("BUMPER").fields;
         std::vector<Bumper> rim;

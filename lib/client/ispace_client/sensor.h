@@ -30,7 +30,7 @@ class SensorOf {
     /// Returns the newest reading, up to a period old.
     T scan() { return T::from(connection_.ask("SCAN")); }
 
-    /// Starts a stream: the server sends each new reading whose number is a multiple of `every`; a
+    /// Starts a stream: the server sends each new reading with a number divisible by `every`; a
     /// slow client receives the newest.
     void stream(int every = 1) { connection_.ask("STREAM every=" + std::to_string(every)); }
     /// Returns the next reading of the stream.

@@ -79,7 +79,7 @@ class Deadline {
     bool never_ = false;
 };
 
-/// A TCP connection whose calls block no longer than their deadline.
+/// A TCP connection; calls block no longer than their deadline.
 class Socket {
   public:
     /// \throws ConnectionError, Timeout
@@ -120,7 +120,7 @@ class Socket {
         }
     }
 
-    /// Appends available input to `bytes`. \return false if none came in time
+    /// Appends available input to `bytes`. \return false on timeout
     /// \throws ConnectionError
     bool receive(std::string& bytes, const Deadline& deadline) {
         char buffer[65536];

@@ -96,7 +96,7 @@ class World {
     /// \return its id
     std::string add(const std::string& record) { return change("ADD " + record).text("id"); }
     void remove(const std::string& id) { change("DELETE " + id); }
-    /// Loads another room. The server opens the files; an empty `layout` means none.
+    /// Loads another room. The server opens the files; `layout` may be empty.
     void load(const std::string& environment, const std::string& layout = "") {
         const std::string files = environment + (layout.empty() ? "" : " " + layout);
         warning_ = connection_.ask("LOAD " + files, kLoadTimeout).fields.text("warning", "");
@@ -115,7 +115,7 @@ class World {
     void eventsOff() { ask("EVENTS off"); }
     /// Waits for the next event.
     /// \param timeout seconds of wall time
-    /// \return false if none came in time
+    /// \return false on timeout
     bool nextEvent(Event& event, double timeout = std::numeric_limits<double>::infinity()) {
         Message message;
         if (!connection_.nextEvent(message, timeout)) return false;

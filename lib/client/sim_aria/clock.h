@@ -113,7 +113,7 @@ class Clock {
         }
     }
 
-    /// Sends a request whose answer holds the world's time.
+    /// Sends a request; the answer holds the world's time.
     void ask(const std::string& request) {
         const std::lock_guard<std::recursive_mutex> lock(mutex_);
         if (!world_) return;

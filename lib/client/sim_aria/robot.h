@@ -165,7 +165,7 @@ class ArRobot {
         if (number < 0 || number >= getNumSonar()) return nullptr;
         return const_cast<ArSensorReading*>(&mySonars[static_cast<std::size_t>(number)]);
     }
-    /// Minimum range of the sonars that face these directions, mm; -1 if there are none.
+    /// Minimum range of the sonars that face these directions, mm; -1 without such sonars.
     int getClosestSonarRange(double startDeg, double endDeg) const;
 
     // Identity and dimensions.

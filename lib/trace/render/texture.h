@@ -30,8 +30,8 @@ class Texture {
 /// A rectangle in space that a texture covers.
 struct TexturedFace {
     Point3 corner;     ///< the upper left one of the picture
-    Vec3 right, down;  ///< full extents; seen upright from the side their cross product points away
-                       ///< from; on the other side the picture is turned to be readable
+    Vec3 right, down;  ///< full extents; the picture is upright along right x down, and turned to
+                       ///< be upright and readable from the other side
     double reach = 0;  ///< maximum distance of parallel triangles that belong to the face
     std::uint32_t texture = 0;
 
