@@ -45,8 +45,8 @@ struct Stretch {
             clear();
         }
     }
-    /// Clips by a cylinder whose level cuts move along x by `lean` per metre; the ray is given in
-    /// the frame of these cuts.
+    /// Clips by a cylinder with level cuts that move along x by `lean` per metre; the ray is given
+    /// in the frame of these cuts.
     void cutDisc(Vec2 origin, Vec2 direction, double radius, double lean) {
         const double a = dot(direction, direction), b = dot(origin, direction);
         const double side = cross(origin, direction);

@@ -158,7 +158,7 @@ inline void traceShadows(EmbreeQuery& query, RTCScene scene, std::size_t width, 
 /// continue the plane of such a surface within that distance, and those seen exactly edge-on.
 class IgnoredSurfaces {
   public:
-    /// A surface whose plane is this near to the origin, in metres, is seen edge-on: the error of a
+    /// A surface with a plane this near to the origin, in metres, is seen edge-on: the error of a
     /// corner in float32 for coordinates of a building.
     static constexpr double kEdgeOn = 5e-6;
 
@@ -168,7 +168,7 @@ class IgnoredSurfaces {
     IgnoredSurfaces(RTCScene scene, const TriangleSet& set, double ray_epsilon, Point3 origin);
 
     [[nodiscard]] bool touches() const { return !normals_.empty(); }
-    /// Surfaces whose planes are farther from the origin than this stop rays.
+    /// Surfaces stop rays if their planes are farther from the origin than this.
     [[nodiscard]] double reach() const { return touches() ? ray_epsilon_ : kEdgeOn; }
     [[nodiscard]] bool contains(std::size_t triangle, Point3 origin) const;
     /// Computes the intersection with a triangle found by Embree, if it stops the ray.

@@ -372,7 +372,7 @@ struct FlatHit {
     double cosine = 0;     ///< the largest among lines met at the same point
 };
 
-/// Finds the nearest line or round body along the unit vector (x, y) whose inverse range exceeds
+/// Finds the nearest line or round body along the unit vector (x, y) if its inverse range exceeds
 /// `min_inverse_range`.
 FlatHit firstLine(const FlatTree& tree, const FlatView& view, double x, double y,
                   double min_inverse_range);

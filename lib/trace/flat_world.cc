@@ -94,7 +94,7 @@ FlatTree::Leaf leafOf(std::span<const std::uint32_t> items, std::span<const Segm
         made.ay[i] = line.a.y;
         made.bx[i] = b.x;
         made.by[i] = b.y;
-        // Not std::hypot, whose last bit is unspecified.
+        // The last bit of std::hypot is unspecified.
         made.length[i] = std::sqrt(squareOf({line.a, b}));
     }
     return made;

@@ -40,7 +40,7 @@ struct MovingBody {
     [[nodiscard]] double meet(Point3 origin, Vec3 direction) const;
 };
 
-/// Converts a part of a body whose frame has this pose. \param axes of the pose's heading
+/// Converts a part of a body with this pose. \param axes of the pose's heading
 MovingBody movingBody(const BodyPart& part, const Pose2& pose, CosSin axes, std::uint32_t owner);
 
 /// Values of a body shared by all rays.
@@ -105,7 +105,7 @@ class MovingBodies {
     void shorten(std::span<const Point3> origins, const Directions& directions, std::size_t begin,
                  std::size_t end, double max_range, std::uint32_t own, std::span<float> ranges,
                  std::span<float> cosines = {}) const;
-    /// The same for a picture, whose ranges are multiples of its rays' vectors; visits only pixels
+    /// The same for a picture with ranges in multiples of its rays' vectors; visits only pixels
     /// near a body.
     void shorten(Point3 origin, const RayGrid& grid, double most, std::uint32_t own,
                  std::span<float> multiples, std::span<float> cosines = {}) const;

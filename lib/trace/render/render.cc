@@ -198,7 +198,7 @@ class TileWorker {
             std::copy_n(from, count, to);
     }
 
-    /// Reads the labels of all lanes. Most tiles show one triangle, whose label is then read once.
+    /// Reads the labels of all lanes. Most tiles show one triangle: its label is read once.
     void findLabels() {
         const bool is_one = tile_.is_one_triangle && !has_coverings_;
         const std::uint16_t label = is_one ? labelAt(0) : std::uint16_t{0};

@@ -34,7 +34,7 @@ struct RenderSceneOptions {
     bool ceilings = true;
     /// Bodies of sensors, tags, mats and gates.
     bool devices = true;
-    /// Records (indices in Scene::records) of sensors whose fields of view are drawn, see viewOf().
+    /// Records (indices in Scene::records) of sensors with visible fields of view, see viewOf().
     std::vector<std::size_t> views = {};
     /// Records drawn in this colour.
     struct Tint {
@@ -62,7 +62,7 @@ struct RenderOptions {
     Illumination light = Illumination::Auto;
     bool labels = false, depths = false;
     bool colors = true;  ///< false: labels and depths only, far faster
-    /// Records whose bodies are invisible to the viewpoint but cast shadows: the camera and the
+    /// Records with bodies invisible to the viewpoint that cast shadows: the camera and the
     /// body that carries it, see ownRecords().
     std::vector<std::size_t> hidden = {};
     /// Background colour; by default the sky, and the ground around the building.
