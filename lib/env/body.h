@@ -18,7 +18,7 @@ struct Prism {
     Polygon footprint;
     double bottom = 0, top = 0;
     Material material = Material::Wood;
-    /// Of a round prism: what the footprint is inscribed in; null: it is not round. Few are.
+    /// The ellipse of a round prism, in which the footprint is inscribed; else null.
     std::shared_ptr<const Ellipse> curve = {};
 };
 
@@ -49,7 +49,7 @@ struct Body {
     std::vector<Mesh> meshes;  ///< of files, in the world frame
 };
 
-/// Height of the highest prism, sheet or mesh; 0 without any.
+/// Returns the height of the highest prism, sheet or mesh; 0 without any.
 double topOf(const Body& body);
 
 /// The polygon inscribed in the ellipse with these full axes about `center`, the first along
@@ -63,8 +63,8 @@ Polygon rectangle(Point2 center, double length, double width, Angle heading);
 /// Zero-length lines are findings. Other records have none.
 std::vector<Segment2> wallLines(const Record& record, Diagnostics& findings);
 
-/// The body of an environment record; nothing for `inside` and `zone`, and for a `mesh` whose file
-/// is not loaded.
+/// Builds the body of an environment record; empty for `inside` and `zone`, and for a `mesh` whose
+/// file is not loaded.
 ///
 /// A wall or fence is one sheet per line, or with a thickness one box per line plus joints that
 /// leave no crack at corners. A table is a round top on a stem and a foot; a desk a top on four

@@ -28,7 +28,8 @@ struct PlacementFrame {
 /// else `height`, else the length.
 PlacementFrame standingOf(const Record& record);
 
-/// True for things whose body depends on `at` and `heading` only in where it is: furniture, pillars
+/// Returns true for things whose body depends on `at` and `heading` only in where it is: furniture,
+/// pillars
 /// and floors, but no walls, and no meshes, which have their own frame.
 bool standsByItself(const Record& record);
 
@@ -39,7 +40,7 @@ Body infraBody(const Record& record);
 Body boxesBody(const Record& record);
 Body screenBody(const Record& record);
 
-/// Height of walls and fences that say nothing else, in metres.
+/// Default height of walls and fences, in metres.
 constexpr double kWallHeight = 2.5;
 
 /// ispace, inside, zone, floor, wall, fence, pillar, table, desk, chair, barrier, cube, cylinder.

@@ -9,7 +9,7 @@
 
 namespace ispace {
 
-/// What the wall lines enclose.
+/// The region that the wall lines enclose.
 struct Enclosure {
     Regions indoor;
     Point2 inside;

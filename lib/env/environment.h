@@ -31,7 +31,7 @@ class RegionIndex;
 /// A room: its elements and the region they enclose. Immutable; copies share everything.
 class Environment {
   public:
-    /// Takes the environment records among `records` (others are left alone). `ids` as of
+    /// Reads the environment records among `records` and skips others. `ids` as of
     /// assignIds(records). O(n log n) for plans whose walls meet at their ends or cross now and
     /// then.
     /// \throws FormatError with all findings: zero-length walls, zero sizes, crossing zone or
@@ -46,7 +46,7 @@ class Environment {
     /// The faces of the wall lines that hold the inside points, each with those joined to it by
     /// open doors, directly or through others: mostly one part, and one for each room where
     /// several are meant. Openings else do not count: an open door to the outside joins nothing.
-    /// Walls that stand within the joined rooms bound nothing.
+    /// Walls that stand within the joined rooms are no boundary.
     [[nodiscard]] const Regions& indoor() const { return data_->indoor; }
     /// The same, made for very many questions; built when first asked for.
     [[nodiscard]] const RegionIndex& indoorIndex() const { return data_->indoorIndex(); }
@@ -63,15 +63,14 @@ class Environment {
     /// Height of the highest wall, in metres.
     [[nodiscard]] double height() const { return data_->height; }
 
-    /// The level at a height: its slice, free floor, point location and sight, see env/level.h.
-    /// Thread-safe. Levels last asked for are kept, so that whoever asks again gets the same one;
-    /// how many depends on their size. Hold on to one that is used for long.
+    /// Returns the level at a height: its slice, free floor, point location and visibility, see
+    /// env/level.h. Thread-safe. Recent levels are cached, depending on their size; callers keep
+    /// the pointer of a level that they use for long.
     [[nodiscard]] std::shared_ptr<const Level> level(double height) const;
-    /// What stops light at this height (prisms are closed: their top and bottom count). Made anew
-    /// at each call; a level keeps its slice.
+    /// Computes the slice that stops light at this height (prisms are closed: top and bottom
+    /// count). Computed at each call; a level stores its slice.
     [[nodiscard]] Slice slice(double height) const { return data_->slice(height); }
-    /// What stands anywhere between the two heights, ends included, clear glass too.
-    /// \pre bottom <= top
+    /// Computes the band between two heights, ends included, with clear glass. \pre bottom <= top
     [[nodiscard]] Slice band(double bottom, double top) const;
 
   private:
@@ -122,7 +121,7 @@ std::string infoText(const EnvironmentInfo& info);
 /// meshes that are not loaded or hold no body.
 void checkShape(const Record& record, const Body& body, Diagnostics& findings);
 
-/// "(4.1, 2.0)": a place as people find it on a plan, to the centimetre.
+/// Writes a point as on a plan, to the centimetre: "(4.1, 2.0)".
 std::string placeText(Point2 p);
 
 /// "wall w3", "door d1": how findings name an element.

@@ -50,7 +50,7 @@ const VisibilityMap& Level::sight() const {
 }
 
 void Level::prepareSight() const {
-    // Who waits in here does not begin with other work.
+    // A thread that waits here must not start other tasks.
     tbb::this_task_arena::isolate([this] {
         tbb::parallel_invoke([this] { static_cast<void>(solids()); },
                              [this] { static_cast<void>(sight()); });

@@ -20,7 +20,7 @@ class Level {
     explicit Level(Slice slice);
 
     [[nodiscard]] double height() const { return height_; }
-    /// What stands at this height, with owners.
+    /// Returns the slice at this height, with owners.
     [[nodiscard]] const Slice& slice() const;
     /// Indoor less the solids. \pre it is of an environment
     [[nodiscard]] const std::vector<Region>& freeFloor() const;
@@ -28,16 +28,16 @@ class Level {
     /// True strictly indoors, in no solid and on no line of the slice; exact.
     /// \pre it is of an environment
     [[nodiscard]] bool isFree(Point2 p) const;
-    /// True deeper in a solid than kRayEpsilon: a sensor there sees nothing.
+    /// Returns true deeper in a solid than kRayEpsilon, where a sensor is blind.
     [[nodiscard]] bool isInsideSolid(Point2 p) const;
-    /// The solids whose surface p touches (within kRayEpsilon): sight passes into them there, but
-    /// there is nothing to be seen.
+    /// Returns the solids whose surface p touches (within kRayEpsilon): rays enter them there
+    /// without a hit.
     [[nodiscard]] std::vector<Polygon> solidsTouching(Point2 p) const;
-    /// What a level sensor sees up to max_range: as VisibilityMap::query among the lines and round
-    /// bodies of the slice; nothing where isInsideSolid().
+    /// Computes the visible region of a level sensor up to max_range: as VisibilityMap::query among
+    /// the lines and round bodies of the slice; empty where isInsideSolid().
     void query(Point2 viewpoint, double max_range, VisibleRegion& region) const;
 
-    /// Makes what query() looks into, which takes longer than many queries.
+    /// Builds the index that query() reads, which takes longer than many queries.
     void prepareSight() const;
 
     /// How many lines the slice has; 0 until it is made.

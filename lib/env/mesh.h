@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/env only: from the curves of a cut to the polygons of a slice.
+// lib/env: materials and meshes of bodies, and the polygons of their cuts.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace ispace {
 
-/// What a surface is made of, as far as pictures and viewers care.
+/// The material of a surface, for pictures and viewers.
 enum class Material {
     Floor,
     FloorDark,
@@ -35,7 +35,7 @@ enum class Material {
     Cloth,
     Mat,
     Mesh,
-    View  ///< what a sensor looks at
+    View  ///< the field of view of a sensor
 };
 
 /// How a material looks: colour (linear RGB, opacity), metallic share and roughness.
@@ -47,8 +47,7 @@ struct Appearance {
 
 const Appearance& lookOf(Material material);
 
-/// Name of what sensors look at in models: nothing that stands there, so it is left out where a
-/// model is read as a mesh.
+/// Material of fields of view in models; skipped when a model is read as a mesh.
 inline constexpr const char* kViewMaterial = "sensor-view";
 
 struct Body;
@@ -64,29 +63,29 @@ struct Mesh {
     bool open = false;  ///< has a rim, as sheets and plates: is seen from both sides
 };
 
-/// Which surfaces of a body count. Slices follow the rule for light, as level beams do.
+/// Selects surfaces of a body. Slices follow the rule for light, as level beams do.
 enum class Surfaces {
     Drawn,  ///< all, patterns on the floor as well
-    Solid,  ///< all that stands: what stops sound
-    Opaque  ///< what stops light: all that stands but clear glass
+    Solid,  ///< all solid surfaces, which stop sound
+    Opaque  ///< surfaces that stop light: all solid ones except clear glass
 };
 
-/// True if a sheet is among these surfaces.
+/// Returns true if a sheet is among these surfaces.
 bool isAmong(Surfaces surfaces, const Sheet& sheet);
-/// True for a plate.
+/// Returns true for a plate.
 bool isAmong(Surfaces surfaces, const Plate& plate);
 
 /// The body's triangles, one mesh per material, in the order of first use.
 std::vector<Mesh> meshesOf(const Body& body, Surfaces surfaces);
 
-/// True if every edge is met as often in one direction as in the other: the triangles then bound
-/// something. O(triangles) for edges that are well spread over the vertices.
+/// Returns true if every edge occurs as often in one direction as in the other: the triangles then
+/// bound a solid. O(triangles) for edges that are well spread over the vertices.
 bool isWatertight(const Mesh& mesh);
 
 /// The floor of an indoor region at z = 0, of the triangles of its parts.
 Mesh floorMesh(std::span<const Triangulation> parts);
 
-/// The body of a `mesh` record; none while its file is not loaded.
+/// Builds the body of a `mesh` record; empty while its file is not loaded.
 ///
 /// The file's numbers are turned so that z is up (y-up: (x, -z, y); x-up: (y, z, x); `auto` and z:
 /// as they are, since the loader resolves `auto`), multiplied by unit and `scale`, turned by

@@ -43,8 +43,8 @@ EdgeKey keyOf(std::uint32_t a, std::uint32_t b) {
     return EdgeKey{std::min(a, b)} << 32 | std::max(a, b);
 }
 
-/// What a triangle adds to a curve: from the place on one of its edges to that on another, the
-/// solid on the left.
+/// A triangle's part of a curve: from a point on one edge to a point on another, the solid on the
+/// left.
 struct Arc {
     EdgeKey from, to;
 };
@@ -96,7 +96,8 @@ Arcs arcsOf(const Mesh& mesh, const std::vector<std::uint8_t>& above) {
     return arcs;
 }
 
-/// Where an edge passes the height. From the lower index on, so that all its triangles agree.
+/// Computes the point where an edge passes the height, from the lower index on, so that all its
+/// triangles agree.
 Point2 placeOn(const Mesh& mesh, EdgeKey edge, double height) {
     const Point3 &a = mesh.vertices[edge >> 32], &b = mesh.vertices[edge & 0xffffffffU];
     if (a.z == height) return a.onFloor();

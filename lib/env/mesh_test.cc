@@ -32,7 +32,7 @@ double area(const Mesh& mesh) {
     return sum;
 }
 
-/// True if every edge is met once in each direction.
+/// Returns true if every edge is met once in each direction.
 bool isClosed(const Mesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
     for (const auto& t : mesh.triangles)

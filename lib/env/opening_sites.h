@@ -20,20 +20,20 @@ namespace ispace {
 /// faces of a thick one.
 constexpr double kNearWall = 0.3, kNearFace = 0.1;
 
-/// Where an opening is to be: on which line, and its ends along it; they may lie beyond the line's.
+/// The line of an opening, and its ends along it; they may lie beyond the line's.
 struct OpeningSite {
     std::size_t line = 0;
     double from = 0, to = 0;
 };
 
-/// Finds the wall lines that `door` and `window` records mean.
+/// Finds the wall lines that `door` and `window` records name.
 class OpeningSites {
   public:
-    /// Keeps what it is given.
+    /// Stores its arguments by reference.
     OpeningSites(std::span<const Element> elements, const WallPlan& plan, Diagnostics& findings);
 
-    /// Nothing, with a finding, if the record names no place on a wall, or several; nothing,
-    /// without one, if its wall has no lines. O(log n) where lines do not crowd.
+    /// Finds the line of an opening. Empty, with a finding, if the record gives no point on a wall,
+    /// or several; empty, without one, if its wall has no lines. O(log n) where lines do not crowd.
     [[nodiscard]] std::optional<OpeningSite> find(const Element& opening) const;
 
   private:

@@ -18,7 +18,7 @@ constexpr double kMaxFace = 1;
 /// Thickness of a door's leaf; at most the wall's.
 constexpr double kLeafThickness = 0.04;
 
-/// What closes an opening.
+/// The filling of an opening.
 enum class Filling { None, Leaf, ClearPane, OpaquePane };
 
 /// A door or window as it lies in one wall line.
@@ -28,7 +28,7 @@ struct Opening {
     double from = 0, to = 0;     ///< along the line, from its beginning
     double bottom = 0, top = 0;  ///< heights
     double depth = 0;            ///< how far through it reaches, at least the wall's thickness
-    double leaf = 0;             ///< thickness of what fills it, 0 for a sheet
+    double leaf = 0;             ///< thickness of its filling, 0 for a sheet
     Filling filling = Filling::None;
     bool passage = false;  ///< an open door: the rooms on both sides are one
 };

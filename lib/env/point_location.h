@@ -23,9 +23,9 @@ class RegionIndex {
     /// \param regions disjoint, as of Region; they may touch
     explicit RegionIndex(std::span<const Region> regions);
 
-    /// Exact.
+    /// Returns the side of a point; exact.
     [[nodiscard]] Side locate(Point2 p) const;
-    /// An edge comes within `reach` of p, or p lies inside.
+    /// Returns true if an edge comes within `reach` of p, or p lies inside.
     [[nodiscard]] bool isWithin(Point2 p, double reach) const;
     /// Calls visit(const Segment2&) for the edges whose bounds meet the window.
     template <typename Visit>
@@ -44,21 +44,21 @@ class RegionIndex {
     CellSet inside_;  // by the centres of the cells
 };
 
-/// True if p lies strictly inside, farther than `margin` from the edge. O(corners)
+/// Returns true if p lies strictly inside, farther than `margin` from the edge. O(corners)
 [[nodiscard]] bool containsWithMargin(const Polygon& polygon, Point2 p, double margin);
 
-/// Tells which of many polygons a point is in, or near the edge of. Thread-safe.
+/// Finds the polygons that hold a point, or whose edges are near it. Thread-safe.
 class PolygonIndex {
   public:
     /// \param polygons kept by reference
     explicit PolygonIndex(std::span<const Polygon> polygons);
 
     [[nodiscard]] bool empty() const { return polygons_.empty(); }
-    /// The first polygon that p lies in or on the edge of; exact.
+    /// Finds the first polygon that p lies in or on the edge of; exact.
     [[nodiscard]] std::optional<std::size_t> holder(Point2 p) const;
-    /// True if one of them contains p with that margin.
+    /// Returns true if one of them contains p with that margin.
     [[nodiscard]] bool containsWithMargin(Point2 p, double margin) const;
-    /// Those whose edge comes within `reach` of p.
+    /// Returns the polygons whose edges come within `reach` of p.
     [[nodiscard]] std::vector<Polygon> touching(Point2 p, double reach) const;
 
   private:

@@ -17,7 +17,8 @@ namespace ispace {
 
 namespace {
 
-/// What a record is besides its walls: those follow from the lines of all records, welded.
+/// Builds the body of a record without its walls: those follow from the lines of all records,
+/// welded.
 Body bodyBesideWalls(const Record& record) {
     if (!isWall(record)) return bodyOf(record);
     Body body;
@@ -86,7 +87,7 @@ class Builder {
         inside_ = insideRecords(elements_);
         if (plan_.walls.empty() && walls_whole_)
             findings_.add(fileFinding(elements_, noWallsText()));
-        // What a wall that crosses itself encloses says little, and may take long to find.
+        // The region inside a self-crossing wall means little, and may take long to find.
         if (plan_.walls.empty() || !walls_simple_) findings_.throwIfAny();
     }
 
@@ -103,7 +104,8 @@ class Builder {
                "add an ispace, wall or fence record";
     }
 
-    /// The shapes of all that is no wall, while others look at walls. \throws FormatError
+    /// Builds the shapes of all elements except walls, in parallel to the walls. \throws
+    /// FormatError
     void giveThings() {
         Diagnostics findings;
         for (Element& element : elements_) {
@@ -113,7 +115,7 @@ class Builder {
         findings.throwIfAny();
     }
 
-    /// Lines of walls, and what is cut out of them. \pre there are walls
+    /// Computes the wall lines and cuts the openings. \pre there are walls
     /// \throws FormatError with all findings so far, or some if `at_once`
     void cutWalls(bool at_once) {
         const auto place = [this] { openings_ = placeOpenings(elements_, plan_, findings_); };
@@ -129,7 +131,7 @@ class Builder {
             cut_.parts = wallParts(plan_.walls, welded_);
     }
 
-    /// What of walls is no opening, and what fills openings. Their parts are let go.
+    /// Returns the bodies of walls and of the fillings of openings, and frees their parts.
     [[nodiscard]] std::vector<Body> takeWallBodies() {
         const std::vector<WallPart> parts = std::move(cut_.parts);
         return ispace::wallBodies(parts, plan_.walls.size() + openings_.size());
@@ -148,7 +150,7 @@ class Builder {
         try {
             enclosure_ = enclosed();
         } catch (const FormatError& error) {
-            // What is left of broken walls need not enclose anything.
+            // Broken walls need not enclose a region.
             if (walls_whole_) findings_.add(withFile(error));
         }
         findings_.throwIfAny();
@@ -169,7 +171,7 @@ class Builder {
         return ispace::enclose(plan_, faces, limits_, elements_, inside_);
     }
 
-    /// What becomes of a record of the room by itself.
+    /// The result of one record alone.
     struct Begun {
         Element element;
         std::vector<WallLine> walls = {};
@@ -281,7 +283,7 @@ void buildInOrder(std::span<const Record> records, std::span<const std::string> 
     builder.enclose();
 }
 
-/// What takes longest, finding what walls enclose, while the shapes of all else are made.
+/// Finds the region enclosed by the walls, the longest task, in parallel to the other shapes.
 /// \throws FormatError if there are findings: some of them
 void buildAtOnce(std::span<const Record> records, std::span<const std::string> ids,
                  Builder& builder) {

@@ -10,7 +10,7 @@
 
 namespace ispace {
 
-/// What an environment is made of.
+/// The parts of an environment.
 struct BuiltRoom {
     std::vector<Element> elements;
     std::vector<Segment2> wall_lines;  ///< welded

@@ -11,7 +11,7 @@ namespace ispace {
 
 struct Body;
 
-/// What stands at one height, or in a band: anywhere between two heights. Seen from above.
+/// The cut through all bodies at one height, or the band between two heights, as seen from above.
 struct Slice {
     double height = 0;             ///< of a band: its lower end
     std::vector<Segment2> sheets;  ///< walls without thickness
@@ -34,7 +34,7 @@ struct Slice {
     [[nodiscard]] std::vector<Segment2> lines() const;
     [[nodiscard]] std::vector<Segment2> straightLines() const;
     [[nodiscard]] std::vector<Ellipse> curves() const;
-    /// True if p lies in a solid or on its edge. O(n); Level answers faster.
+    /// Returns true if p lies in a solid or on its edge. O(n); Level answers faster.
     [[nodiscard]] bool blocked(Point2 p) const;
 };
 
@@ -68,9 +68,9 @@ void Slice::forEachStraightLine(Visit visit) const {
 /// `owner` is entered for each piece.
 void cutMeshes(const Body& body, double height, Slice& out, std::size_t owner = 0);
 
-/// Adds what the body's meshes fill between two heights, ends included, seen from above: the cut at
-/// `bottom`, and the projection of each triangle between the heights: a solid, or a sheet where it
-/// stands upright. `owner` is entered for each. O(triangles). \pre bottom <= top
+/// Adds the projection of the body's meshes between two heights, ends included: the cut at
+/// `bottom`, and each triangle between the heights: a solid, or a sheet if it is upright. Stores
+/// `owner` for each. O(triangles). \pre bottom <= top
 void bandOfMeshes(const Body& body, double bottom, double top, Slice& out, std::size_t owner);
 
 }  // namespace ispace

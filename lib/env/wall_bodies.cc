@@ -101,8 +101,8 @@ class Corner {
         std::sort(levels.begin(), levels.end());
         levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
         if (levels.size() > kMaxLevels) levels = {levels.front(), levels.back()};
-        // What stands between two neighbouring levels makes its own corner; where the next one up
-        // makes the same, it is one mitre.
+        // Bodies between two neighbouring levels make a separate corner; equal ones above merge
+        // into one mitre.
         const std::size_t first = joints_.size();
         for (std::size_t i = 1; i < levels.size(); ++i) {
             std::vector<const End*> standing;
@@ -154,7 +154,7 @@ class Corner {
     std::vector<Joint>& joints_;
 };
 
-/// True if two boxes end face to face without the very same corners.
+/// Returns true if two boxes end face to face without the very same corners.
 bool goOn(const End& s, const End& t) {
     const double half = std::max(distance(s.at, s.left), distance(t.at, t.left));
     return dot(s.direction, t.direction) < 0 &&
@@ -175,7 +175,7 @@ void markMeetings(std::span<const WallPart> parts, std::span<End> ends) {
     }
 }
 
-/// Looks at what meets at each point: marks ends, and returns the mitres.
+/// Marks the ends that meet at each point, and returns the mitres.
 std::vector<Joint> joinEnds(std::span<const WallPart> parts, std::span<End> ends) {
     std::vector<Joint> joints;
     for (std::size_t from = 0, to = 0; from < ends.size(); from = to) {

@@ -172,7 +172,7 @@ std::vector<Segment2> wallLines(const Record& record, Diagnostics& findings) {
 
 namespace {
 
-/// True if each segment has its ends strictly on both sides of the other.
+/// Returns true if each segment has its ends strictly on both sides of the other.
 bool crosses(const Segment2& s, const Segment2& t) {
     if (std::max(s.a.y, s.b.y) < std::min(t.a.y, t.b.y) ||
         std::max(t.a.y, t.b.y) < std::min(s.a.y, s.b.y))
@@ -311,7 +311,7 @@ class CrossingFinder {
         return is_room(i) && is_room(k);
     }
 
-    /// False for lines of one element, and for the walls of equal rooms, however many.
+    /// Returns false for lines of one element, and for the walls of equal rooms, however many.
     [[nodiscard]] bool mayCross(std::size_t i, std::size_t k) const {
         return plan_.owner[i] != plan_.owner[k] &&
                !(plan_.lines[i] == plan_.lines[k] && areRooms(i, k));

@@ -25,11 +25,11 @@ struct WallLine {
     Material material = Material::Wall;
 };
 
-/// True for the records that have wall lines: wall, fence and ispace.
+/// Returns true for the records that have wall lines: wall, fence and ispace.
 bool isWall(const Record& record);
 
-/// The lines of a wall, fence or ispace record, in order. What does not make a wall (no extent,
-/// extent given twice, zero length or height) is a finding.
+/// Computes the lines of a wall, fence or ispace record, in order. Reports missing or doubled
+/// extents and zero lengths or heights as findings.
 std::vector<WallLine> wallLinesOf(const Record& record, Diagnostics& findings);
 
 /// All wall lines of an environment, in the order of its elements.
@@ -76,7 +76,7 @@ struct WallCrossing {
 /// as weld.
 std::vector<WallCrossing> wallCrossings(std::span<const Element> elements, std::size_t most = 1000);
 
-/// A place where two edges of the closed curve cross, or nothing. Edges that only
+/// Finds a point where two edges of the closed curve cross; empty without one. Edges that only
 /// touch or overlap do not cross. Sweeps along x: O(n log n) for short edges, O(n^2) at worst.
 std::optional<Point2> selfCrossing(const Polygon& polygon);
 

@@ -21,7 +21,7 @@ using Index = std::uint32_t;
 
 Mesh meshOf(Material material) { return {material, {}, {}}; }
 
-/// A pyramid that points forward from a rectangle across x, closed.
+/// Adds a closed pyramid that points forward from a rectangle across x.
 void addNose(Mesh& mesh, double from, double to, double half_width, double low, double high) {
     const auto first = static_cast<Index>(mesh.vertices.size());
     for (const double z : {low, high})
@@ -49,7 +49,7 @@ Meshes gateBody(const Scene& scene, const PlacedRecord& placed) {
     const double beside = record.number("width") / 2, height = record.number("height");
     Mesh posts = meshOf(Material::Metal), heads = meshOf(Material::Sensor);
     for (const double side : {-1.0, 1.0}) {
-        // What lies between them is the width.
+        // The width lies between them.
         const auto add = [&](Mesh& mesh, double edge, double low, double high) {
             const double near = side * beside, far = side * (beside + edge);
             addBox(mesh, {-edge / 2, std::min(near, far), low},
@@ -112,7 +112,7 @@ Mesh robotMesh(const RobotModel& model) {
         {is_box ? rectangle(middle, length, width, {}) : ellipse(middle, length, width, {}), 0,
          model.height, Material::Robot});
     Mesh mesh = std::move(meshesOf(body, Surfaces::Drawn).front());
-    // It begins within the body, round or not, and stands out by as much.
+    // It starts within the body, round or not, and protrudes by as much.
     const double nose = std::min(length, width) / 8, front = model.center + length / 2;
     addNose(mesh, front - nose, front + nose, nose, 0.5 * model.height, 0.75 * model.height);
     return mesh;

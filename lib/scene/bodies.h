@@ -10,21 +10,22 @@
 
 namespace ispace {
 
-/// The triangles of what is placed, one mesh a material, in its own frame: x forward, z up, origin
-/// at its pose (a sensor's optical centre, on the floor for the others). All are closed and seen
-/// from outside only. They are drawn, but stop neither rays nor robots.
+/// Returns the triangles of a placed record, one mesh per material, in its own frame: x forward, z
+/// up, origin at its pose (a sensor's optical centre, on the floor for the others). All are closed
+/// and seen from outside only. They are drawn, but stop neither rays nor robots.
 ///
-/// A sensor's is that of its kind; a mat is a thin plate; a gate two posts across its heading with
-/// a head each at the beam's height; a robot is what sensors see of it, with a nose; a human is
-/// humanBodyOf().
+/// A sensor's mesh comes from its kind; a mat is a thin plate; a gate is two posts across its
+/// heading, with a head each at the beam's height; a robot is its visible body with a nose; a
+/// person is humanBodyOf().
 std::vector<Mesh> bodyOf(const Scene& scene, const PlacedRecord& placed);
 
-/// What a placed sensor looks at, as a translucent sheet in its frame, see SensorKind::view; no
-/// farther than the plan is wide, so that a model stays in scale. Nothing for everything else.
+/// Returns the field of view of a placed sensor as a translucent sheet in its frame, see
+/// SensorKind::view. It ends at the width of the plan, so that a model stays in scale. Empty for
+/// all other records.
 std::optional<Mesh> viewOf(const Scene& scene, const PlacedRecord& placed);
 
-/// Body of a robot, centre of rotation on the floor at the origin: the box or cylinder that sensors
-/// see, with a nose.
+/// Builds the mesh of a robot: the box or cylinder that sensors see, with a nose; the centre of
+/// rotation is on the floor at the origin.
 Mesh robotMesh(const RobotModel& model);
 
 /// A closed solid on the floor: an upright box, a ball, or a cylinder with level ends.
@@ -42,25 +43,25 @@ struct BodyPart {
     Material material = Material::Cloth;
 };
 
-/// A person as in the thesis (fig. 5.10), facing +x, standing on the floor at the origin: a ball
-/// for the head, a box for the trunk, cylinders for legs, sleeves and hands. Proportions do not
-/// change with `height`. All sensors meet exactly these solids.
+/// Builds a person as in the thesis (fig. 5.10), facing +x, on the floor at the origin: a ball for
+/// the head, a box for the trunk, cylinders for legs, sleeves and hands. Proportions do not change
+/// with `height`. All sensors meet exactly these solids.
 ///
 /// Walking, the left leg is ahead of the hip by the angle `swing` and the right one behind it; arms
 /// swing the other way. Limbs are slanted, not turned: level cuts stay discs, and the feet stay on
 /// the floor.
 std::vector<BodyPart> humanParts(double height, Angle swing = {});
 
-/// humanParts() of a standing person as triangles, for models: vertices of round parts lie on
-/// their surfaces.
+/// Converts humanParts() of a standing person to triangles, for models. Vertices of round parts lie
+/// on their surfaces.
 std::vector<Mesh> humanBodyOf(double height);
 
-/// How far limbs swing at most (thesis 5.3.1), and how long a stride, two steps, is with that: the
-/// feet stay where they are put down.
+/// Greatest swing of the limbs (thesis 5.3.1), and the length of a stride, two steps, at that
+/// swing: the feet do not slide.
 constexpr double kMaxSwingDegrees = 15;
 double strideOf(double height);
 
-/// Radius of the circle about a person of that height that no thing may reach into.
+/// Returns the radius of the circle about a person of that height that no object may enter.
 double humanRadius(double height);
 
 }  // namespace ispace

@@ -18,13 +18,13 @@ namespace ispace {
 
 namespace {
 
-/// What a device file may hold. A constant, as records point into it.
+/// Returns the schemas of device files. A constant, as records point into it.
 const Schemas& schemasOfDevices() {
     static const Schemas schemas(deviceSchemas());
     return schemas;
 }
 
-/// Parameters must fit each other.
+/// Rejects parameters that contradict each other.
 void checkParameters(const Record& device, Diagnostics& findings) {
     try {
         if (const SensorKind* kind = sensorKind(device.keyword()))

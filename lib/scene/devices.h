@@ -18,13 +18,13 @@ class DeviceCatalogue {
     DeviceCatalogue() = default;
     explicit DeviceCatalogue(std::vector<Record> records) : records_(std::move(records)) {}
 
-    /// The record of a model, or null. Models are unique over all keywords.
+    /// Finds the record of a model; null if unknown. Models are unique over all keywords.
     [[nodiscard]] const Record* find(std::string_view model) const;
-    /// All devices, in catalogue order: by file, then as written.
+    /// Returns all devices in catalogue order: by file, then as written.
     [[nodiscard]] const std::vector<Record>& devices() const { return records_; }
-    /// All model names, in catalogue order.
+    /// Returns all model names in catalogue order.
     [[nodiscard]] std::vector<std::string> models() const;
-    /// Those of one keyword.
+    /// Returns the model names of one keyword.
     [[nodiscard]] std::vector<std::string> models(std::string_view keyword) const;
 
   private:
@@ -35,18 +35,17 @@ class DeviceCatalogue {
 /// \throws FormatError for bad files and doubled models, std::system_error if it cannot be read
 DeviceCatalogue loadDevices(const std::string& folder);
 
-/// The device that `model` of a record names, or null where the record has no model.
+/// Finds the device that `model` of a record names; null if the record has no model.
 /// \throws FormatError for an unknown model (with the nearest name of the record's kind) and for
-///         one of another kind
+/// one of another kind
 const Record* deviceOf(const Record& record, const DeviceCatalogue& devices);
 
-/// The model of a sensor's record. \pre its kind is simulated (SensorKind::read)
+/// Reads the model of a sensor's record. \pre its kind is simulated (SensorKind::read)
 /// \throws FormatError as the kind's and deviceOf
 SensorModel sensorModelOf(const Record& record, const DeviceCatalogue& devices);
 
-/// All devices of sensors for people: a line each with model, kind, name, range, field of view,
-/// beams or pixels, rate and confidence, in columns, with a header line; by kind, then in catalogue
-/// order.
+/// Writes a table of all sensor devices with a header line: model, kind, name, range, field of
+/// view, beams or pixels, rate and confidence in aligned columns; by kind, then in catalogue order.
 std::string deviceTable(const DeviceCatalogue& devices);
 
 }  // namespace ispace

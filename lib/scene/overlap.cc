@@ -31,23 +31,23 @@ Span spanOf(const Polygon& polygon, Vec2 direction) {
     return span;
 }
 
-/// How far two spans reach into each other; the shorter way out where one lies in the other.
+/// Computes the overlap of two spans; the shorter way out if one contains the other.
 double depthAlong(const Polygon& a, const Polygon& b, Vec2 direction) {
     const Span s = spanOf(a, direction), t = spanOf(b, direction);
     return std::min(s.high - t.low, t.high - s.low);
 }
 
 Point2 middleOf(const Polygon& polygon) {
-    // Relative to the first vertex, so that nothing is lost far from the origin.
+    // Relative to the first vertex, to keep precision far from the origin.
     Vec2 sum;
     for (const Point2 p : polygon) sum = sum + (p - polygon.front());
     return polygon.front() + 1 / static_cast<double>(polygon.size()) * sum;
 }
 
-/// The least depth along the normals of the edges of `edges`, or nothing if the two are apart.
+/// Computes the least depth along the normals of the edges of `edges`; empty if the two are apart.
 std::optional<double> leastDepth(const Polygon& edges, const Polygon& a, const Polygon& b,
                                  double least) {
-    // Four walks, as the normals go round: how far each of the two reaches, there and back.
+    // Four calipers, as the normals rotate: the extent of each polygon in both directions.
     Caliper a_there(a), a_back(a), b_there(b), b_back(b);
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const Vec2 side = edges[i + 1 == edges.size() ? 0 : i + 1] - edges[i];
@@ -61,7 +61,7 @@ std::optional<double> leastDepth(const Polygon& edges, const Polygon& a, const P
     return least;
 }
 
-/// The piece of a line that lies deeper than kTouching in a convex polygon.
+/// Clips a line to the part that lies deeper than kTouching in a convex polygon.
 std::optional<Segment2> pieceWithin(const Segment2& line, const Polygon& convex) {
     const Vec2 along = line.b - line.a;
     double from = 0, to = 1;
@@ -83,7 +83,8 @@ std::optional<Segment2> pieceWithin(const Segment2& line, const Polygon& convex)
     return Segment2{line.a + from * along, line.a + to * along};
 }
 
-/// Where along the line (0 .. 1) the polygon's edges meet it, ends included, in order.
+/// Returns the parameters along the line (0 .. 1) where the polygon's edges meet it, ends included,
+/// sorted.
 std::vector<double> meetings(const Segment2& line, const Polygon& polygon) {
     const Vec2 along = line.b - line.a;
     const double square = dot(along, along);
@@ -104,7 +105,7 @@ std::vector<double> meetings(const Segment2& line, const Polygon& polygon) {
     return at;
 }
 
-/// A place beside an edge of `a`, within it, that also lies in `b`: for outlines that coincide.
+/// Finds a point beside an edge of `a`, inside it, that also lies in `b`: for coincident outlines.
 std::optional<Point2> placeBeside(const Polygon& a, const Polygon& b) {
     constexpr double kBeside = 0.01;
     for (std::size_t i = 0; i < a.size() && i < 8; ++i) {
@@ -128,7 +129,7 @@ std::optional<Point2> edgeWithin(const Polygon& a, const Polygon& b) {
 }  // namespace
 
 std::optional<Overlap> overlapOf(const Polygon& a, const Polygon& b) {
-    // Things that are apart mostly are so along the way from one to the other.
+    // Separate elements are mostly separated along the line between their middles.
     const Vec2 way = middleOf(b) - middleOf(a);
     if (length(way) > 0 && depthAlong(a, b, 1 / length(way) * way) <= kTouching)
         return std::nullopt;
@@ -174,7 +175,7 @@ std::optional<Point2> sharedPlace(const Slice& cut, const Polygon& convex) {
         if (place || !meets(bounds(line), box)) return;
         if (const auto piece = pieceWithin(line, convex)) place = middleOf({piece->a, piece->b});
     });
-    // No line of the cut comes into the polygon: it lies wholly in a solid, or outside all.
+    // No line of the cut enters the polygon: it lies wholly in a solid, or outside all.
     const Point2 middle = middleOf(convex);
     if (!place && cut.blocked(middle)) place = middle;
     return place;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/scene only: whether things seen from above reach into each other.
+// Private to lib/scene: overlaps of shapes as seen from above.
 #pragma once
 
 #include <algorithm>
@@ -16,30 +16,30 @@
 
 namespace ispace {
 
-/// Things may reach into each other by this much, in metres: what is written side by side touches
-/// in spite of rounding, as wall ends that are this near are welded.
+/// Permitted overlap in metres: elements written side by side still touch after rounding, as wall
+/// ends this near are welded.
 constexpr double kTouching = 1e-6;
 
-/// How far two things reach into each other, and the middle of what they share.
+/// The overlap of two shapes: its depth and the middle of the shared area.
 struct Overlap {
-    double depth = 0;  ///< the shortest way that parts them, in metres
+    double depth = 0;  ///< the shortest translation that separates them, in metres
     Point2 place;
 };
 
-/// Of two convex polygons; `b` may be a line (two points). Nothing if they touch at most.
-/// O(n + m)
+/// Computes the overlap of two convex polygons; `b` may be a line (two points). Empty if they only
+/// touch. O(n + m)
 std::optional<Overlap> overlapOf(const Polygon& a, const Polygon& b);
 
-/// How far `b` has to move along `direction`, a unit vector, until it is beyond `a`; negative if it
-/// is beyond already.
+/// Returns the distance that `b` must move along `direction`, a unit vector, to lie beyond `a`;
+/// negative if it lies beyond already.
 double penetrationDepth(const Polygon& a, const Polygon& b, Vec2 direction);
 
-/// A place where a line runs within a polygon, not just along its edge; nothing if it does not.
+/// Finds a point where a line runs inside a polygon, not along its edge; empty without one.
 std::optional<Point2> placeWithin(const Segment2& line, const Polygon& polygon);
 
-/// A place that a cut shares with a convex polygon or a line (two points), or nothing.
+/// Finds a point that a cut shares with a convex polygon or a line (two points); empty without one.
 std::optional<Point2> sharedPlace(const Slice& cut, const Polygon& convex);
-/// A place that two cuts share.
+/// Finds a point that two cuts share.
 std::optional<Point2> sharedPlace(const Slice& a, const Slice& b);
 
 /// An upright piece of an element: convex, or a line for a sheet (two points).
@@ -51,10 +51,10 @@ struct Part {
     [[nodiscard]] bool isSheet() const { return footprint.size() == 2; }
 };
 
-/// Heights that two things share.
+/// Heights that two elements share.
 struct HeightRange {
     double bottom = 0, top = 0;
-    /// More than touching.
+    /// Returns true if the range is higher than kTouching.
     [[nodiscard]] bool isShared() const { return top - bottom > kTouching; }
 };
 
@@ -63,13 +63,13 @@ HeightRange sharedHeights(const A& a, const B& b) {
     return {std::max(a.bottom, b.bottom), std::min(a.top, b.top)};
 }
 
-/// The prisms and sheets of all elements, found by place.
+/// The prisms and sheets of all elements, in a spatial index.
 class Parts {
   public:
     explicit Parts(const Environment& environment);
 
     [[nodiscard]] std::span<const Part> of(std::size_t element) const;
-    /// Calls visit(const Part&) for those whose bounds meet the window.
+    /// Calls visit(const Part&) for each part whose bounds meet the window.
     template <typename Visit>
     void search(const Box2& window, Visit visit) const {
         tree_.search(window, [&](std::size_t i) { visit(parts_[i]); });
@@ -91,7 +91,8 @@ class MeshCuts {
     [[nodiscard]] const Box2& box() const { return box_; }
     [[nodiscard]] const HeightRange& heights() const { return heights_; }
     const Slice& at(double height);
-    /// Heights within a range at which to look, few and the same ones for ranges that share them.
+    /// Returns heights within a range at which to cut: few, and the same ones for ranges that share
+    /// them.
     [[nodiscard]] std::vector<double> heightsIn(const HeightRange& heights) const;
 
   private:

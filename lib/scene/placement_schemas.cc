@@ -17,11 +17,10 @@ namespace ispace {
 
 namespace {
 
-/// Above what any robot is or does: metres, metres a second (a second), degrees a second (a
-/// second).
+/// Limits above any robot: metres, metres a second (a second), degrees a second (a second).
 constexpr double kMaxSize = 100, kFastest = 1000, kFastestTurn = 1e5;
 
-/// How motion and odometry stray with simrun --noise.
+/// Adds the keys of motion and odometry errors, for simrun --noise.
 void addStrayKeys(std::vector<KeySpec>& keys) {
     constexpr double kMost = 100;
     const auto alphas = [&](std::string name, std::string help) {
@@ -46,7 +45,7 @@ void addStrayKeys(std::vector<KeySpec>& keys) {
                     .upper = kMost});
 }
 
-/// What a robot feels by itself.
+/// Adds the keys of a robot's contact sensors.
 void addContactKeys(std::vector<KeySpec>& keys) {
     constexpr double kMost = 1000;
     constexpr double kTurn = 360, kMaxCone = 90;
@@ -74,7 +73,8 @@ void addContactKeys(std::vector<KeySpec>& keys) {
          2);
 }
 
-/// Parameters that a model gives too; none has a default, as its absence means "as the model".
+/// Adds the parameters that a model may give; without defaults, as a missing key means "as the
+/// model".
 /// Speeds are lengths and angles a second, with the suffixes of those.
 void addRobotParameters(std::vector<KeySpec>& keys) {
     keys.push_back(positiveKey("radius", Unit::Length,
@@ -125,7 +125,7 @@ void addRobotParameters(std::vector<KeySpec>& keys) {
     addContactKeys(keys);
 }
 
-/// A key of a fixed place on the floor, 0,0 without it.
+/// Creates the key of a fixed point on the floor, 0,0 by default.
 KeySpec floorAtKey(std::string help) {
     return {.name = "at",
             .type = KeyType::Tuple,
@@ -139,7 +139,7 @@ KeySpec floorAtKey(std::string help) {
             .role = Role::Place};
 }
 
-/// Where robots and humans go by themselves.
+/// Adds the keys of autonomous motion.
 void addCourse(std::vector<KeySpec>& keys) {
     keys.push_back({.name = "path",
                     .type = KeyType::TupleList,
@@ -346,7 +346,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
     return pieces;
 }
 
-/// The pieces after the model, each `KEY=VALUE` with its continuations joined again.
+/// Splits the pieces after the model into `KEY=VALUE`, with continuations joined.
 std::vector<std::string> settings(const std::vector<std::string>& pieces) {
     std::vector<std::string> joined;
     for (std::size_t i = 1; i < pieces.size(); ++i) {
@@ -360,7 +360,7 @@ std::vector<std::string> settings(const std::vector<std::string>& pieces) {
     return joined;
 }
 
-/// What `--sensor` can name: devices first, then bare kinds.
+/// Returns the names that `--sensor` accepts: devices first, then bare kinds.
 std::vector<std::string> knownSensors(Kinds kinds, const DeviceCatalogue& devices) {
     std::vector<std::string> known;
     for (const std::string_view kind : kinds)

@@ -14,26 +14,26 @@
 
 namespace ispace {
 
-/// The keywords of what is placed, and environment and result.
+/// Returns the schemas of placement records, `environment` and `result`.
 std::vector<Schema> layoutSchemas();
 
-/// The keywords of device files: the parameters of a laser, ranger, ultrasound, tag or robot
-/// record,
-/// with model, source and confidence required, and without a place.
+/// Returns the schemas of device files: the parameters of a laser, ranger, ultrasound, tag or robot
+/// record. Model, source and confidence are required; a position is rejected.
 std::vector<Schema> deviceSchemas();
 
-/// Every keyword of `.env` and `.3dm`: environmentSchemas() and layoutSchemas(). A constant.
+/// Returns the schema of every keyword of `.env` and `.3dm`: environmentSchemas() and
+/// layoutSchemas(). A constant.
 const Schemas& sceneSchemas();
 
-/// Sensors that are alike, without place.
+/// A group of equal sensors without positions.
 struct SensorSpec {
     Record record;
-    std::optional<int> count;  ///< if it is given
+    std::optional<int> count;  ///< if given
 };
 
-/// Reads `MODEL[,KEY=VALUE…][:COUNT]`: MODEL is a device or a bare kind (`laser`), a piece without
-/// `=` continues the value before it (`range=0.1,4`), COUNT follows the last colon (at most
-/// 10000). `kinds` are the keywords that may be named.
+/// Parses `MODEL[,KEY=VALUE…][:COUNT]`: MODEL is a device or a bare kind (`laser`), a piece without
+/// `=` continues the value before it (`range=0.1,4`), COUNT follows the last colon (at most 10000).
+/// `kinds` lists the permitted keywords.
 /// \throws UsageError with the nearest model or key
 SensorSpec readSensorSpec(const std::string& text, std::span<const std::string_view> kinds,
                           const Schemas& schemas, const DeviceCatalogue& devices);

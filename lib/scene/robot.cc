@@ -45,8 +45,8 @@ void applyBody(RobotModel& model, const Record& record) {
     if (size.size() > 2) model.height = size[2];
 }
 
-/// A speed and the greatest one, in the units of the keys. A written greatest speed lowers a speed
-/// that is not written; written both, they must fit.
+/// A speed and its maximum, in the units of the keys. A written maximum lowers an unwritten speed;
+/// if both are written, the maximum must not be less.
 struct SpeedKeys {
     std::string_view speed, greatest, unit;
 };

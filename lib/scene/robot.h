@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How limbs of people, and sensors that robots and people carry, follow their movement.
+// lib/scene: robots and people as records describe them, and the poses of what they carry.
 #pragma once
 
 #include <array>
@@ -12,34 +12,34 @@
 
 namespace ispace {
 
-/// Share of kMaxSwingDegrees by which a person's limbs swing at a speed, m/s: 1 from half a metre a
-/// second on.
+/// Returns the share of kMaxSwingDegrees by which a person's limbs swing at a speed in m/s: 1 from
+/// 0.5 m/s on.
 double shareOfSwing(double speed);
 
-/// Angle of a walking person's left leg ahead of the hip, as humanParts() takes it. \param phase
-/// share of the stride in [0, 1); the left leg is ahead in its first half \param speed m/s
+/// Computes the angle of a walking person's left leg ahead of the hip, as humanParts() takes it.
+/// \param phase share of the stride in [0, 1); the left leg is ahead in its first half
+/// \param speed m/s
 Angle limbSwing(double phase, double speed);
 
-/// A pose in the frame of a carrier on the floor: mountedPose() undone.
+/// Converts a world pose to the frame of a carrier on the floor: the inverse of mountedPose().
 Pose3 poseOn(const Pose2& carrier, const Pose3& pose);
 
-/// What a robot's wheels let it do.
+/// The motions that a robot's wheels permit.
 enum class Drive {
     Differential,  ///< drive along the heading and turn
     Omni           ///< sideways, too, at the same time
 };
 
-/// How a robot's motion and odometry stray, see lib/sim/odometry.h. All zero: not at all.
+/// Errors of a robot's motion and odometry, see lib/sim/odometry.h. All zero: exact.
 struct MotionNoise {
-    /// Thrun's alpha 1 to 4 of the true motion against what the wheels do, and of what the robot
-    /// counts.
+    /// Thrun's alpha 1 to 4: of the true motion against the wheels' turns, and of the odometry.
     std::array<double, 4> motion{}, odometry{};
     double start_place = 0;  ///< standard deviation of x and of y at the start, metres
     Angle start_heading;     ///< standard deviation of the heading at the start
     friend bool operator==(const MotionNoise&, const MotionNoise&) = default;
 };
 
-/// A part of the rim of a robot that feels what it runs into, counter-clockwise.
+/// A sector of a robot's rim that reports contact, counter-clockwise.
 struct Bumper {
     Angle from, to;  ///< bearings in the robot's frame
     friend bool operator==(const Bumper&, const Bumper&) = default;
@@ -48,7 +48,7 @@ struct Bumper {
 /// The ring of sonars of a robot, all of one kind.
 struct SonarRing {
     std::vector<Pose2> places;              ///< in the robot's frame
-    double min_range = 0.1, max_range = 5;  ///< nearer echoes read as the least
+    double min_range = 0.1, max_range = 5;  ///< nearer echoes return the minimum
     Angle fov = Angle::degrees(15);         ///< full angle of the cone
     friend bool operator==(const SonarRing&, const SonarRing&) = default;
 };
@@ -58,7 +58,7 @@ struct SonarRing {
 /// moves like a Pioneer.
 struct RobotModel {
     std::string model;    ///< "" for the bare robot
-    double radius = 0.3;  ///< of the circle about the centre of rotation that hits things
+    double radius = 0.3;  ///< of the collision circle about the centre of rotation
     /// The body that sensors see: a box of this length and width, without length a cylinder of
     /// `radius`; its middle lies `center` ahead of the centre of rotation.
     double length = 0, width = 0, center = 0;
@@ -77,16 +77,17 @@ struct RobotModel {
     friend bool operator==(const RobotModel&, const RobotModel&) = default;
 };
 
-/// Where a robot or a person goes without being told.
+/// The autonomous motion of a robot or a person.
 struct MotionPlan {
-    std::vector<Point2> path;  ///< places to go to, one after another
-    bool loop = false;         ///< from the last place to the first, again and again
-    double pause = 0;          ///< seconds to stay at each place
-    bool wander = false;       ///< wherever the way is free; with a path once that has ended
+    std::vector<Point2> path;  ///< waypoints, in order
+    bool loop = false;         ///< from the last waypoint to the first, repeatedly
+    double pause = 0;          ///< seconds to stay at each waypoint
+    bool wander = false;       ///< moves at random where the way is free; with a path, after its
+                               ///< end
     friend bool operator==(const MotionPlan&, const MotionPlan&) = default;
 };
 
-/// A robot where it starts.
+/// A robot in its starting pose.
 struct PlacedRobot {
     std::string id;
     RobotModel model;
@@ -95,7 +96,7 @@ struct PlacedRobot {
     MotionPlan course = {};
 };
 
-/// A person where she starts.
+/// A person in the starting pose.
 struct PlacedPerson {
     std::string id;
     double height = 1.7;
@@ -105,21 +106,23 @@ struct PlacedPerson {
     MotionPlan course = {};
 };
 
-/// Parameters of a `robot` record: its explicit keys, else its model's, else the bare robot's.
+/// Reads the parameters of a `robot` record: its explicit keys, else its model's, else the bare
+/// robot's.
 /// \throws FormatError with all findings: an unknown model, a model of another kind, a speed above
-///         its maximum
+/// its maximum
 RobotModel robotOf(const Record& record, const DeviceCatalogue& devices);
 
-/// `base` with the parameters written in a record in place of its own; the model stays. A written
-/// max_speed below the speed of `base` lowers that; the same holds for the turn. One that becomes
-/// omnidirectional goes sideways as fast as forward unless told otherwise.
+/// Returns `base` with the parameters that a record writes; the model stays. A written max_speed
+/// below the speed of `base` lowers that; the same holds for the turn. A robot that becomes
+/// omnidirectional moves sideways as fast as forward unless the record gives another speed.
 /// \throws FormatError as robotOf
 RobotModel withParameters(RobotModel base, const Record& record);
 
-/// Keys of a `robot` or `human` record that say where it goes by itself.
+/// Reads the keys of a `robot` or `human` record that describe its autonomous motion.
 MotionPlan courseOf(const Record& record);
 
-/// Pose of a `robot` record, or of any other with `at` and `heading`; without `at` at 0,0.
+/// Reads the pose of a `robot` record, or of any other with `at` and `heading`; without `at` at
+/// 0,0.
 Pose2 floorPoseOf(const Record& record);
 
 }  // namespace ispace

@@ -25,23 +25,23 @@ namespace ispace {
 
 namespace {
 
-/// Everything in a scene by its id: what `on` of a sensor may mean.
+/// Finds the carrier that `on` of a sensor names, among all ids of a scene.
 class Carriers {
   public:
     Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids);
 
     struct Place {
-        Pose3 pose;  ///< in the world; on a robot where that starts
+        Pose3 pose;  ///< in the world; on a robot in its starting pose
         std::optional<Mount> mount;
         std::optional<std::size_t> person = {};
     };
-    /// Where a sensor with `on` is. \throws FormatError if that names no carrier
+    /// Computes the pose of a sensor with `on`. \throws FormatError if that names no carrier
     [[nodiscard]] Place place(const Record& sensor);
 
   private:
     struct Thing {
         const Record* record;
-        std::size_t index;  // among the robots or the people, if it is one of them
+        std::size_t index;  // among the robots or the people, for a mover
         std::optional<double> top = {};
     };
 
@@ -49,7 +49,7 @@ class Carriers {
     std::vector<std::string> candidates_;  // ids, for hints
 };
 
-/// Furniture, pillars and the like: they have a top, and stand somewhere.
+/// Returns true for furniture, pillars and the like, which have a position and a top.
 bool isObject(const Record& record) {
     const RecordType type = record.schema().type;
     return type == RecordType::Other || type == RecordType::Infra;
@@ -59,7 +59,7 @@ bool isCarrier(const Record& record) {
     return record.keyword() == "robot" || record.keyword() == "human" || isObject(record);
 }
 
-/// Where a sensor on a person is that has no height of its own: at the eyes.
+/// Height of a sensor on a person without a written height: the eyes, as a share of the person.
 constexpr double kEyes = 0.94;
 
 Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids) {
@@ -101,7 +101,7 @@ Carriers::Place Carriers::place(const Record& sensor) {
 
 bool isMeta(const Record& record) { return record.schema().type == RecordType::Meta; }
 
-/// What is placed, and the sensors that are not.
+/// The posed records, and the sensors to be placed.
 struct Placements {
     std::vector<Sensor> sensors;
     std::vector<PendingSensor> pending;
@@ -154,7 +154,7 @@ class Resolver {
         }
     }
 
-    /// One that has its place, or waits for it.
+    /// Adds a sensor, with a pose or pending.
     void addSensor(std::size_t i, const SensorKind& kind) {
         const Record& record = records_[i];
         SensorModel model = kind.read(record, deviceOf(record, devices_));
@@ -168,7 +168,7 @@ class Resolver {
             {ids_[i], std::move(model), place->pose, place->mount, place->person});
     }
 
-    /// Of a sensor; nothing if it is still to be placed.
+    /// Computes the pose of a sensor; empty if it is pending.
     std::optional<Carriers::Place> placeOf(const Record& sensor) {
         if (sensor.has("on")) return carriers_.place(sensor);
         if (sensor.has("at")) return Carriers::Place{poseOf(sensor), std::nullopt};
@@ -182,7 +182,7 @@ class Resolver {
     Placements out_;
 };
 
-/// Throws what is wrong with the room together with the findings about sensors.
+/// Builds the environment; reports its errors together with the findings about sensors.
 Environment makeEnvironment(const std::vector<Record>& records, const std::vector<std::string>& ids,
                             Diagnostics& findings) {
     std::optional<Environment> environment;
@@ -195,7 +195,7 @@ Environment makeEnvironment(const std::vector<Record>& records, const std::vecto
     return std::move(*environment);
 }
 
-/// True if all records of the room are the same, with the same ids and files.
+/// Returns true if all records of the room are equal, with the same ids and files.
 bool isSameRoom(const Scene& before, const std::vector<Record>& records,
                 const std::vector<std::string>& ids) {
     const auto next = [](const std::vector<Record>& all, std::size_t i) {
@@ -212,7 +212,7 @@ bool isSameRoom(const Scene& before, const std::vector<Record>& records,
     return i == before.records.size() && j == records.size();
 }
 
-/// The scene of records without those that are meta, but for `records` and `digest`.
+/// Builds a scene from records without meta records, except for `records` and `digest`.
 Scene sceneOf(const std::vector<Record>& records, const Scene* before,
               const DeviceCatalogue& devices) {
     std::vector<std::string> ids = assignIds(records);
@@ -236,7 +236,7 @@ Scene sceneOf(const std::vector<Record>& records, const Scene* before,
 std::vector<Record> joinRecords(const std::vector<Record>& environment,
                                 const std::vector<Record>& layout) {
     std::vector<Record> joined = environment;
-    // Where the first of the environment with an id of the layout is, which has few.
+    // Index of the first environment record with an id of the layout, which has few.
     constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
     std::unordered_map<std::string, std::size_t> places;
     for (const Record& record : layout)
@@ -333,7 +333,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t";
 
-/// Takes the first word of a text.
+/// Removes and returns the first word of a text.
 std::string_view takeWord(std::string_view& rest) {
     rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
     const std::string_view word = rest.substr(0, rest.find_first_of(kBlanks));
@@ -342,7 +342,7 @@ std::string_view takeWord(std::string_view& rest) {
     return word;
 }
 
-/// True if the edit says anew where what it names is.
+/// Returns true if the edit sets the position or heading of its record.
 bool places(const Edit& edit, const Record& record) {
     if (edit.kind != Edit::Kind::Set) return false;
     const KeySpec* const key = record.schema().find(edit.key);

@@ -19,44 +19,45 @@
 
 namespace ispace {
 
-/// A sensor that still has to be placed.
+/// A sensor without a position.
 struct PendingSensor {
     std::string id;
     Record record;
     SensorModel model;
 };
 
-/// A placement record that has its place: a sensor, a tag, a mat, a gate, a robot, a person.
+/// A placement record with a pose: a sensor, a tag, a mat, a gate, a robot, a person.
 struct PlacedRecord {
     std::size_t record = 0;  ///< index in Scene::records
-    Pose3 pose;              ///< in the world, where it starts; on the floor but for sensors
-    /// Of a sensor in Scene::sensors, of a robot in Scene::robots, of a person in Scene::people.
+    Pose3 pose;              ///< in the world, at the start; on the floor except for sensors
+    /// Index in Scene::sensors, Scene::robots or Scene::people.
     std::size_t index = 0;
     std::optional<Mount> mount = {};  ///< of a sensor on a robot
 };
 
-/// Environment and layout, joined and resolved: what the tools read.
+/// Environment and layout, joined and resolved, as the tools read them.
 ///
-/// A LAYOUT record replaces the ENV record of the same written id, in its place; others follow.
+/// A LAYOUT record replaces the ENV record of the same written id in the sequence; others follow.
 struct Scene {
     std::vector<Record> records;         ///< joined, without `environment` and `result`
     std::vector<std::string> ids;        ///< of each record
     Environment environment;             ///< of the joined records
-    std::vector<Sensor> sensors;         ///< with a place, or on what has one, in order
-    std::vector<PendingSensor> pending;  ///< those without a place that arrange can place, in order
+    std::vector<Sensor> sensors;         ///< with a pose or a carrier, in order
+    std::vector<PendingSensor> pending;  ///< sensors that arrange is to place, in order
     std::vector<PlacedRobot> robots;     ///< in order
     std::vector<PlacedPerson> people;    ///< in order
-    std::vector<PlacedRecord> placed;    ///< all of them and everything else with a place, in order
-    /// digest() where layout or edits changed what it is of; else "".
+    std::vector<PlacedRecord> placed;    ///< all of these and all other posed records, in order
+    /// The digest() of the environment before layout or edits changed it; else "".
     std::string digest_of_other = {};
 
-    /// Of ENV alone, see environmentDigest(). Computed when it is first asked for; thread-safe.
+    /// Returns the digest of ENV alone, see environmentDigest(). Computed on the first call;
+    /// thread-safe.
     [[nodiscard]] const std::string& digest() const {
         return digest_of_other.empty() ? environment.digest() : digest_of_other;
     }
 };
 
-/// The placed sensors whose model is of this type, in order.
+/// Returns the placed sensors whose model has this type, in order.
 template <typename Model>
 std::vector<Sensor> sensorsOf(const Scene& scene) {
     std::vector<Sensor> found;
@@ -65,22 +66,23 @@ std::vector<Sensor> sensorsOf(const Scene& scene) {
     return found;
 }
 
-/// The records of LAYOUT put in the places of those of ENV with the same written id, the others
-/// behind them. \throws FormatError for one of another keyword in the place
+/// Merges LAYOUT into ENV: each record replaces the one with the same written id, the others
+/// follow. \throws FormatError if the replaced record has another keyword
 std::vector<Record> joinRecords(const std::vector<Record>& environment,
                                 const std::vector<Record>& layout);
 
-/// \param before another scene, whose room is shared if none of its records differ; may be null
-/// \throws FormatError as Environment does, for unknown models, and for sensors on what carries
-///         none
+/// Builds a scene. \param before another scene, whose room is shared if its records are equal; may
+/// be null
+/// \throws FormatError as Environment does, for unknown models, and for `on` without a valid
+/// carrier
 Scene makeScene(const Document& environment, const Document* layout, const DeviceCatalogue& devices,
                 const Scene* before = nullptr);
 
-/// The scene of changed records. The room of `before` is shared if none of its records differ; the
-/// digest stays. \throws FormatError as above
+/// Builds the scene of changed records. The room of `before` is shared if its records are equal;
+/// the digest stays. \throws FormatError as above
 Scene makeScene(std::vector<Record> records, const Scene& before, const DeviceCatalogue& devices);
 
-/// What a LAYOUT says about its ENV, if it does.
+/// The reference of a LAYOUT to its ENV, if any.
 struct EnvironmentReference {
     std::string file;    ///< relative to the LAYOUT's folder; "" if not given
     std::string digest;  ///< "" if not given
@@ -88,46 +90,45 @@ struct EnvironmentReference {
 };
 std::optional<EnvironmentReference> environmentReference(const Document& layout);
 
-/// What a tool does not do yet with a keyword or a key, in one phrase: "`camera` is not simulated
-/// yet, left out: c1, c2, c3 and 4 more".
+/// Writes a message about an unsupported keyword or key: "`camera` is not simulated yet, left out:
+/// c1, c2, c3 and 4 more".
 std::string leftOutText(std::string_view name, std::string_view done,
                         const std::vector<std::string>& ids);
 
-/// Such a phrase for each of these keywords that the scene has a record of, with a place or
-/// without. \param done what does not become of it: "simulated", "measured" \param is_meant tells
-/// of an index in Scene::records whether it counts; all do without it
+/// Returns such a message for each of these keywords that has records in the scene, posed or not.
+/// \param done the missing operation: "simulated", "measured"
+/// \param is_meant selects indices in Scene::records; all if unset
 std::vector<std::string> leftOut(const Scene& scene, std::span<const std::string_view> keywords,
                                  std::string_view done,
                                  const std::function<bool(std::size_t)>& is_meant = {});
 
-/// The edits that a request for a change of a world asks for: `SET ID.KEY=VALUE`, `ADD RECORD`,
-/// `DELETE ID…`. \throws UsageError, FormatError as parseEdit, UsageError for another request
+/// Parses a client's request for edits: `SET ID.KEY=VALUE`, `ADD RECORD`, `DELETE ID…`. \throws
+/// FormatError as parseEdit, UsageError for another request
 std::vector<Edit> parseEdits(std::string_view request);
 
-/// True if an edit is about this id. \pre it does not add
+/// Returns true if an edit changes this id. \pre it does not add
 bool isAbout(const Edit& edit, const std::string& id);
 
-/// The key of a record that names a file; null if none does.
+/// Returns the key of a record that names a file; null without one.
 const char* fileKeyOf(const Record& record);
 
-/// True if records that these edits are about, or have added, name files. \param scene as they left
-/// it
+/// Returns true if records that these edits change or add name files. \param scene after the edits
 bool touchFiles(const std::vector<Edit>& edits, const Scene& scene);
 
-/// Where robots and people are now, by id; nothing for those who are not known.
+/// Returns the current pose of a robot or a person by id; empty for unknown ids.
 using MoverPlaces = std::function<std::optional<Pose2>(const std::string& id)>;
 
-/// The records of a scene after these edits. Robots and people whose place or heading is set are
-/// where they are now but for that. \throws FormatError as edited()
+/// Returns the records of a scene after these edits. Movers whose position or heading is set keep
+/// the other part of their current pose. \throws FormatError as edited()
 std::vector<Record> editedRecords(const Scene& scene, const std::vector<Edit>& edits,
                                   const MoverPlaces& where);
 
-/// Records that editedRecords() made earlier, with robots and people whose place or heading is set
-/// where they are now but for that. \param ids of the records
+/// Updates records that editedRecords() returned earlier to the current poses, by the same rule.
+/// \param ids of the records
 void placeAgain(std::vector<Record>& records, std::span<const std::string> ids,
                 const std::vector<Edit>& edits, const MoverPlaces& where);
 
-/// Ids of those whom these edits put somewhere, where they may stand already.
+/// Returns the ids of the movers whose poses these edits set, even to the current ones.
 std::vector<std::string> placedBy(const std::vector<Edit>& edits, const Scene& scene);
 
 }  // namespace ispace

@@ -19,7 +19,7 @@ Box2 boxAbout(Point2 center, double radius) {
     return {center - margin, center + margin};
 }
 
-/// The place of a polygon or line nearest to p.
+/// Returns the point of a polygon or line nearest to p.
 Point2 nearestOf(const Polygon& polygon, Point2 p) {
     Point2 best = polygon.front();
     forEachEdge(polygon, [&](const Segment2& edge) {

@@ -10,7 +10,7 @@ namespace ispace {
 
 namespace {
 
-/// Directions that are tried when something has to move: normals of at most this many edges.
+/// Limit of the separating directions tested: normals of at most this many edges.
 constexpr std::size_t kDirections = 32;
 
 void addDirections(const Polygon& polygon, std::vector<Vec2>& out) {
@@ -27,7 +27,7 @@ void addDirections(const Polygon& polygon, std::vector<Vec2>& out) {
 /// A pair of parts with heights in common.
 using PartPair = std::pair<const Part*, const Part*>;
 
-/// The shortest way on which the second parts come beyond the first ones.
+/// Computes the shortest translation that moves the second parts beyond the first ones.
 double wayApart(const std::vector<PartPair>& pairs, const PartPair& deepest) {
     std::vector<Vec2> directions;
     addDirections(deepest.first->footprint, directions);
@@ -173,7 +173,7 @@ std::optional<ThingCheck::Shared> ThingCheck::shared(std::size_t a, std::size_t 
 }
 
 std::optional<ThingCheck::Shared> ThingCheck::sharedParts(std::size_t a, std::size_t b) const {
-    // Those that overlap tell how far to go for things that are built of very many parts.
+    // For elements of very many parts, only overlapping pairs determine the translation.
     constexpr std::size_t kMaxPairs = 400;
     const auto parts_a = context_->parts().of(a);
     const bool is_wall = !context_->isObject(b);
@@ -222,7 +222,7 @@ void ThingCheck::checkInRoom(std::size_t element, bool in_wall,
                              std::vector<Finding>& findings) const {
     std::optional<Point2> out, in;
     const auto look = [&](const Box2& box, const auto& points, const auto& on_floor) {
-        // Away from the walls one point tells of all.
+        // Away from the walls one point decides for all.
         bool near = false;
         context_->indoor.edgesIn(box, [&near](const Segment2& /*edge*/) { near = true; });
         for (const auto& point : points) {

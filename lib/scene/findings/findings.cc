@@ -30,13 +30,13 @@ WallPlan planOf(const std::vector<Element>& elements, Diagnostics& ignored) {
     return plan;
 }
 
-/// A wall line and how far off it is.
+/// A wall line and its distance.
 struct Behind {
     std::size_t line;
     double distance;
 };
 
-/// The first wall line that the way from `from` in this direction meets, beyond `least`.
+/// Finds the first wall line that the way from `from` in this direction meets, beyond `least`.
 std::optional<Behind> wallBehind(const WallPlan& plan, Point2 from, Vec2 direction, double least) {
     std::optional<Behind> nearest;
     for (std::size_t i = 0; i < plan.lines.size(); ++i) {
@@ -52,12 +52,12 @@ std::optional<Behind> wallBehind(const WallPlan& plan, Point2 from, Vec2 directi
     return nearest;
 }
 
-/// Adds the open doors that lead out of the room into a wall close behind, as between two rooms
-/// whose walls stand apart. O(doors x walls).
+/// Reports open doors that lead out of the room into a wall close behind, as between two rooms with
+/// separate walls. O(doors x walls).
 void addBlockedDoors(const CheckContext& context, std::multimap<std::size_t, Finding>& found) {
     const Environment& environment = context.scene.environment;
     const std::vector<Element>& elements = environment.elements();
-    Diagnostics ignored;  // the environment would not be there with any
+    Diagnostics ignored;  // the environment would not exist with errors
     const WallPlan plan = planOf(elements, ignored);
     for (const Opening& door : placeOpenings(elements, plan, ignored)) {
         if (!door.passage) continue;
@@ -85,7 +85,7 @@ void addBlockedDoors(const CheckContext& context, std::multimap<std::size_t, Fin
     }
 }
 
-/// An end of a wall this near to another was meant to meet it, in metres.
+/// An end of a wall this near to another is reported as a gap, in metres.
 constexpr double kLooseReach = 0.2;
 
 void checkWalls(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
@@ -149,7 +149,7 @@ void checkLooseEnds(CheckContext& context, std::size_t record, std::vector<Findi
     for (const Closing& gap : closings(lines, {}, kLooseReach)) {
         const Point2 middle = gap.line.a + 0.5 * (gap.line.b - gap.line.a);
         if (context.indoor.locate(middle) != Side::Inside) continue;
-        if (!narrowest) narrowest = gap;  // they come by width
+        if (!narrowest) narrowest = gap;  // they are sorted by width
         for (const Point2 p : {gap.line.a, gap.line.b}) {
             const auto found = meeting.find({p.x, p.y});
             if (found != meeting.end() && found->second == 1) ends.insert(found->first);

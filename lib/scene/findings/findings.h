@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The checks of a scene: one list, which every tool asks, so that all print the same sentences.
-// Inside lib/scene only: the parts of checkScene.
+// Private to lib/scene: the checks of a scene, one list for all tools, so that all report the same
+// findings.
 #pragma once
 
 #include <cstddef>
@@ -27,14 +27,14 @@ namespace ispace {
 struct Finding {
     Severity severity = Severity::Warning;
     std::string element = {};  ///< its id; "" for the scene as a whole
-    Point2 at = {};  ///< in the world frame; of no meaning where `message` names no position
+    Point2 at = {};            ///< in the world frame; undefined if `message` names no position
     std::string message = {};  ///< "laser l stands outside the room at (9.0, 3.0)"
     std::string hint = {};     ///< "move it in"
     Place source = {};         ///< of the element's record
 
-    /// Message and hint in one sentence.
+    /// Returns message and hint in one sentence.
     [[nodiscard]] std::string text() const { return message + "; " + hint; }
-    /// The sentence with its file, line and column.
+    /// Returns the sentence with its file, line and column.
     [[nodiscard]] Diagnostic diagnostic() const;
 };
 
@@ -64,25 +64,25 @@ struct SceneCheck {
 /// - loose ends: ends of walls in the room less than 0.2 m before another wall.
 std::span<const SceneCheck> sceneChecks();
 
-/// The findings to look for; by default all.
+/// Selects findings; by default all.
 struct FindingFilter {
     /// Names of the checks to run; empty: all.
     std::vector<std::string_view> checks = {};
-    /// True for the ids of the records to check; unset: all.
+    /// Returns true for the ids of the records to check; unset: all.
     std::function<bool(const std::string& id)> ids = {};
 };
 
-/// Checks the scene, record by record: findings in the order of the records, one for each pair of
-/// elements. Ends with the record that brings them to Diagnostics::kMax. O(n log n) for n elements
-/// that stand beside each other.
+/// Checks the scene and returns the findings in the order of the records, one for each pair of
+/// elements. Stops after the record that brings them to Diagnostics::kMax. O(n log n) for n
+/// elements side by side.
 std::vector<Finding> checkScene(const Scene& scene, const FindingFilter& filter = {});
 
-/// The findings that a tool prints before it goes on, as warnings, at most Diagnostics::kMax.
+/// Returns the findings that a tool reports as warnings before it runs, at most Diagnostics::kMax.
 std::vector<Diagnostic> sceneWarnings(const Scene& scene, const FindingFilter& filter);
 
 struct CheckContext;
 
-/// Objects and zones: what they share with others, and whether they are in the room.
+/// Checks objects and zones for overlaps with other elements and for positions outside the room.
 class ThingCheck {
   public:
     explicit ThingCheck(CheckContext& context) : context_(&context) {}
@@ -97,7 +97,7 @@ class ThingCheck {
 
     void checkInRoom(std::size_t element, bool in_wall, std::vector<Finding>& findings) const;
     [[nodiscard]] bool isPartOfBuilding(std::size_t element) const;
-    /// The elements after this one, and walls, that may share space with it; ascending.
+    /// Returns the elements after this one, and walls, that may overlap it; ascending.
     [[nodiscard]] std::vector<std::size_t> neighbours(std::size_t element) const;
     std::optional<Shared> shared(std::size_t a, std::size_t b);
     [[nodiscard]] std::optional<Shared> sharedParts(std::size_t a, std::size_t b) const;
@@ -107,7 +107,7 @@ class ThingCheck {
     CheckContext* context_;
 };
 
-/// Robots and people as circles that stand in objects or in each other.
+/// Finds robots and people, as circles, that stand in objects or in each other.
 class CircleCheck {
   public:
     explicit CircleCheck(CheckContext& context);
@@ -123,7 +123,7 @@ class CircleCheck {
         Point2 place;
         double way;
     };
-    /// What the meshes of an element fill below a height.
+    /// The solids of an element's meshes below a height.
     struct MeshBand {
         Slice band;
         BoxTree solids, sheets;
@@ -138,30 +138,30 @@ class CircleCheck {
     std::map<std::pair<std::size_t, double>, MeshBand> bands_;
 };
 
-/// The scene under check and the derived data that several checks share, made when first needed.
+/// The scene under check and derived data that several checks share, computed on demand.
 struct CheckContext {
     explicit CheckContext(const Scene& from);
 
     [[nodiscard]] const Element& element(std::size_t i) const {
         return scene.environment.elements()[i];
     }
-    /// Outside the room, and farther from its walls than touching.
+    /// Returns true if p is outside the room by more than kTouching.
     [[nodiscard]] bool isOut(Point2 p) const { return !indoor.isWithin(p, kTouching); }
-    /// Furniture, pillars, ceiling frames, meshes.
+    /// Returns true for furniture, pillars, ceiling frames and meshes.
     [[nodiscard]] bool isObject(std::size_t element) const;
-    /// "desk d1", or the id alone where that is keyword and number.
+    /// Returns "desk d1", or the id alone if it consists of keyword and number.
     [[nodiscard]] std::string name(std::size_t record) const;
     [[nodiscard]] std::string elementName(std::size_t element) const;
-    /// A finding about a record, its name before the message.
+    /// Creates a finding about a record; its name precedes the message.
     [[nodiscard]] Finding finding(std::size_t record, Severity severity, Point2 at,
                                   const std::string& message, std::string hint) const;
-    /// A warning about an element.
+    /// Creates a warning about an element.
     [[nodiscard]] Finding warning(std::size_t element, Point2 at, const std::string& message,
                                   std::string hint) const;
 
     const Parts& parts();
     std::map<std::size_t, MeshCuts>& meshes();  ///< by element
-    /// The findings about walls and doors, by element.
+    /// Returns the findings about walls and doors, by element.
     const std::multimap<std::size_t, Finding>& walls();
     CircleCheck& circles();
 
@@ -178,10 +178,10 @@ struct CheckContext {
     std::optional<CircleCheck> circles_;
 };
 
-/// "0.12 m", rounded up.
+/// Writes a distance rounded up, "0.12 m".
 std::string distanceText(double way);
 
-/// Findings of walls that cross and of open doors that lead into a wall.
+/// Finds walls that cross and open doors that lead into a wall.
 std::multimap<std::size_t, Finding> wallFindings(const CheckContext& context);
 
 void checkLooseEnds(CheckContext& context, std::size_t record, std::vector<Finding>& findings);
@@ -190,7 +190,7 @@ void checkOutside(CheckContext& context, std::size_t record, std::vector<Finding
 void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>& findings);
 void checkPath(CheckContext& context, std::size_t record, std::vector<Finding>& findings);
 
-/// True once a scene has as many findings as are reported.
+/// Returns true once a scene has as many findings as are reported.
 inline bool isFull(const std::vector<Finding>& findings) {
     return findings.size() >= Diagnostics::kMax;
 }

@@ -51,7 +51,7 @@ void BumperFile::read(double time, std::vector<RunBumpers>& bumpers) {
 
 namespace {
 
-/// Of a rest of a line of CSV: the next field, which may be quoted.
+/// Removes the next field, which may be quoted, from the rest of a CSV line.
 std::string takeField(std::string_view& rest) {
     std::string field;
     if (!rest.starts_with('"')) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/scene: tables of a record, line by line.
-// Private to lib/scene: a table of a record that has a row whenever something changes.
+// Private to lib/scene: the tables of a recorded run that have a row for each change.
 #pragma once
 
 #include <cstddef>
@@ -19,10 +18,10 @@
 
 namespace ispace {
 
-/// Bytes of a line of a table.
+/// Longest line of a table in bytes.
 constexpr std::size_t kLongestLine = 16384;
 
-/// Lines of a file or a text, read piece by piece. One without its end is none.
+/// Reads the lines of a file or a text in blocks. A line without its end is not returned.
 class LineSource {
   public:
     explicit LineSource(std::optional<InputFile> file, std::string text)
@@ -46,31 +45,31 @@ class LineSource {
         }
     }
     [[nodiscard]] int number() const { return number_; }
-    /// At the end: the last line lacks its own.
+    /// At the end: true if the last line lacks its line break.
     [[nodiscard]] bool isCut() const { return begin_ < bytes_.size(); }
     [[nodiscard]] bool isTooLong() const { return is_too_long_; }
 
   private:
     std::optional<InputFile> file_;
     std::string bytes_;
-    std::size_t begin_ = 0, searched_ = 0;  // of the rest; where no line ends before
+    std::size_t begin_ = 0, searched_ = 0;  // of the rest; no line ends before
     int number_ = 0;
     bool is_too_long_ = false;
 };
 
-/// The lines of a table of a record. \throws as InputFile, for anything but a regular file, too
+/// Opens a table of a record. \throws as InputFile, also for anything but a regular file
 inline LineSource tableOf(const std::string& file) {
     return LineSource(InputFile(file, InputKind::Regular), "");
 }
 
-/// A time of a run, in seconds: from 0 to 4e9, beyond the hundred years of the longest run.
+/// Parses a time of a run, in seconds: from 0 to 4e9, beyond the hundred years of the longest run.
 inline std::optional<double> parseRunTime(std::string_view text) {
     constexpr double kLongest = 4e9;
     const std::optional<double> time = parseDouble(text);
     return time && *time >= 0 && *time <= kLongest ? time : std::nullopt;
 }
 
-/// Fields of a line without quotes.
+/// Splits a line without quotes into its fields.
 inline void splitFields(std::string_view line, std::vector<std::string_view>& fields) {
     fields.clear();
     for (;;) {
@@ -81,12 +80,13 @@ inline void splitFields(std::string_view line, std::vector<std::string_view>& fi
     }
 }
 
-/// What robots' bumpers felt in a run, t,id,hit, where hit is 0 or 1 of each, with semicolons.
+/// Reads the bumper contacts of a run: t,id,hit, where hit has 0 or 1 for each bumper, with
+/// semicolons.
 class BumperFile {
   public:
     /// \throws FormatError for other columns, and as read()
     BumperFile(std::string name, LineSource lines);
-    /// Appends the rows up to a time that were not read yet. \throws FormatError with the line
+    /// Appends the unread rows up to a time. \throws FormatError with the line
     void read(double time, std::vector<RunBumpers>& bumpers);
 
   private:
@@ -100,50 +100,50 @@ class BumperFile {
     std::optional<RunBumpers> row_;  // read ahead
 };
 
-/// A change that clients made to the world of a run, a row of events.csv.
+/// A change of a run's world by a client, a row of events.csv.
 struct RunChange {
     double time = 0;         ///< seconds: of the step after which it was made
     std::string text = {};   ///< the request
-    std::string scene = {};  ///< file that holds the scene after it; "" if the text says all
+    std::string scene = {};  ///< file that holds the scene after it; "" if the text is sufficient
     int line = 0;            ///< of events.csv
 };
 
-/// All changes of a run, in order; none without events.csv. \throws FormatError if that holds no
-/// events
+/// Reads all changes of a run, in order; empty without events.csv. \throws FormatError if that
+/// holds no events
 std::vector<RunChange> recordedChanges(const std::string& folder);
 
-/// Makes the changes of a recorded run once more. What cannot be made, as in another scene than
-/// that of the record, is left out.
+/// Repeats the changes of a recorded run. A change that fails, as in a scene other than the
+/// recorded one, is skipped.
 class RunChanges {
   public:
     /// Reads a scene of the record.
     using ReadScene = std::function<Scene(const std::string& file)>;
-    /// \param start where the run begins, and where RESET leads
+    /// \param start the scene at the start of the run, which RESET restores
     RunChanges(const std::string& folder, Scene start, DeviceCatalogue devices, ReadScene read);
 
-    /// A change as it is made.
+    /// A repeated change.
     struct Step {
         Scene scene;                      ///< after it
-        bool restarts = false;            ///< RESET and LOAD: everybody begins anew
-        std::vector<std::string> placed;  ///< ids of those who were put where the scene has them
+        bool restarts = false;            ///< RESET and LOAD: all movers restart
+        std::vector<std::string> placed;  ///< ids of the movers that take the scene's poses
     };
     [[nodiscard]] bool empty() const { return changes_.empty(); }
-    /// True if there is a change before a time.
+    /// Returns true if there is a change before a time.
     [[nodiscard]] bool isDue(double before) const;
-    /// The next change before a time; nothing if all are made. \param now the scene before it
+    /// Returns the next change before a time; empty after the last. \param now the scene before it
     std::optional<Step> next(double before, const Scene& now, const MoverPlaces& places);
-    /// Begins anew.
+    /// Restarts at the first change.
     void rewind();
-    /// The step that next() gave last cannot be made. \param why the error's text
+    /// Reports that the step which next() returned last failed. \param why the error's text
     void refuse(const std::string& why);
-    /// What became of the first that could not be made: "run/events.csv:7: …"; "" if all could.
+    /// Returns the message of the first failed change, "run/events.csv:7: …"; "" if all succeeded.
     [[nodiscard]] const std::string& failure() const { return failure_; }
 
   private:
     [[nodiscard]] Step stepOf(const RunChange& change, const Scene& now, const MoverPlaces& places);
 
     std::string folder_;
-    std::shared_ptr<const Scene> first_, start_;  // of the run; where RESET leads
+    std::shared_ptr<const Scene> first_, start_;  // of the run; restored by RESET
     DeviceCatalogue devices_;
     ReadScene read_;
     std::vector<RunChange> changes_;

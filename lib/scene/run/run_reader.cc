@@ -48,7 +48,7 @@ std::string fileOfRecord(const std::string& folder, const std::string& name) {
 
 std::string sceneOfRecord(const std::string& folder) {
     const char* const name = "scene.env";
-    // A link to a pipe is there, too.
+    // Reports links to pipes as existing, too.
     return std::filesystem::exists(
                std::filesystem::symlink_status(std::filesystem::path(folder) / name))
                ? fileOfRecord(folder, name)
@@ -87,7 +87,7 @@ std::optional<RunInfo> recordedInfo(const std::string& folder) {
 
 namespace {
 
-/// Columns, the needed ones first and in this order; others may be anywhere behind them or missing.
+/// Columns: the required ones first and in this order; others may follow anywhere or be missing.
 constexpr std::array<std::string_view, 12> kColumns = {
     "t",     "id",           "x",     "y",     "heading_deg", "speed", "rotspeed_deg",
     "accel", "rotaccel_deg", "stall", "phase", "sidespeed"};
@@ -107,25 +107,25 @@ enum Column {
     kSidespeed
 };
 
-/// The moments of one file.
+/// Reads the moments of one file.
 class MomentFile {
   public:
-    /// Members are added to `who`, which outlives it.
+    /// Members are added to `who`, which must outlive the reader.
     MomentFile(std::string name, LineSource lines, bool is_people, std::vector<RunMember>& who)
         : name_(std::move(name)), lines_(std::move(lines)), is_people_(is_people), who_(&who) {
         readHeader();
         readLine();
     }
 
-    /// Where the next moment begins; nothing at the end.
+    /// Returns the time of the next moment; empty at the end.
     [[nodiscard]] std::optional<double> upcoming() const {
         return row_ ? std::optional(row_->time) : std::nullopt;
     }
-    /// Appends its states. False if it is the last one and not whole. \pre there is one
+    /// Appends its states. Returns false for an incomplete last moment. \pre there is one
     bool read(std::vector<RunState>& states);
 
     [[nodiscard]] bool isCut() const { return is_cut_; }
-    /// Members come and go: a last moment with fewer than before may be whole.
+    /// Permits a last moment with fewer members than before: members may leave.
     void letGo() { may_lack_ = true; }
     [[nodiscard]] const std::string& name() const { return name_; }
     [[noreturn]] void fail(const std::string& what) const {
@@ -240,7 +240,7 @@ bool MomentFile::read(std::vector<RunState>& states) {
     return is_whole;
 }
 
-/// The collisions of a table of events, t,kind,id,other,…, or what else is of one kind.
+/// Reads the collisions of a table of events, t,kind,id,other,…, or the events of another kind.
 class EventFile {
   public:
     EventFile(std::string name, LineSource lines, std::string_view kind = "collision")
@@ -251,11 +251,11 @@ class EventFile {
         readLine();
     }
 
-    /// When the next one is.
+    /// Returns the time of the next event.
     [[nodiscard]] std::optional<double> upcoming() const {
         return row_ ? std::optional(row_->first) : std::nullopt;
     }
-    /// Those up to a time that were not read yet.
+    /// Appends the unread events up to a time.
     void read(double time, std::vector<RunCollision>& collisions) {
         for (; row_ && row_->first <= time; readLine())
             collisions.push_back(std::move(row_->second));
@@ -298,21 +298,21 @@ struct RunReader::Data {
         odometry.emplace(name, std::move(lines), false, believers);
         if (!odometry->upcoming()) odometry.reset();
     }
-    /// The world was changed: there may be moments without robots, or without people.
+    /// The world changed: moments may lack robots or people.
     void letGo(double last) {
         end = last;
         for (MomentFile& file : files) file.letGo();
         if (odometry) odometry->letGo();
     }
     [[nodiscard]] bool readOdometry();
-    /// When the next moment is; nothing at the end.
+    /// Returns the time of the next moment; empty at the end.
     [[nodiscard]] std::optional<double> upcoming();
 
     std::string name;
     std::vector<RunMember> who;
     std::vector<MomentFile> files;
     std::optional<EventFile> events;
-    // Rows of the robots of `files`, by members of its own.
+    // The odometry rows of `files`, with a separate list of members.
     std::vector<RunMember> believers;
     std::optional<MomentFile> odometry;
     std::vector<RunState> beliefs;
@@ -321,7 +321,7 @@ struct RunReader::Data {
     std::optional<BumperFile> bumper_file;
     std::vector<RunBumpers> bumpers;
     double time = 0;
-    /// Of a changed world, the last moment that all files have.
+    /// In a changed world, the last moment that all files hold.
     std::optional<double> end;
     bool is_cut = false;
 };
@@ -334,7 +334,7 @@ std::optional<double> RunReader::Data::upcoming() {
         is_over = is_over || !start;
         if (start && (!next || *start < *next)) next = start;
     }
-    // One of the files of a killed run may be behind the other.
+    // A killed run may leave one file behind the other.
     for (const MomentFile& file : files)
         is_cut = is_cut || file.isCut() || (!end && is_over && file.upcoming());
     if (!end) return is_over ? std::nullopt : files.front().upcoming();
@@ -371,7 +371,7 @@ RunReader::RunReader(std::string robots, std::string people, std::string events,
     if (!events.empty()) data_->events.emplace("events.csv", LineSource({}, std::move(events)));
 }
 
-/// Gives the robots of the moment what they believed at it; false if that was not recorded whole.
+/// Stores the recorded odometry of the moment in its robots; false if its rows are incomplete.
 bool RunReader::Data::readOdometry() {
     const bool has_robots =
         std::any_of(states.begin(), states.end(),

@@ -16,8 +16,8 @@ namespace {
 /// A pinhole's picture plane ends here.
 constexpr double kMaxPinhole = 89.9 * std::numbers::pi / 180;
 
-/// Distance from the centre of the picture plane, over the focal length, of what lies `angle`
-/// radians off the axis; radial distortion alone.
+/// Maps an angle off the axis, in radians, to the distance from the centre of the picture plane
+/// over the focal length; radial distortion alone.
 double radiusOf(const Camera& camera, double angle) {
     const auto& d = camera.distortion;
     const double square = angle * angle;
@@ -35,12 +35,12 @@ double radiusOf(const Camera& camera, double angle) {
     return 0;
 }
 
-/// Beyond this angle, in radians, the picture of a ray moves back towards the centre.
+/// Finds the angle, in radians, beyond which the picture of a ray moves back towards the centre.
 double turningAngle(const Camera& camera) {
     double end = std::numbers::pi;
     if (camera.lens == Lens::Pinhole) end = kMaxPinhole;
     if (camera.lens == Lens::Mirror)
-        // Where the sphere's ray leaves the plane, or touches the sphere.
+        // The sphere's ray leaves the plane, or touches the sphere.
         end = std::acos(-std::min(camera.mirror, 1 / std::max(camera.mirror, 1e-9))) - 1e-6;
     constexpr int kSteps = 2048;
     const auto rises = [&](double angle) {
@@ -59,7 +59,7 @@ double turningAngle(const Camera& camera) {
     return end;
 }
 
-/// The angle off the axis, in radians, at which a radius stands. \pre radius is 0 or more
+/// Finds the angle off the axis, in radians, of a radius. \pre radius is 0 or more
 std::optional<double> angleOf(const Camera& camera, double radius) {
     double low = 0, high = camera.widest.radians();
     if (radius > radiusOf(camera, high)) return std::nullopt;
@@ -68,7 +68,7 @@ std::optional<double> angleOf(const Camera& camera, double radius) {
         const double scale = (xi + std::sqrt(1 + (1 - xi * xi) * square)) / (1 + square);
         return std::atan2(scale * radius, scale - xi);
     }
-    // Newton's steps, kept between bounds that close in.
+    // Newton's method, within a shrinking bracket.
     double angle = std::min(radius, high);
     for (int i = 0; i < 60; ++i) {
         const double value = radiusOf(camera, angle) - radius;
@@ -85,14 +85,14 @@ std::optional<double> angleOf(const Camera& camera, double radius) {
     return angle;
 }
 
-/// `plumb_bob` of a place on the plane x = 1.
+/// Applies `plumb_bob` to a point of the plane x = 1.
 Vec2 bent(const std::array<double, 5>& d, Vec2 p) {
     const double s = p.x * p.x + p.y * p.y, radial = 1 + s * (d[0] + s * (d[1] + s * d[4]));
     return {p.x * radial + 2 * d[2] * p.x * p.y + d[3] * (s + 2 * p.x * p.x),
             p.y * radial + d[2] * (s + 2 * p.y * p.y) + 2 * d[3] * p.x * p.y};
 }
 
-/// The place that is bent to `to`, by Newton's method; nothing if it does not get there.
+/// Inverts bent() by Newton's method; empty if it does not converge.
 std::optional<Vec2> unbent(const std::array<double, 5>& d, Vec2 to, double most) {
     Vec2 p = to;
     const double radius = std::hypot(p.x, p.y);
@@ -186,7 +186,7 @@ Angle Camera::fovX() const { return angleBetween(*this, {-0.5, cy}, {columns - 0
 Angle Camera::fovY() const { return angleBetween(*this, {cx, -0.5}, {cx, rows - 0.5}); }
 
 Angle Camera::widestInPicture() const {
-    // The farthest is a corner, but for what the tangential terms of distortion bend.
+    // The farthest point is a corner, except for the tangential terms of distortion.
     constexpr double kSlack = 1.01;
     double most = 0;
     for (const double column : {-0.5, columns - 0.5})

@@ -14,23 +14,22 @@
 
 namespace ispace {
 
-/// How a direction becomes a place in the picture.
+/// The projection of directions to points of the picture.
 enum class Lens {
     Pinhole,  ///< tan of the angle to the axis, with distortion `plumb_bob` (Brown, Conrady)
     Fisheye,  ///< a polynomial of that angle (Kannala and Brandt 2006); equidistant without
     Mirror,   ///< a camera under a curved mirror, by the unified sphere (Geyer and Daniilidis 2000)
 };
 
-/// A place in a picture: pixel centres are whole numbers, (0, 0) is the upper left one, as in
+/// A point in a picture: pixel centres are whole numbers, (0, 0) is the upper left one, as in
 /// OpenCV and ROS.
 struct PixelPoint {
     double column = 0, row = 0;
 };
 
-/// A camera. In its frame (x forward, y left, z up) a direction (x, y, z) with the axis x becomes
-/// the pixel (cx + fx u, cy + fy v), where (u, v) is (-y/x, -z/x) bent by the lens: OpenCV's
-/// optical frame is (-y, -z, x). Of Fisheye and Mirror the axis is the middle of the circle that
-/// the picture holds.
+/// A camera. In its frame (x forward, y left, z up) it maps a direction (x, y, z) at the axis x to
+/// the pixel (cx + fx u, cy + fy v), where (u, v) is (-y/x, -z/x) distorted by the lens: OpenCV's
+/// optical frame is (-y, -z, x). For Fisheye and Mirror the axis is the centre of the image circle.
 struct Camera {
     std::string model;  ///< "" for the bare camera
     Lens lens = Lens::Pinhole;
@@ -41,93 +40,94 @@ struct Camera {
     std::array<double, 5> distortion{};
     /// Of a mirror: 0 is a plane one, 1 a parabola, between them hyperbolas.
     double mirror = 0;
-    /// No direction farther from the axis has a pixel: where the lens ceases to tell directions
-    /// apart, or where the record's `fov` ends the circle.
+    /// Directions farther from the axis have no pixel: beyond it the projection ceases to be
+    /// injective, or the record's `fov` ends the circle.
     Angle widest = Angle::degrees(90);
-    /// Seen from, and to, this depth along the axis (pinhole) or distance (others), metres.
+    /// Limits of the depth along the axis (pinhole) or distance (others), metres.
     double min_range = 0, max_range = kMaxSeen;
     double rate = 30;           ///< pictures a second
     double full_well = 10'000;  ///< electrons of a white pixel: shot noise is their square root
     double read_noise = 4;      ///< electrons, standard deviation
 
-    /// What a camera without `range` sees: metres; say `range` in larger halls.
+    /// Range of a camera without `range`, in metres; larger halls require `range`.
     static constexpr double kMaxSeen = 100;
 
     Camera();
-    /// Puts the optical centre in the middle of the picture.
+    /// Moves the optical centre to the middle of the picture.
     void center();
-    /// Focal length in pixels by which `side` pixels span the angle.
+    /// Computes the focal length in pixels by which `side` pixels span the angle.
     [[nodiscard]] double focalFor(double side, Angle fov) const;
-    /// The angle off the axis beyond which the picture of a ray moves back towards the centre.
+    /// Returns the angle off the axis beyond which the picture of a ray moves back towards the
+    /// centre.
     [[nodiscard]] Angle turningAngle() const;
 
     [[nodiscard]] std::size_t pixels() const {
         return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
     }
     [[nodiscard]] bool isDistorted() const { return distortion != std::array<double, 5>{}; }
-    /// A pinhole without distortion: its field of view is a pyramid.
+    /// Returns true for a pinhole without distortion: its field of view is a pyramid.
     [[nodiscard]] bool isStraight() const { return lens == Lens::Pinhole && !isDistorted(); }
-    /// The direction of a place in the picture, of unit length; nothing where the lens shows none,
-    /// as beyond the circle of a fisheye.
+    /// Computes the direction of a pixel as a unit vector; empty outside the lens, as beyond the
+    /// circle of a fisheye.
     [[nodiscard]] std::optional<Vec3> ray(PixelPoint place) const;
-    /// The place of a direction (of any length, in its frame), on the picture or beside it; nothing
-    /// where it has none.
+    /// Projects a direction (of any length, in its frame) to the picture or beside it; empty if the
+    /// lens does not see it.
     [[nodiscard]] std::optional<PixelPoint> project(Vec3 direction) const;
-    /// True for places on the picture, the outer edges of its pixels included.
+    /// Returns true for points on the picture, including the outer edges of its pixels.
     [[nodiscard]] bool holds(PixelPoint place) const {
         return place.column >= -0.5 && place.column <= columns - 0.5 && place.row >= -0.5 &&
                place.row <= rows - 0.5;
     }
-    /// Fields of view: between the rays of the middles of opposite edges.
+    /// Computes the field of view between the rays of the middles of opposite edges.
     [[nodiscard]] Angle fovX() const;
     [[nodiscard]] Angle fovY() const;
-    /// No direction in the picture is farther from the axis.
+    /// Returns the greatest angle off the axis in the picture.
     [[nodiscard]] Angle widestInPicture() const;
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
     [[nodiscard]] std::size_t rays() const { return pixels(); }
-    /// True if every place on the border of the picture has a ray.
+    /// Returns true if every point on the border of the picture has a ray.
     [[nodiscard]] bool fillsPicture() const;
-    /// True if distortion differs about the axis (p1, p2).
+    /// Returns true if distortion is not radially symmetric (p1, p2).
     [[nodiscard]] bool isLopsided() const {
         return lens == Lens::Pinhole && (distortion[2] != 0 || distortion[3] != 0);
     }
-    /// True if its whole circle is in the picture and it faces straight up or down.
+    /// Returns true if its whole circle is in the picture and it faces straight up or down.
     [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const;
     friend bool operator==(const Camera&, const Camera&) = default;
 };
 
-/// Width and height of an image sensor in metres: of `5.37,3.02mm`, or of a format such as
-/// `1/2.8"` or `2/3"` with square pixels. An inch of format is 16 mm of diagonal from half an inch
-/// on, 18 mm below, as makers count. Nothing if the text is neither.
+/// Parses the width and height of an image sensor in metres: `5.37,3.02mm`, or a format such as
+/// `1/2.8"` or `2/3"` with square pixels. By the makers' convention an inch of format is 16 mm of
+/// diagonal from half an inch on, 18 mm below. Empty for other text.
 std::optional<Vec2> imageSensorSize(const std::string& text, int columns, int rows);
 
-/// Parameters of a `camera` record: its explicit keys, else its model's, else the bare camera's.
-/// The focal length follows from `fov` (square pixels without its second number), from `focal` and
-/// `sensor`, or from `fx` (fy is the same without its own); `pixels` alone keeps the field of view
-/// across and square pixels, or the whole circle. \throws FormatError with all findings
+/// Reads the parameters of a `camera` record: its explicit keys, else its model's, else the bare
+/// camera's. The focal length follows from `fov` (square pixels without its second number), from
+/// `focal` and `sensor`, or from `fx` (fy defaults to it); `pixels` alone keeps the horizontal
+/// field of view and square pixels, or the whole circle. \throws FormatError with all findings
 Camera cameraOf(const Record& record, const Record* device = nullptr);
 Camera withParameters(Camera base, const Record& record);
 
-/// Pixels a metre that a task needs on a person (EN 62676-4).
+/// Pixels per metre that a task requires on a person (EN 62676-4).
 struct PixelDensity {
     std::string_view name;
     double pixels_per_metre = 0;
 };
 /// The classes of the standard, the coarsest first.
 std::span<const PixelDensity> pixelDensities();
-/// Of a number or of a class, in either spelling of `recognise`; nothing for other text. \see
+/// Parses a number or a class, in either spelling of `recognise`; empty for other text. \see
 /// pixelDensities
 std::optional<double> pixelDensityOf(std::string_view text);
 
-/// How far it sees with this many pixels a metre, as `max_range` counts: the focal length in pixels
-/// over the density. \pre pixels_per_metre > 0
+/// Computes the range at which a camera has this pixel density, as `max_range` counts: the focal
+/// length in pixels over the density. \pre pixels_per_metre > 0
 double rangeOf(const Camera& camera, double pixels_per_metre);
-/// A camera that sees no farther than that; 0 pixels a metre change nothing.
+/// Clips the camera's range to that of a pixel density; 0 keeps the range.
 Camera withDensity(Camera camera, double pixels_per_metre);
 
-/// What it sees at a pose if nothing is in the way.
+/// Returns the field of view at a pose, without occlusion.
 FieldOfView fieldOfView(const Camera& camera, const Pose3& pose);
 
 struct SensorKind;

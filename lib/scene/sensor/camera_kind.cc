@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kind of sensor that cameras are, and what their records say.
+// The kind `camera`: its records, parameters and shapes.
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -55,7 +55,7 @@ std::optional<Vec2> imageSensorSize(const std::string& text, int columns, int ro
 
 namespace {
 
-/// Reads what a record says about lens and picture.
+/// Reads the keys of lens and picture.
 class OpticsReader {
   public:
     OpticsReader(Camera& camera, const Record& record, Diagnostics& findings)
@@ -83,7 +83,7 @@ class OpticsReader {
     }
 
   private:
-    /// The circle of an omnidirectional camera if nothing is said of it: half of all directions.
+    /// Default circle of an omnidirectional camera: half of all directions.
     static constexpr double kBareCircle = 180;
 
     [[nodiscard]] bool isOmni() const {
@@ -184,7 +184,7 @@ class OpticsReader {
             return;
         }
         const auto size = imageSensorSize(record_.text("sensor"), camera_.columns, camera_.rows);
-        constexpr double kMaxSize = 0.3;  // metres: someone forgot the unit
+        constexpr double kMaxSize = 0.3;  // metres: rejects a missing unit
         if (!size || size->x > kMaxSize || size->y > kMaxSize) {
             findings_.add(
                 record_.finding("sensor", excerpt(record_.text("sensor")) +
@@ -212,7 +212,8 @@ class OpticsReader {
         if (record_.has("cy")) camera_.cy = record_.number("cy");
     }
 
-    /// Beyond these no two pixels differ, or all do by more than the world.
+    /// Rejects focal lengths beyond which no two pixels differ, or adjacent ones differ by more
+    /// than the world.
     void checkFocal() {
         constexpr double kMin = 1e-5, kMax = 1e9;
         if (!findings_.empty()) return;
@@ -321,11 +322,12 @@ void addCameraKeys(std::vector<KeySpec>& keys) {
                     .upper = 1e6});
 }
 
-/// What it looks at, up to `limits.far`: the picture's edges as a bent surface.
+/// Builds the view up to `limits.far`: the picture's edges as a curved surface.
 Mesh viewOf(const Sensor& sensor, double reach) {
     const Camera& camera = sensor.as<Camera>();
     const ViewLimits limits = viewLimits(camera.min_range, camera.max_range, reach);
-    // A place -1..1 across and upright in the picture; beyond the circle of the lens, on it.
+    // A point -1..1 across and upright in the picture; beyond the circle of the lens, clipped to
+    // it.
     const auto at = [&](double across, double upright, double range) {
         const PixelPoint place{camera.cx + across * camera.columns / 2,
                                camera.cy - upright * camera.rows / 2};

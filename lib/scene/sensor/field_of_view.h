@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shapes that the bodies and fields of view of sensors are drawn with.
+// Fields of view of sensors, and the shapes that draw sensors and their views.
 #pragma once
 
 #include <cmath>
@@ -16,8 +16,8 @@ namespace ispace {
 
 struct Camera;
 
-/// The rule of all range tests: compare as float32, end included. Distances kept as floats then
-/// give the same answer for any shorter range.
+/// The rule of all range tests: compare as float32, end included. Distances stored as floats then
+/// give the same result for any shorter range.
 inline bool withinRange(double distance, double max_range) {
     return static_cast<float>(distance) <= static_cast<float>(max_range);
 }
@@ -28,14 +28,14 @@ struct Tangents {
     double left = 0, right = 0, up = 0, down = 0;
 };
 
-/// What a sensor with an axis sees if nothing is in the way. Its edges belong to it, with a margin
-/// for rounding.
+/// The field of view of a sensor with an axis, without occlusion. It includes its edges, with a
+/// margin for rounding.
 struct FieldOfView {
     enum class Shape {
         Pyramid,  ///< of a pinhole, through the edges of its picture
         Window,   ///< an interval of bearings and one of elevations
         Cone,     ///< about the axis
-        Picture,  ///< what a camera with a bending lens has in its picture
+        Picture,  ///< the image of a camera with a curved projection
     };
     Shape shape = Shape::Pyramid;
     Frame3 frame;
@@ -51,20 +51,22 @@ struct FieldOfView {
     /// \pre the sides are not empty: left + right > 0, up + down > 0
     static FieldOfView pyramid(const Pose3& pose, const Tangents& sides, double max_range,
                                bool is_by_depth);
-    /// Half the fields of view across and upright, less than 90 degrees each.
+    /// Creates a pyramid from half the horizontal and vertical fields of view, less than 90 degrees
+    /// each.
     static FieldOfView pyramid(const Pose3& pose, Angle half_x, Angle half_y, double max_range,
                                bool is_by_depth);
     static FieldOfView window(const Pose3& pose, Angle half_x, Angle half_y, double max_range);
     /// `half`: between the axis and the edge.
     static FieldOfView cone(const Pose3& pose, Angle half, double max_range);
-    /// By the camera's range: of pinholes along the axis.
+    /// Uses the camera's range: of pinholes along the axis.
     static FieldOfView picture(const Pose3& pose, const Camera& camera);
 
-    /// True if a place is in view and in range.
+    /// Returns true if a point is in view and in range.
     [[nodiscard]] bool holds(Point3 place) const;
-    /// True if the direction to a place (in its frame) is in view; the sensor's own place is.
+    /// Returns true if the direction to a point (in its frame) is in view; the sensor's own
+    /// position is.
     [[nodiscard]] bool points(Vec3 local) const;
-    /// No place in view is farther.
+    /// Returns an upper bound of the distance of points in view.
     [[nodiscard]] double farthest() const;
 
   private:
@@ -98,29 +100,29 @@ inline bool FieldOfView::holds(Point3 place) const {
     return withinRange(range, max_range) && points(local);
 }
 
-/// Corners of what is drawn round; these bodies stop nothing, so coarse is good enough.
+/// Corners of drawn circles; these bodies occlude no rays, so coarse suffices.
 constexpr std::uint32_t kAround = 24;
 
 void addBox(Mesh& mesh, Point3 low, Point3 high);
-/// A cylinder about an axis along x.
+/// Adds a cylinder about an axis along x.
 void addDisc(Mesh& mesh, Point3 back, double radius, double length);
 void addBall(Mesh& mesh, Point3 center, double radius);
 
-/// A small box with a nose where it faces, the size of a URG-04LX.
+/// Builds a small box with a nose at its front, the size of a URG-04LX.
 Mesh noseBox();
-/// A box behind the optical centre with lenses at these places beside it.
+/// Builds a box behind the optical centre with lenses at these offsets beside it.
 std::vector<Mesh> lensBox(Vec3 size, std::initializer_list<double> lenses, double radius);
 
-/// Between which distances a field of view is drawn.
+/// The distances between which a field of view is drawn.
 struct ViewLimits {
     double near, far;
 };
 ViewLimits viewLimits(double least, double greatest, double reach);
-/// Pieces into which a span of angles is bent.
+/// Returns the number of segments that approximate a span of angles.
 int piecesOf(Angle span);
 Vec3 directionOf(Angle bearing, Angle elevation);
 
-/// A surface of columns x rows patches; place(u, v) is where it is, u and v from 0 to 1.
+/// Builds a surface of columns x rows patches; place(u, v) returns its points, u and v from 0 to 1.
 template <typename Place>
 void addSheet(Mesh& mesh, int columns, int rows, Place place) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -137,10 +139,10 @@ void addSheet(Mesh& mesh, int columns, int rows, Place place) {
         }
 }
 
-/// What a sensor with a picture looks at: the picture far away as a bent surface, and the sides to
-/// it. place(across, upright, range) is where the ray through a place of the picture, -1 to 1
-/// either way, has come to at this range. `fov_x` and `fov_y` say how finely to bend it; a view all
-/// around has no left and right side.
+/// Builds the view of a sensor with a picture: the picture at its range as a curved surface, and
+/// the sides. place(across, upright, range) returns the point at this range on the ray through
+/// picture coordinates -1 to 1. `fov_x` and `fov_y` determine the number of segments; a full
+/// panorama has no left and right side.
 template <typename Place>
 Mesh pictureView(Angle fov_x, Angle fov_y, ViewLimits limits, bool is_all_around, Place place) {
     Mesh mesh{Material::View, {}, {}, true};

@@ -16,12 +16,12 @@ namespace {
 
 constexpr Angle kTurn = Angle::degrees(360);
 
-/// Numbers of beams within a span, both ends included; a double as it may be huge.
+/// Computes the number of beams within a span, both ends included; a double as it may be huge.
 double beamsWithin(double span, double step) {
     return std::floor(span / step + kStepTolerance) + 1;
 }
 
-/// As beamsWithin; a full turn ends before it comes back to where it began.
+/// As beamsWithin; a full turn ends before its start.
 double scansWithin(const Laser& laser) {
     const double span = laser.sweep_span.degrees(), step = laser.sweep_step.degrees();
     return span < 360 ? beamsWithin(span, step) : std::ceil(span / step - kStepTolerance);
@@ -248,7 +248,7 @@ Mesh fanOf(const Laser& laser, ViewLimits limits) {
     return mesh;
 }
 
-/// The ends of all beams of a sweep, in the frame of its first scan.
+/// Builds the ends of all beams of a sweep, in the frame of its first scan.
 Mesh sweptOf(const Sensor& sensor, ViewLimits limits) {
     const Laser& laser = sensor.as<Laser>();
     Mesh mesh{Material::View, {}, {}, true};

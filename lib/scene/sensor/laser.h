@@ -10,12 +10,12 @@
 
 namespace ispace {
 
-/// Most beams of a scan: no scanner has more, but a mistaken unit may ask for more.
+/// Maximum number of beams of a scan: no scanner has more, but a mistaken unit may ask for more.
 constexpr int kMaxBeams = 1'000'000;
-/// Most beams of a whole sweep, which is one reading.
+/// Maximum number of beams of a whole sweep, which is one reading.
 constexpr double kMaxSwept = 1e8;
 
-/// Which angle of its pose a laser changes from scan to scan of a sweep.
+/// The angle of a laser's pose that changes from scan to scan of a sweep.
 enum class SweepAxis {
     None,
     Heading,  ///< it turns about the vertical
@@ -31,8 +31,8 @@ struct Laser {
     Angle first = Angle::degrees(-90), step = Angle::degrees(1);
     int beams = 181;
     double rate = 10;  ///< scans a second
-    /// Turns a second of its beam, which give each beam its own time. Counter-clockwise beam 0
-    /// comes first, clockwise (below 0) the last one. 0: all beams at once.
+    /// Turns a second of its beam, which give each beam its own time. Counter-clockwise, beam 0
+    /// comes first; clockwise (below 0), the last one. 0: all beams at once.
     double spin = 0;
     /// A sweep is `scans()` scans; scan j adds j * sweep_step to the angle of the axis: from 0 to
     /// sweep_span, without its end if that is a full turn.
@@ -42,24 +42,25 @@ struct Laser {
 
     [[nodiscard]] Angle bearing(int beam) const { return first + static_cast<double>(beam) * step; }
     [[nodiscard]] Angle last() const { return bearing(beams - 1); }
-    /// The sector of a scan, counter-clockwise from `first` to the last beam, or a full turn if the
-    /// beams close the circle: if beams * step is 360 degrees or more, within a hundredth of a
-    /// step, so that last and first beam are neighbours like any others. Two beams never do.
+    /// Returns the sector of a scan, counter-clockwise from `first` to the last beam, or a full
+    /// turn if the beams close the circle: if beams * step is 360 degrees or more, within a
+    /// hundredth of a step, so that last and first beam are neighbours. Two beams never do.
     [[nodiscard]] Angle span() const;
-    /// The sector that a level laser covers with its sweep of headings; at most a full turn.
+    /// Returns the sector that a level laser covers with its sweep of headings; at most a full
+    /// turn.
     [[nodiscard]] Angle sweptSpan() const;
-    /// True if a level laser looks in all directions, so that its heading does not matter; never if
-    /// it nods or rolls.
+    /// Returns true if a level laser covers all directions, so that its heading does not matter;
+    /// false if it nods or rolls.
     [[nodiscard]] bool seesAround() const;
-    /// True if a direction at `bearing` (any turn) lies in the sector of a scan, ends included
-    /// (within 1e-9 degrees).
+    /// Returns true if a direction at `bearing` (any turn) lies in the sector of a scan, ends
+    /// included (within 1e-9 degrees).
     [[nodiscard]] bool sees(Angle bearing) const;
-    /// Scans of a sweep; 1 without.
+    /// Returns the number of scans of a sweep; 1 without.
     [[nodiscard]] int scans() const;
-    /// Seconds from the first measurement of a scan to that of a beam, and to its last.
+    /// Returns the seconds from the first measurement of a scan to that of a beam.
     [[nodiscard]] double timeOf(int beam) const;
     [[nodiscard]] double duration() const;
-    /// Readings a second, how long one takes and its rays; a reading is a sweep or else a scan.
+    /// Readings a second, duration and rays of one; a reading is a sweep or else a scan.
     [[nodiscard]] double readingRate() const { return rate / scans(); }
     [[nodiscard]] double readingTime() const { return duration() + (scans() - 1) / rate; }
     [[nodiscard]] std::size_t rays() const {
@@ -71,21 +72,21 @@ struct Laser {
     friend bool operator==(const Laser&, const Laser&) = default;
 };
 
-/// The pose of a laser `scans` scans (whole or not) into its sweep.
+/// Computes the pose of a laser `scans` scans (whole or not) into its sweep.
 Pose3 sweptPose(const Laser& laser, Pose3 pose, double scans);
 
-/// Parameters of a `laser` record: its explicit keys, else its model's, else the bare laser's. An
-/// explicit `fov` lays the beams anew: from -fov/2 (or an explicit `first`) on, floor(fov/step) + 1
-/// of them, or explicit `beams` spread over it; an explicit `step` alone keeps the model's first
-/// beam and span (or full turn); `first` alone keeps number and step; `beams` alone keeps first
-/// beam and step. One number in `range` is the maximum. An explicit `rate` alone lets a model's
-/// beam spin faster or slower with it. \throws FormatError with all findings: an unknown model
-/// (with the nearest name), min above max,
-///         a fraction of a beam, too many, more than a full turn, `fov` and `beams` that disagree,
-///         a scan that takes longer than the next is due
+/// Reads the parameters of a `laser` record: its explicit keys, else its model's, else the bare
+/// laser's. An explicit `fov` recomputes the beams: from -fov/2 (or an explicit `first`) on,
+/// floor(fov/step) + 1 of them, or explicit `beams` spread over it; an explicit `step` alone keeps
+/// the model's first beam and span (or full turn); `first` alone keeps number and step; `beams`
+/// alone keeps first beam and step. One number in `range` is the maximum. An explicit `rate` alone
+/// scales the spin of a model's beam.
+/// \throws FormatError with all findings: an unknown model (with the nearest name), min above max,
+/// a fraction of a beam, too many, more than a full turn, `fov` and `beams` that disagree,
+/// a scan that takes longer than its period
 Laser laserOf(const Record& record, const Record* device = nullptr);
 
-/// `base` with the parameters that a record writes in place of its own; the model stays.
+/// Returns `base` with the parameters that a record writes; the model stays.
 /// \throws FormatError as laserOf
 Laser withParameters(Laser base, const Record& record);
 

@@ -12,7 +12,7 @@ namespace ispace {
 
 namespace {
 
-/// Field of view of the other side with square pixels.
+/// Computes the field of view of the other side with square pixels.
 Angle squareFov(const Ranger& ranger) {
     const double share = static_cast<double>(ranger.rows) / ranger.columns;
     if (ranger.projection == Projection::Spherical) return share * ranger.fov_x;
@@ -111,7 +111,7 @@ void addRangerKeys(std::vector<KeySpec>& keys) {
     addNoiseKeys(keys);
 }
 
-/// A ray of a ranger through the edge of its picture: -1..1 across and upright.
+/// Returns a ray of a ranger through the edge of its picture: -1..1 across and upright.
 Vec3 edgeRay(const Ranger& ranger, double across, double upright) {
     if (ranger.projection == Projection::Spherical)
         return directionOf(-0.5 * across * ranger.fov_x, 0.5 * upright * ranger.fov_y);

@@ -11,15 +11,15 @@
 
 namespace ispace {
 
-/// Which ray belongs to a pixel.
+/// The ray of each pixel.
 enum class Projection {
     Pinhole,    ///< a lens: equal steps in the picture's plane
     Spherical,  ///< a turning head: equal steps in bearing and elevation
 };
 
 /// A 3-D range camera or a scanner with many rings. Pixel (column, row), row 0 at the top and
-/// column 0 at the left, looks along its centre. In the sensor's frame (x forward, y left, z up)
-/// that is (1, -(column - cx) / fx, -(row - cy) / fy) of a pinhole; of a spherical one bearing
+/// column 0 at the left, has a ray through its centre. In the sensor's frame (x forward, y left, z
+/// up) that is (1, -(column - cx) / fx, -(row - cy) / fy) of a pinhole; of a spherical one bearing
 /// fov_x/2 - (column + 1/2) fov_x/columns and elevation fov_y/2 - (row + 1/2) fov_y/rows.
 struct Ranger {
     std::string model;  ///< "" for the bare ranger
@@ -28,8 +28,8 @@ struct Ranger {
     Angle fov_x = Angle::degrees(47.5), fov_y = Angle::degrees(39.6);
     int columns = 176, rows = 144;
     double rate = 25;  ///< pictures a second
-    /// What the device measures and its limits and noise refer to: the depth along its axis, or the
-    /// distance along the ray (time of flight; always so for a spherical one).
+    /// The measure of readings, limits and noise: true for the depth along the axis, false for the
+    /// distance along the ray (time of flight; always for a spherical one).
     bool measures_depth = false;
     /// Distances are known up to multiples of this (phase of modulated light): a surface at
     /// ambiguity + d reads d if d is within the limits. 0: unambiguous.
@@ -39,21 +39,22 @@ struct Ranger {
     [[nodiscard]] std::size_t pixels() const {
         return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
     }
-    /// Where the pixels of a column and of a row look. \pre a spherical one
+    /// Returns the bearing of a column or the elevation of a row. \pre a spherical one
     [[nodiscard]] Angle bearing(double column) const {
         return ((columns - 1 - 2 * column) / (2.0 * columns)) * fov_x;
     }
     [[nodiscard]] Angle elevation(double row) const {
         return ((rows - 1 - 2 * row) / (2.0 * rows)) * fov_y;
     }
-    /// Focal lengths in pixels, and the optical centre (pixel centres are whole numbers).
+    /// Returns a focal length in pixels, or the optical centre (pixel centres are whole numbers).
     /// \pre a pinhole
     [[nodiscard]] double fx() const;
     [[nodiscard]] double fy() const;
     [[nodiscard]] double cx() const { return (columns - 1) / 2.0; }
     [[nodiscard]] double cy() const { return (rows - 1) / 2.0; }
-    /// The ray of a pixel in the sensor's frame. A pinhole's has forward component 1 (times a depth
-    /// it is a place), a spherical one's has unit length (times a distance it is a place).
+    /// Returns the ray of a pixel in the sensor's frame: of a pinhole with forward component 1, to
+    /// be multiplied by a depth; of a spherical one with unit length, to be multiplied by a
+    /// distance.
     [[nodiscard]] Vec3 ray(double column, double row) const;
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
@@ -65,15 +66,16 @@ struct Ranger {
     friend bool operator==(const Ranger&, const Ranger&) = default;
 };
 
-/// Parameters of a `ranger` record: its explicit keys, else its model's, else the bare ranger's. A
-/// `fov` of one number gives the other by square pixels; one number in `range` is the maximum.
+/// Reads the parameters of a `ranger` record: its explicit keys, else its model's, else the bare
+/// ranger's. A `fov` of one number gives the other by square pixels; one number in `range` is the
+/// maximum.
 /// \throws FormatError with all findings: an unknown model, min above max, a pinhole of 180 degrees
-///         or more, more than kMaxPixels
+/// or more, more than kMaxPixels
 Ranger rangerOf(const Record& record, const Record* device = nullptr);
 Ranger withParameters(Ranger base, const Record& record);
 constexpr std::size_t kMaxPixels = 1U << 26U;
 
-/// What it sees at a pose if nothing is in the way.
+/// Returns the field of view at a pose, without occlusion.
 FieldOfView fieldOfView(const Ranger& ranger, const Pose3& pose);
 
 struct SensorKind;

@@ -22,23 +22,23 @@
 
 namespace ispace {
 
-/// Parameters of a sensor of any simulated kind. Code tells kinds apart here, in their own sources
-/// and where readings differ by nature, nowhere else.
+/// Parameters of a sensor of any simulated kind. Only this header, the sources of the kinds and the
+/// computation of readings distinguish kinds.
 using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera>;
 
-/// What carries a sensor that moves.
+/// The carrier of a moving sensor.
 struct Mount {
     std::size_t robot = 0;    ///< index in Scene::robots
     Pose3 robot_from_sensor;  ///< z counts from the floor, as the robot's frame lies there
 };
 
-/// A placed sensor; one on a robot or a person is where that starts.
+/// A placed sensor; on a robot or a person, in the carrier's starting pose.
 struct Sensor {
     std::string id;
     SensorModel model;
     Pose3 pose;
     std::optional<Mount> mount = {};
-    std::optional<std::size_t> person = {};  ///< who carries it: index among the scene's people
+    std::optional<std::size_t> person = {};  ///< its carrier: index among the scene's people
 
     template <typename Model>
     [[nodiscard]] bool is() const {
@@ -55,28 +55,27 @@ struct Sensor {
     }
 };
 
-/// Name of the device, "" for a bare sensor.
+/// Returns the name of the device, "" for a bare sensor.
 const std::string& deviceName(const SensorModel& model);
-/// Greatest distance at which it sees or hears, metres; +infinity for a tag.
+/// Returns the maximum range in metres; +infinity for a tag.
 double maxRange(const SensorModel& model);
-/// Readings a second: of a swept laser, whole sweeps.
+/// Returns the readings a second: of a swept laser, whole sweeps.
 double readingRate(const SensorModel& model);
-/// Duration of one reading in seconds; 0 if everything is measured at once.
+/// Returns the duration of one reading in seconds; 0 if everything is measured at once.
 double readingTime(const SensorModel& model);
-/// Rays of one reading, roughly: what it costs to simulate.
+/// Estimates the rays of one reading, as the cost of its simulation.
 std::size_t rayCount(const SensorModel& model);
-/// True if, mounted with this tilt and roll, it sees the same whatever its heading.
+/// Returns true if, mounted with this tilt and roll, its view does not depend on its heading.
 bool isOmnidirectional(const SensorModel& model, const Pose3& mount);
 
-/// What it perceives if nothing is in the way; nothing for lasers, which scan a plane, and for
-/// tags.
+/// Returns the field of view without occlusion; empty for lasers, which scan a plane, and for tags.
 std::optional<FieldOfView> fieldOfView(const Sensor& sensor);
 
-/// The pose that a sensor's record gives: 0,0 without `at`, kScanHeight without z. With `on` it is
-/// a pose in the frame of the carrier.
+/// Reads the pose of a sensor's record: 0,0 without `at`, kScanHeight without z. With `on` it is a
+/// pose in the frame of the carrier.
 Pose3 poseOf(const Record& record);
 
-/// World pose of a sensor on a robot, with its heading in (-180, 180].
+/// Computes the world pose of a sensor on a robot, with its heading in (-180, 180].
 Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor);
 
 /// A model's row in the device table.
@@ -93,53 +92,53 @@ struct BearingSpan {
     double range = 0;
 };
 
-/// One kind of sensor: everything the other folders ask about it. A new kind is a source with such
-/// a row, listed in sensorKinds(), and an alternative of SensorModel.
+/// One kind of sensor, with all its properties that other folders use. A new kind is a source with
+/// such a row, listed in sensorKinds(), and an alternative of SensorModel.
 struct SensorKind {
     std::string_view keyword;       ///< of its records
-    std::string_view noun;          ///< what people call one
+    std::string_view noun;          ///< its name in messages
     std::string_view help;          ///< of the record
     std::string_view heading_help;  ///< of its key `heading`
     std::string_view device_help;   ///< of a device file's record; "": there are no devices
     SensorSign sign = SensorSign::Disc;
     /// Keys besides those that all sensors have.
     void (*add_keys)(std::vector<KeySpec>& keys);
-    /// Its body in its own frame: optical centre at the origin, facing +x.
+    /// Builds its body in its own frame: optical centre at the origin, facing +x.
     std::vector<Mesh> (*body)();
 
-    /// The parameters of a record: its explicit keys, else the device's (if not null), else those
-    /// of a bare one. \throws FormatError with all findings
+    /// Reads the parameters of a record: its explicit keys, else the device's (if not null), else
+    /// those of a bare one. \throws FormatError with all findings
     SensorModel (*read)(const Record& record, const Record* device) = nullptr;
     DeviceSummary (*summary)(const SensorModel& model) = nullptr;
-    /// Its field of view as a translucent open surface in its frame, two-sided, up to `reach`.
-    /// Null: none.
+    /// Builds its field of view as a translucent open surface in its frame, two-sided, up to
+    /// `reach`. Null: not drawn.
     Mesh (*view)(const Sensor& sensor, double reach) = nullptr;
     BearingSpan (*bearings)(const SensorModel& model) = nullptr;
 
     /// Surfaces that stop its light or sound.
     Surfaces stopped_by = Surfaces::Opaque;
-    bool perceives = true;       ///< sees or hears; false for what others look for
+    bool perceives = true;       ///< sees or hears; false for targets of other sensors
     bool is_read = false;        ///< `scan` takes readings of it, or through it
-    bool is_arranged = false;    ///< `arrange` can place it
+    bool is_arranged = false;    ///< `arrange` can choose its pose
     bool is_overhead = false;    ///< it hangs above people's heads unless `--mount` says otherwise
     bool follows_poses = false;  ///< `scan --poses` can move it
-    /// A place counts as covered if this many of the kind see it.
+    /// A point counts as covered if this many of the kind see it.
     std::size_t together = 1;
 };
 
-/// All kinds, in the order in which reports list them.
+/// Returns all kinds, in the order in which reports list them.
 std::span<const SensorKind* const> sensorKinds();
-/// The kind with this keyword, or null.
+/// Finds the kind with this keyword; null if unknown.
 const SensorKind* sensorKind(std::string_view keyword);
-/// \pre the model is of a kind, as all are
+/// Returns the kind of a model.
 const SensorKind& kindOf(const SensorModel& model);
-/// Keywords of the kinds for which `flag` holds, in the order of the table.
+/// Returns the keywords of the kinds for which `flag` holds, in the order of the table.
 std::vector<std::string_view> keywordsOf(bool SensorKind::*flag);
 
-/// Records of all kinds, and those of device files.
+/// Returns the schemas of all kinds' records and of device files.
 std::vector<Schema> sensorSchemas();
 std::vector<Schema> sensorDeviceSchemas();
-/// The schema of a device file's record: these keys between what it is and who says so.
+/// Creates the schema of a device file's record: these keys between its model and its source.
 Schema deviceSchema(std::string keyword, std::string help, void (*add_keys)(std::vector<KeySpec>&));
 
 }  // namespace ispace

@@ -15,7 +15,8 @@ namespace ispace {
 /// Receivers needed to locate a tag (thesis 3.4.3): floor is covered where this many hear.
 constexpr std::size_t kMinReceivers = 4;
 
-/// An ultrasonic receiver: hears a tag in range, within a cone about its axis, and in sight.
+/// An ultrasonic receiver: hears a tag within its range and the cone about its axis, in line of
+/// sight.
 struct Receiver {
     std::string model;  ///< "" for the bare receiver
     double min_range = 0, max_range = 8;
@@ -35,12 +36,12 @@ struct Tag {
     std::string model;                ///< "" for the bare tag
     double rate = 10;                 ///< bursts a second
     Angle fov = Angle::degrees(360);  ///< full angle of the cone into which it emits
-    /// Located by the thesis' simple model, eq. (3.7)-(3.10): its true x and y with independent
-    /// noise of this standard deviation. Else from times of flight.
+    /// If true, a position fix by the thesis' simple model, eq. (3.7)-(3.10): the true x and y with
+    /// independent noise of this standard deviation. Else from times of flight.
     bool is_simple = false;
     double simple_sigma = 0.1;
 
-    /// Receivers have a range; a tag has none.
+    /// Receivers have a range; a tag's is unlimited.
     double max_range = std::numeric_limits<double>::infinity();
 
     [[nodiscard]] double readingRate() const { return rate; }
@@ -50,15 +51,16 @@ struct Tag {
     friend bool operator==(const Tag&, const Tag&) = default;
 };
 
-/// Parameters of an `ultrasound` record: its explicit keys, else its model's, else the bare one's.
+/// Reads the parameters of an `ultrasound` record: its explicit keys, else its model's, else the
+/// bare one's.
 /// \throws FormatError with all findings
 Receiver receiverOf(const Record& record, const Record* device = nullptr);
 Receiver withParameters(Receiver base, const Record& record);
-/// The same for a `tag` record.
+/// Reads those of a `tag` record.
 Tag tagOf(const Record& record, const Record* device = nullptr);
 Tag withParameters(Tag base, const Record& record);
 
-/// What it hears at a pose if nothing is in the way.
+/// Returns the cone of hearing at a pose, without occlusion.
 FieldOfView fieldOfView(const Receiver& receiver, const Pose3& pose);
 
 struct SensorKind;
