@@ -8,7 +8,7 @@
 
 namespace ispace {
 
-/// A set of cells, named by their index in a grid, 64 to a word.
+/// A set of cells of a grid, stored as bits by cell index, 64 to a word.
 class CellSet {
   public:
     explicit CellSet(std::size_t cells = 0) : words_((cells + 63) / 64), cells_(cells) {}
@@ -24,13 +24,13 @@ class CellSet {
     [[nodiscard]] bool empty() const;
     CellSet& operator|=(const CellSet& other);
     CellSet& operator&=(const CellSet& other);
-    /// Removes the cells of `other`. All three: \pre both are of one size
+    /// Removes the cells of `other`. All three require sets of one size.
     CellSet& operator-=(const CellSet& other);
     /// Calls visit(std::size_t) for each cell of the set, in order.
     template <typename Visit>
     void forEach(Visit visit) const;
     friend bool operator==(const CellSet&, const CellSet&) = default;
-    /// Number of cells in both.
+    /// Number of cells in both sets.
     friend std::size_t countCommon(const CellSet& a, const CellSet& b);
 
   private:
@@ -63,7 +63,7 @@ struct CellParts {
 
 /// The set as one part. O(cells / 64 + runs)
 CellParts partOf(const CellSet& cells);
-/// The cells of one part, of a grid of so many.
+/// Returns the cells of one part, as a set of a grid of `cells` cells.
 CellSet cellsOf(const CellParts& parts, std::size_t part, std::size_t cells);
 
 }  // namespace ispace

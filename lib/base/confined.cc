@@ -37,7 +37,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMaxNames = 1000;       // of side files
 constexpr std::size_t kMaxName = 4096;        // bytes
 constexpr std::size_t kMaxMessage = 1 << 16;  // bytes
-/// An idle child is given this many times its processor time.
+/// Limit of an idle child, in multiples of its processor time.
 constexpr std::size_t kPatience = 5;
 
 std::string pathOf(const std::string& program) {
@@ -64,11 +64,11 @@ class ConfinedReader::Child {
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
-    /// errno of a failed start, or 0.
+    /// errno of a failed start, else 0.
     [[nodiscard]] int startError() const { return error_; }
     [[nodiscard]] int socket() const { return socket_; }
     [[nodiscard]] pid_t process() const { return process_; }
-    /// Processor time that it has taken, in whole seconds.
+    /// Processor time used, in whole seconds.
     [[nodiscard]] std::size_t seconds() const {
         clockid_t clock{};
         timespec time{};
@@ -77,10 +77,10 @@ class ConfinedReader::Child {
         return static_cast<std::size_t>(time.tv_sec) + 1;
     }
 
-    /// Kills it if it runs; the status of wait(2), or nothing if somebody else took that.
+    /// Kills the process if it runs. \return the status of wait(2), 0 if unknown
     int end() {
         if (process_ <= 0) return 0;
-        ::kill(process_, SIGKILL);  // in vain if it has ended: it is still ours to wait for
+        ::kill(process_, SIGKILL);  // a process that has ended must still be waited for
         int status = 0;
         pid_t waited = 0;
         do waited = ::waitpid(process_, &status, 0);
@@ -95,7 +95,7 @@ class ConfinedReader::Child {
         argv.reserve(arguments.size() + 1);
         for (std::string& argument : arguments) argv.push_back(argument.data());
         argv.push_back(nullptr);
-        // Copies first: one of them may have a number that is needed.
+        // Copies first: one of them may have a number that is required.
         const OpenFile file_copy(::fcntl(file, F_DUPFD_CLOEXEC, 3));
         const OpenFile other_copy(::fcntl(other, F_DUPFD_CLOEXEC, 3));
         if (file_copy.fd() < 0 || other_copy.fd() < 0) return errno;
@@ -113,7 +113,8 @@ class ConfinedReader::Child {
         ::sigfillset(&signals);
         ::posix_spawnattr_setsigdefault(&attributes, &signals);
         ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-        // Assimp sets 16 MB aside for the smallest file: by 4 kB, that takes longer than all else.
+        // Assimp allocates 16 MB for the smallest file; in steps of 4 kB that takes most of the
+        // time.
         std::string pages = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
         std::array<char*, 2> settings{pages.data(), nullptr};
         const int error = ::posix_spawn(&process_, program.c_str(), &actions, &attributes,
@@ -129,7 +130,7 @@ class ConfinedReader::Child {
     int error_ = 0;
 };
 
-/// One file.
+/// Reads one file.
 class ConfinedReader::Reading {
   public:
     Reading(const ConfinedTask& task, ConfinedReader& reader)
@@ -148,7 +149,7 @@ class ConfinedReader::Reading {
         send(task_.file, bytes_);
     }
 
-    /// The bytes of the answer.
+    /// Returns the bytes of the answer.
     std::string read() {
         for (;;) {
             std::array<char, kConfinedHead> head{};
@@ -160,7 +161,7 @@ class ConfinedReader::Reading {
                     reply(text(size, kMaxName));
                     break;
                 case ConfinedAnswer::Result:
-                    return text(size, limits_.memory);  // what it sends it had to hold
+                    return text(size, limits_.memory);  // the program held its result in memory
                 case ConfinedAnswer::Error:
                     fail(task_.problem + printable(text(size, kMaxMessage)));
                 case ConfinedAnswer::OutOfMemory:
@@ -190,7 +191,7 @@ class ConfinedReader::Reading {
     std::string text(std::uint64_t size, std::size_t most) {
         if (size > most) noAnswer();
         std::string bytes;
-        // As it comes: nothing is set aside for what is only announced.
+        // Grows with the bytes received; the announced size is not allocated at once.
         while (bytes.size() < size) {
             constexpr std::size_t kPiece = 1 << 22;
             const std::size_t at = bytes.size();
@@ -237,7 +238,7 @@ class ConfinedReader::Reading {
         send(file->file.fd(), file->size);
     }
 
-    /// Larger limits, for another file.
+    /// Raises the limits for another file.
     void allow(std::size_t bytes) {
         bytes_ += bytes;
         limits_ = task_.limits(bytes_);
@@ -258,7 +259,7 @@ class ConfinedReader::Reading {
         set(RLIMIT_CPU, spent_ + limits_.seconds);
     }
 
-    /// \param fd of the file; -1: there is none
+    /// \param fd of the file, or -1
     void send(int fd, std::uint64_t size) {
         std::array<char, 1 + sizeof size> bytes{};
         bytes[0] = static_cast<char>(fd < 0 ? ConfinedReply::Missing : ConfinedReply::Handed);
@@ -294,7 +295,7 @@ class ConfinedReader::Reading {
         return ", the most for " + formatBytes(bytes_) + "; is the file damaged?";
     }
     [[noreturn]] void tooMuchMemory() {
-        // The user's own limit, `ulimit -v`, says nothing about the file.
+        // The user's own limit, `ulimit -v`, is independent of the file.
         rlimit own{};
         if (::getrlimit(RLIMIT_AS, &own) == 0 && own.rlim_cur < limits_.memory)
             throw std::bad_alloc();
@@ -305,7 +306,7 @@ class ConfinedReader::Reading {
         fail(bad() + "it takes more than " + std::to_string(limits_.seconds) + " s" +
              forThisSize());
     }
-    /// It died, or broke the protocol.
+    /// The program has died or broken the protocol.
     [[noreturn]] void noAnswer() {
         const int status = child_.end();
         const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;

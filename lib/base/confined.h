@@ -19,13 +19,13 @@ struct ConfinedLimits {
     std::size_t seconds = 0;  ///< of processor time
 };
 
-/// Messages of a confined program to the one that started it: a kind, the size of the rest in eight
-/// native bytes, and the rest.
+/// Messages of a confined program to its parent: a kind, the size of the rest in eight native
+/// bytes, and the rest.
 enum class ConfinedAnswer : char {
-    WantsFile = 'F',    ///< the name of a file that the one read names; see ConfinedReply
-    Result = 'P',       ///< the last for this file
-    Error = 'E',        ///< the error in the file; the last
-    OutOfMemory = 'M',  ///< nothing follows; the last
+    WantsFile = 'F',    ///< name of a file that the input refers to; see ConfinedReply
+    Result = 'P',       ///< the last message for this file
+    Error = 'E',        ///< the error in the file; last message
+    OutOfMemory = 'M',  ///< without further bytes; last message
 };
 
 /// The reply to WantsFile, one byte. `Handed` carries a descriptor, and the size as eight bytes.
@@ -42,20 +42,21 @@ struct ConfinedTask {
                                               ///< the file and the limits follow
     int file = -1;                            ///< open for reading: standard input of the program
     std::size_t bytes = 0;                    ///< of the file
-    /// For files of so many bytes in all, \pre grows with it.
+    /// Returns the limits for files of `bytes` bytes in all. \pre increases with `bytes`
     std::function<ConfinedLimits(std::size_t bytes)> limits;
-    /// Opens a file that the one read names; nothing if there is none. Empty: it names none.
+    /// Opens a file that the input refers to; nullopt if it does not exist. Empty if inputs refer
+    /// to no files.
     std::function<std::optional<RegularFile>(const std::string& name)> open = {};
     // For messages.
     std::string kind;          ///< "mesh file"
     std::string reader;        ///< "assimp"
     std::string subject;       ///< "meshes are"
-    std::string hint;          ///< where the program cannot be started for want of a library
-    std::string problem = {};  ///< begins the errors that the program finds
+    std::string hint;          ///< printed if the program cannot start for lack of a library
+    std::string problem = {};  ///< prefix of the errors that the program finds
 };
 
-/// Reads files with one program, which is started for the first and again after an error: to start
-/// one takes some 50 ms, mostly for its libraries. Each file has limits of its own.
+/// Reads files with one process, which is started for the first file and again after an error: a
+/// start takes some 50 ms, mostly for loading libraries. Limits apply to each file.
 class ConfinedReader {
   public:
     ConfinedReader();
@@ -63,9 +64,9 @@ class ConfinedReader {
     ConfinedReader(const ConfinedReader&) = delete;
     ConfinedReader& operator=(const ConfinedReader&) = delete;
 
-    /// The result of the program. \pre the program and its arguments are those of the first task
+    /// Returns the result of the program. \pre program and arguments are those of the first task
     /// \throws FormatError for the file: the error that the program found, too much memory or time,
-    /// a crash, or a program that cannot be started
+    /// a crash, or a program that fails to start
     std::string read(const ConfinedTask& task);
     /// Processes started so far.
     [[nodiscard]] int starts() const { return starts_; }
@@ -77,10 +78,10 @@ class ConfinedReader {
     int starts_ = 0;
 };
 
-/// The same for one file.
+/// Reads one file with a process of one task.
 inline std::string readConfined(const ConfinedTask& task) { return ConfinedReader().read(task); }
 
-/// A file in memory with these bytes, for tasks. \throws std::system_error
+/// Creates a file in memory that holds these bytes, for tasks. \throws std::system_error
 OpenFile fileInMemory(std::string_view bytes);
 
 }  // namespace ispace

@@ -11,28 +11,28 @@
 
 namespace ispace {
 
-/// What is wrong with the command line; runTool answers with exit status 2.
+/// An error in the command line; runTool exits with status 2.
 class UsageError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// A stated requirement was not met (`--require`, no valid position); exit status 3.
-/// The product has been written all the same where there is one.
+/// A stated requirement was not met (`--require`, no valid position); exit status 3. The output is
+/// written first if there is one.
 class UnmetError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// How bad a finding is. A warning points at what was probably not meant; the data are usable.
+/// Severity of a finding. A warning points at a probable mistake; the data are usable.
 enum class Severity { Error, Warning };
 
 /// One finding in an input: `file:line:column: error: message`.
 struct Diagnostic {
-    std::string file;     ///< as the user named it; "-" reads as "stdin"; empty: no place
+    std::string file;     ///< as the user named it; "-" reads as "stdin"; empty if unknown
     int line = 0;         ///< 1-based; 0: the file as a whole
     int column = 0;       ///< 1-based, in bytes; 0: the line as a whole
-    std::string message;  ///< what was found, what was wanted, the hint
+    std::string message;  ///< value found, value wanted, hint
     Severity severity = Severity::Error;
 
     /// "room.env:14:7: error: wall has zero length"
@@ -54,11 +54,11 @@ class FormatError : public std::runtime_error {
 /// Collects findings so that several are reported together.
 class Diagnostics {
   public:
-    /// Findings kept; any more are only counted.
+    /// Number of findings stored; further ones are only counted.
     static constexpr std::size_t kMax = 20;
 
     void add(Diagnostic diagnostic);
-    /// Adds the findings of a caught error.
+    /// Inserts the findings of a caught error.
     void add(const FormatError& error);
     [[nodiscard]] bool empty() const { return kept_.empty(); }
     [[nodiscard]] bool full() const { return kept_.size() >= kMax; }
@@ -70,27 +70,27 @@ class Diagnostics {
     std::size_t dropped_ = 0;
 };
 
-/// How messages name an operand: "-" is "stdin".
+/// Name of an operand in messages: "-" is "stdin".
 std::string displayName(std::string_view operand);
 
-/// Long work reports its progress here and learns whether to stop. The library calls it; the tool
-/// decides what to show.
+/// Receives the progress of long work and tells it when to stop. The library calls it; the tool
+/// decides how to show it.
 class Progress {
   public:
     virtual ~Progress() = default;
     /// Begins a phase of `total` units; 0 if unknown.
     virtual void begin(std::string_view phase, std::int64_t total) = 0;
-    /// Counts units done. Callable from any thread.
+    /// Adds to the units done. Callable from any thread.
     virtual void advance(std::int64_t count) = 0;
-    /// The state in a few words: "best 85.7 %, at most 85.9 %". Callable from any thread.
+    /// Reports the state in a few words: "best 85.7 %, at most 85.9 %". Callable from any thread.
     virtual void note(std::string_view /*text*/) {}
     virtual void end() = 0;
-    /// True once a search should return the best it has, after a signal or at a time limit. Cheap;
-    /// callable from any thread.
+    /// True once a search should return its best result so far, after a signal or at a time limit.
+    /// Cheap; callable from any thread.
     [[nodiscard]] virtual bool stopped() const { return false; }
 };
 
-/// Shows nothing.
+/// Ignores all progress.
 class SilentProgress final : public Progress {
   public:
     void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}

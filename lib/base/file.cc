@@ -51,8 +51,8 @@ OpenFile openInput(const std::string& operand, InputKind kind, struct stat& info
     return file;
 }
 
-/// True if the call that failed is worth another try. A parent or a terminal may have left a stream
-/// non-blocking: that it is not ready is no error, and is waited for.
+/// True if the failed call should be repeated. A parent or a terminal may have left a stream
+/// non-blocking; then this waits until the stream is ready.
 bool isToBeRepeated(int fd, short events) {
     if (errno == EINTR) return true;
     if (errno != EAGAIN && errno != EWOULDBLOCK) return false;
@@ -78,8 +78,8 @@ std::size_t readSome(int fd, std::span<char> bytes, const std::string& name) {
     }
 }
 
-/// Opens a pipe or a device for writing. A pipe is waited for until somebody reads it, as ever, but
-/// TERM ends the process meanwhile, also where a tool has a handler for it or ignores it.
+/// Opens a pipe or a device for writing. Opening a pipe waits for its reader; meanwhile TERM ends
+/// the process, also where a tool handles or ignores it.
 OpenFile openSpecial(const std::string& target) {
     struct sigaction before {};
     struct sigaction ends {};
@@ -92,8 +92,8 @@ OpenFile openSpecial(const std::string& target) {
     return file;
 }
 
-/// Calls make(name) with names in the folder that nobody should have, until one is free: a killed
-/// process may have left its file, and its number comes again.
+/// Calls make(name) with unlikely names in the folder until one is free: a killed process may have
+/// left its file, and process numbers are reused.
 template <typename Make>
 std::string makeStandIn(const std::string& folder, Make make) {
     constexpr int kMaxTries = 1000;
@@ -138,7 +138,7 @@ bool OpenFile::close() {
 
 RegularFile openRegular(const std::string& path) {
     mustBeReadable(path);
-    // Before it is opened, too: to open a device may do things.
+    // Checked before opening, too: opening a device may have side effects.
     struct stat info {};
     if (::stat(path.c_str(), &info) != 0) fail(path, errno);
     mustBeRegular(info, path);
@@ -191,8 +191,8 @@ bool InputFile::read(std::string& bytes) {
 struct OutputFile::State {
     std::string name;       // as the user wrote it, for messages
     std::string target;     // the file that is replaced, links resolved
-    std::string temporary;  // its stand-in; empty: written directly or not yet named
-    std::string kept;       // another name of the old file until all of a set are in their places
+    std::string temporary;  // temporary file; empty: written directly or not yet named
+    std::string kept;       // second link to the old file until the whole set is committed
     std::optional<OpenOutput> known;
     OpenFile file;
     bool direct = false;
@@ -212,11 +212,11 @@ struct OutputFile::State {
         if (!file.empty()) ::unlink(file.c_str());
         file.clear();
     }
-    /// Opens the stand-in, with these permissions.
+    /// Opens the temporary file with these permissions.
     void openStandIn(mode_t mode);
-    /// Gives the written file a name in the folder.
+    /// Links the written file to a name in the folder.
     void link();
-    /// Lets put() be taken back, where the file system can.
+    /// Stores the old file so that put() can be reverted, where the file system supports it.
     void keepOld();
     void put();
     void takeBack();
@@ -224,7 +224,7 @@ struct OutputFile::State {
 
 void OutputFile::State::openStandIn(mode_t mode) {
     // An unnamed file vanishes with the process, however that ends. It gets its name through /proc,
-    // which a chroot may lack.
+    // which may be missing in a chroot.
     file = OpenFile(::open(folder().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode));
     const bool is_known =
         file.fd() < 0 && errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL;
@@ -313,11 +313,11 @@ void OutputFile::commit() {
 }
 
 void OutputFile::commitTogether(std::span<OutputFile* const> files) {
-    // From the first name to the last rename; no signal ends the process between them.
+    // Signals are delayed from the first name to the last rename.
     const DeferredSignals held;
     try {
         for (const OutputFile* file : files) file->state_->link();
-        // Only with others there is something to go wrong after the rename.
+        // Only a set of files can fail after its first rename.
         if (files.size() > 1)
             for (const OutputFile* file : files) file->state_->keepOld();
         for (const OutputFile* file : files) file->state_->put();

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kBytes = 256;
 constexpr std::size_t kBits = 64;  // of a word
 
-/// The bytes that an element of a pattern stands for.
+/// Bytes that an element of a pattern matches.
 using ByteSet = std::bitset<kBytes>;
 
 std::size_t indexOf(char c) { return static_cast<unsigned char>(c); }
@@ -26,7 +26,7 @@ constexpr std::pair<std::string_view, Predicate> kClasses[] = {
     {"lower", std::islower}, {"print", std::isprint}, {"punct", std::ispunct},
     {"space", std::isspace}, {"upper", std::isupper}, {"xdigit", std::isxdigit}};
 
-/// Reads a pattern from the left.
+/// Parses a pattern from the left.
 class GlobParser {
   public:
     explicit GlobParser(std::string_view rest) : rest_(rest) {}
@@ -47,7 +47,7 @@ class GlobParser {
         }
         const bool is_escaped = rest_.front() == '\\';
         if (is_escaped) rest_.remove_prefix(1);
-        // Behind the last byte a backslash has no meaning: only the text itself matches.
+        // A backslash at the end has no meaning: the pattern matches only its own text.
         return rest_.empty() ? ByteSet() : ByteSet().set(indexOf(take()));
     }
 
@@ -57,7 +57,7 @@ class GlobParser {
         rest_.remove_prefix(1);
         return c;
     }
-    /// [...]; nothing, and nothing is taken, if the bracket is never closed.
+    /// Parses [...]; returns nullopt and consumes no bytes if the bracket is not closed.
     std::optional<ByteSet> takeSet() {
         const std::string_view before = rest_;
         rest_.remove_prefix(1);
@@ -74,7 +74,7 @@ class GlobParser {
         rest_ = before;
         return std::nullopt;
     }
-    /// [:alpha:]
+    /// Parses [:alpha:].
     bool takeClass(ByteSet& set) {
         if (!rest_.starts_with("[:")) return false;
         for (const auto& [name, has] : kClasses) {
@@ -128,7 +128,7 @@ Glob::Glob(std::string_view text) : text_(text) {
     }
 }
 
-/// All states at once, as Baeza-Yates and Gonnet (1992) and Wu and Manber (1992) do.
+/// Updates all states at once, as Baeza-Yates and Gonnet (1992) and Wu and Manber (1992) do.
 bool Glob::matches(std::string_view name) const {
     if (name == text_) return true;
     if (!isPattern()) return false;

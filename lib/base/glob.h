@@ -9,29 +9,29 @@
 
 namespace ispace {
 
-/// A pattern of names as shells have them: `*` any bytes, `?` one, `[a-z]` and `[!a-z]` one of a
-/// set (with `[:alpha:]` and its kin), `\` before a byte that stands for itself. A name also
-/// matches the pattern that spells it, and a bracket that is never closed stands for itself. Case
-/// is ignored for ASCII letters only.
+/// A shell pattern of names: `*` matches any bytes, `?` one, `[a-z]` and `[!a-z]` one of a set
+/// (with `[:alpha:]` and other classes), `\` the next byte literally. A name also matches a pattern
+/// with the same text, and an unclosed bracket matches itself. Case is ignored for ASCII letters
+/// only.
 ///
-/// Patterns come from strangers: a match takes at most (name bytes) * (1 + pattern bytes / 64) word
+/// Patterns are untrusted: a match takes at most (name bytes) * (1 + pattern bytes / 64) word
 /// operations, however many stars there are.
 class Glob {
   public:
     Glob() = default;  ///< matches the empty name
     explicit Glob(std::string_view text);
 
-    /// As written.
+    /// The pattern as written.
     [[nodiscard]] const std::string& text() const { return text_; }
-    /// False if it matches one name alone, its text.
+    /// False if the pattern matches only its own text.
     [[nodiscard]] bool isPattern() const { return !accepts_.empty(); }
     [[nodiscard]] bool matches(std::string_view name) const;
 
   private:
     std::string text_;
     // The states of an automaton: bit j is set once the first j elements have been matched.
-    // `accepts_` has words_ words for each byte: bit j if that may be element j. `loops_` has bit j
-    // if a star stands behind the first j elements.
+    // `accepts_` holds words_ words for each byte: bit j if the byte matches element j. `loops_`
+    // has bit j if a star follows the first j elements.
     std::size_t words_ = 0, elements_ = 0;
     std::vector<std::uint64_t> accepts_, loops_;
 };

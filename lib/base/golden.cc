@@ -16,7 +16,8 @@ bool isWordByte(char c) {
            c == '.' || c == '+' || c == '-';
 }
 
-/// The next word, or one byte that is in no word. A full stop that ends a word is not part of it.
+/// Returns the next word, or one byte outside words. A full stop that ends a word is not part of
+/// it.
 std::string_view nextToken(std::string_view text, std::size_t at) {
     std::size_t end = at;
     while (end < text.size() && isWordByte(text[end])) ++end;
@@ -46,7 +47,7 @@ std::string lineAround(std::string_view text, std::size_t at) {
     const std::size_t before = text.substr(0, at).rfind('\n');
     const std::size_t begin = before == std::string_view::npos ? 0 : before + 1;
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    // Long lines (JSON) are cut to the neighbourhood of the difference.
+    // Long lines (JSON) are cut to the surroundings of the difference.
     const std::size_t from = at - begin > 60 ? at - 60 : begin;
     return printable(text.substr(from, std::min(end - from, std::size_t{140})));
 }

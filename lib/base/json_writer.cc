@@ -18,13 +18,14 @@ namespace ispace {
 
 namespace {
 
-/// What JSON text holds as it is: ASCII without quotes, backslashes and control characters.
+/// Characters that JSON text holds unescaped: ASCII without quotes, backslashes and control
+/// characters.
 bool isPlain(char c) {
     const auto byte = static_cast<unsigned char>(c);
     return byte >= 0x20 && byte < 0x80 && c != '"' && c != '\\';
 }
 
-/// A character that is not plain. \return how many bytes it has
+/// Writes a character that needs escaping or validation. \return its length in bytes
 std::size_t appendSpecial(std::string& out, std::string_view text) {
     const std::size_t length = utf8Length(text);
     const char c = text.front();
@@ -156,7 +157,7 @@ std::string textOf(const json* value) {
     return printable(value->dump());
 }
 
-/// "1e-6", as people write it in options.
+/// "1e-6", the short form used in options.
 std::string exponentText(double tolerance) {
     std::string text = formatDouble(roundSignificant(tolerance, 2));
     if (const std::size_t zero = text.find("e-0"); zero != std::string::npos)
@@ -169,7 +170,7 @@ class Comparison {
     Comparison(Tolerance tolerance, std::span<const std::string> ignored)
         : tolerance_(tolerance), ignored_(ignored.begin(), ignored.end()) {}
 
-    /// Compares the values of a line; null stands for one that is missing. \param label "line 3: "
+    /// Compares the values of a line; null stands for a missing value. \param label "line 3: "
     void compareLines(std::string label, const json* expected, const json* actual) {
         label_ = std::move(label);
         compare("", expected, actual);
@@ -230,7 +231,7 @@ class Comparison {
     std::vector<Glob> ignored_;
 };
 
-/// One value, or one a line.
+/// Parses one value, or one value a line.
 std::optional<std::vector<json>> valuesOf(std::string_view text) {
     const auto parse = [](std::string_view part) { return json::parse(part, nullptr, false); };
     if (json whole = parse(text); !whole.is_discarded()) return std::vector<json>{std::move(whole)};
@@ -245,7 +246,7 @@ std::optional<std::vector<json>> valuesOf(std::string_view text) {
     return lines;
 }
 
-/// Files of bare numbers or words are text.
+/// Files of bare numbers or words count as text.
 bool isStructured(const std::vector<json>& values) {
     return std::all_of(values.begin(), values.end(),
                        [](const json& value) { return value.is_structured(); });

@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-/// Writes compact JSON into a string, keys in the order given, doubles in shortest form.
+/// Writes compact JSON into a string: keys in the order given, doubles in shortest form.
 ///
 ///     JsonWriter json;
 ///     json.beginObject().key("schema").value("x/1").key("area").value(1.5).endObject();
@@ -24,10 +24,10 @@ class JsonWriter {
     JsonWriter& beginArray();
     JsonWriter& endArray();
     JsonWriter& key(std::string_view name);
-    /// Invalid UTF-8 becomes U+FFFD, so the result is always valid JSON.
+    /// Writes a string. Invalid UTF-8 becomes U+FFFD, so the result is always valid JSON.
     JsonWriter& value(std::string_view text);
     JsonWriter& value(const char* text) { return value(std::string_view(text)); }
-    /// A number that is not finite becomes null, as JSON has no word for it.
+    /// Writes a number; infinities and NaN become null, since JSON cannot express them.
     JsonWriter& value(double number);
     JsonWriter& value(float number);
     JsonWriter& value(std::int64_t number);
@@ -47,7 +47,7 @@ class JsonWriter {
     }
 
     [[nodiscard]] const std::string& text() const { return text_; }
-    /// What is written so far; writing may go on, as if it still stood before.
+    /// Returns the text so far and removes it; later writes continue it.
     std::string take() { return std::exchange(text_, {}); }
 
   private:
@@ -57,10 +57,10 @@ class JsonWriter {
     bool comma_ = false;
 };
 
-/// The differences of two JSON texts, or of two texts of JSON lines, each as
-/// `coverage.exact: 0.9168 → 0.8582 (±1e-6)`: the path of keys and indices, both values, and for
-/// numbers the tolerance. Numbers agree within the tolerance; the order of keys and blanks between
-/// them do not count. Empty if the texts agree, nothing if either is not JSON.
+/// Finds the differences of two JSON texts, or of two texts of JSON lines, each as `coverage.exact:
+/// 0.9168 → 0.8582 (±1e-6)`: the path of keys and indices, both values, and for numbers the
+/// tolerance. Numbers agree within the tolerance; the order of keys and blanks between them are
+/// ignored. Empty if the texts agree, nullopt if either is not JSON.
 /// \param ignored globs: keys (`digest`) at any depth, or whole paths (`sensors.*.model`)
 std::optional<std::vector<std::string>> jsonDifferences(std::string_view expected,
                                                         std::string_view actual,

@@ -128,7 +128,7 @@ std::string programPrefix() {
     std::error_code error;
     const auto folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
     auto prefix = folder.parent_path();
-    // Where a package keeps the tools apart from other programs of the same names.
+    // Packages install the tools here, apart from other programs of the same names.
     if (folder.string().ends_with("/lib/ispace/bin")) prefix = prefix.parent_path().parent_path();
     return prefix.string();
 }

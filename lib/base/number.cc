@@ -29,8 +29,8 @@ std::string_view shortest(Float value, std::array<char, kBuffer>& buffer) {
     return {buffer.data(), static_cast<std::size_t>(end - buffer.data())};
 }
 
-/// Up to three decimals, as most lengths have, without a search for the shortest digits: no other
-/// decimal of up to 15 digits reads as the same double. Appends nothing to other numbers.
+/// Appends numbers of up to three decimals, as most lengths have, without searching for the
+/// shortest digits: decimals of up to 15 digits read as distinct doubles. Skips other numbers.
 bool appendThousandths(std::string& out, double value) {
     constexpr double kMaxThousandths = 1e12, kThousand = 1000;
     const double scaled = std::fabs(value) * kThousand;
@@ -65,7 +65,7 @@ std::optional<double> parseDouble(std::string_view text) {
 }
 
 std::optional<double> parseScaled(std::string_view text, int exponent) {
-    // On the decimal text, not by a product: 30.1 / 100 is not 0.301.
+    // Scales the decimal text, since a product rounds twice: 30.1 / 100 is not 0.301.
     const auto mark = text.find_first_of("eE");
     const std::string_view mantissa = text.substr(0, mark);
     std::int64_t written = 0;
@@ -146,7 +146,7 @@ std::string formatBytes(std::size_t bytes) {
 
 std::string formatPercent(double fraction) {
     if (fraction == 0) return "0%";
-    // The point moves in the decimal text, as parseShare moves it back: many fractions are no
+    // The point moves in the decimal text, as parseShare moves it back: many fractions are not the
     // quotient of a double by 100.
     std::array<char, kBuffer> buffer;
     const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), fraction,
@@ -225,9 +225,9 @@ namespace {
 
 constexpr int kMantissaBits = 23, kExponentBias = 127;
 constexpr std::uint32_t kSignBit = 0x80000000U, kMantissaMask = 0x7FFFFFU;
-// Exponents of two between which the short way works: 2^-13 up to 2^23.
+// Exponents of two for which the fast path works: 2^-13 up to 2^23.
 constexpr int kMinExponent = -13, kEndExponent = 23;
-// Most decimals then; a float times 10^12 is exact in double: 24 bits and the 28 of 5^12.
+// Most decimals in this range; a float times 10^12 is exact in double: 24 bits and the 28 of 5^12.
 constexpr int kMaxDecimals = 12;
 
 constexpr auto kPowers = [] {
@@ -240,10 +240,10 @@ constexpr auto kPowers = [] {
     return powers;
 }();
 
-/// What is common to all floats of one exponent.
+/// Properties shared by all floats of one exponent.
 struct Binade {
     double half_ulp = 0;  ///< half the distance between neighbours
-    int decimals = 0;     ///< so many tell any two neighbours apart
+    int decimals = 0;     ///< enough to distinguish any two neighbours
 };
 
 constexpr auto kBinades = [] {
@@ -266,15 +266,15 @@ constexpr auto kPairs = [] {
     return pairs;
 }();
 
-/// Nearest whole number of 0 .. 2^51; halves go to the even one.
+/// Nearest integer in 0 .. 2^51; halves round to even.
 double nearest(double value) {
-    constexpr double kWholeFrom = 1ULL << 52U;  // doubles from here on are whole numbers
+    constexpr double kWholeFrom = 1ULL << 52U;  // doubles from here on are integers
     return (value + kWholeFrom) - kWholeFrom;
 }
 
-/// number / 10^decimals, all digits written out. \pre number < 10^15, decimals < 16
+/// Writes number / 10^decimals with all digits. \pre number < 10^15, decimals < 16
 char* writeScaled(char* to, std::uint64_t number, int decimals) {
-    // All digits right-aligned after zeros, then the two sides of the point as blocks.
+    // Writes all digits right-aligned after zeros, then the two sides of the point as blocks.
     constexpr std::size_t kRoom = 32;
     std::array<char, kRoom + 16> digits;
     std::memset(digits.data(), '0', kRoom);
@@ -315,14 +315,14 @@ char* writeFloat(char* to, float value) {
     const int exponent =
         static_cast<int>((bits & ~kSignBit) >> static_cast<unsigned>(kMantissaBits)) -
         kExponentBias;
-    // Neighbours of a power of two stand at unequal distances: left to the library, with all that
-    // is very small or large.
+    // The neighbours of a power of two are at unequal distances; the library converts these, and
+    // very small or large values.
     if (exponent < kMinExponent || exponent >= kEndExponent || (bits & kMantissaMask) == 0)
         return writeShortest(to, value);
 
     // The shortest text is the multiple of 10^-d nearest to the value, with the least d for which
-    // it is nearer to the value than half way to a neighbour. All numbers here are exact. Nothing
-    // is decided where two are equally near.
+    // it is nearer to the value than half way to a neighbour. All numbers here are exact. If two
+    // multiples are equally near, the library decides.
     const double size = std::fabs(static_cast<double>(value));
     const Binade& binade = kBinades[static_cast<std::size_t>(exponent - kMinExponent)];
     int decimals = -1;
@@ -337,7 +337,7 @@ char* writeFloat(char* to, float value) {
         number = whole;
         return 1;
     };
-    // Devices measure whole millimetres; else few decimals less than the most are enough.
+    // Devices measure whole millimetres; else a few decimals less than the most are enough.
     int found = binade.decimals > 3 ? try_decimals(3) : 0;
     if (found == 0) found = try_decimals(binade.decimals);
     while (found == 1 && decimals > 0) found = try_decimals(decimals - 1);
@@ -349,7 +349,7 @@ char* writeFloat(char* to, float value) {
 }
 
 char* writeNineDecimals(char* to, double value) {
-    // So many units that all digits are exact; fewer than the least are written with exponent.
+    // Values large enough have exact digits; values below the least are written with exponent.
     constexpr double kUnits = 1e9, kMin = 1e4, kEnd = 1e15;
     constexpr int kDecimals = 9;
     const double units = std::round(std::fabs(value) * kUnits);

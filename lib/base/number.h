@@ -10,14 +10,14 @@
 
 namespace ispace {
 
-/// The whole text as a finite number: no blanks, no trailing junk, no locale, no NaN or infinity.
-/// A leading '+' is allowed. Nothing for values beyond the range of double.
+/// Parses the whole text as a finite number: no blanks, trailing junk, locale, NaN or infinity. A
+/// leading '+' is allowed. Values beyond the range of double return nullopt.
 std::optional<double> parseDouble(std::string_view text);
 
-/// The same times 10^exponent, rounded once: ("30.1", -2) is the double nearest to 0.301.
+/// Parses the number times 10^exponent, rounded once: ("30.1", -2) is the double nearest to 0.301.
 std::optional<double> parseScaled(std::string_view text, int exponent);
 
-/// The whole text as a decimal integer.
+/// Parses the whole text as a decimal integer.
 std::optional<std::int64_t> parseInteger(std::string_view text);
 
 /// Shortest decimal text that reads back as the same double; plain notation from 1e-5 up to 1e15,
@@ -27,7 +27,7 @@ std::string formatDouble(double value);
 /// Appends formatDouble(value); for long lists.
 void appendDouble(std::string& out, double value);
 
-/// The same for a float: shortest text that reads back as the same float.
+/// Shortest text that reads back as the same float.
 std::string formatFloat(float value);
 /// Appends formatFloat(value); for long lists.
 void appendFloat(std::string& out, float value);
@@ -35,24 +35,24 @@ void appendFloat(std::string& out, float value);
 /// Text with a fixed number of decimals; minus zero is written without sign.
 std::string formatFixed(double value, int decimals);
 
-/// Rounds a computed value to so many significant digits, for reports. Sums of areas and shares
+/// Rounds a computed value to `digits` significant digits, for reports. Sums of areas and shares
 /// carry relative rounding errors of some 1e-15, which would show as meaningless digits:
-/// 16.819200000000002 becomes 16.8192. Monotonic; infinities and NaN stay as they are.
+/// 16.819200000000002 becomes 16.8192. Monotonic; infinities and NaN are returned unchanged.
 double roundSignificant(double value, int digits = 12);
 
-/// A size of memory as people read it, in powers of 1024: "812 bytes", "19.5 MB", "8 GB".
+/// Size of memory in powers of 1024: "812 bytes", "19.5 MB", "8 GB".
 std::string formatBytes(std::size_t bytes);
 
 /// Shortest percentage that parseShare reads back as the same fraction: 0.974 is "97.4%".
 /// \pre fraction is finite
 std::string formatPercent(double fraction);
 
-/// A share as users write it: "95%" and "0.95" are the same. A number above 1 without a per cent
-/// sign is refused (it could be either), as is anything outside 0..1.
+/// Parses a share: "95%" and "0.95" are equal. A number above 1 without a per cent sign is rejected
+/// (it could be either), and so are values outside 0..1.
 std::optional<double> parseShare(std::string_view text);
 
-/// What a number in a file or an option measures. It may carry a suffix; without one it is in the
-/// first unit named.
+/// Quantity of a number in a file or an option. The number may carry a suffix; without one it is in
+/// the first unit named.
 enum class Unit {
     None,
     Length,     ///< m; also km, cm, mm
@@ -60,18 +60,18 @@ enum class Unit {
     Area,       ///< m2
     Time,       ///< s; also ms, us, ns, min, h
     Frequency,  ///< Hz
-    Share,      ///< fraction 0..1; text "95%" or "0.95", a bare number above 1 is refused
+    Share,      ///< fraction 0..1; text "95%" or "0.95"; rejects a bare number above 1
 };
 
-/// A unit is `factor` times 10^exponent of the first: "30.1cm" is scaled by the exponent before it
-/// is rounded to a double.
+/// A unit is `factor` times 10^exponent of the first. The exponent is applied to the text of
+/// "30.1cm" before it is rounded to a double.
 struct UnitSuffix {
     std::string_view name;
     int exponent = 0;
-    double factor = 1;  ///< whole for all but angles
+    double factor = 1;  ///< an integer except for angles
 };
 
-/// Suffixes of a unit, the plain one first; empty for None and Share.
+/// Suffixes of a unit, the first unit first; empty for None and Share.
 std::span<const UnitSuffix> suffixesOf(Unit unit);
 
 /// "m, km, cm or mm"
@@ -80,22 +80,23 @@ std::string suffixNames(Unit unit);
 /// Rounds to nine decimals, which removes the rounding errors of sums and tangents.
 double nineDecimals(double value);
 
-/// Characters that any number below needs, with a separator.
+/// Most characters of a number written below, with a separator.
 constexpr std::size_t kNumberRoom = 24;
-/// Characters behind a number that may be overwritten.
+/// Characters after a number that may be overwritten.
 constexpr std::size_t kNumberSlack = 32;
 
-/// Writes formatFloat(value) to `to` and returns the end; faster than that for everyday values.
+/// Writes formatFloat(value) to `to` and returns the end; faster than formatFloat for common
+/// values.
 /// \pre value is finite, `to` has room for kNumberRoom + kNumberSlack characters
 char* writeFloat(char* to, float value);
 
-/// The same for formatDouble(nineDecimals(value)).
+/// Writes formatDouble(nineDecimals(value)) in the same way.
 char* writeNineDecimals(char* to, double value);
 
-/// The same for a whole number.
+/// Writes an integer in the same way.
 char* writeInteger(char* to, std::size_t value);
 
-/// Appends to a string, which is enlarged once for many numbers and cut to size at the end.
+/// Appends to a string, which is enlarged once for many numbers and truncated at the end.
 class TextTail {
   public:
     /// \pre at most `room` characters are written

@@ -49,7 +49,7 @@ std::uint32_t atMost32(std::uint64_t value) {
     return static_cast<std::uint32_t>(std::min(value, kMax32));
 }
 
-/// What local and central heads have in common, from the version needed to the length of the name.
+/// Fields that local and central headers share, from the version needed to the length of the name.
 void appendMiddle(std::string& out, std::uint16_t version, std::uint32_t crc, std::uint64_t size,
                   const std::string& name) {
     appendLittle(out, version);
@@ -166,7 +166,7 @@ OpenFile namelessFile() {
     const int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode);
     if (fd >= 0) return OpenFile(fd);
     if (errno != EOPNOTSUPP && errno != EISDIR) fail(errno);
-    // A file system that knows no files without a name.
+    // The file system does not support unnamed files.
     std::string name = folder + "/ispace-XXXXXX";
     OpenFile file(::mkostemp(name.data(), O_CLOEXEC));
     if (file.fd() < 0) fail(errno);

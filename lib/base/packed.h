@@ -15,7 +15,7 @@ namespace ispace {
 
 static_assert(std::endian::native == std::endian::little, "packed numbers are little-endian");
 
-/// Numbers and lists of numbers as bytes, for what one process leaves to another.
+/// Converts numbers and lists of numbers to bytes that another process reads.
 class Packer {
   public:
     void add(std::uint64_t number) { append(&number, sizeof number); }
@@ -26,7 +26,7 @@ class Packer {
         add(values.size());
         append(values.data(), values.size() * sizeof(T));
     }
-    /// What another packer has packed.
+    /// Appends the bytes of another Packer.
     void addBytes(std::string_view bytes) { append(bytes.data(), bytes.size()); }
     [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
@@ -40,10 +40,10 @@ class Packer {
     std::string bytes_;
 };
 
-/// Reads what a Packer packed. \throws FormatError where there are too few bytes
+/// Reads the bytes of a Packer. \throws FormatError if there are too few bytes
 class Unpacker {
   public:
-    /// `bytes` outlive it.
+    /// \pre `bytes` outlive the reader
     explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
 
     std::uint64_t number() {

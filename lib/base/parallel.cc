@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first line; "" if there is no such file.
+/// Reads the first line; "" if the file is missing.
 std::string firstLineOf(const fs::path& file) {
     std::ifstream in(file);
     std::string line;
@@ -31,7 +31,8 @@ std::string firstLineOf(const fs::path& file) {
     return line;
 }
 
-/// Microseconds of processor time in each period; nothing for "max", -1 and what is no number.
+/// Microseconds of processor time in each period; nullopt for "max", -1 and text that is not a
+/// number.
 std::optional<int> processors(const std::string& quota, const std::string& period) {
     const auto granted = parseInteger(quota), each = parseInteger(period);
     if (!granted || !each || *granted <= 0 || *each <= 0) return std::nullopt;
@@ -51,8 +52,8 @@ std::optional<int> ofGroup1(const fs::path& group) {
                       firstLineOf(group / "cpu.cfs_period_us"));
 }
 
-/// The least that `of` says of a group and those above it. Where the path is another namespace's,
-/// only the topmost is there.
+/// The least value that `of` returns for a group and its ancestors. If the path belongs to another
+/// namespace, only the topmost group exists.
 template <typename Of>
 void limitBy(const fs::path& top, const std::string& path, Of of, std::optional<int>& least) {
     fs::path group = fs::path(path).relative_path();
@@ -79,7 +80,7 @@ std::optional<int> cpuQuota(const std::string& root) {
     const fs::path groups = fs::path(root + "/sys/fs/cgroup");
     std::ifstream in(root + "/proc/self/cgroup");
     for (std::string line; std::getline(in, line);) {
-        // NUMBER:CONTROLLERS:PATH, with 0 and none in version 2
+        // NUMBER:CONTROLLERS:PATH; 0 and no controllers in version 2
         const std::size_t first = line.find(':'), second = line.find(':', first + 1);
         if (first == std::string::npos || second == std::string::npos) continue;
         const std::string controllers = line.substr(first + 1, second - first - 1);
@@ -97,7 +98,7 @@ std::optional<int> cpuQuota(const std::string& root) {
 
 namespace {
 
-/// True on a thread that is at work for a function of this file.
+/// True on a thread that runs work of a function of this file.
 thread_local bool is_inside = false;
 
 struct Inside {
@@ -105,8 +106,8 @@ struct Inside {
     ~Inside() { is_inside = before; }
 };
 
-/// Whoever waits for part of the work takes up other parts of it, but nothing else: what calls
-/// from outside may hold a lock that something else wants. Calls within the work belong to it.
+/// A thread that waits for part of the work steals only tasks of this work: its caller may hold a
+/// lock that other tasks request. Nested calls belong to the work.
 template <typename Work>
 void isolated(Work work) {
     if (is_inside)

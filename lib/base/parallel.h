@@ -12,16 +12,16 @@
 
 namespace ispace {
 
-/// A value made when it is first asked for, once, by the first thread that asks; the others wait
-/// for it. Afterwards get() costs one atomic load.
+/// A value computed once, by the first thread that requests it; other threads wait for it.
+/// Afterwards get() costs one atomic load.
 template <typename T>
 class Lazy {
   public:
     Lazy() = default;
     explicit Lazy(T value) : value_(std::move(value)), is_made_(true) {}
 
-    /// The value; `make()` returns it. If `make` throws, the next caller tries again. `make` must
-    /// not ask for the same value, nor wait for tasks that do.
+    /// Returns the value; `make()` computes it. If `make` throws, the next caller tries again.
+    /// `make` must not request the same value, nor wait for tasks that do.
     template <typename Make>
     const T& get(Make make) const {
         if (!is_made_.load(std::memory_order_acquire)) {
@@ -33,7 +33,7 @@ class Lazy {
         }
         return *value_;
     }
-    /// The value if it is made, else null.
+    /// Returns the value if it is computed, else null.
     [[nodiscard]] const T* peek() const {
         return is_made_.load(std::memory_order_acquire) ? &*value_ : nullptr;
     }
@@ -44,15 +44,15 @@ class Lazy {
     mutable std::atomic<bool> is_made_ = false;
 };
 
-/// Processors that this process may use by the quota of its control group (version 1 or 2) and of
-/// those above it, rounded up: what containers and batch systems grant. Nothing without a quota.
-/// \param root where `/proc` and `/sys` are; "" is the machine's
+/// Processors that the quotas of the process's control group (version 1 or 2) and its ancestors
+/// allow, rounded up; containers and batch systems set them. Returns nullopt without a quota.
+/// \param root folder of `/proc` and `/sys`; "" is the machine's
 std::optional<int> cpuQuota(const std::string& root = "");
 
-/// Moves a value to where it stays until the process ends and is never destroyed: to free all that
-/// is known of a large room takes long. For main functions, once for each type: a second value
-/// would be a leak. (`used`: a compiler may leave out a pointer that nobody reads, and then the
-/// first is one, too.)
+/// Moves a value to the heap and never destroys it: to free the cached derivations of a large room
+/// takes long. For main functions, once for each type: a second value would leak the first.
+/// (`used`: a compiler may remove a pointer that is never read, and then the first value leaks,
+/// too.)
 template <typename T>
 const T& leftToExit(T value) {
     [[gnu::used]] static const T* pointer = nullptr;
@@ -60,9 +60,9 @@ const T& leftToExit(T value) {
     return *pointer;
 }
 
-/// Calls functions that come from several threads in the order of their numbers, each as soon as
-/// all before it are there, one at a time. Whoever adds the one that the others wait for calls
-/// them. After one has thrown none is called any more.
+/// Calls functions added by several threads in the order of their numbers, one at a time, each as
+/// soon as all earlier ones have been added. The thread that adds the missing function calls those
+/// that wait for it. After an exception no further function is called.
 class OrderedCalls {
   public:
     explicit OrderedCalls(std::size_t count) : waiting_(count) {}
@@ -88,25 +88,25 @@ class OrderedCalls {
     bool is_calling_ = false;
 };
 
-/// Fewer records than this are dealt with before another thread would begin.
+/// Below this number of records the work is done before a second thread starts.
 constexpr std::size_t kManyRecords = 2000;
 
-/// Does both: in two threads, if there are so many, or one after the other. Whoever waits takes up
-/// nothing else meanwhile. \throws what one of them throws
+/// Runs both functions, in two threads if `at_once` and threads are free, else one after the other.
+/// A waiting thread steals only tasks of this call. \throws the exception of either function
 void parallelInvoke(bool at_once, const std::function<void()>& first,
                     const std::function<void()>& second);
 
-/// Blocks that may be in the making at a time, see orderedPipeline().
+/// Most blocks in progress at a time, see orderedPipeline().
 constexpr std::size_t kBlocksAtOnce = 8;
 
-/// Calls make(block) for each of these blocks, several in different threads, and take(block) for
-/// one after another, in order. A block is taken before the one kBlocksAtOnce behind it is begun,
-/// so that the two can use the same memory. \throws what one of them throws
+/// Calls make(block) for each block, in several threads, and take(block) for one block after
+/// another, in order. A block is taken before make() starts on the block kBlocksAtOnce later, so
+/// that the two can share memory. \throws the exception of either function
 void orderedPipeline(std::size_t blocks, const std::function<void(std::size_t)>& make,
                      const std::function<void(std::size_t)>& take);
 
-/// Calls work(first, last) for consecutive parts of 0 to count - 1, in several threads if there are
-/// so many. \throws what one of them throws
+/// Calls work(first, last) for consecutive ranges of 0 to count - 1, in several threads if
+/// `at_once` and threads are free. \throws the exception of a call
 void parallelChunks(bool at_once, std::size_t count,
                     const std::function<void(std::size_t, std::size_t)>& work);
 

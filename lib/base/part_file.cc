@@ -26,9 +26,9 @@ namespace ispace {
 namespace {
 
 constexpr std::string_view kMagic = "#part 2\n", kAnyMagic = "#part ", kEnd = "end";
-/// Bytes of replaced records that a kept file may have before it is written anew.
+/// Bytes of replaced records at which a kept file is rewritten.
 constexpr std::uint64_t kMaxReplacedBytes = std::uint64_t{16} << 20U;
-/// Longest header: histories are long where there were many commands, but no longer.
+/// Longest header; long histories of many commands fit.
 constexpr std::size_t kMaxHead = std::size_t{1} << 24U;
 constexpr std::size_t kMaxRecordLine = 200;
 
@@ -90,7 +90,7 @@ bool readField(PartHead& head, std::string_view key, std::string_view value) {
     throw std::system_error(errno, std::generic_category(), file);
 }
 
-/// A file without a name in the folder of `output`, of a stream in TMPDIR.
+/// Creates an unnamed file in the folder of `output`, for a stream in TMPDIR.
 OpenFile namelessFileBeside(const std::string& output) {
     std::error_code ignored;
     std::filesystem::path folder(output);
@@ -207,12 +207,12 @@ void JobResults::addFile(const std::string& name) {
         if (!S_ISREG(info.st_mode))
             file.refuse("a part is a regular file: it is read more than once");
     };
-    // Before it is opened, too, as openRegular() does; but a kept file is an output as well.
+    // Checked before opening, as in openRegular(); but a kept file is an output as well.
     check(::stat(name.c_str(), &info) == 0);
     const int mode = is_kept_ ? O_RDWR | O_APPEND : O_RDONLY;
     file.open = OpenFile(::open(name.c_str(), mode | O_NONBLOCK | O_CLOEXEC));
     check(file.open.fd() >= 0 && ::fstat(file.open.fd(), &info) == 0);
-    // A file system without locks lets two processes write.
+    // Without locks in the file system two processes may write.
     if (is_kept_ && ::flock(file.open.fd(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
         file.refuse("another process works on this job: wait for it, or end it");
     file.readHead();
@@ -248,7 +248,7 @@ void JobResults::readRecords(File& file, std::uint64_t size) {
             file.is_finished = true;
             return;
         }
-        // A machine that went down may have left anything.
+        // After a crash of the machine any bytes may be in the file.
         if (is_kept_ && !readRecord(record, found)) return;
         keep(key, record);
     }
@@ -332,7 +332,7 @@ void JobResults::append(std::string_view bytes) {
             done += static_cast<std::size_t>(n);
         } else if (errno != EINTR) {
             const int error = errno;
-            // A reader would cut half a record off; but the next one needs its room.
+            // A reader would skip the half record, but the next record requires its space.
             static_cast<void>(::ftruncate(file.open.fd(), static_cast<off_t>(file.end)) == 0);
             throw std::system_error(error, std::generic_category(), file.name);
         }
@@ -359,7 +359,7 @@ void JobResults::store(const std::string& key, std::string_view bytes) {
         if (!is_optional_) throw;
         trouble_ = error.what();
     }
-    // Most of the time is for the job.
+    // Storing takes only a small share of the time.
     constexpr int kStoringShare = 20;
     const Clock::time_point end = Clock::now();
     next_ = end + std::max(interval_, kStoringShare * (end - begin));
@@ -436,7 +436,7 @@ std::string numberList(const std::vector<int>& numbers) {
     return text;
 }
 
-/// Each part stays open; as many files as the process may ask for, if fewer are allowed now.
+/// Opens all parts and keeps them open; raises the limit of open files if necessary.
 void allowFiles(std::size_t count) {
     constexpr rlim_t kOthers = 64;
     const rlim_t wanted = count + kOthers;
@@ -446,7 +446,7 @@ void allowFiles(std::size_t count) {
     ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-/// What keeps a part from being merged with `first`, if there is one; "" if it fits.
+/// Reason why a part cannot be merged with `first`; "" if it can.
 std::string mergeProblem(const PartHead& head, bool is_finished, std::string_view tool,
                          const std::optional<PartHead>& first, const std::string& first_name) {
     if (head.job.tool != tool)

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of a job by key: what a shard writes as a part (--shard), what --resume keeps beside the
-// output, and what --merge reads.
+// Results of a job by key. A shard (--shard) writes them as a part, --resume stores them beside the
+// output, --merge reads them.
 //
 // A file of results is a text header, then records. The header is
 //     #part 2
 //     # scan room.glb --frames 100        the history of the product, a line each
 //     tool scan 0.1.0                     and its version
 //     room sha256:…                       digest of the environment
-//     inputs sha256:…                     digest of all that was read
+// digest of everything read
 //     seed 0
-//     form jsonl                          what the records hold
+// format of the records
 //     shard 3/8
-//     units 100                           of the whole job; - where that is not known
-// and a blank line. A record is a line `=KEY BYTES HASH`, so many bytes and a newline; the hash is
+// of the whole job; - if unknown
+// and a blank line. A record is a line `=KEY BYTES HASH`, BYTES bytes and a newline; HASH is
 // hashOf() the bytes, in hex. A later record replaces an earlier one of its key. The last record of
 // a finished part is `end`.
 #pragma once
@@ -34,7 +34,7 @@
 
 namespace ispace {
 
-/// What all parts of a job have in common.
+/// Properties that all parts of a job share.
 struct JobId {
     std::string tool;
     std::string version = std::string(ispace::version());
@@ -42,11 +42,11 @@ struct JobId {
     std::string room;    ///< digest of the environment
     std::string inputs;  ///< digest of everything read
     std::uint64_t seed = 0;
-    std::string form;                   ///< what the records hold: "jsonl"
-    std::optional<std::int64_t> units;  ///< of the whole job, where they can be counted
+    std::string form;                   ///< format of the records: "jsonl"
+    std::optional<std::int64_t> units;  ///< of the whole job, if they can be counted
 
-    /// The property in which another job differs, for messages: "the room", "the version of ispace
-    /// (0.1.0, 0.2.0)"; "" if it is the same job.
+    /// Returns the property in which another job differs, for messages: "the room", "the version of
+    /// ispace (0.1.0, 0.2.0)"; "" if the jobs are equal.
     [[nodiscard]] std::string differenceFrom(const JobId& other) const;
 };
 
@@ -55,52 +55,52 @@ struct PartHead {
     Shard shard;
 };
 
-/// Results of a job by key. They stay in files until they are asked for; find() and store() may be
+/// Results of a job by key. They are stored in files and read on request; find() and store() may be
 /// called from any thread.
 class JobResults {
   public:
-    /// The results of one shard of a job. With `is_kept` they go into keptFile() and outlive the
-    /// process, and those that an earlier run left there are found: a record that was cut off or
-    /// damaged is dropped, with all behind it. Otherwise they go into a file without a name in the
-    /// folder of `output`, or in TMPDIR if that is a stream.
-    /// \throws FormatError if the kept file is of another job, which is left alone, or if another
-    /// process has it open; std::system_error
+    /// Opens the results of one shard of a job. With `is_kept` they are stored in keptFile() and
+    /// outlive the process; results of an earlier run are read from there, up to the first
+    /// truncated or damaged record. Otherwise they are stored in an unnamed file in the folder of
+    /// `output`, or in TMPDIR if that is a stream.
+    /// \throws FormatError if the kept file belongs to another job, in which case it is unchanged,
+    /// or if another process has it open; std::system_error
     JobResults(const std::string& output, const JobId& job, Shard shard, bool is_kept);
 
-    /// The file beside an output that keeps results: OUTPUT.resume, in a folder its file `.resume`
-    /// or, of one shard of many, `.resume-2of3`.
+    /// Name of the file beside an output that stores results: OUTPUT.resume, in a folder `.resume`
+    /// or, for one of several shards, `.resume-2of3`.
     static std::string keptFile(const std::string& output, const Shard& shard);
 
-    /// Of a merge that of the first part.
+    /// Header; of a merge, that of the first part.
     [[nodiscard]] const PartHead& head() const { return files_.front().head; }
     [[nodiscard]] const std::string& file() const { return files_.front().name; }
-    /// In the order of their bytes.
+    /// All keys, sorted bytewise.
     [[nodiscard]] std::vector<std::string> keys() const;
-    /// \throws FormatError if the bytes are not those that were stored
+    /// Returns the result of a key. \throws FormatError if its bytes are damaged
     [[nodiscard]] std::optional<std::string> find(const std::string& key) const;
-    /// Adds a result, or replaces that of the same key; a merge keeps none. The kept file is
-    /// written anew once it is mostly made of replaced results.
+    /// Inserts a result, or replaces that of the same key; a merge does not store results. The kept
+    /// file is rewritten once most of it is replaced results.
     /// \pre the key has no blank or newline and is not `end`
-    /// \throws std::system_error if the disk is full: the file is then as it was
+    /// \throws std::system_error if the disk is full; the file is then unchanged
     void store(const std::string& key, std::string_view bytes);
-    /// Writes the results as a finished part, in the order of their keys. \param prefixes of the
-    /// keys that the part has; none: all
+    /// Writes the results as a finished part, sorted by key.
+    /// \param prefixes of the keys to write; if empty, all keys
     void writePart(const std::string& target,
                    std::span<const std::string_view> prefixes = {}) const;
-    /// The job is done: the kept file is removed.
+    /// Removes the kept file once the job is done.
     void finish();
 
-    /// From now on a full disk drops results in place of being an error; trouble() says so.
+    /// From now on results are dropped if the disk is full, without an error; trouble() reports it.
     void dropWithoutRoom() { is_optional_ = true; }
     [[nodiscard]] const std::string& trouble() const { return trouble_; }
 
-    /// 1, 2, … each time that this kind of step is taken. From one thread, in the same order in
+    /// Counts the steps of one kind: returns 1, 2, … Call it from one thread, in the same order in
     /// each run.
     int numberOf(const std::string& step) { return ++steps_[step]; }
-    /// A key with that number: "tree1", "tree2", …
+    /// Returns a key with that number: "tree1", "tree2", …
     std::string keyFor(const std::string& step) { return step + std::to_string(numberOf(step)); }
-    /// True once results are kept and the interval has passed since the last store(), or the time
-    /// that makes storing a twentieth of all: state in the middle of a step is then worth storing.
+    /// True if results are kept and storing the state in the middle of a step pays: since the last
+    /// store() the interval has passed, and 20 times the time that it took.
     [[nodiscard]] bool isDue();
     void setInterval(double seconds);
 
@@ -118,7 +118,7 @@ class JobResults {
         std::string name;
         OpenFile open = OpenFile();
         PartHead head = {};
-        std::uint64_t begin = 0, end = 0;  // of its whole records
+        std::uint64_t begin = 0, end = 0;  // of its complete records
         bool is_finished = false;
 
         [[nodiscard]] std::string read(std::uint64_t at, std::size_t size) const;
@@ -144,21 +144,21 @@ class JobResults {
     std::map<std::string, int> steps_;
     Clock::duration interval_{};
     Clock::time_point next_ = Clock::now();
-    std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  // it can be moved
+    std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  // for moves
 };
 
-/// The results in the parts of all shards of one job.
-/// \throws FormatError with what is missing, doubled, unfinished, of another job or tool, or
-/// written by an ispace whose parts had another form
+/// Merges the parts of all shards of one job.
+/// \throws FormatError if a part is missing, duplicate, unfinished, of another job or tool, or
+/// written by a version of ispace with another format
 JobResults mergeParts(std::span<const std::string> files, std::string_view tool);
 
 /// True if `file` is a finished and undamaged part of this shard of this job.
 bool isPartOf(const std::string& file, const PartHead& head);
 
-/// The header of a part or of kept results. \throws FormatError, std::system_error
+/// Reads the header of a part or of kept results. \throws FormatError, std::system_error
 PartHead partHeadOf(const std::string& file);
 
-/// The text of a header, and of a record.
+/// Formats a header, and a record.
 std::string partHeadText(const PartHead& head);
 std::string partRecordText(std::string_view key, std::string_view bytes);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Philox' rounds. Written plainly, compilers take 64-bit multiplications for them; processors have
-// one that multiplies the lower halves of 64-bit lanes, which is all that is needed: words stay in
-// those halves, and nobody looks at the upper ones.
+// Computes Philox' rounds. Compilers turn plain code into 64-bit multiplications; processors have a
+// faster instruction that multiplies the lower halves of 64-bit lanes. Words are therefore stored
+// in the lower halves, and the upper halves are ignored.
 #include <array>
 #include <span>
 
@@ -9,7 +9,7 @@
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12
 #define ISPACE_PHILOX_LANES
-// GCC 12 warns of values that its own header leaves open on purpose.
+// GCC 12 warns of values that its own header deliberately leaves uninitialised.
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <immintrin.h>
@@ -60,7 +60,7 @@ __attribute__((target("arch=x86-64-v4"))) inline void storeWords(Word* to, __m51
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm512_cvtepi64_epi32(lanes));
 }
 
-/// `kVectors` vectors of 8 elements at once: as many as there are registers for, or nearly.
+/// Computes `kVectors` vectors of 8 elements at once: about as many as there are registers.
 __attribute__((target("arch=x86-64-v4"))) void computeIn512(const Philox& philox, Word first,
                                                             Word* a, Word* b, Word* c) {
     constexpr std::size_t kLanes = 8, kVectors = kGroup / kLanes;
@@ -76,7 +76,7 @@ __attribute__((target("arch=x86-64-v4"))) void computeIn512(const Philox& philox
         x2[k] = _mm512_set1_epi64(philox.counter2);
         x3[k] = _mm512_set1_epi64(philox.counter3);
     }
-    constexpr int kExclusiveOr = 0x96;  // of all three
+    constexpr int kExclusiveOr = 0x96;  // truth table of a ^ b ^ c
     Word key0 = philox.key0, key1 = philox.key1;
 #pragma GCC unroll 10
     for (int round = 0; round < kRounds; ++round) {
@@ -109,7 +109,7 @@ __attribute__((target("arch=x86-64-v3"))) inline void storeWords(Word* to, __m25
     _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm256_castsi256_si128(packed));
 }
 
-/// The same with 4 elements a vector, and half of the registers.
+/// Computes vectors of 4 elements, with half of the registers.
 __attribute__((target("arch=x86-64-v3"))) void computeIn256(const Philox& philox, Word first,
                                                             Word* a, Word* b, Word* c) {
     constexpr std::size_t kLanes = 4, kVectors = 2;
@@ -150,7 +150,7 @@ __attribute__((target("arch=x86-64-v3"))) void computeIn256(const Philox& philox
 
 #endif
 
-/// Quickest first.
+/// Fastest first.
 constexpr GroupFunction kFunctions[] = {
 #ifdef ISPACE_PHILOX_LANES
     computeIn512, computeIn256,

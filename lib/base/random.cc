@@ -32,8 +32,8 @@ ISPACE_SIMD_CLONES void drawSome(const Philox& philox, std::uint32_t first, std:
 std::uint32_t low(std::uint64_t word) { return static_cast<std::uint32_t>(word); }
 std::uint32_t high(std::uint64_t word) { return static_cast<std::uint32_t>(word >> 32U); }
 
-// 224 bits of a key and an element into Philox' 192: only the upper halves of seed and hash share
-// a word.
+// Maps 224 bits of a key and an element to Philox' 192: only the upper halves of seed and hash
+// share a word.
 Philox philoxOf(const RandomKey& key) {
     assert(key.frame < std::uint64_t{1} << 56U);
     return {.counter1 = low(key.frame),

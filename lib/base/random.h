@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-/// What random numbers are for; different purposes have independent sequences.
+/// Purpose of random numbers; sequences of different purposes are independent.
 enum class Purpose : std::uint32_t {
     Range = 1,
     Ultrasound = 2,
@@ -29,7 +29,7 @@ enum class Purpose : std::uint32_t {
 std::uint64_t hashOf(std::string_view id);
 
 /// Mixes all bits, one to one (SplitMix64; Steele et al., Fast Splittable Pseudorandom Number
-/// Generators, 2014): for hashes of numbers, the same on every machine.
+/// Generators, 2014), to compute hashes of numbers; the same on every machine.
 constexpr std::uint64_t mixedBits(std::uint64_t bits) {
     bits += 0x9e3779b97f4a7c15U;
     bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -37,9 +37,9 @@ constexpr std::uint64_t mixedBits(std::uint64_t bits) {
     return bits ^ (bits >> 31U);
 }
 
-/// Names a sequence of random numbers. Element k depends on the key and on k alone, so that any
-/// thread may draw any part of it (Philox4x32-10; Salmon et al., Parallel Random Numbers: As Easy
-/// as 1, 2, 3, 2011).
+/// Key of a sequence of random numbers. Element k depends on the key and k alone, so any thread may
+/// draw any part of it (Philox4x32-10; Salmon et al., Parallel Random Numbers: As Easy as 1, 2, 3,
+/// 2011).
 struct RandomKey {
     std::uint64_t seed = 0;
     Purpose purpose = Purpose::Range;
@@ -47,8 +47,7 @@ struct RandomKey {
     std::uint64_t frame = 0;   ///< below 2^56
 };
 
-/// Elements first, first + 1, ... of a sequence. All arrays have one size; those not wanted are
-/// empty.
+/// Elements first, first + 1, ... of a sequence. All arrays have one size; unwanted ones are empty.
 struct RandomDraws {
     std::span<float> normal = {};   ///< N(0, 1)
     std::span<float> other = {};    ///< N(0, 1), independent of it
@@ -58,15 +57,15 @@ void draw(const RandomKey& key, std::uint32_t first, const RandomDraws& draws);
 
 }  // namespace ispace
 
-/// The loops of draw(), to be compiled for one processor or another.
+/// The loops of draw(), compiled once for each kind of processor.
 namespace ispace::random_loops {
 
-/// Elements computed together in memory.
+/// Elements held in memory at a time.
 constexpr std::size_t kBlock = 256;
-/// Elements whose rounds are computed together.
+/// Elements whose rounds run together.
 constexpr std::size_t kGroup = 64;
 
-/// The part of Philox' input that all elements of a sequence share; word 0 of its counter is the
+/// The part of Philox' input that all elements of a sequence share; word 0 of its counter holds the
 /// element.
 struct Philox {
     std::uint32_t counter1 = 0, counter2 = 0, counter3 = 0;
@@ -78,22 +77,24 @@ struct Words {
     alignas(64) std::array<std::uint32_t, kBlock> a, b, c;
 };
 
-/// Where the draws of a block go; null if not wanted.
+/// Destinations of the draws of a block; null if unwanted.
 struct Targets {
     float* normal = nullptr;
     float* other = nullptr;
     float* uniform = nullptr;
 };
 
-/// Philox4x32-10 of elements first .. first + kGroup - 1: three words of each.
+/// Computes Philox4x32-10 of elements first .. first + kGroup - 1: three words of each.
 using GroupFunction = void (*)(const Philox& philox, std::uint32_t first, std::uint32_t* a,
                                std::uint32_t* b, std::uint32_t* c);
-/// Those that this processor can run, the quickest first, plain C++ last. All give the same words.
+/// Functions that this processor can run, fastest first, plain C++ last. All compute the same
+/// words.
 std::span<const GroupFunction> groupFunctions();
 
 /// Draws elements first .. first + count - 1, their words from `compute`. \pre count <= kBlock
 ///
-/// Normals are those of Box and Muller: the root of -2 ln u in the direction of a random angle.
+/// Normals are computed by the method of Box and Muller: the root of -2 ln u in the direction of a
+/// random angle.
 ISPACE_INLINE void drawBlock(const Philox& philox, std::uint32_t first, std::size_t count,
                              const Targets& targets, GroupFunction compute) {
     Words words;  // NOLINT: computed as far as it is read
@@ -111,7 +112,7 @@ ISPACE_INLINE void drawBlock(const Philox& philox, std::uint32_t first, std::siz
     if (normal == nullptr && other == nullptr) return;
     alignas(64) std::array<float, kBlock> radius;  // NOLINT: computed as far as it is read
     for (std::size_t k = 0; k < count; ++k) {
-        // In [2^-32, 1], to 31 bits where it is small, which is what matters for the tails.
+        // In [2^-32, 1], with 31 bits even for small values, which determine the tails.
         const float u =
             (static_cast<float>(static_cast<std::int32_t>(words.a[k] >> 1U)) + 0.5F) * 0x1p-31F;
         radius[k] = simd::squareRoot(-2.0F * simd::logarithm(u));

@@ -30,7 +30,7 @@ struct FileId {
     auto operator<=>(const FileId&) const = default;
 };
 
-/// Where a file is or is going to be.
+/// Folder and name of a file that exists or will be created.
 struct Place {
     FileId folder;
     std::string name;
@@ -39,7 +39,7 @@ struct Place {
 
 struct Output {
     std::string name, role;
-    std::optional<FileId> old;  // what it replaces
+    std::optional<FileId> old;  // the file it replaces
     bool is_claimed = false, is_open = false;
 };
 
@@ -63,7 +63,7 @@ std::optional<FileId> fileAt(const std::string& name) {
     return exists ? regular(info) : std::nullopt;
 }
 
-/// Nothing for a target in a folder that is not there.
+/// Returns nullopt if the target's folder does not exist.
 std::optional<Place> placeOf(const std::string& target) {
     const fs::path path(target);
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -96,7 +96,7 @@ void note(const struct stat& info) {
     if (!file) return;
     const std::lock_guard lock(guard);
     if (!known) return;
-    known->inputs.insert(*file);  // also if it is refused: cleaning up must not replace it
+    known->inputs.insert(*file);  // stored even if rejected: cleaning up must not replace it
     for (const auto& [place, output] : known->outputs)
         if (output.old == file) refuseInput(output.name);
 }
@@ -132,9 +132,9 @@ void claimOutput(const std::string& target, const std::string& role) {
     const auto place = placeOf(resolved);
     struct stat info {};
     const bool exists = ::stat(resolved.c_str(), &info) == 0;
-    // A device or a pipe may well be named twice.
+    // Devices and pipes may be named twice.
     if (!place || (exists && !S_ISREG(info.st_mode))) return;
-    // What went to stdout would be lost with the old file; /dev/stdout may be meant.
+    // Output written to stdout would be lost with the old file; /dev/stdout may be meant.
     if (exists && !target.starts_with("/dev/") && !target.starts_with("/proc/") &&
         regular(info) == fileAt("-"))
         throw UsageError(role + " and stdout are the same file, " + target);
@@ -175,7 +175,7 @@ OpenOutput::~OpenOutput() {
     if (!known || !place) return;
     const auto at = known->outputs.find(*place);
     if (at == known->outputs.end()) return;
-    // Those that nobody claimed are forgotten: a run may write any number of them.
+    // Outputs without a claim are removed from the table: a run may write any number of them.
     if (!at->second.is_claimed)
         known->outputs.erase(at);
     else if (!is_done_)
@@ -188,7 +188,7 @@ void OpenOutput::check() const {
 }
 
 std::string followLinks(const std::string& target) {
-    constexpr int kMaxLinks = 40;  // as the kernel
+    constexpr int kMaxLinks = 40;  // as in the kernel
     fs::path path(target);
     std::error_code error;
     for (int i = 0; i < kMaxLinks && fs::is_symlink(path, error); ++i) {
@@ -259,7 +259,7 @@ namespace {
 
 std::mutex signals_guard;
 
-/// How often each has come; a handler reaches nothing but what is global.
+/// Number of deliveries of each signal; a handler can access only globals.
 std::atomic<int> came[NSIG];
 static_assert(std::atomic<int>::is_always_lock_free);
 
@@ -272,7 +272,7 @@ bool isIgnored(const struct sigaction& action) {
 }  // namespace
 
 DeferredSignals::DeferredSignals() : one_at_a_time_(signals_guard) {
-    // To block them would hold them up in one thread only; the others would take them.
+    // Blocking would delay them in one thread only; the others would receive them.
     struct sigaction noting = {};
     noting.sa_handler = note;
     noting.sa_flags = SA_RESTART;

@@ -9,13 +9,13 @@
 
 namespace ispace {
 
-/// Keeps a run from overwriting its inputs. While this lives, every regular file that readAll,
-/// InputFile or noteInput meet is known by device and inode, whatever links lead to it, and so is
-/// every target of OutputFile and claimOutput. If two are the same file, the second is refused with
-/// a UsageError.
+/// Prevents a run from overwriting its inputs. While this lives, each regular file read by readAll
+/// or InputFile or passed to noteInput is recorded by device and inode, independent of links, and
+/// so is each target of OutputFile and claimOutput. If two are the same file, the second is
+/// rejected with a UsageError.
 ///
-/// One at a time per process; runTool holds it. It is global on purpose, so that no reader can
-/// forget it. Without one nothing is recorded and nothing refused.
+/// One at a time per process; runTool holds it. It is global on purpose, so that no reader can omit
+/// it. Without a FileGuard files are neither recorded nor rejected.
 class FileGuard {
   public:
     FileGuard();
@@ -25,15 +25,15 @@ class FileGuard {
 };
 
 /// Records a file that is read by other means than readAll and InputFile; call it before opening
-/// the file. Streams, devices and missing files do not count. \throws UsageError if an output goes
-/// there
+/// the file. Streams, devices and missing files are skipped.
+/// \throws UsageError if the file is an output
 void noteInput(const std::string& name);
-/// The same for an open file.
+/// Records an open file.
 void noteInput(int descriptor);
 
-/// Announces an output early, before work is spent in vain; "-" and "" do not count.
+/// Reserves an output early, before work is wasted; "-" and "" are skipped.
 /// \param role for messages: `--report`
-/// \throws UsageError if it is an input, or the target of another claim
+/// \throws UsageError if it is an input, or the target of another reservation
 void claimOutput(const std::string& target, const std::string& role);
 
 /// An output being written; OutputFile holds one.
@@ -50,7 +50,7 @@ class OpenOutput {
 
     /// Checks again, right before the target is replaced. \throws UsageError
     void check() const;
-    /// Says that the file is in its place.
+    /// Records that the target has been replaced.
     void done();
 
   private:
@@ -59,40 +59,40 @@ class OpenOutput {
     bool is_done_ = false;
 };
 
-/// The file at the end of a chain of links; it need not exist. Relative paths stay relative.
+/// Resolves a chain of links; the file at its end need not exist. Relative paths stay relative.
 /// \throws std::system_error for a circle of links
 std::string followLinks(const std::string& target);
 
 /// While this lives, readers of inputs (readAll, InputFile, openRegular, includes) find only
-/// regular files in these folders and below, links followed, and none that is hidden (`.name`) or
-/// below a hidden folder there; others seem not to exist.
+/// regular files in or below these folders, after resolving links, and skip hidden files (`.name`)
+/// and hidden folders; other files appear missing.
 ///
-/// One at a time per process. It is global on purpose, as FileGuard is, so that no reader can
-/// forget it.
+/// One at a time per process. It is global on purpose, as FileGuard is, so that no reader can omit
+/// it.
 class InputSandbox {
   public:
-    /// \throws std::system_error if one of the folders is not there
+    /// \throws std::system_error if a folder is missing
     explicit InputSandbox(const std::vector<std::string>& folders);
     ~InputSandbox();
     InputSandbox(const InputSandbox&) = delete;
     InputSandbox& operator=(const InputSandbox&) = delete;
 };
 
-/// True if no fence keeps this file from being read; call it before opening the file.
+/// True if no ReadFence forbids reading this file; call it before opening the file.
 bool mayBeRead(const std::string& name);
 /// \throws std::system_error, as for a missing file, if it may not be read
 void mustBeReadable(const std::string& name);
 
-/// True if the file lies in the folder or below. \pre both are canonical
+/// True if the file lies in or below the folder. \pre both are canonical
 bool liesIn(const std::filesystem::path& folder, const std::filesystem::path& file);
 
-/// True if `name` leads, links followed, to a regular file in this folder or below, and no part of
-/// the way below it is hidden.
+/// True if `name`, after resolving links, is a regular file in or below this folder and no part of
+/// the path below the folder is hidden.
 bool liesOpenlyIn(const std::string& folder, const std::string& name);
 
-/// Delays TERM, INT and HUP, whichever thread they reach, until its end: for the few system calls
-/// between which a process must not end. Handlers then get their signals; ignored signals stay
-/// ignored. One lives at a time; others wait.
+/// Delays TERM, INT and HUP in all threads while this lives: for the few system calls between which
+/// a process must not end. Handlers then receive their signals; ignored signals stay ignored. One
+/// lives at a time; others wait.
 class DeferredSignals {
   public:
     DeferredSignals();

@@ -6,8 +6,8 @@
 
 namespace ispace {
 
-/// One of `count` shares of a job, numbered from 1: "3/8". What a shard does depends on these two
-/// numbers and the units of the job alone.
+/// One of `count` shares of a job, numbered from 1: "3/8". Its work depends only on these two
+/// numbers and the units of the job.
 struct Shard {
     int index = 1, count = 1;
 
@@ -16,9 +16,9 @@ struct Shard {
         std::int64_t first = 0, end = 0;
         friend bool operator==(const Block&, const Block&) = default;
     };
-    /// The share of `units`: blocks follow each other in the order of the shards and hold as many
-    /// each, but for one more in the first shards where the division leaves a rest. Empty where
-    /// there are more shards than units.
+    /// The share of `units`: consecutive blocks in the order of the shards, of equal size except
+    /// that the first shards hold one unit more if the division leaves a remainder. Empty if there
+    /// are more shards than units.
     [[nodiscard]] Block blockOf(std::int64_t units) const;
 
     /// "3/8"
@@ -30,7 +30,7 @@ struct Shard {
 /// Most shards of a job.
 constexpr int kMaxShards = 1'000'000;
 
-/// Reads "3/8". \throws UsageError with a hint, for shards counted from 0, too
+/// Parses "3/8". \throws UsageError with a hint, also for shards counted from 0
 Shard parseShard(const std::string& text);
 
 }  // namespace ispace

@@ -2,17 +2,17 @@
 #pragma once
 
 #include <bit>
-#include <cstddef>  // defines __GLIBC__ where it is
+#include <cstddef>  // defines __GLIBC__
 #include <cstdint>
 
 /// Put before a function, compiles it for several generations of the processor; the program runs
-/// the fastest one the machine supports. Its loops must be plain enough for the compiler to
-/// vectorise, and what it calls must be inlined (ISPACE_INLINE) to profit. Results do not depend on
-/// the choice: IEEE arithmetic is the same in vectors of any width, and no operations are
-/// contracted.
+/// the fastest version that the machine supports. Its loops must be plain enough for the compiler
+/// to vectorise, and the functions it calls must be inlined (ISPACE_INLINE) to profit. Results do
+/// not depend on the version: IEEE arithmetic is the same in vectors of any width, and operations
+/// are not contracted.
 ///
-/// Expands to nothing where resolvers do not work (other processors and C libraries, Clang,
-/// sanitizers) or the compiler does not know those generations (GCC before 12).
+/// Expands to no attribute where resolvers do not work (other processors and C
+/// libraries, Clang, sanitizers) or the compiler does not know those generations (GCC before 12).
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
     __GNUC__ >= 12 && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define ISPACE_SIMD_CLONES \
@@ -21,7 +21,7 @@
 #define ISPACE_SIMD_CLONES
 #endif
 
-/// Inlines a function into its callers whatever the compiler thinks.
+/// Inlines a function into its callers regardless of the compiler's heuristics.
 #define ISPACE_INLINE [[gnu::always_inline]] inline
 
 /// Elementary functions of float for loops that the compiler vectorises. They use additions,
@@ -36,9 +36,9 @@ ISPACE_INLINE float choose(bool first, float a, float b) {
                                 (std::bit_cast<std::uint32_t>(b) & ~mask));
 }
 
-/// Square root, within 2 units in the last place (relative 2e-7). \pre 0 or within [1e-30, 1e30]
+/// Square root, within 2 ulp (relative 2e-7). \pre 0 or within [1e-30, 1e30]
 ISPACE_INLINE float squareRoot(float x) {
-    // The reciprocal root by Newton's method, from a guess that halves the exponent. 0 stays
+    // The reciprocal root by Newton's method, from a guess that halves the exponent. For 0 it stays
     // finite.
     float y = std::bit_cast<float>(0x5f375a86U - (std::bit_cast<std::uint32_t>(x) >> 1U));
     const float half = 0.5F * x;
@@ -48,7 +48,7 @@ ISPACE_INLINE float squareRoot(float x) {
     return x * y;
 }
 
-/// Natural logarithm, within 1e-7 of it or of 1, whichever is more. \pre x is normal and positive
+/// Natural logarithm; the error is at most 1e-7 times max(1, |ln x|). \pre x is normal and positive
 ISPACE_INLINE float logarithm(float x) {
     // x = 2^e (1 + t), 1 + t between the roots of 1/2 and of 2.
     constexpr std::int32_t kRootOfHalf = 0x3f3504f3;
@@ -72,7 +72,7 @@ ISPACE_INLINE float logarithm(float x) {
 
 /// Sine of turn * 2^-32 full turns, within 1.2e-7.
 ISPACE_INLINE float sineOfTurn(std::uint32_t turn) {
-    // The nearest quarter turn, and what is left of at most an eighth.
+    // The nearest quarter turn, and the remainder of at most an eighth.
     const std::uint32_t shifted = turn + 0x20000000U;
     const std::uint32_t quarter = shifted >> 30U;
     const auto rest = static_cast<std::int32_t>(shifted & 0x3fffffffU) - 0x20000000;

@@ -32,7 +32,7 @@
 #endif
 
 #ifdef ISPACE_SANITIZED
-// In place of the limit on memory. What libraries leave behind does not count.
+// Replaces the limit on memory. Leaks of libraries are ignored.
 extern "C" const char* __asan_default_options() {  // NOLINT
     return "detect_leaks=0:symbolize=0:hard_rss_limit_mb=1200:max_allocation_size_mb=1024";
 }
@@ -48,11 +48,11 @@ constexpr bool kSanitized = true;
 constexpr bool kSanitized = false;
 #endif
 
-/// Deep enough for trees of nodes that are refused with a message.
+/// Deep enough for trees of nodes that are rejected with a message.
 constexpr rlim_t kStack = 64U << 20U;
 constexpr rlim_t kDescriptors = 64;
 
-/// \param most what the parent may raise the limit to
+/// \param most bound up to which the parent may raise the limit
 void limit(__rlimit_resource resource, rlim_t now, rlim_t most) {
     rlimit limits{};
     if (::getrlimit(resource, &limits) != 0) return;
@@ -69,7 +69,7 @@ constexpr std::uint32_t kMachine = AUDIT_ARCH_AARCH64;
 constexpr std::uint32_t kMachine = 0;
 #endif
 
-/// Memory, what is open, and the end; all else fails with EPERM.
+/// Allows memory, open files and exit; all other calls fail with EPERM.
 constexpr std::array kAllowed{
     __NR_read,           __NR_pread64,         __NR_lseek,    __NR_close,      __NR_sendto,
     __NR_sendmsg,        __NR_recvfrom,        __NR_recvmsg,  __NR_brk,        __NR_mmap,
@@ -100,12 +100,13 @@ void filterCalls() {
 
 void confine(const ConfinedLimits& limits, const ConfinedLimits& most, int parent) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(1);  // it ended before
+    if (::getppid() != parent) ::_exit(1);  // the parent ended before
     ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-    ::prctl(PR_SET_DUMPABLE, 0, 0, 0, 0);  // a core may also go to a program, whatever its limit
+    ::prctl(PR_SET_DUMPABLE, 0, 0, 0,
+            0);  // cores piped to a program have no limit
     limit(RLIMIT_CORE, 0, 0);
     limit(RLIMIT_FSIZE, 0, 0);
-    // At the second limit the system kills, at the first it says why.
+    // The system kills at the second limit and reports the reason at the first.
     limit(RLIMIT_CPU, limits.seconds, std::max(limits.seconds + 1, most.seconds));
     if (kSanitized) return;
     limit(RLIMIT_NOFILE, kDescriptors, kDescriptors);
@@ -124,7 +125,7 @@ void send(const char* bytes, std::size_t size) {
     }
 }
 
-/// Assimp makes an error of a failed allocation, and other libraries an end of the program.
+/// Assimp reports an error after a failed allocation; other libraries end the program.
 [[noreturn]] void outOfMemory() {
     tell(ConfinedAnswer::OutOfMemory, {});
     ::_exit(0);
@@ -186,7 +187,7 @@ int runConfined(int argc, char** argv, const ConfinedLimits& most,
     try {
         while (file.fd == STDIN_FILENO) {
             tell(ConfinedAnswer::Result, answer(file.size));
-            ::close(STDIN_FILENO);  // the number of the next one
+            ::close(STDIN_FILENO);  // frees the number for the next file
             file = receiveFile();
         }
     } catch (const std::bad_alloc&) {
