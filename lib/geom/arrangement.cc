@@ -41,7 +41,7 @@ class Arrangement {
         for (Index& parent : parent_) parent = root(parent);
     }
 
-    /// For each face what the pieces' winding numbers add up to on the way from the outside.
+    /// Sums the winding numbers of the pieces along a path from the outside to each face.
     [[nodiscard]] std::vector<std::pair<int, int>> windings(
         const std::vector<LinePiece>& pieces) const {
         const Index outside = faces_.count();
@@ -77,7 +77,7 @@ class Arrangement {
         return winding;
     }
 
-    /// The pieces that kept faces make up.
+    /// Builds the connected pieces that consist of kept faces.
     [[nodiscard]] std::vector<Region> regions(const std::vector<bool>& kept) const {
         const auto piece_of = [&](Index half) {
             const Index face = faces_.of(half);
@@ -93,7 +93,8 @@ class Arrangement {
         faces_.forEachBoundary(piece_of,
                                [&](Index piece, const plane::Loop& loop, bool is_outline) {
                                    Polygon curve = curveOf(loop, boundaries);
-                                   // What doubles cannot tell from a line has no area either.
+                                   // A loop that doubles cannot distinguish from a line has no area
+                                   // either.
                                    if (is_outline && signedArea(curve) > 0)
                                        regions[piece].outline = std::move(curve);
                                    else if (!is_outline && signedArea(curve) < 0)
@@ -152,7 +153,7 @@ class Arrangement {
         return face;
     }
 
-    /// The loop's vertices without those that only lines of no account made, from the lowest.
+    /// Vertices of the loop, from the lowest, without those of removed lines.
     [[nodiscard]] Polygon curveOf(const plane::Loop& loop,
                                   const std::vector<Index>& boundaries) const {
         const plane::Graph<Point2>& graph = faces_.graph();
@@ -182,7 +183,7 @@ bool lexLess(const Polygon& a, const Polygon& b) {
                                         [](Point2 p, Point2 q) { return lexLess(p, q); });
 }
 
-/// The same doubles for the same places.
+/// Equal points become equal doubles.
 void dropNegativeZeros(std::vector<LinePiece>& lines) {
     for (LinePiece& line : lines)
         for (Point2* p : {&line.segment.a, &line.segment.b}) *p = {p->x + 0.0, p->y + 0.0};

@@ -20,8 +20,8 @@ namespace {
 
 constexpr auto kHint = "leave out some of what lies upon each other";
 
-/// Appends the edges, turned so that the curve has this orientation: what it encloses has a winding
-/// number of `added` or `removed` more.
+/// Appends the edges, turned so that the curve has this orientation: the winding number inside is
+/// higher by `added` or `removed`.
 void addCurve(const Polygon& curve, bool counter_clockwise, int added, int removed,
               std::vector<LinePiece>& lines) {
     const int turn = (signedArea(curve) > 0) != counter_clockwise ? -1 : 1;
@@ -73,7 +73,7 @@ struct EdgeTree {
     }
 };
 
-/// True for the boxes that meet no other one.
+/// Finds the boxes that meet no other box.
 std::vector<bool> alone(const std::vector<Box2>& boxes) {
     // Boxes that coincide are searched for once: each of many would find all of them.
     std::map<std::array<double, 4>, std::size_t> copies;
@@ -107,7 +107,7 @@ std::vector<Region> difference(const Region& region, std::span<const Polygon> so
     std::vector<Box2> boxes;
     boxes.reserve(solids.size());
     for (const Polygon& solid : solids) boxes.push_back(bounds(solid));
-    // Most furniture stands clear of everything else and just makes a hole.
+    // Most furniture is apart from other solids and simply becomes a hole.
     const std::vector<bool> is_alone = alone(boxes);
     const EdgeTree walls({&region, 1});
     std::vector<std::size_t> clear;
@@ -169,7 +169,7 @@ class Remainder {
         count_ = n;
     }
 
-    /// Keeps what is on the line or to its left.
+    /// Clips the polygon to the left side of the line.
     void cut(Point2 a, Point2 b) {
         const Vec2 along = b - a;
         const double extent = length(along);

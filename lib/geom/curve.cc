@@ -21,7 +21,7 @@ double spanOf(const CurveEdge& arc) {
     const double turn = arc.radius > 0 ? cross(from, to) : cross(to, from);
     const double span = std::atan2(turn, dot(from, to));
     if (span >= 0) return span;
-    // Rounding: a little more than a half turn, or a little less than nothing.
+    // Rounding may give slightly more than a half turn, or slightly less than zero.
     return span < -std::numbers::pi / 2 ? span + 2 * std::numbers::pi : 0;
 }
 
@@ -39,7 +39,7 @@ double twiceBulge(const CurveEdge& arc) {
 }
 
 void addExtremes(Box2& box, const CurveEdge& arc) {
-    if (arc.from == arc.to) return;  // no way round, not all of it
+    if (arc.from == arc.to) return;  // an arc of length zero, not a full circle
     const Vec2 from = arc.from - arc.center, to = arc.to - arc.center;
     const double radius = std::abs(arc.radius);
     const double turn = arc.radius > 0 ? 1 : -1;
@@ -249,7 +249,7 @@ void addArc(const Ellipse& ellipse, const Polygon& outline, double from, double 
     const auto count = static_cast<int>(outline.size());
     const double step = 2 * std::numbers::pi / count, radius = cornerRadius(count);
     const double way = to > from ? 1 : -1, span = std::fabs(to - from);
-    // Corners that are a step or more from both ends, so that what comes between bends outwards.
+    // Corners that are a step or more from both ends, so that the points between bend outwards.
     const double ahead = way * from / step, behind = way * to / step;
     const auto first = static_cast<long>(std::ceil(ahead + 1));
     const auto last = static_cast<long>(std::floor(behind - 1));

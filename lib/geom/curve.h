@@ -37,12 +37,12 @@ double perimeter(const Curve& curve);
 double perimeter(std::span<const Curve> curves);
 /// A box that contains the curve; around arcs it need not be the smallest.
 Box2 bounds(const Curve& curve);
-/// The box around all of them.
+/// Returns the bounding box of all curves.
 Box2 boundsOfAll(std::span<const Curve> curves);
-/// What lies in both; where nothing does, low is beyond high in x or in y.
+/// Returns the common part of two boxes; if they are disjoint, low exceeds high in x or in y.
 Box2 common(const Box2& a, const Box2& b);
 
-/// The curve with chords for arcs: vertices lie on the arcs, chords at most `error` from them.
+/// Replaces arcs by chords: vertices lie on the arcs, chords at most `error` from them.
 Polygon chords(const Curve& curve, double error = kChordError);
 /// Straight edges only.
 Curve curveOf(const Polygon& polygon);
@@ -76,7 +76,7 @@ struct Ellipse {
     /// Signed distance of p from the curve, negative inside: exact for circles, to first order near
     /// any ellipse. Elsewhere only the sign is meaningful.
     [[nodiscard]] double heightOf(Point2 p) const;
-    /// The smallest box that contains it.
+    /// Returns the bounding box.
     [[nodiscard]] Box2 box() const;
     [[nodiscard]] double area() const;
 
@@ -92,7 +92,7 @@ constexpr double kCurveTolerance = 0.00005;
 /// vertices, so the bounding box is the curve's. Counter-clockwise, at most kCurveTolerance inside
 /// the curve.
 Polygon inscribedIn(const Ellipse& ellipse);
-/// The same scaled about the centre to the exact area of the ellipse: its edges cross the curve.
+/// The same polygon scaled about the centre to the area of the ellipse: its edges cross the curve.
 Polygon outlineOf(const Ellipse& ellipse);
 /// Factor by which an inscribed polygon must be scaled about the centre to contain its ellipse.
 double growthAround(std::size_t corners);

@@ -13,7 +13,7 @@ namespace ispace {
 
 namespace {
 
-/// Ways to close a dangling end: the nearest may lead nowhere new.
+/// Number of ways to close a dangling end: the nearest may enclose no further area.
 constexpr std::size_t kWaysPerEnd = 4;
 /// Closings considered, the narrowest first: no plan has more, and very many loose lines still take
 /// seconds only.
@@ -155,7 +155,7 @@ class GapFinder {
             std::sort(ways.begin(), ways.end());
             ways.erase(std::unique(ways.begin(), ways.end()), ways.end());
             if (ways.size() >= kWaysPerEnd && ways[kWaysPerEnd - 1].width <= reach) break;
-            if (!(reach < extent_) || reach >= widest) break;  // all were seen
+            if (!(reach < extent_) || reach >= widest) break;  // all lines were visited
         }
         ways.resize(std::min(ways.size(), kWaysPerEnd));
         const std::size_t source = lines_.source[own];
@@ -194,7 +194,7 @@ class Closed {
         }
     }
 
-    /// Whether the point, or anything, is enclosed when the first `count` gaps are closed.
+    /// True if the point, or any area, is enclosed when the first `count` gaps are closed.
     [[nodiscard]] bool encloses(std::size_t count, std::optional<Point2> inside) const {
         std::vector<Segment2> pieces;
         for (std::size_t i = 0; i < pieces_.size(); ++i)
@@ -224,7 +224,7 @@ std::optional<Gap> findGap(std::span<const Segment2> lines, std::optional<Point2
         ispace::closings(lines, {}, std::numeric_limits<double>::infinity());
     if (closings.empty()) return std::nullopt;
     const Closed closed(lines, closings);
-    // What is enclosed stays enclosed as more gaps are closed: halve between too few and enough.
+    // Enclosed areas stay enclosed as more gaps are closed: bisect the number of gaps.
     std::size_t too_few = 0, enough = closings.size();
     if (closed.encloses(too_few, inside) || !closed.encloses(enough, inside)) return std::nullopt;
     while (enough - too_few > 1) {

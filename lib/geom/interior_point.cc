@@ -17,7 +17,7 @@ namespace ispace {
 namespace {
 
 constexpr std::size_t kLevels = 24;        // scanlines per direction, of each kind
-constexpr std::size_t kManyLevels = 2000;  // the same where the first ones found nothing
+constexpr std::size_t kManyLevels = 2000;  // the same if the first levels find no point
 constexpr std::size_t kChordsPerLine = 3;  // the longest are tried
 
 /// The region's edges; `swapped`: with x and y exchanged, so that one scan serves both directions.
@@ -133,7 +133,7 @@ class Bands {
         const auto count = static_cast<std::ptrdiff_t>(first_.size() - 1);
         const auto middle = static_cast<std::ptrdiff_t>(bandOf(y));
         for (std::ptrdiff_t away = 0; away < count; ++away) {
-            // One band less, so that rounding loses nothing.
+            // One band less, against rounding.
             if (static_cast<double>(away - 2) > reach() * per_metre_) return;
             for (const std::ptrdiff_t i : {middle - away, middle + away}) {
                 if (i < 0 || i >= count) continue;

@@ -62,7 +62,7 @@ class DistinctPoints {
         grow(std::bit_ceil(2 * count + 16));
     }
 
-    /// The point that stands for p: one that came before, or p itself.
+    /// Returns the point that represents p: an earlier one, or p itself.
     Point2 standing(Point2 p) {
         if (!(reach_ > 0)) return p;
         const auto [low, high] = cellsAbout(p);
@@ -93,7 +93,7 @@ class DistinctPoints {
     [[nodiscard]] std::pair<Point2, Point2> cellsAbout(Point2 p) const {
         const double size = kReachesPerCell * reach_;
         const Point2 place{p.x / size, p.y / size}, cell{std::floor(place.x), std::floor(place.y)};
-        // Twice the reach from the sides of a cell: all is in it, whatever rounding does.
+        // With twice the reach from the sides of a cell all points are in it, despite rounding.
         constexpr double kClear = 2 / kReachesPerCell;
         const auto is_clear = [](double within) { return within > kClear && within < 1 - kClear; };
         if (is_clear(place.x - cell.x) && is_clear(place.y - cell.y)) return {cell, cell};
@@ -135,7 +135,7 @@ class Cutter {
         for (const LinePiece& piece : pieces) segments_.push_back(piece.segment);
     }
 
-    /// \return whether there was anything to cut
+    /// \return whether any line was cut
     bool cut() {
         if (!meetInGrid()) meetInTree();
         if (cuts_.empty()) return false;
@@ -251,7 +251,7 @@ class Cutter {
     std::vector<Cut> cuts_;
 };
 
-/// Each piece once, whichever way it runs, in the order of their places.
+/// Sorts pieces by position and removes duplicates of either direction.
 void mergeDoubles(std::vector<LinePiece>& pieces) {
     struct Place {
         Segment2 segment;

@@ -21,10 +21,10 @@ namespace ispace {
 
 namespace {
 
-/// For each point the one that stands for all within kWeldDistance of it.
+/// Finds for each point the representative of all points within kWeldDistance of it.
 ///
-/// Points are taken from left to right; each joins the nearest standing point in reach or becomes
-/// one, so that no point moves farther than kWeldDistance however many lie close together.
+/// Points are processed from left to right; each joins the nearest representative in reach or
+/// becomes one, so no point moves farther than kWeldDistance however many lie close together.
 std::vector<Point2> weldPoints(const std::vector<Point2>& points) {
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -82,7 +82,7 @@ class TouchFinder {
     }
 
   private:
-    /// Returns how many points it was quick for.
+    /// Returns the number of points processed at full speed.
     std::size_t findInGrid(std::span<const Point2> points) {
         const SegmentGrid grid(segments_, kWeldDistance);
         for (std::size_t k = 0; k < points.size(); ++k) {
@@ -112,7 +112,7 @@ class TouchFinder {
     /// Rules out most points beside a line without a division; never wrong.
     static bool isSurelyOff(const Segment2& s, Point2 p) {
         const Vec2 along = s.b - s.a, to = p - s.a;
-        // The second term is far above what rounding makes of a point on the line.
+        // The second term is far above the rounding error of a point on the line.
         const double reach = 2 * kWeldDistance + 1e-14 * (std::abs(to.x) + std::abs(to.y));
         const double twist = cross(along, to);
         return twist * twist > reach * reach * dot(along, along) && std::isfinite(twist * twist);
@@ -204,8 +204,8 @@ using Index = std::uint32_t;
 
 constexpr Index kNone = ~Index{0};
 
-/// Multilinear hashing by random keys: any two places collide as seldom as chance has it (Lemire
-/// and Kaser, Strongly Universal String Hashing is Fast, 2014).
+/// Multilinear hashing by random keys: any two positions collide with the probability of random
+/// hashes (Lemire and Kaser, Strongly Universal String Hashing is Fast, 2014).
 class PlaceHash {
   public:
     PlaceHash() {
@@ -224,7 +224,7 @@ class PlaceHash {
     std::array<std::uint64_t, 4> keys_{};
 };
 
-/// Places found so far, by linear probing; at least half of the slots are free.
+/// Positions found so far, by linear probing; at least half of the slots are free.
 class PlaceTable {
   public:
     struct Entry {
@@ -234,9 +234,9 @@ class PlaceTable {
     explicit PlaceTable(std::span<const FloatPlace> places)
         : places_(places), slots_(std::size_t{1} << 10U) {}
 
-    /// Fetches what find() will look at.
+    /// Prefetches the slot that find() reads.
     void prefetch(Index hash) const { __builtin_prefetch(&slots_[slotOf(hash)]); }
-    /// The first place that is equal; this one if there is none yet.
+    /// Returns the first equal position; inserts this one if there is none yet.
     Index find(const Entry& entry) {
         Entry* slot = &slots_[slotOf(entry.hash)];
         for (; slot->place != kNone; slot = next(slot))
@@ -270,14 +270,14 @@ class PlaceTable {
 }  // namespace
 
 std::vector<Index> firstAtPlace(std::span<const FloatPlace> places) {
-    constexpr std::size_t kAhead = 16;  // hides what a miss of the cache costs
+    constexpr std::size_t kAhead = 16;  // hides the latency of cache misses
     const PlaceHash hash_of;
     std::vector<Index> hashes(places.size()), first(places.size());
     std::transform(places.begin(), places.end(), hashes.begin(), hash_of);
     PlaceTable table(places);
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (i + kAhead < places.size()) table.prefetch(hashes[i + kAhead]);
-        // Equal to nothing, they would pile up in one slot.
+        // Positions with NaN equal no other and would pile up in one slot.
         const bool is_place = std::none_of(places[i].begin(), places[i].end(),
                                            [](float part) { return std::isnan(part); });
         const auto own = static_cast<Index>(i);

@@ -20,7 +20,7 @@ constexpr double kWeldDistance = 1e-6;
 /// (within kWeldDistance); zero-length pieces are dropped. `source[i]` is the index of the line
 /// that piece i comes from; the pieces of a line keep its order. Deterministic; O((n + touches) log
 /// n) for lines that are short or mostly run in two directions at right angles. \throws FormatError
-/// (without a place) if lines overlap by the million, or if very many long lines run in all
+/// (without a line number) if lines overlap by the million, or if very many long lines run in all
 /// directions
 struct WeldedLines {
     std::vector<Segment2> pieces;
@@ -31,19 +31,18 @@ WeldedLines weld(std::span<const Segment2> lines);
 /// The bounded faces into which lines divide the floor: exact where lines meet at common ends only,
 /// else with crossings rounded to doubles.
 ///
-/// Lines may cross, overlap and dangle. A face's outline is the outer boundary of an open
-/// connected piece of the floor; its holes enclose whatever lies within. Dangling and isolated
-/// lines bound nothing and appear in no face. Faces come in an order that depends only on the
-/// lines. O((n + crossings) log n).
-/// \throws FormatError (without a place) for lines that cross by the million
+/// Lines may cross, overlap and dangle. A face's outline is the outer boundary of an open connected
+/// piece of the floor; its holes enclose the lines within. Dangling and isolated lines bound no
+/// face and are skipped. The order of faces depends only on the lines. O((n + crossings) log n).
+/// \throws FormatError (without a line number) for lines that cross by the million
 std::vector<Region> boundedFaces(const WeldedLines& lines);
 
-/// The same, but the faces on the two sides of a passage are one if both are bounded and no line
-/// lies on the passage.
+/// Builds faces likewise, but merges the faces on the two sides of a passage if both are bounded
+/// and no line lies on the passage.
 std::vector<Region> boundedFaces(std::span<const Segment2> lines,
                                  std::span<const Segment2> passages);
 
-/// A line that would close a gap between two lines.
+/// A line that closes a gap between two lines.
 struct Closing {
     Segment2 line;     ///< from the lexically smaller end on
     double width;      ///< its length
@@ -57,7 +56,7 @@ struct Closing {
 std::vector<Closing> closings(std::span<const Segment2> lines, std::span<const Point2> corners,
                               double widest);
 
-/// Why lines do not enclose a point: the gap that would have to be closed.
+/// The gap that keeps lines from enclosing a point.
 struct Gap {
     double width;      ///< metres
     Point2 place;      ///< middle of the gap
@@ -65,16 +64,16 @@ struct Gap {
 };
 
 /// Closes gaps, narrowest first, until `inside` (or, without it, any point) is enclosed, and
-/// returns the last one closed; nothing if joining every dangling end to its nearest lines does not
+/// returns the last one closed; nullopt if joining every dangling end to its nearest lines does not
 /// enclose it.
 std::optional<Gap> findGap(std::span<const Segment2> lines, std::optional<Point2> inside);
 
-/// A place as mesh files hold it.
+/// A vertex position in single precision, as mesh files store it.
 using FloatPlace = std::array<float, 3>;
 
-/// For each place the index of the first one that is equal to it (0 and -0 are). A place with a NaN
-/// equals none and is its own. Linear time whatever the places are: those who choose them cannot
-/// know how they are hashed. \pre fewer than 2^32 - 1 places
+/// Maps each position to the index of the first equal one (0 and -0 are equal). A position with a
+/// NaN equals no other and maps to itself. Linear time for adversarial input, too, since hash keys
+/// are random. \pre fewer than 2^32 - 1 positions
 std::vector<std::uint32_t> firstAtPlace(std::span<const FloatPlace> places);
 
 }  // namespace ispace

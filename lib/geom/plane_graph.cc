@@ -189,22 +189,22 @@ Index Faces<P>::lowestOf(const Loop& loop) const {
     });
 }
 
-/// It is none if the direction to the left of its lowest point lies on its left, at one of its
-/// visits there.
+/// The boundary is a hole unless the direction to the left of its lowest point lies on its left, at
+/// one of its visits there.
 template <typename P>
 bool Faces<P>::isOutline(const Loop& loop) const {
     const Index lowest = graph_.source(lowestOf(loop));
     for (std::size_t i = 0; i < loop.size(); ++i) {
         if (graph_.source(loop[i]) != lowest) continue;
         const Index before = loop[i == 0 ? loop.size() - 1 : i - 1];
-        // What is on the left reaches from the half-edge that leaves, counter-clockwise, to the one
-        // that came.
+        // The left side extends from the half-edge that leaves, counter-clockwise, to the one that
+        // came.
         if (graph_.placeOf(twin(before)) <= graph_.placeOf(loop[i])) return false;
     }
     return true;
 }
 
-/// Cycles of half-edges: around a face each, or around all that hangs together.
+/// Cycles of half-edges, each around a face or around a connected component.
 template <typename P>
 void Faces<P>::walkCycles(const std::vector<bool>& wanted) {
     cycle_.assign(graph_.halves(), kNone);
@@ -223,7 +223,7 @@ void Faces<P>::walkCycles(const std::vector<bool>& wanted) {
     }
 }
 
-/// Finds the face in which each hole lies, from left to right: what is below begins farther left.
+/// Finds the face that contains each hole, from left to right: the line below begins farther left.
 template <typename P>
 void Faces<P>::placeHoles() {
     std::sort(holes_.begin(), holes_.end(), [this](Index g, Index h) {

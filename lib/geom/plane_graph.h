@@ -15,7 +15,7 @@ namespace ispace::plane {
 using Index = std::uint32_t;
 constexpr Index kNone = std::numeric_limits<Index>::max();
 
-/// From its lower end (lexLess) to its upper.
+/// A segment from its lower end (lexLess) to its upper.
 struct Line {
     Index from = 0, to = 0;
 };
@@ -23,12 +23,12 @@ struct Line {
 /// Half-edge 2i leads along line i from its lower end to its upper, 2i + 1 back.
 inline Index twin(Index half) { return half ^ 1U; }
 
-/// The half-edges about each point. P has lexLess(p, q), and isLeft(a, b, c): whether c lies to the
-/// left of a -> b.
+/// Computes the half-edges about each point. P requires lexLess(p, q) and isLeft(a, b, c): true if
+/// c lies to the left of a -> b.
 template <typename P>
 class Graph {
   public:
-    /// Keeps references to both. \pre lines are distinct and meet at common ends only. O(n log n)
+    /// Stores references to both. \pre lines are distinct and meet at common ends only. O(n log n)
     Graph(const std::vector<P>& points, const std::vector<Line>& lines);
 
     [[nodiscard]] Index source(Index half) const {
@@ -40,24 +40,24 @@ class Graph {
     [[nodiscard]] std::size_t vertices() const { return first_.size() - 1; }
     [[nodiscard]] Index halves() const { return static_cast<Index>(order_.size()); }
 
-    /// Half-edges that leave a point, counter-clockwise from the direction straight down for those
-    /// to the right, then for those to the left.
+    /// Half-edges that leave a point, counter-clockwise: from straight down those to the right,
+    /// then those to the left.
     [[nodiscard]] std::span<const Index> leaving(Index vertex) const {
         return std::span(order_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
     }
-    /// Its index in leaving(source(half)).
+    /// Index of a half-edge in leaving(source(half)).
     [[nodiscard]] Index placeOf(Index half) const { return place_[half]; }
-    /// The next on the way around the face to its left.
+    /// Next half-edge around the face on the left.
     [[nodiscard]] Index next(Index half) const {
         const Index back = twin(half);
         const std::span<const Index> about = leaving(source(back));
         return about[place_[back] == 0 ? about.size() - 1 : place_[back] - 1];
     }
 
-    /// Of two lines with a common range of x, and of a point within a line's range of x.
+    /// Compares two lines with a common range of x, or a point with a line that spans its x.
     [[nodiscard]] bool isAbove(Index line, Index other) const;
     [[nodiscard]] bool isAbove(const P& p, Index line) const;
-    /// For each of these points the line right below the place just to the left of it, or kNone.
+    /// For each point finds the line directly below a position just to the left of it, or kNone.
     /// \pre no line that ends at such a point comes from the left. O((n + points) log n)
     [[nodiscard]] std::vector<Index> linesBelow(const std::vector<Index>& vertices) const;
 
@@ -74,28 +74,27 @@ class Graph {
     std::vector<Index> place_;
 };
 
-/// Consecutive half-edges of a boundary; what it bounds is on the left.
+/// Consecutive half-edges of a boundary; the bounded face is on the left.
 using Loop = std::vector<Index>;
 
-/// The faces of a graph, and the boundaries of pieces made of some of them.
+/// Finds the faces of a graph, and the boundaries of pieces that consist of several faces.
 template <typename P>
 class Faces {
   public:
-    /// \param wanted for each half-edge whether the face on its left is needed (the same for all
-    ///               half-edges around a face); empty: all are
+    /// \param wanted for each half-edge whether the face on its left is required (the same for all
+    /// half-edges around a face); empty: all faces
     Faces(const std::vector<P>& points, const std::vector<Line>& lines,
           std::vector<bool> wanted = {});
 
     [[nodiscard]] const Graph<P>& graph() const { return graph_; }
     [[nodiscard]] Index count() const { return count_; }
-    /// The face on its left; kNone: the unbounded face, or not wanted.
+    /// Face on the left; kNone for the unbounded face and unwanted faces.
     [[nodiscard]] Index of(Index half) const {
         return cycle_[half] == kNone ? kNone : face_of_cycle_[cycle_[half]];
     }
 
     /// Calls visit(piece, loop, is_outline) for each boundary of each piece. A piece consists of
-    /// the faces whose half-edges have its number by piece_of(half); kNone is for faces in no
-    /// piece.
+    /// the faces for whose half-edges piece_of(half) returns its number; kNone excludes a face.
     template <typename PieceOf, typename Visit>
     void forEachBoundary(PieceOf piece_of, Visit visit) const {
         const auto is_boundary = [&](Index half) {
@@ -112,7 +111,7 @@ class Faces {
                 walked[half] = true;
                 loop.push_back(half);
                 half = graph_.next(half);
-                // Lines with the same piece on both sides are no boundary: turn past them.
+                // Lines with the same piece on both sides bound no piece: turn past them.
                 while (!is_boundary(half)) half = graph_.next(twin(half));
             } while (half != start);
             visit(piece_of(start), loop, isOutline(loop));

@@ -7,7 +7,7 @@ namespace ispace {
 
 namespace {
 
-/// What remquo(degrees, 90) gives, faster for a few turns: there the subtraction is exact.
+/// Computes remquo(degrees, 90), faster for a few turns, for which the subtraction is exact.
 double quarterRest(double degrees, int& quadrant) {
     constexpr double kFew = 1e6;
     if (!(std::fabs(degrees) < kFew)) return std::remquo(degrees, 90.0, &quadrant);
@@ -56,7 +56,7 @@ double tan(Angle angle) {
 }
 
 Angle wrapped(Angle angle) {
-    // What remainder() gives, faster for less than two turns: the differences are exact.
+    // Computes remainder(), faster for less than two turns: the differences are exact.
     const double degrees = angle.degrees();
     if (degrees > -180 && degrees <= 180) return angle;
     if (degrees > 180 && degrees <= 540) return Angle::degrees(degrees - 360);

@@ -13,8 +13,8 @@ namespace ispace {
 
 /// A plane angle; the unit is named where one is made or read. Counter-clockwise is positive.
 ///
-/// Kept in degrees, the unit of files and options, so that 90 is exactly a quarter turn:
-/// cosine and sine are exact at multiples of 90 degrees and walls drawn square stay square.
+/// Stored in degrees, the unit of files and options, so that 90 is exactly a quarter turn: cosine
+/// and sine are exact at multiples of 90 degrees and rectangular walls stay rectangular.
 class Angle {
   public:
     constexpr Angle() = default;
@@ -37,7 +37,7 @@ class Angle {
 struct CosSin {
     double cos, sin;
 };
-/// Both at once; exact at multiples of 90 degrees.
+/// Computes both at once; exact at multiples of 90 degrees.
 CosSin cosSin(Angle angle);
 double cos(Angle angle);
 double sin(Angle angle);
@@ -55,7 +55,7 @@ struct Vec2 {
     friend bool operator==(const Vec2&, const Vec2&) = default;
 };
 
-/// A place on the floor, in metres; x-y is the floor, right-handed.
+/// A point on the floor, in metres; x-y is the floor, right-handed.
 struct Point2 {
     double x = 0, y = 0;
     friend bool operator==(const Point2&, const Point2&) = default;
@@ -67,14 +67,14 @@ struct Vec3 {
     friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
-/// A place in space, in metres; the floor lies at z = 0.
+/// A point in space, in metres; the floor lies at z = 0.
 struct Point3 {
     double x = 0, y = 0, z = 0;
     [[nodiscard]] Point2 onFloor() const { return {x, y}; }
     friend bool operator==(const Point3&, const Point3&) = default;
 };
 
-// There is no Point + Point: the sum of two places is not a place.
+// There is no Point + Point: the sum of two points is not a point.
 inline Vec2 operator-(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
 inline Point2 operator+(Point2 p, Vec2 v) { return {p.x + v.x, p.y + v.y}; }
 inline Point2 operator-(Point2 p, Vec2 v) { return {p.x - v.x, p.y - v.y}; }

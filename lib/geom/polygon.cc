@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What CGAL does for polygons: triangulating and simplifying them.
+// Triangulates and simplifies polygons with CGAL.
 #include "geom/polygon.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -306,13 +306,13 @@ using Curves = CGAL::Constrained_triangulation_plus_2<
 
 Point2 placeOf(Curves::Vertex_handle vertex) { return {vertex->point().x(), vertex->point().y()}; }
 
-/// What removing a vertex costs: the squared distance of the original points, which stay in the
-/// net until the end, from the edge that would replace them. That is the displacement itself, not
-/// the one since the last step. None where it is beyond the tolerance or where that edge would
-/// pass so near to another vertex that welding joined them.
+/// Cost of removing a vertex: the squared distance of the original points, which the net stores
+/// until the end, from the edge that would replace them. That is the displacement itself, not the
+/// one since the last step. nullopt if it exceeds the tolerance or if that edge would pass so near
+/// to another vertex that welding joined them.
 ///
-/// CGAL takes vertices of equal cost in the order of their curves' addresses. Pixel maps have
-/// thousands of them, so each vertex gets a cost of its own, by its place among all vertices.
+/// CGAL sorts vertices of equal cost by their curves' addresses. Pixel maps have thousands of them,
+/// so each vertex gets a unique cost, by its index among all vertices.
 class Cost {
   public:
     Cost(const std::vector<Polygon>& curves, double tolerance, std::vector<Point2> kept)
@@ -336,7 +336,7 @@ class Cost {
     }
 
   private:
-    /// The net is Delaunay: what lies close behind the new edge is a neighbour of the vertex.
+    /// The net is Delaunay, so vertices close behind the new edge are neighbours of the vertex.
     static bool isTight(const Curves& net, const Curves::Vertices_in_constraint_iterator& vertex) {
         const auto before = *boost::prior(vertex), after = *boost::next(vertex);
         const Segment2 edge{placeOf(before), placeOf(after)};
@@ -380,7 +380,7 @@ std::vector<Polygon> simplified(const std::vector<Polygon>& curves, double toler
         const auto points = pointsOf(curves[i]);
         ids[i] = net.insert_constraint(points.begin(), points.end(), true);
     }
-    // The cost decides alone.
+    // Only the cost stops the simplification.
     constexpr double kNever = std::numeric_limits<double>::infinity();
     ps::simplify(net, Cost(curves, tolerance, std::move(kept)),
                  ps::Stop_above_cost_threshold(kNever));

@@ -14,7 +14,7 @@ struct Segment2 {
     friend bool operator==(const Segment2&, const Segment2&) = default;
 };
 
-/// Where a point lies with respect to a closed curve; decided exactly.
+/// Position of a point relative to a closed curve; decided exactly.
 enum class Side { Inside, Boundary, Outside };
 
 /// A closed curve of straight edges; the last vertex joins the first.
@@ -28,7 +28,7 @@ Box2 bounds(const Segment2& segment);
 /// True if a simple polygon is convex, counter-clockwise and has an area; collinear and repeated
 /// vertices are allowed. Exact. O(n)
 bool isConvex(const Polygon& polygon);
-/// The same without collinear vertices: a fan from any vertex then triangulates it. O(n)
+/// Removes collinear vertices: a fan from any vertex then triangulates the polygon. O(n)
 bool isStrictlyConvex(const Polygon& polygon);
 /// Even-odd rule, exact (robust orientation of the given doubles). O(n).
 Side locate(const Polygon& polygon, Point2 p);
@@ -54,7 +54,7 @@ struct Regions {
     std::vector<Region> parts;
 
     [[nodiscard]] double area() const;
-    /// Sum over all parts: an edge between two counts twice.
+    /// Sum over all parts: a shared edge counts twice.
     [[nodiscard]] double boundaryLength() const;
     /// Boundary also on an edge between two parts.
     [[nodiscard]] Side locate(Point2 p) const;
@@ -71,7 +71,7 @@ std::vector<Polygon> curvesOf(const Region& region);
 std::vector<Polygon> curvesOf(const std::vector<Region>& regions);
 std::vector<Polygon> curvesOf(const Regions& regions);
 
-/// A point strictly inside the region, well away from its boundary where possible.
+/// Finds a point strictly inside the region, well away from its boundary if possible.
 Point2 interiorPoint(const Region& region);
 
 template <typename Visit>
@@ -100,8 +100,8 @@ struct Triangulation {
 /// Constrained Delaunay triangulation of the region's interior (CGAL). Curves may touch.
 Triangulation triangulate(const Region& region);
 
-/// The closed curves with fewer vertices: none moves by more than `tolerance` metres, curves that
-/// were apart stay apart, and none disappears (CGAL's Polyline_simplification_2). Vertices where
+/// Simplifies closed curves (CGAL's Polyline_simplification_2): no curve moves by more than
+/// `tolerance` metres, separate curves stay separate, and every curve remains. Vertices where
 /// curves touch and those in `kept` stay. Result i belongs to curve i.
 std::vector<Polygon> simplified(const std::vector<Polygon>& curves, double tolerance,
                                 std::vector<Point2> kept = {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Poses as Eigen's transforms. Not in pose.h, which everything includes: <Eigen/Geometry> takes
+// Poses as Eigen's transforms, apart from pose.h, which most files include: <Eigen/Geometry> takes
 // most of a second to compile.
 #pragma once
 
@@ -9,13 +9,13 @@
 
 namespace ispace {
 
-/// Position and heading of a frame on the floor; the frame's x axis faces along the heading.
-/// Written world_from_body: it takes points of the body frame to the world frame.
+/// Position and heading of a frame on the floor; the frame's x axis faces along the heading. Named
+/// world_from_body: it maps points of the body frame to the world frame.
 struct Pose2 {
     Point2 position;
     Angle heading;
 
-    /// A point of this frame in the outer frame.
+    /// Maps a point of this frame to the outer frame.
     [[nodiscard]] Point2 operator*(Point2 local) const;
     [[nodiscard]] Vec2 operator*(Vec2 local) const;
     friend bool operator==(const Pose2&, const Pose2&) = default;
@@ -35,21 +35,21 @@ struct Pose3 {
     friend bool operator==(const Pose3&, const Pose3&) = default;
 };
 
-/// A frame given by its axes in the outer frame; quicker than Pose3 for many points. Exact where
-/// angles are multiples of 90 degrees.
+/// A frame given by its axes in the outer frame; faster than Pose3 for many points. Exact if angles
+/// are multiples of 90 degrees.
 struct Frame3 {
     Point3 origin;
     Vec3 forward{1, 0, 0}, left{0, 1, 0}, up{0, 0, 1};
 
     Frame3() = default;
     explicit Frame3(const Pose3& pose);
-    /// A vector of this frame in the outer frame.
+    /// Maps a vector of this frame to the outer frame.
     [[nodiscard]] Vec3 operator*(Vec3 local) const {
         return {local.x * forward.x + local.y * left.x + local.z * up.x,
                 local.x * forward.y + local.y * left.y + local.z * up.y,
                 local.x * forward.z + local.y * left.z + local.z * up.z};
     }
-    /// A point of the outer frame, in this frame.
+    /// Maps a point of the outer frame to this frame.
     [[nodiscard]] Vec3 toLocal(Point3 outer) const {
         const Vec3 way = outer - origin;
         return {dot(way, forward), dot(way, left), dot(way, up)};
@@ -61,7 +61,7 @@ struct Frame3 {
 Eigen::Isometry3d isometryOf(const Pose3& pose);
 /// A unit quaternion; exact at multiples of 180 degrees.
 Eigen::Quaterniond quaternionOf(const Pose3& pose);
-/// A turn about one of the axes 0 (x), 1 (y), 2 (z).
+/// A rotation about one of the axes 0 (x), 1 (y), 2 (z).
 Eigen::Quaterniond turnAbout(int axis, Angle angle);
 
 /// The pose at `position` with this rotation, which is not 0 and need not be normalised. Exactly

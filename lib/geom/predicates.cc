@@ -60,7 +60,7 @@ double distance(Point2 p, const Segment2& s) { return distance(p, nearestPoint(s
 
 namespace {
 
-/// Which side of line a-b the point lies on; on the line counts as left.
+/// Side of line a-b on which the point lies; on the line counts as left.
 bool isLeft(const Segment2& line, Point2 p) {
     return orientation(line.a, line.b, p) != Turn::Right;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/geom: the sign of the in-circle determinant, where pairs of doubles can tell it.
+// Inside lib/geom: exact predicates, and the sign of the in-circle determinant in double-double
+// arithmetic.
 #pragma once
 
 #include <cmath>
@@ -63,7 +64,7 @@ struct DoublePair {
     }
 };
 
-/// surelyInCircle() as far as doubles can tell, with the bound of Shewchuk (1997).
+/// Computes surelyInCircle() in doubles if they suffice, with the bound of Shewchuk (1997).
 inline int roughlyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
     const Vec2 u = a - d, v = b - d, w = c - d;
     const double vw = v.x * w.y, wv = w.x * v.y, wu = w.x * u.y, uw = u.x * w.y;
@@ -97,23 +98,23 @@ inline int surelyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
     };
     const double all = a_lift.high * most(bx, by, cx, cy) + b_lift.high * most(cx, cy, ax, ay) +
                        c_lift.high * most(ax, ay, bx, by);
-    // Some 20 roundings, each off by 2^-102 of its operands at most. What products lose that are
-    // too small for doubles is far less: `all` is above kMinValue.
+    // Some 20 roundings, each off by 2^-102 of its operands at most. Underflow in products loses
+    // far less: `all` is above kMinValue.
     constexpr double kError = 0x1p-92, kMinValue = 0x1p-600, kMost = 0x1p1000;
     if (!(all > kMinValue && all < kMost)) return 0;
     const double error = kError * all;
     return det.high > error ? 1 : det.high < -error ? -1 : 0;
 }
 
-/// Runs work() apart from the parallel loop around it, whose end by an exception does not reach
-/// loops within work().
-/// \throws what work() throws
+/// Runs work() isolated from the parallel loop around it: if that loop ends by an exception, loops
+/// within work() continue.
+/// \throws exceptions of work()
 void runUncancelled(const std::function<void()>& work);
 
-/// The value of work(), for values that outlive the parallel loop in which they are first asked
-/// for. Once a task of that loop throws, oneTBB leaves out all loops within its other tasks without
-/// a word, and a value made by them would be kept half made. Loops within work() run to their end.
-/// \throws what work() throws
+/// Returns the value of work(), for values that outlive the parallel loop in which they are first
+/// requested. Once a task of that loop throws, oneTBB silently skips all loops within its other
+/// tasks, which would store incomplete values. Loops within work() run to their end.
+/// \throws exceptions of work()
 template <typename Work>
 auto uncancelled(Work work) {
     std::optional<decltype(work())> value;

@@ -15,7 +15,7 @@
 namespace ispace {
 
 std::uint64_t mortonCode(std::uint32_t x, std::uint32_t y) {
-    const auto spread = [](std::uint64_t bits) {  // to every second place
+    const auto spread = [](std::uint64_t bits) {  // spreads bits to even positions
         bits = (bits | bits << 16U) & 0x0000FFFF0000FFFFU;
         bits = (bits | bits << 8U) & 0x00FF00FF00FF00FFU;
         bits = (bits | bits << 4U) & 0x0F0F0F0F0F0F0F0FU;
@@ -79,7 +79,7 @@ void SegmentGrid::forEachCellOf(const Segment2& segment, Visit visit) const {
     auto [a, b] = segment;
     if (a.x > b.x) std::swap(a, b);
     const double low = std::min(a.y, b.y), high = std::max(a.y, b.y);
-    // Generous by a part of a cell, so that rounding loses nothing.
+    // Widened by a part of a cell, against rounding.
     const double slack = margin_ + size_ / 1024;
     const double slope = (b.y - a.y) / (b.x - a.x);
     const std::int64_t last = column(b.x + slack);
@@ -135,7 +135,7 @@ namespace {
 /// Coordinates beyond this are not turned: their products would overflow.
 constexpr double kMaxTurned = 1e100;
 
-/// The direction, modulo a right angle, in which the segments run, weighted by length.
+/// Direction, modulo a right angle, of most segments, weighted by length.
 Vec2 mainAxis(std::span<const Segment2> segments) {
     // Four times the angle is the same for all sides of a rectangle: sum its unit vectors.
     Vec2 sum{0, 0};
@@ -201,7 +201,7 @@ struct Extent {
     [[nodiscard]] double halfPerimeter() const { return wide() - high[1] - low[1]; }
 };
 
-/// What splits move.
+/// Sums that splits update.
 struct Item {
     Extent box;
     std::uint32_t index = 0;
@@ -216,7 +216,7 @@ struct Group {
     [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
-/// What a group costs: how likely it is met, times the vectors of lines in it.
+/// Cost of a group: the probability that a ray meets it, times the vectors of lines in it.
 double cost(const Extent& box, std::size_t size) {
     const std::size_t vectors = (size + kWidth - 1) / kWidth;
     return box.halfPerimeter() * static_cast<double>(vectors);
@@ -238,14 +238,14 @@ struct Axis {
 struct Cut {
     std::size_t axis = 0;
     Axis bins;
-    std::uint32_t bin = 0;  ///< 0: there is none
+    std::uint32_t bin = 0;  ///< 0: no cut
     double cost = std::numeric_limits<double>::infinity();
     Extent left, right;
 };
 
 /// The items of a group, sorted into bins along an axis.
 struct Bins {
-    std::uint32_t used = 0;  ///< a bit for each bin that has items; what others hold is old
+    std::uint32_t used = 0;  ///< a bit for each non-empty bin; other bins hold stale data
     std::array<Extent, kBins> boxes;
     std::array<std::uint32_t, kBins> sizes;
 
@@ -261,9 +261,9 @@ struct Bins {
         }
     }
 
-    /// Puts the cheapest cut into `best` where it is cheaper.
+    /// Stores the cheapest cut in `best` if it is cheaper.
     void cheapen(std::size_t axis, const Axis& bins, Cut& best) const {
-        // What lies right of each bin that has items, then what lies left.
+        // Sums over the bins to the right, then over those to the left.
         std::array<double, kBins> right_costs;
         std::array<Extent, kBins> rights;
         Extent box;
@@ -365,7 +365,7 @@ class Orderer {
         std::size_t count = 1;
     };
 
-    /// Splits what is most expensive until there are eight parts.
+    /// Splits the most expensive part until there are eight.
     Parts parts(const Group& all, int depth) {
         Parts out{{all}};
         std::array<double, kWidth> costs{};  // of those that may be split; else below 0

@@ -100,13 +100,13 @@ template <typename Visit>
 void SegmentGrid::searchBelow(Point2 p, Visit visit) const {
     const std::int64_t c = column(p.x);
     for (std::int64_t r = row(p.y); r >= 0; --r) {
-        // What is listed here may lie this much above or below the cell.
+        // Segments listed here may lie this much above or below the cell.
         const double bottom = box_.low.y + (static_cast<double>(r) + 1.0 / 512) * size_ + margin_;
         if (visit(cell(c, r), bottom)) return;
     }
 }
 
-/// True if the closed boxes share a point; an empty one meets nothing.
+/// True if the closed boxes share a point; an empty box shares none.
 inline bool meets(const Box2& a, const Box2& b) {
     return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
 }
@@ -176,29 +176,28 @@ class SegmentTree {
     [[nodiscard]] Box2 boxOf(const Segment2& segment, double reach) const;
 
     Vec2 axis_{1, 0};   // unit, along which boxes lie
-    double slack_ = 0;  // what turning may round away
+    double slack_ = 0;  // bound of the rounding error of the rotation
     BoxTree tree_;
 };
 
-/// How boxes are gathered into a tree.
+/// Layout of a tree of boxes.
 struct BoxOrder {
     /// Children of a node, and boxes of a leaf, at most.
     static constexpr std::size_t kWidth = 8;
     /// Nodes below each other, at most.
     static constexpr int kDepth = 24;
 
-    /// Indices of the boxes, leaf after leaf as one comes to them from the root, first children
-    /// first.
+    /// Indices of the boxes, leaf after leaf in depth-first order from the root.
     std::vector<std::uint32_t> items;
-    /// Of each node, the root first: the number of its children; of each child the number of its
-    /// boxes if it is a leaf, 0 if it is a node; then all this of each child that is one.
+    /// For each node, the root first: the number of its children; for each child the number of its
+    /// boxes if it is a leaf, 0 if it is a node; then the same for each child that is a node.
     std::vector<std::uint8_t> shape;
 };
 
-/// By binned surface area heuristic, with up to `most` boxes a leaf. O(n log n)
+/// Builds a tree by binned surface area heuristic, with up to `most` boxes a leaf. O(n log n)
 /// \pre most <= BoxOrder::kWidth, and there are boxes
 BoxOrder orderOf(std::span<const Box2> boxes, std::size_t most);
-/// The same of the boxes of lines, BoxOrder::kWidth a leaf. \pre there are lines
+/// Builds a tree of the boxes of lines, BoxOrder::kWidth a leaf. \pre there are lines
 BoxOrder orderOf(std::span<const Segment2> lines);
 
 }  // namespace ispace

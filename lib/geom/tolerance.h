@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tolerances that several sources share: by how much rounding lets equal values differ.
+// Tolerances that several sources share: bounds of the rounding errors of equal values.
 #pragma once
 
 namespace ispace {

@@ -58,8 +58,8 @@ struct ChordCurves {
     }
 
   private:
-    /// Inner vertices lie at the same directions for all arcs of a circle, so that those of
-    /// sensors that stand at one place become the same chords.
+    /// Inner vertices lie at the same directions for all arcs of a circle, so that arcs of sensors
+    /// with the same position become the same chords.
     void addArc(const CurveEdge& edge, Index layer) {
         using std::numbers::pi;
         const Index circle = circleOf({edge.center, std::abs(edge.radius)});
@@ -86,8 +86,8 @@ struct ChordCurves {
         }
     }
 
-    /// Circles this near to each other are one: the same place reckoned in two ways (on a robot,
-    /// and written). Else chords that coincide on the lattice would be of two circles.
+    /// Circles this near to each other are one: equal centres computed in two ways (on a robot, and
+    /// written). Else chords that coincide on the lattice would belong to two circles.
     static constexpr double kSameCircle = 1e-9;
 
     Index circleOf(const Circle& circle) {
@@ -107,7 +107,7 @@ struct ChordCurves {
     std::multimap<double, Index> known_;  // by the x of their middles
 };
 
-/// Integer coordinates for the places in a box.
+/// Maps points in a box to integer coordinates.
 class Lattice {
   public:
     explicit Lattice(const Box2& box) {
@@ -131,8 +131,8 @@ class Lattice {
     }
 
   private:
-    /// A multiple of the step where doubles tell them apart, so that the same places are rounded
-    /// the same way wherever the middle is.
+    /// Rounded to a multiple of the step where doubles resolve it, so that equal points round
+    /// equally for any middle.
     [[nodiscard]] double middle(double low, double high) const {
         const double v = low / 2 + high / 2, steps = v / unit_;
         return std::abs(steps) < 0x1p52 ? std::nearbyint(steps) * unit_ : v;
@@ -191,7 +191,7 @@ std::vector<lattice::Edge> latticeEdges(const ChordCurves& curves, std::size_t l
         const Index first = table.add(lattice.pointOf(curves.vertices[begin].at));
         Index from = first;
         for (std::size_t i = begin; i < end; ++i) {
-            // Closed whatever the curve says.
+            // Closes the curve even if its last edge does not.
             const Index to =
                 i + 1 == end ? first : table.add(lattice.pointOf(curves.vertices[i + 1].at));
             edges.push_back({from, to, curves.vertices[i].layer, curves.vertices[i].circle, false});
@@ -210,7 +210,7 @@ std::vector<lattice::Edge> latticeEdges(const ChordCurves& curves, std::size_t l
 
 }  // namespace
 
-/// Makes what an overlay keeps of its parts.
+/// Builds the stored data of an overlay from its parts.
 class Overlay::Maker {
   public:
     Maker(Overlay& overlay, const ChordCurves& curves, const Coarse& coarse)
@@ -355,7 +355,7 @@ Overlay::Overlay(std::span<const Layer> layers, std::span<const Segment2> walls,
 
 void forEachArea(std::span<const Layer> layers,
                  const std::function<void(const LayerLabel&, double)>& add) {
-    /// Of a part: what each edge between different labels adds to the area of what is on its left.
+    /// Adds the area that each edge between different labels contributes to the face on its left.
     struct Areas {
         std::vector<lattice::EdgeLabels> labels;
         std::vector<double> areas;

@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-/// Which layers contain a point.
+/// The set of layers that contain a point.
 struct LayerLabel {
     std::int32_t count = 0;    ///< of counted layers that contain it
     std::int64_t numbers = 0;  ///< sum of their numbers: identifies a single layer
@@ -19,7 +19,7 @@ struct LayerLabel {
     friend bool operator==(const LayerLabel&, const LayerLabel&) = default;
 };
 
-/// A point set to overlay with others: what lies to the left of its curves, the outlines and holes
+/// A point set to overlay with others: the points to the left of its curves, the outlines and holes
 /// of one or more disjoint regions, which may touch.
 struct Layer {
     std::vector<Curve> curves;
@@ -30,22 +30,23 @@ struct Layer {
 };
 
 /// The overlay of layers: the faces into which their boundaries divide the plane, each with the set
-/// of layers that contain it. One pass gives the areas covered by any layer, by none, by exactly
-/// one and by k at once.
+/// of layers that contain it. One pass computes the areas covered by no layer, by any, by exactly
+/// one and by k.
 ///
 /// Robust against coincidences (many views end at the same walls): end points and crossings are
 /// rounded to a lattice of step unit() by snap rounding (Hobby 1999), so that edges meet at common
-/// ends only. A layer contains what its rounded curves enclose by the even-odd rule, so labels are
+/// ends only. A layer contains the points that its rounded curves enclose by the even-odd rule, so
+/// labels are
 /// consistent even in slivers made by rounding. Arcs are replaced by chords (kChordError) and the
 /// area between arc and chord is added in closed form. Areas err by at most 3 * unit() times the
 /// length of all boundaries, plus kChordError squared where an arc is crossed (kChordError times a
-/// chord's length where something ends or passes between an arc and its chord). Where input
+/// chord's length where an edge ends or passes between an arc and its chord). Where input
 /// vertices must keep their doubles, as for rooms and walls, use boolean.h or planar_map.h.
-/// Deterministic. O((n + crossings) log n) unless edges crowd at one place. Large ones are made in
-/// strips, several at once, and take about 130 bytes an edge.
+/// Deterministic. O((n + crossings) log n) unless edges crowd at one point. Large overlays are
+/// computed in strips, several in parallel, and take about 130 bytes an edge.
 class Overlay {
   public:
-    /// An edge of the overlay. Label `left` is what lies on its left.
+    /// An edge of the overlay, with the labels of the faces on its left and right.
     struct Edge {
         Point2 from, to;
         LayerLabel left, right;
@@ -55,30 +56,30 @@ class Overlay {
         Point2 center = {};
     };
 
-    /// What to keep of an overlay with more faces than are asked for one by one.
+    /// Selects the faces that an overlay stores if it has too many.
     struct Coarse {
-        /// Neighbouring faces whose labels become the same are kept as one face, with that label.
-        /// Called by several threads at once. \pre label({}) == {}
+        /// Maps labels: neighbouring faces with equal new labels are merged into one face with that
+        /// label. Called by several threads at once. \pre label({}) == {}
         std::function<LayerLabel(const LayerLabel&)> label;
-        /// Is told of all faces what addAreas() would tell, by one thread, in an order that depends
-        /// only on the input.
+        /// Receives the areas of all faces as addAreas() reports them, on one thread, in an order
+        /// that depends only on the input.
         std::function<void(const LayerLabel&, double)> add_area;
     };
 
     /// `walls` separate the regions of regions() without changing any label.
     /// \pre all coordinates are finite
-    /// \throws FormatError (without a place) for outlines that cross by the ten million
+    /// \throws FormatError (without a line number) for outlines that cross by the ten million
     explicit Overlay(std::span<const Layer> layers, std::span<const Segment2> walls = {})
         : Overlay(layers, walls, Coarse()) {}
-    /// Memory for the edges that are kept and for those of some strips.
-    /// \throws FormatError (without a place) for outlines that cross by the ten million in one
-    /// strip
+    /// Memory is required for the stored edges and for those of some strips.
+    /// \throws FormatError (without a line number) for outlines that cross by the ten million in
+    /// one strip
     Overlay(std::span<const Layer> layers, std::span<const Segment2> walls, const Coarse& coarse);
 
     /// Edges between faces of different labels, in an order that depends only on the input.
     [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
-    /// Step of the lattice, metres, a power of two: at most 2^-29 of the extent of all layers. 0 if
-    /// they have none.
+    /// Step of the lattice, metres, a power of two: at most 2^-29 of the extent of all layers; 0
+    /// without extent.
     [[nodiscard]] double unit() const { return unit_; }
 
     /// Calls add(label, area) several times for each label; the areas, some of them negative, add
@@ -90,7 +91,7 @@ class Overlay {
     [[nodiscard]] double area(In in) const;
     /// The connected regions of the faces whose label satisfies `in`, with chords for arcs. Regions
     /// that touch only at a point are separate. Sorted; curves begin at their lowest vertex.
-    /// Vertices within straight edges are left out. \pre not in({})
+    /// Vertices within straight edges are removed. \pre not in({})
     template <typename In>
     [[nodiscard]] std::vector<Region> regions(In in) const;
 
@@ -104,7 +105,7 @@ class Overlay {
     [[nodiscard]] std::vector<double> areasOf(std::span<const Region> regions) const;
 
   private:
-    /// Places of the lattice, and the ends of an edge among them.
+    /// Points of the lattice, and the ends of an edge among them.
     struct LatticePoint {
         std::int32_t x, y;
     };
@@ -113,13 +114,13 @@ class Overlay {
         bool is_wall;
     };
     class Maker;
-    /// Where a piece lies, seen along an edge.
+    /// Position of a piece relative to an edge.
     enum Sides : std::uint8_t { kNowhere = 0, kLeft = 1, kRight = 2, kBoth = 3 };
 
     [[nodiscard]] Point2 placeOf(LatticePoint point) const {
         return middle_ + Vec2{unit_ * point.x, unit_ * point.y};
     }
-    /// What an edge adds to the area of what lies on its left.
+    /// Area that an edge adds to the face on its left.
     static double areaLeftOf(Point2 middle, Point2 from, Point2 to, double bulge) {
         return cross(from - middle, to - middle) / 2 + bulge;
     }
@@ -128,7 +129,7 @@ class Overlay {
     }
     friend void forEachArea(std::span<const Layer> layers,
                             const std::function<void(const LayerLabel&, double)>& add);
-    /// The pieces with these boundaries: for each of edges_ and then of walls_.
+    /// Builds the pieces with these boundaries: for each of edges_ and then of walls_.
     [[nodiscard]] std::vector<Region> trace(const std::vector<Sides>& sides) const;
     [[nodiscard]] std::vector<Curve> withArcs(std::span<const Region> regions) const;
     [[nodiscard]] Point2 place(std::uint32_t point) const { return placeOf(points_[point]); }
@@ -141,7 +142,7 @@ class Overlay {
     double unit_ = 0;
 };
 
-/// As Overlay(layers).addAreas(add), but nothing is kept. \throws FormatError as for what is Coarse
+/// Computes Overlay(layers).addAreas(add) without storing edges. \throws FormatError as for Coarse
 void forEachArea(std::span<const Layer> layers,
                  const std::function<void(const LayerLabel&, double)>& add);
 

@@ -56,7 +56,7 @@ void PointGrid::divide(std::size_t from, std::size_t to) {
     levels_.push_back({grid, first});
     first_.resize(first + count + 1, 0);
     inner_.resize(first + count + 1, kNone);
-    // first_[i + 1] counts what is in cell i, then is where its next place goes.
+    // first_[i + 1] counts the points in cell i, then is the index of its next point.
     for (std::size_t i = from; i < to; ++i) ++first_[first + cell_of(places_[i].at) + 1];
     auto next = static_cast<Index>(from);
     for (std::size_t i = 1; i <= count; ++i) next += std::exchange(first_[first + i], next);
@@ -159,7 +159,7 @@ class Division {
 
 void forEachCell(const std::vector<Point>& points, const std::vector<Edge>& edges,
                  const Columns& columns, const std::function<void(const Cell&)>& visit) {
-    // What is visited may add points: those that were there are enough to look for.
+    // `visit` may add points; only the earlier ones are searched.
     std::vector<Index> all_edges(edges.size()), points_there;
     std::iota(all_edges.begin(), all_edges.end(), Index{0});
     points_there.reserve(points.size());

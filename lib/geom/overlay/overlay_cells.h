@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/geom only: points and edges of the lattice by the square cell in which they lie.
+// Inside lib/geom only: finds points and edges of the lattice by the square cell that holds them.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,13 @@ namespace ispace::lattice {
 
 /// In steps of the lattice, in x as well as in y.
 constexpr std::int32_t kReach = 2;
-/// Few enough to look at each, or at each with each.
+/// Few enough to test each, or each with each.
 constexpr std::size_t kFew = 32;
 
 /// Square cells over a box, whose sides are powers of two.
 class CellGrid {
   public:
-    /// As small as they may be, so that there are at most so many.
+    /// Chooses the smallest cells of which there are at most so many.
     CellGrid(const Box& box, std::size_t most);
 
     [[nodiscard]] std::int64_t columns() const { return columns_; }
@@ -79,7 +79,7 @@ void CellGrid::forEachStretch(Point a, Point b, Visit visit) const {
     }
 }
 
-/// Points by cells, of which crowded ones are divided again, to find those along a line.
+/// Finds points along a line: stores points by cells, and divides crowded cells again.
 class PointGrid {
   public:
     /// O(n log n)
@@ -110,7 +110,7 @@ class PointGrid {
 
     std::vector<Place> places_;  // by cell
     std::vector<Level> levels_;
-    std::vector<Index> first_;   // of each cell's places
+    std::vector<Index> first_;   // of each cell's points
     std::vector<Index> inner_;   // the level that divides a cell, or kNone
     std::vector<Place> before_;  // while they are sorted
 };

@@ -136,7 +136,7 @@ namespace {
 
 using Graph = plane::Graph<Point>;
 
-/// The layers that contain a point, as it moves.
+/// The set of layers that contain a moving point.
 class Place {
   public:
     explicit Place(std::span<const Layer> layers) {
@@ -253,7 +253,7 @@ class Nesting {
     std::vector<Index> lower_;         // of each point; roots: themselves
     std::vector<Index> roots_;         // lowest point of each component
     std::vector<Index> next_;          // of the components right above the same line
-    std::vector<Index> first_inside_;  // component right above each line; empty: there is none
+    std::vector<Index> first_inside_;  // component directly above each line, or empty
     std::vector<Index> outermost_;
 };
 
@@ -288,8 +288,8 @@ class Walk {
     }
 
   private:
-    /// A turn around a point, from before the half-edge at `at`: at its end the place is the same
-    /// again, so that turns begun meanwhile may be made one within another.
+    /// A turn around a point, from before the half-edge at `at`: at its end the set of layers is
+    /// the same again, so that turns begun meanwhile may be nested.
     struct Turn {
         std::span<const Index> about;
         Index at;
@@ -315,7 +315,7 @@ class Walk {
 
     void cross(Index line) {
         const Index set = set_of_[line];
-        if (set < sets_.emptySet()) return place_.cross(set);  // of that layer alone
+        if (set < sets_.emptySet()) return place_.cross(set);  // a set with that layer only
         for (const Index layer : sets_[set]) place_.cross(layer);
     }
 

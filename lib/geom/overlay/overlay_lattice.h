@@ -41,7 +41,7 @@ inline std::int64_t dot(Point a, Point b, Point c) {
            (std::int64_t{b.y} - a.y) * (std::int64_t{c.y} - a.y);
 }
 
-/// Both corners belong to it; empty until a point is added.
+/// A box that includes its boundary; empty until a point is added.
 struct Box {
     Point low{std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max()};
     Point high{std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min()};
@@ -77,7 +77,8 @@ class SetStore {
   public:
     /// Sets 0 ... layers - 1 hold that layer alone, set `layers` is empty.
     explicit SetStore(std::size_t layers);
-    /// Has the sets of another, which must stay as it is, by the same numbers; its own follow.
+    /// Shares the sets of another table, which must not change, under the same numbers; new ones
+    /// follow.
     explicit SetStore(const SetStore* base)
         : base_(base), empty_(base->empty_), offset_(base->size()), first_(1) {}
     [[nodiscard]] Index emptySet() const { return empty_; }
@@ -87,7 +88,8 @@ class SetStore {
         const std::size_t own = set - offset_;
         return std::span(items_).subspan(first_[own], first_[own + 1] - first_[own]);
     }
-    /// The set of the layers that are in an odd number of sets. \param layers of all sets one after
+    /// Finds the set of the layers that are in an odd number of sets. \param layers of all sets one
+    /// after
     /// another; sorted in place
     Index addOdd(std::vector<Index>& layers);
 
@@ -96,7 +98,7 @@ class SetStore {
 
     const SetStore* base_ = nullptr;
     Index empty_;
-    Index offset_ = 0;  // number of the first set that is its own
+    Index offset_ = 0;  // number of the first set stored here
     std::vector<std::size_t> first_;
     std::vector<Index> items_;  // by set, ascending
 };
@@ -109,8 +111,8 @@ struct Edge {
     bool is_wall = false;
 };
 
-/// Each edge once, from its lower end (lexLess). Edges without length, and those that cancel out in
-/// the boundary of each layer, are dropped unless they are walls. O(n)
+/// Merges equal edges and turns each from its lower end (lexLess). Edges without length, and those
+/// that cancel out in the boundary of each layer, are removed unless they are walls. O(n)
 std::vector<Edge> merged(std::vector<Edge> edges, const std::vector<Point>& points, SetStore& sets);
 
 /// Columns of the lattice, both ends included.
@@ -121,10 +123,10 @@ struct Columns {
     [[nodiscard]] bool hold(Point p) const { return first <= p.x && p.x <= last; }
 };
 
-/// \throws FormatError (without a place) for more crossings than some gigabytes hold
+/// \throws FormatError (without a line number) for more crossings than some gigabytes hold
 void mustBeFew(std::size_t crossings);
 
-/// The points that each edge is led through, between its ends and in their order.
+/// Points through which each edge is routed, between its ends and in their order.
 struct EdgeWaypoints {
     std::vector<std::size_t> first;  // of the points of each edge, and the end
     std::vector<Index> points;
@@ -138,32 +140,32 @@ struct EdgeWaypoints {
 ///
 /// First, edges pass the ends of others within the square of half-width 1 about them.
 std::vector<Edge> splitAtVertices(const std::vector<Edge>& edges, const std::vector<Point>& points);
-/// Then, they pass all ends and crossings in these columns, rounded to the lattice, which are added
-/// to the table. What lies in other columns makes no difference.
-/// \throws FormatError (without a place) for edges that cross by the ten million
+/// Then, edges pass all ends and crossings in these columns, rounded to the lattice, which are
+/// inserted in the table. Crossings in other columns are ignored.
+/// \throws FormatError (without a line number) for edges that cross by the ten million
 EdgeWaypoints waysThroughPixels(const std::vector<Edge>& edges, PointTable& table,
                                 const Columns& columns);
-/// Each edge cut in pieces from point to point; those from or to kNone are left out.
+/// Cuts each edge into pieces from point to point; pieces from or to kNone are skipped.
 std::vector<Edge> routed(const std::vector<Edge>& edges, const EdgeWaypoints& ways);
 
-/// Edges that meet at common ends only, in place of these (which are merged()): each is led through
-/// points near it. First through ends of others, so that edges that lay along each other before
-/// they were rounded become the same; then through all ends and crossings. No place of an edge
-/// moves by more than 1.42 and then 0.71 steps. Adds points to the table.
-/// \throws FormatError (without a place) for edges that cross by the ten million
+/// Replaces edges (which are merged()) by edges that meet at common ends only: each is routed
+/// through points near it. First through ends of others, so that edges that overlapped before
+/// rounding become equal; then through all ends and crossings. No point of an edge moves by more
+/// than 1.42 and then 0.71 steps. Inserts points in the table.
+/// \throws FormatError (without a line number) for edges that cross by the ten million
 std::vector<Edge> snapRounded(std::vector<Edge> edges, PointTable& table, SetStore& sets);
 
-/// What lies on both sides of an edge.
+/// Labels on both sides of an edge.
 struct EdgeLabels {
     LayerLabel left, right;
 };
 
-/// Labels of the edges that end in these columns, of edges that are merged() and meet at common
-/// ends only; the outside of everything is {0, 0, 0}. A walk around all points, along which the set
-/// of layers that hold the place is kept. O(layers + edges and what is in their sets), and
+/// Computes labels of the edges that end in these columns, for edges that are merged() and meet at
+/// common ends only; the unbounded face is {0, 0, 0}. Walks around all points and updates the set
+/// of layers that contain the current position. O(layers + edges and the sizes of their sets), and
 /// plane::Graph::linesBelow for the components.
-/// \pre all edges over these columns are there, others are not; none ends to the left and begins
-///      to the left
+/// \pre edges include all those over these columns, and no others; none ends to the left and begins
+/// to the left
 std::vector<EdgeLabels> labelsOf(std::span<const Layer> layers, const std::vector<Point>& points,
                                  const std::vector<Edge>& edges, const SetStore& sets,
                                  const Columns& columns = {});

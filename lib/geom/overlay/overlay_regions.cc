@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is read off an overlay: regions, with chords or with arcs.
+// Builds regions of an overlay, with chords or with arcs.
 #include "geom/overlay/overlay.h"
 
 #include <algorithm>
@@ -17,8 +17,8 @@ using lattice::Index;
 
 namespace {
 
-/// Puts arcs back in the place of chords, those of the circles that were laid out: what is laid out
-/// again then coincides with them as before.
+/// Replaces chords by the arcs of the circles that were flattened; flattening them again gives the
+/// same chords.
 class ArcTable {
   public:
     explicit ArcTable(std::span<const Overlay::Edge> edges) {
@@ -38,8 +38,8 @@ class ArcTable {
         return withEndsOnCircles(curve);
     }
 
-    /// The vertex by way of which a chord encloses the area of its arc; nothing for straight edges,
-    /// and for arcs so short that it would be a spike.
+    /// Vertex through which a chord encloses the area of its arc; nullopt for straight edges, and
+    /// for arcs so short that the vertex would be a spike.
     [[nodiscard]] std::optional<Point2> apexOf(Segment2 chord) const {
         if (lexLess(chord.b, chord.a)) std::swap(chord.a, chord.b);  // the same for both neighbours
         const CurveEdge edge = edgeFrom(chord.a, chord.b);

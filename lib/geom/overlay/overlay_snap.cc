@@ -53,7 +53,7 @@ EdgeWaypoints waysOf(const std::vector<Pass>& passes, std::size_t edges) {
     return ways;
 }
 
-/// An edge with what is asked of it again and again.
+/// An edge with its cached differences.
 struct Span {
     Point a, b;
     std::int32_t low_y, high_y;

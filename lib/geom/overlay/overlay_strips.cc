@@ -20,7 +20,7 @@ namespace ispace::lattice {
 
 namespace {
 
-/// Ends of edges in a strip: the fewer, the more often edges are looked at that lie in several.
+/// Ends of edges in a strip; smaller strips repeat work for edges that lie in several.
 constexpr std::size_t kQuick = 2048;
 /// With fewer layers than this not many edges lie along each other, and bundles do not pay.
 constexpr std::size_t kManyLayers = 256;
@@ -29,7 +29,7 @@ constexpr std::size_t kMaxStrips = 6;
 /// Points that a thread takes at once.
 constexpr std::size_t kAtOnce = 16'384;
 
-/// Edges that are led through ends together: about as long and at about the same place, in x.
+/// Edges that are routed through ends together: of similar length and similar x.
 struct Bundle {
     std::vector<Index> edges;
     std::vector<Edge> pieces;
@@ -103,7 +103,7 @@ class EndRouter {
                                                 [&](Index i) { return points_[i].x < low; });
         const auto last =
             std::partition_point(first, by_x_.end(), [&](Index i) { return points_[i].x <= high; });
-        // In the order of their numbers, so that nothing depends on how edges are bundled.
+        // In the order of their numbers, so that results do not depend on bundles.
         std::vector<Index> numbers(first, last);
         std::sort(numbers.begin(), numbers.end());
         const auto number_of = [&](Index point) {
@@ -142,7 +142,7 @@ struct Crossing {
     Point from, to;
 };
 
-/// A strip: first its part of the edges, then the ways of these, then what comes from elsewhere.
+/// A strip: first its part of the edges, then their routes, then the pieces from other strips.
 struct Strip {
     Columns columns;
     std::vector<Index> edges;   // numbers of those that lie in it or end there
@@ -155,7 +155,7 @@ struct Strip {
     std::size_t open = 0;       // edges of which that is not known yet
 };
 
-/// The strip, of some side by side, that holds the column.
+/// Finds the strip, of several side by side, that holds the column.
 std::size_t stripAt(const std::vector<Strip>& strips, std::int32_t x) {
     const auto next =
         std::upper_bound(strips.begin(), strips.end(), x,
@@ -169,7 +169,8 @@ class Sweep {
           const std::vector<Point>& points, const SetStore& sets)
         : layers_(layers), edges_(edges), points_(points), sets_(sets) {}
 
-    /// Makes strips with so many ends in each. False, with none, where they are too narrow.
+    /// Makes strips with so many ends in each. Returns false, without strips, if they are too
+    /// narrow.
     bool divide(std::size_t ends) {
         if (xs_.empty()) {
             xs_.reserve(points_.size());
@@ -205,7 +206,7 @@ class Sweep {
         while (made < strips_.size()) {
             const std::size_t goal = std::min(strips_.size(), found + at_once);
             const std::size_t parts = known - made;
-            // One after another, whoever makes them, so that their products need not wait.
+            // Called in order by any thread, so that their results need not wait.
             std::atomic<std::size_t> next = 0;
             tbb::parallel_for(
                 tbb::blocked_range<std::size_t>(0, parts + (goal - found), 1),
@@ -348,7 +349,7 @@ class Sweep {
 
 void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTable table,
                  SetStore& sets, std::size_t at_least, const PartVisitor& visit) {
-    // Who waits in here does not begin with other work.
+    // A waiting thread must not start other work.
     if (tbb::this_task_arena::isolate([&] {
             if (layers.size() < kManyLayers || table.points().size() < 2 * kQuick)
                 edges = merged(splitAtVertices(edges, table.points()), table.points(), sets);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/geom only: large overlays in strips, each small enough for caches, several at a time.
+// Inside lib/geom only: computes large overlays in strips, each small enough for caches, in
+// parallel.
 #pragma once
 
 #include <cstddef>
@@ -11,25 +12,24 @@
 
 namespace ispace::lattice {
 
-/// Edges that begin in one strip, which meet at common ends only, with their labels. Where edges
-/// leave the strip their other ends are among the points, too, and again in other parts.
+/// Edges that begin in one strip, which meet at common ends only, with their labels. Ends of edges
+/// that leave the strip are among the points, too, and again in other parts.
 struct Part {
     std::vector<Point> points;
     std::vector<Edge> edges;
     std::vector<EdgeLabels> labels;
-    bool is_whole = false;  ///< there is no other part
+    bool is_whole = false;  ///< the only part
 };
 
-/// Called for several parts at once; what it returns, which is not empty, is called in their order,
-/// one at a time, by any of the threads.
+/// Called for several parts at once; the functions it returns, which are not empty, are called in
+/// the order of the parts, one at a time, by any of the threads.
 using PartVisitor = std::function<std::function<void()>(Part)>;
 
-/// What snapRounded() makes of all edges together, and labelsOf() that, part by part: the same
-/// edges and labels whatever the number of strips. Strips stand side by side, with about as many
-/// ends of edges in each; their number depends on the input alone. What is known of a strip is
-/// forgotten when it is visited.
+/// Computes snapRounded() of all edges and their labelsOf(), part by part; edges and labels do not
+/// depend on the number of strips. Strips are adjacent, with about as many ends of edges in each;
+/// their number depends on the input alone. Data of a strip are freed once it is visited.
 /// \pre edges are merged()
-/// \param at_least so many ends of edges in each strip; 0: as many as are quick
+/// \param at_least ends of edges in each strip; 0: the fastest number
 /// \throws FormatError as snapRounded, for each strip
 void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTable table,
                  SetStore& sets, std::size_t at_least, const PartVisitor& visit);

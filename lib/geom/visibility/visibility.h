@@ -26,7 +26,7 @@ struct VisibilityEdge {
 
 /// The visibility polygon of a viewpoint, up to a maximum range: a star-shaped region. Between
 /// consecutive edges at different ranges the boundary runs along the line of sight. Parts without
-/// area (a slit of no width, a line seen end-on) are left out.
+/// area (a slit of no width, a line seen end-on) are removed.
 struct VisibleRegion {
     Point2 viewpoint;
     double max_range = 0;
@@ -34,16 +34,16 @@ struct VisibleRegion {
     /// is inside. Otherwise the region is a sector with the viewpoint at its apex.
     bool is_whole = true;
     /// Counter-clockwise, without gaps or overlaps in direction; each spans less than a half turn,
-    /// arcs at most a quarter. Empty if nothing is visible.
+    /// arcs at most a quarter. Empty if the viewpoint sees no area.
     std::vector<VisibilityEdge> edges;
 };
 
-/// In closed form. O(edges)
+/// Area of the region in closed form. O(edges)
 double area(const VisibleRegion& region);
-/// The boundary, including lines of sight; empty if nothing is visible. O(edges)
+/// Builds the boundary, including lines of sight; empty for an empty region. O(edges)
 Curve outlineOf(const VisibleRegion& region);
-/// The part in directions from `first` counter-clockwise over `span`: the whole turn for a span of
-/// 360 degrees or more, nothing for one of 0 or less. \pre region.is_whole
+/// Clips the region to directions from `first` counter-clockwise over `span`: the whole turn for a
+/// span of 360 degrees or more, an empty region for 0 or less. \pre region.is_whole
 VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span);
 /// True if p lies in the region; on the boundary rounding decides. O(edges)
 bool holds(const VisibleRegion& region, Point2 p);
@@ -58,23 +58,24 @@ bool holds(const VisibleRegion& region, Point2 p);
 ///
 /// Round bodies are closed sets. Their shadows begin at the true tangents, in closed form; their
 /// visible sides are edges of outlineOf(), which has the body's area. From inside, deeper than
-/// kRayEpsilon, nothing is visible; within that the view passes into the body, up to its far side.
+/// kRayEpsilon, the region is empty; within that depth the view passes into the body, up to its far
+/// side.
 /// Areas err by less than 1e-6 m2 for bodies of up to 1 m radius.
 ///
 /// Memory: some 200 bytes a line. Thread-safe. Coordinates and ranges are clamped to 1e75 m.
 class VisibilityMap {
   public:
-    /// O(n log n + crossings) \throws FormatError (without a place) for lines that cross by the
-    /// million
+    /// O(n log n + crossings) \throws FormatError (without a line number) for lines that cross by
+    /// the million
     explicit VisibilityMap(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});
     VisibilityMap(VisibilityMap&&) noexcept;
     VisibilityMap& operator=(VisibilityMap&&) noexcept;
     ~VisibilityMap();
 
-    /// Sets `region` to what is visible from a viewpoint up to max_range, all around; its memory is
-    /// reused. Any viewpoint is allowed: on a line (within kRayEpsilon it is moved onto it), on an
-    /// end point or a crossing, or outside everything. Typically O(edges + log n), and O(edges) for
-    /// each round body within range.
+    /// Computes the region visible from a viewpoint up to max_range, all around, and stores it in
+    /// `region`, whose memory is reused. Any viewpoint is allowed: on a line (within kRayEpsilon it
+    /// is moved onto it), on an end point or a crossing, or outside all lines. Typically O(edges +
+    /// log n), and O(edges) for each round body within range.
     /// \pre max_range >= 0; 0 gives an empty region. Use +infinity where lines enclose the
     ///      viewpoint: if the view is free after all, it ends beyond all lines, at region.max_range
     void query(Point2 viewpoint, double max_range, VisibleRegion& region) const;

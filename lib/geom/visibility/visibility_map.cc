@@ -33,8 +33,7 @@ namespace {
 using Index = std::uint32_t;
 
 /// From these numbers of triangles on, in all and within the range, BreadthFirst is faster: in
-/// smaller meshes branches are predicted well, and short views are over before it gets going.
-/// Measured.
+/// smaller meshes branches are predicted well, and short views end before it pays. Measured.
 constexpr std::size_t kManyTriangles = 1000;
 constexpr double kManyWithinRange = 600;
 
@@ -83,7 +82,7 @@ void expandAround(const ExpansionMesh& mesh, Index triangle, Search& search) {
     for (Index i = 0; i < 3; ++i) search.throughEdge(3 * triangle + i);
 }
 
-/// From a viewpoint outside of the box: through the sides that face it, and past them.
+/// Expands from a viewpoint outside of the box: through the sides that face it, and past them.
 template <typename Search>
 void expandFromOutside(const ExpansionMesh& mesh, Point2 viewpoint, Search& search) {
     const Box2& box = mesh.box;
@@ -113,7 +112,7 @@ bool isInBreadth(const ExpansionMesh& mesh, double range) {
            std::numbers::pi * square(range) * per_area >= kManyWithinRange;
 }
 
-/// False only if nothing within kRayEpsilon of p lies outside of its triangle or on its boundary.
+/// True if some line or edge of the box may lie within kRayEpsilon of p.
 bool isNearEdge(const ExpansionMesh& mesh, Point2 p, Index triangle) {
     const std::size_t portal = std::size_t{3} * triangle;
     const Vec2 a = mesh.portals[portal].corner - p, b = mesh.portals[portal + 1].corner - p;
@@ -158,7 +157,7 @@ ISPACE_INLINE void queryInside(const Query& query) {
     search.out().finish();
 }
 
-/// Same result as Expansion. No clones: they gain nothing here.
+/// Computes the same result as Expansion. Clones bring no speedup here.
 template <bool kBounded>
 void queryInBreadth(const Query& query) {
     Expansion<kBounded, false> search(query.mesh.portals.data(), query.viewpoint, query.range,
@@ -199,7 +198,7 @@ struct VisibilityMap::Data {
             make_rounds();
             make_mesh();
         } else {
-            // Who waits in here does not begin with other work.
+            // A waiting thread must not start other work.
             tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(make_rounds, make_mesh); });
         }
         return std::make_unique<Data>(std::move(*mesh), std::move(*rounds));

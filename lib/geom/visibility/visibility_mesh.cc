@@ -70,7 +70,7 @@ using Delaunay =
 
 Point2 pointOf(const Delaunay::Vertex_handle& v) { return {v->point().x(), v->point().y()}; }
 
-/// A box with room around that of the lines, wherever that is.
+/// Returns a box with a margin around that of the lines, wherever they lie.
 Box2 boxAround(const Box2& box) {
     if (box.empty()) return {{-1, -1}, {1, 1}};
     const double farthest = std::max(
@@ -143,7 +143,7 @@ void triangulate(const std::vector<Segment2>& lines, const Box2& box, Delaunay& 
 std::vector<Delaunay::Face_handle> numberedFaces(const Delaunay& net, const Box2& box) {
     struct Place {
         std::uint64_t code;
-        Index number;  // as the net lists them
+        Index number;  // in the order of the net
         Delaunay::Face_handle face;
     };
     std::vector<Place> order;
@@ -222,7 +222,7 @@ ExpansionMesh::ExpansionMesh(std::span<const Segment2> all_lines) : in() {
         cells_box.add(piece.segment.b);
     }
     box = boxAround(cells_box);
-    // Not with other work: who builds this may hold what that waits for.
+    // Isolated: the caller may hold a lock that other tasks request.
     tbb::this_task_arena::isolate([&] { makeTriangles(lines, names); });
 }
 

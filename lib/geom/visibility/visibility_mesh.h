@@ -24,7 +24,7 @@ namespace ispace {
 /// 32 bytes and aligned: one step of a query reads half a cache line.
 struct alignas(32) Portal {
     Point2 corner;
-    /// What lies beyond the edges right (i + 1) and left (i + 2) of the corner: a portal, or that
+    /// Targets beyond the edges right (i + 1) and left (i + 2) of the corner: a portal, or that
     /// edge with kBlocked set if it is on a line, or kFree.
     std::uint32_t right = 0, left = 0;
     /// The portal on the other side of edge i, whether or not it is on a line, or kFree.
@@ -65,10 +65,10 @@ struct ExpansionMesh {
     double columns_per_metre = 0, rows_per_metre = 0;
     std::vector<std::uint32_t> cells;
 
-    /// \throws FormatError (without a place) for lines that cross by the million
+    /// \throws FormatError (without a line number) for lines that cross by the million
     explicit ExpansionMesh(std::span<const Segment2> lines);
 
-    /// What blocks the view at an edge, seen from inside, or the portal behind it.
+    /// Returns the line that blocks the view at an edge, seen from inside, or the portal behind it.
     [[nodiscard]] std::uint32_t targetOf(std::uint32_t edge) const {
         return portals[beforeOf(edge)].right;
     }
@@ -76,13 +76,13 @@ struct ExpansionMesh {
         const std::uint32_t target = targetOf(edge);
         return target >= Portal::kBlocked && target != Portal::kFree;
     }
-    /// A triangle with p inside or on its boundary. \pre p strictly inside the box
+    /// Finds a triangle with p inside or on its boundary. \pre p strictly inside the box
     [[nodiscard]] std::uint32_t locate(Point2 p) const { return locateFrom(p, cells[cellOf(p)]); }
     [[nodiscard]] std::uint32_t locateFrom(Point2 p, std::uint32_t triangle) const;
 
   private:
     [[nodiscard]] std::size_t cellOf(Point2 p) const;
-    /// Of lines that meet at common ends only. \param names the line that each is a piece of
+    /// Builds the mesh of lines that meet at common ends only. \param names the line of each piece
     void makeTriangles(const std::vector<Segment2>& lines, const std::vector<std::uint32_t>& names);
     void makeCells(std::size_t count);
 };
@@ -106,7 +106,7 @@ inline double errorOfTurns(double length) {
     return 2 * kTurnError * (length * length) + kTurnUnderflow;
 }
 
-/// The edges on lines close to a viewpoint, and where they move it.
+/// Finds the edges on lines close to a viewpoint, and the point to which they move it.
 class TouchedLines {
   public:
     explicit TouchedLines(const ExpansionMesh& mesh) : mesh_(mesh) {}
@@ -114,7 +114,8 @@ class TouchedLines {
     /// Finds the edges of lines within kRayEpsilon of p. \pre p lies in the triangle
     void gather(Point2 p, std::uint32_t triangle);
     [[nodiscard]] bool found() const { return !lines_.empty(); }
-    /// The nearest vertex of those lines that is near enough, else the nearest point of a line.
+    /// Returns the nearest vertex of those lines within kRayEpsilon, else the nearest point of a
+    /// line.
     [[nodiscard]] Point2 moved(Point2 p) const;
     /// Both sides of all edges that were found, ascending.
     [[nodiscard]] std::span<const std::uint32_t> bothSides();

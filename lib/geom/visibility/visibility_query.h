@@ -35,7 +35,7 @@ class EdgeWriter {
                 return;
             }
         }
-        // Else it has no width in doubles.
+        // Else the edge has no width in doubles.
         if (cross(from - viewpoint_, to - viewpoint_) > 0) edges_.push_back({from, to, line});
     }
 
@@ -67,7 +67,7 @@ class EdgeWriter {
 
   private:
     [[nodiscard]] Point2 onCircle(Vec2 direction) const {
-        // In two steps: the square of a very short way may be nothing.
+        // In two steps: the square of a very short distance may underflow.
         const double size = std::max(std::abs(direction.x), std::abs(direction.y));
         const Vec2 scaled{direction.x / size, direction.y / size};
         return viewpoint_ + (range_ / std::sqrt(dot(scaled, scaled))) * scaled;
@@ -90,13 +90,13 @@ class EdgeWriter {
     Point2 viewpoint_;
     double range_;
     std::vector<VisibilityEdge>& edges_;
-    bool has_arc_ = false;  // begun, and not yet written
+    bool has_arc_ = false;  // begun, not yet written
     Vec2 arc_from_, arc_to_;
 };
 
 /// Prefetches a target; harmless if it is not a portal.
 inline void prefetch(const Portal* portals, std::uint32_t target) {
-    // The place may lie beyond the portals: nothing is read there.
+    // The address may lie beyond the portals; it is only prefetched.
     // NOLINTNEXTLINE(performance-no-int-to-ptr)
     __builtin_prefetch(reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(portals) +
                                                      target * sizeof(Portal)));
@@ -130,9 +130,9 @@ ISPACE_INLINE PairOfPoints between(const Segment2& s, Pair share) {
     return {from_x + part * way.x, from_y + part * way.y};
 }
 
-/// A view to the left of a portal's corner that waits until everything to its right is done.
+/// A pending view to the left of a portal's corner; everything to its right is expanded first.
 struct Pending {
-    std::uint32_t target;       ///< what lies there
+    std::uint32_t target;       ///< portal or blocking edge
     std::uint32_t corner;       ///< the portal whose corner is the right limit
     std::uint32_t left_vertex;  ///< a portal whose corner is the left limit
     Vec2 right, left;           ///< the limits, from the viewpoint
@@ -162,7 +162,7 @@ class PendingStack {
 
     static constexpr std::size_t kHere = 64;
     union {
-        Pending here[kHere];  // not set before it is used
+        Pending here[kHere];  // uninitialised until used
     };
     std::vector<Pending> heap_;
     Pending *base_ = here, *top_ = base_, *end_ = base_ + kHere;
@@ -199,7 +199,7 @@ class Expansion {
     /// Expands through all edges and portals given so far and writes the region.
     void run();
 
-    /// Writes what bounds the view between two limits, counter-clockwise: a line, or kFree.
+    /// Writes the line, or kFree, that bounds the view between two limits, counter-clockwise.
     void stopAt(Index target, const Vec2& right, const Vec2& left);
     EdgeWriter& out() { return out_; }
 
@@ -349,14 +349,14 @@ struct Window {
     Vec2 right;            ///< from the viewpoint to the corner of a portal
     std::uint32_t corner;  ///< that portal
     std::uint32_t next;    ///< the window on the left
-    std::uint32_t target;  ///< the portal to pass, or what blocks the view
+    std::uint32_t target;  ///< the portal to pass, or the edge that blocks the view
 };
 
 /// A counter-clockwise chain of windows, and a queue of those still to expand. Uses the heap only
 /// for the widest views.
 class Windows {
   public:
-    Windows() {}  // nothing is set before it is used
+    Windows() {}  // elements are uninitialised until used
     Windows(const Windows&) = delete;
     Windows& operator=(const Windows&) = delete;
 
@@ -518,7 +518,7 @@ ISPACE_INLINE void BreadthFirst<kBounded>::advance(Windows::State& s) const {
             from_left[i] = search_.turn(s.windows[next[i]].corner, entered[i]);
         }
     }
-    // Which way to go.
+    // Selects the direction to continue.
     const auto proceed = [&](Index i, auto within) {
         const Portal& portal = portals_[entered[i]];
         const Index goes_right = from_right[i] > 0, goes_left = from_left[i] < 0;

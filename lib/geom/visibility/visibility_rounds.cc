@@ -19,7 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMaxWidth = 1e9;
 
 /// Directions about the middle of a shadow, by the tangent of their angle from it. Along a straight
-/// line the inverse range of its places, one over their distance ahead, is linear in that.
+/// line the inverse range of its points, one over their distance ahead, is linear in this tangent.
 struct ShadowFrame {
     Point2 viewpoint;
     Vec2 ahead;  ///< unit vector
@@ -55,7 +55,7 @@ struct Part {
     double low, high;
 };
 
-/// The near side of a body, counter-clockwise: places in its frame, by ascending slope.
+/// Near side of a body, counter-clockwise: points in its frame, by ascending slope.
 struct NearSide {
     ShadowFrame frame;
     std::vector<Vec2> places;
@@ -75,7 +75,7 @@ struct NearSide {
 
 double square(double x) { return x * x; }
 
-/// Angle of a place about the centre in the frame in which the ellipse is the unit disc.
+/// Angle of a point about the centre in the frame in which the ellipse is the unit disc.
 double parameterOf(Vec2 unit) { return std::atan2(unit.y, unit.x); }
 
 Vec2 normalized(Vec2 v) { return (1 / length(v)) * v; }
@@ -141,7 +141,7 @@ class Cut {
     Cut(VisibleRegion& region, const NearSide& side, std::uint32_t line)
         : region_(region), side_(side), line_(line) {}
 
-    /// Finds what was seen in the directions of the body. \return false if nothing
+    /// Finds the edges seen in the directions of the body. \return false if there are no such edges
     bool find() {
         const double low = side_.slope(0), high = side_.slope(side_.places.size() - 1);
         return find(side_.frame.direction(low), side_.frame.direction(high));
@@ -160,7 +160,7 @@ class Cut {
         while (covered_ < count && cross(to(at(covered_ - 1)), left) > 0) ++covered_;
         return true;
     }
-    /// Whether something of the body may be nearer than what was seen.
+    /// True if part of the body may be nearer than the seen edges.
     [[nodiscard]] bool mayBeSeen() const {
         for (std::size_t k = 0; k < covered_; ++k) {
             const VisibilityEdge& edge = region_.edges[at(k)];
@@ -256,7 +256,7 @@ class Cut {
             const double inner = b * b - a * c;
             if (!(inner >= 0)) return {low, low};
             const double far = -b - std::copysign(std::sqrt(inner), b);
-            const double first = far / a, second = c / far;  // perhaps infinite or no number
+            const double first = far / a, second = c / far;  // may be infinite or NaN
             const auto sound = [low](double w) { return std::isfinite(w) ? w : low; };
             return {std::min(sound(first), sound(second)), std::max(sound(first), sound(second))};
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to VisibilityMap.
+// Private to VisibilityMap: cuts the shadows of round bodies from a region.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace ispace {
 
-/// Round bodies that block the view. Their shadows are cut from a region that was found without
-/// them: no query crosses their outlines edge by edge.
+/// Round bodies that block the view. Their shadows are cut from a region computed without them, so
+/// queries never cross their outlines edge by edge.
 class RoundBodies {
   public:
     /// \param first_line VisibilityEdge::line of the first of them
@@ -22,7 +22,7 @@ class RoundBodies {
     [[nodiscard]] bool empty() const { return rounds_.empty(); }
     /// Distance within which all round bodies lie.
     [[nodiscard]] double farthest(Point2 p) const;
-    /// Cuts the shadows of all of them from the region. O(edges) for each that is within range.
+    /// Cuts the shadows of all bodies from the region. O(edges) for each body within range.
     void cut(VisibleRegion& region) const;
 
   private:
