@@ -153,7 +153,7 @@ class Arrangement {
         return face;
     }
 
-    /// Vertices of the loop, from the lowest, without those of removed lines.
+    /// Vertices of the loop, from the lowest, without those due only to lines that bound no piece.
     [[nodiscard]] Polygon curveOf(const plane::Loop& loop,
                                   const std::vector<Index>& boundaries) const {
         const plane::Graph<Point2>& graph = faces_.graph();

@@ -33,17 +33,16 @@ struct CrossingMessage {
 };
 
 /// Cuts lines where they cross, touch or overlap: pieces meet at common end points only, exactly,
-/// and none occurs twice. Lines of zero length are dropped. Sorted by position.
+/// without duplicates. Lines of zero length are dropped. Sorted by position.
 ///
 /// This is iterated snap rounding (Halperin and Packer, 2002) on doubles. End points keep their
-/// doubles and crossings are rounded; points within 64 units in the last place of the largest
-/// coordinate are merged (into the first), and lines that pass this close to a point are routed
-/// through it. Overlay rounds to a lattice instead, which in a plan of 100 m would move walls by
-/// 1e-7 m and change areas of rooms by 1e-7 of their value. Here it is 1e-13, so faces and
-/// differences have the areas of an exact arrangement (arrangement_test compares them with CGAL's).
-/// O((n + crossings) log n) for lines that are short or sparse. \throws FormatError (without a
-/// line number) for lines that cross or overlap by the million: "WHAT cross each other about N
-/// times, at most … can be; HINT"
+/// doubles and crossings are rounded; points within 64 ulp of the largest coordinate are merged
+/// (into the first), and lines that pass this close to a point are routed through it. Overlay
+/// rounds to a lattice instead, which in a plan of 100 m would move walls by 1e-7 m and change
+/// areas of rooms by 1e-7 of their value. Here it is 1e-13, so faces and differences have the areas
+/// of an exact arrangement (arrangement_test compares them with CGAL's). O((n + crossings) log n)
+/// for lines that are short or sparse. \throws FormatError (without a line number) for lines that
+/// cross or overlap by the million: "WHAT cross each other about N times, at most … can be; HINT"
 std::vector<LinePiece> noded(std::vector<LinePiece> lines, const CrossingMessage& message = {});
 
 /// Estimates the number of intersecting pairs of lines from a sample; 0 if the sample has too few.

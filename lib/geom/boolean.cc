@@ -55,7 +55,7 @@ struct EdgeTree {
         return any;
     }
 
-    /// The region that p lies in, by the parity of edges above it. \pre p lies on none of them
+    /// Finds the region that contains p, by the parity of edges above it. \pre p lies on no edge
     [[nodiscard]] std::optional<std::size_t> regionAt(Point2 p) const {
         std::map<std::size_t, bool> odd;
         const Box2 above{p, {p.x, std::numeric_limits<double>::infinity()}};

@@ -53,7 +53,7 @@ struct TooMany {};
     throw FormatError(Diagnostic{"", 0, 0, text});
 }
 
-/// Points of which none are nearer to each other than `reach`.
+/// Stores points whose mutual distances are at least `reach`.
 class DistinctPoints {
   public:
     /// \param count as many will come, about

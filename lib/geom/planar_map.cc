@@ -82,7 +82,7 @@ class TouchFinder {
     }
 
   private:
-    /// Returns the number of points processed at full speed.
+    /// Returns the number of points tested before the limit of tests.
     std::size_t findInGrid(std::span<const Point2> points) {
         const SegmentGrid grid(segments_, kWeldDistance);
         for (std::size_t k = 0; k < points.size(); ++k) {

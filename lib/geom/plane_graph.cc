@@ -189,7 +189,7 @@ Index Faces<P>::lowestOf(const Loop& loop) const {
     });
 }
 
-/// The boundary is a hole unless the direction to the left of its lowest point lies on its left, at
+/// The boundary is a hole if the direction to the left of its lowest point lies on its left, at
 /// one of its visits there.
 template <typename P>
 bool Faces<P>::isOutline(const Loop& loop) const {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Poses as Eigen's transforms, apart from pose.h, which most files include: <Eigen/Geometry> takes
-// most of a second to compile.
+// Poses in the plane and in space, and their transforms.
 #pragma once
 
 #include <Eigen/Geometry>

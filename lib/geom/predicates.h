@@ -39,8 +39,8 @@ Point2 nearestPoint(const Segment2& s, Point2 p);
 /// lies between p and the known point. O(n).
 bool insideByParity(Point2 p, Point2 known_inside, std::span<const Segment2> walls);
 
-/// An unevaluated sum of two doubles, the second at most half a unit in the last place of the
-/// first (Dekker 1971). A product or sum errs by at most 2^-102 of its operands' magnitudes.
+/// An unevaluated sum of two doubles, the second at most half an ulp of the first (Dekker 1971). A
+/// product or sum errs by at most 2^-102 of its operands' magnitudes.
 struct DoublePair {
     double high = 0, low = 0;
 

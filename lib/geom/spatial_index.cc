@@ -216,7 +216,7 @@ struct Group {
     [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
-/// Cost of a group: the probability that a ray meets it, times the vectors of lines in it.
+/// Cost of a group: the probability that a query meets it, times the vectors of lines in it.
 double cost(const Extent& box, std::size_t size) {
     const std::size_t vectors = (size + kWidth - 1) / kWidth;
     return box.halfPerimeter() * static_cast<double>(vectors);

@@ -56,7 +56,7 @@ class Overlay {
         Point2 center = {};
     };
 
-    /// Selects the faces that an overlay stores if it has too many.
+    /// Reduces the stored faces of an overlay by mapping their labels.
     struct Coarse {
         /// Maps labels: neighbouring faces with equal new labels are merged into one face with that
         /// label. Called by several threads at once. \pre label({}) == {}
@@ -135,7 +135,7 @@ class Overlay {
     [[nodiscard]] Point2 place(std::uint32_t point) const { return placeOf(points_[point]); }
 
     std::vector<Edge> edges_;
-    std::vector<LayerLabel> walls_;  // walls with the same label on both sides, and what it is
+    std::vector<LayerLabel> walls_;  // walls inside a face, with its label
     std::vector<Ends> ends_;         // of edges_, then of walls_; from lower (lexLess) to upper
     std::vector<LatticePoint> points_;
     Point2 middle_;  // of the lattice

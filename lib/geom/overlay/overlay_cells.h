@@ -18,7 +18,7 @@ constexpr std::int32_t kReach = 2;
 /// Few enough to test each, or each with each.
 constexpr std::size_t kFew = 32;
 
-/// Square cells over a box, whose sides are powers of two.
+/// Square cells over a box; their sides are powers of two.
 class CellGrid {
   public:
     /// Chooses the smallest cells of which there are at most so many.

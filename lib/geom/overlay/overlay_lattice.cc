@@ -214,7 +214,7 @@ class Nesting {
     }
 
   private:
-    /// Joins the points of each component in a tree whose root is the lowest of them.
+    /// Joins the points of each component in a tree with the lowest of them as root.
     void findRoots(const Graph& graph, const Columns& columns) {
         lower_.assign(graph.vertices(), kNone);
         std::vector<Index> entered;

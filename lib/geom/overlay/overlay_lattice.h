@@ -164,7 +164,7 @@ struct EdgeLabels {
 /// common ends only; the unbounded face is {0, 0, 0}. Walks around all points and updates the set
 /// of layers that contain the current position. O(layers + edges and the sizes of their sets), and
 /// plane::Graph::linesBelow for the components.
-/// \pre edges include all those over these columns, and no others; none ends to the left and begins
+/// \pre edges include all those over these columns, and no others; edges do not both begin and end
 /// to the left
 std::vector<EdgeLabels> labelsOf(std::span<const Layer> layers, const std::vector<Point>& points,
                                  const std::vector<Edge>& edges, const SetStore& sets,

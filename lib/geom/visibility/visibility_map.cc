@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// GCC would load as one what was just stored as two, and processors wait for that: a sixth of the
+// GCC would load two values just stored singly as one, which stalls the processor: a sixth of the
 // time of a search.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-slp-vectorize")
@@ -112,7 +112,7 @@ bool isInBreadth(const ExpansionMesh& mesh, double range) {
            std::numbers::pi * square(range) * per_area >= kManyWithinRange;
 }
 
-/// True if some line or edge of the box may lie within kRayEpsilon of p.
+/// False only if all points within kRayEpsilon of p lie strictly inside its triangle.
 bool isNearEdge(const ExpansionMesh& mesh, Point2 p, Index triangle) {
     const std::size_t portal = std::size_t{3} * triangle;
     const Vec2 a = mesh.portals[portal].corner - p, b = mesh.portals[portal + 1].corner - p;
@@ -127,7 +127,7 @@ bool isStrictlyInside(const Box2& box, Point2 p) {
     return box.low.x < p.x && p.x < box.high.x && box.low.y < p.y && p.y < box.high.y;
 }
 
-/// Moves a point on the boundary of the box outside, by one unit in the last place.
+/// Moves a point on the boundary of the box outside, by one ulp.
 Point2 offBoundary(const Box2& box, Point2 p) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const auto move = [](double x, double low, double high) {

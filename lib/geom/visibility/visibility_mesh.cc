@@ -30,8 +30,8 @@ using Index = std::uint32_t;
 constexpr std::size_t kMany = 20'000;
 using Doubles = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// Plans are full of rectangles, whose corners lie on a circle or next to it. Where doubles cannot
-/// tell, pairs of doubles mostly can, and in a small part of the time that exact numbers take.
+/// Plans are full of rectangles, whose corners lie on a circle or next to it. If doubles are not
+/// sufficient, pairs of doubles mostly are, in a fraction of the time of exact numbers.
 struct Kernel : Doubles {
     struct Side_of_oriented_circle_2 {            // NOLINT: CGAL's names
         using result_type = CGAL::Oriented_side;  // NOLINT
@@ -101,7 +101,7 @@ void runBoth(bool is_worth_it, F f, G g) {
     g();
 }
 
-/// \param net empty: it is filled in place, as to move it is to copy it, in another order.
+/// \param net empty; filled in place, since a move copies it in another order
 void triangulate(const std::vector<Segment2>& lines, const Box2& box, Delaunay& net) {
     // Ends of lines: first and last of each, as of a list of all.
     struct End {

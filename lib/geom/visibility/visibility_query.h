@@ -133,8 +133,8 @@ ISPACE_INLINE PairOfPoints between(const Segment2& s, Pair share) {
 /// A pending view to the left of a portal's corner; everything to its right is expanded first.
 struct Pending {
     std::uint32_t target;       ///< portal or blocking edge
-    std::uint32_t corner;       ///< the portal whose corner is the right limit
-    std::uint32_t left_vertex;  ///< a portal whose corner is the left limit
+    std::uint32_t corner;       ///< portal at the corner of the right limit
+    std::uint32_t left_vertex;  ///< portal at the corner of the left limit
     Vec2 right, left;           ///< the limits, from the viewpoint
 };
 
