@@ -48,9 +48,9 @@ std::vector<LinePiece> noded(std::vector<LinePiece> lines, const CrossingMessage
 /// Estimates the number of intersecting pairs of lines from a sample; 0 if the sample has too few.
 double sampledCrossings(std::span<const Segment2> lines);
 
-/// The bounded faces of the arrangement of lines; the faces on the two sides of a passage are one
-/// if both are bounded. Dangling segments are ignored. Sorted; curves begin at their lowest vertex.
-/// \throws FormatError (without a line number) as noded() does
+/// Finds the bounded faces of the arrangement of lines; the faces on the two sides of a passage are
+/// one if both are bounded. Dangling segments are ignored. Sorted; curves begin at their lowest
+/// vertex. \throws FormatError (without a line number) as noded() does
 std::vector<Region> facesOf(std::vector<LinePiece> lines, const CrossingMessage& message);
 
 /// Returns the open connected pieces where the winding number `added` is positive and `removed` is
@@ -65,7 +65,7 @@ void rotateToLowest(Polygon& curve);
 /// Removes regions without an outline; sorts the others, and the holes of each.
 void putInOrder(std::vector<Region>& regions);
 
-/// The connected pieces of `region` outside all closed `solids`, which are simple polygons of
+/// Finds the connected pieces of `region` outside all closed `solids`, which are simple polygons of
 /// either orientation and may overlap and touch. Only crossings are rounded, to doubles.
 /// \throws FormatError (without a line number) for outlines that cross each other by the million
 std::vector<Region> difference(const Region& region, std::span<const Polygon> solids);
@@ -73,10 +73,10 @@ std::vector<Region> difference(const Region& region, std::span<const Polygon> so
 /// Subtracts the solids from each part.
 std::vector<Region> difference(const Regions& regions, std::span<const Polygon> solids);
 
-/// The union of closed `solids`, as in difference().
+/// Computes the union of closed `solids`, as in difference().
 std::vector<Region> unite(std::span<const Polygon> solids);
 
-/// Sum of the areas of disjoint regions.
+/// Computes the sum of the areas of disjoint regions.
 double totalArea(std::span<const Region> regions);
 
 // Convex polygons, in time linear in their vertices: round tables have tens of thousands.
@@ -87,7 +87,7 @@ class Caliper {
   public:
     /// Stores a view of the vertices. \pre at least one
     explicit Caliper(std::span<const Point2> corners) : corners_(corners) {}
-    /// Largest dot product of a vertex (from the origin) and a unit vector.
+    /// Returns the largest dot product of a vertex (from the origin) and a unit vector.
     double reach(Vec2 direction);
 
   private:
@@ -96,7 +96,8 @@ class Caliper {
     Vec2 last_;
 };
 
-/// Intersection of two counter-clockwise convex polygons; empty if they share no area. O(n + m)
+/// Computes the intersection of two counter-clockwise convex polygons; empty if they share no area.
+/// O(n + m)
 Polygon sharedByConvex(const Polygon& a, const Polygon& b);
 
 }  // namespace ispace

@@ -15,7 +15,7 @@ namespace ispace {
 
 namespace {
 
-/// Angle that an arc spans, in [0, pi] but for rounding.
+/// Computes the angle that an arc spans, in [0, pi] but for rounding.
 double spanOf(const CurveEdge& arc) {
     const Vec2 from = arc.from - arc.center, to = arc.to - arc.center;
     const double turn = arc.radius > 0 ? cross(from, to) : cross(to, from);
@@ -25,14 +25,15 @@ double spanOf(const CurveEdge& arc) {
     return span < -std::numbers::pi / 2 ? span + 2 * std::numbers::pi : 0;
 }
 
-/// span - sin(span), without cancellation.
+/// Computes span - sin(span) without cancellation.
 double sineGap(double span) {
     if (span > 0.25) return span - std::sin(span);
     const double s = span * span;
     return span * s / 6 * (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110))));
 }
 
-/// Twice the area between an arc and its chord; positive where the arc bulges to the right.
+/// Computes twice the area between an arc and its chord; positive where the arc bulges to the
+/// right.
 double twiceBulge(const CurveEdge& arc) {
     const double twice = arc.radius * arc.radius * sineGap(spanOf(arc));
     return arc.radius > 0 ? twice : -twice;
@@ -43,7 +44,7 @@ void addExtremes(Box2& box, const CurveEdge& arc) {
     const Vec2 from = arc.from - arc.center, to = arc.to - arc.center;
     const double radius = std::abs(arc.radius);
     const double turn = arc.radius > 0 ? 1 : -1;
-    // Points made on the circle lie off it by rounding.
+    // Points computed on the circle lie off it by rounding.
     const double slack = 4 * std::numeric_limits<double>::epsilon() *
                          (std::abs(arc.center.x) + std::abs(arc.center.y) + radius);
     for (const Vec2 axis : {Vec2{1, 0}, Vec2{0, 1}, Vec2{-1, 0}, Vec2{0, -1}})
@@ -54,7 +55,7 @@ void addExtremes(Box2& box, const CurveEdge& arc) {
 void addVertices(Polygon& polygon, const CurveEdge& arc, double error) {
     constexpr double kMaxChords = 1 << 20;
     const double radius = std::abs(arc.radius), span = spanOf(arc);
-    // The middle of a chord over an angle a lies r (1 - cos(a / 2)) from the arc.
+    // The middle of a chord over the angle a is r (1 - cos(a / 2)) from the arc.
     const double step = 4 * std::asin(std::sqrt(std::min(1.0, error / (2 * radius))));
     const double count = std::min(kMaxChords, std::ceil(span / step));
     const Vec2 from = arc.from - arc.center;
@@ -155,7 +156,7 @@ std::vector<Curve> curvesWithArcs(const Regions& regions) {
 
 namespace {
 
-/// Corners that keep chords within kCurveTolerance.
+/// Computes the number of corners that keeps chords within kCurveTolerance.
 int cornerCount(const Ellipse& ellipse) {
     // An ellipse cut at equal steps of its parameter is a regular polygon stretched, so its chords
     // stray at most as far as those of the circle about the longer axis.
@@ -165,7 +166,7 @@ int cornerCount(const Ellipse& ellipse) {
     return 4 * std::max(quarter, 2);
 }
 
-/// Of the corners of a regular polygon that has the area of the unit disc.
+/// Computes the radius of the corners of a regular polygon with the area of the unit disc.
 double cornerRadius(int count) {
     const double step = 2 * std::numbers::pi / count;
     return std::sqrt(step / std::sin(step));
@@ -179,8 +180,8 @@ std::vector<Vec2> directionsOf(int count) {
     return directions;
 }
 
-/// Calls visit(direction) for that of each corner of a regular polygon. Those of few corners, as
-/// furniture has, are found once. \pre count is a multiple of 4
+/// Calls visit(direction) for each corner of a regular polygon. Stores the directions of polygons
+/// with few corners, as furniture has. \pre count is a multiple of 4
 template <typename Visit>
 void forEachDirection(int count, Visit visit) {
     constexpr std::size_t kMaxQuarter = 64;

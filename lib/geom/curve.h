@@ -30,12 +30,12 @@ using Curve = std::vector<CurveEdge>;
 /// Default maximum distance of a chord from its arc, in metres.
 constexpr double kChordError = 1e-4;
 
-/// Area enclosed, positive if counter-clockwise; in closed form, arcs included.
+/// Computes the enclosed area, positive if counter-clockwise; in closed form, arcs included.
 double signedArea(const Curve& curve);
 double signedArea(std::span<const Curve> curves);
 double perimeter(const Curve& curve);
 double perimeter(std::span<const Curve> curves);
-/// A box that contains the curve; around arcs it need not be the smallest.
+/// Returns a box that contains the curve; around arcs it may be larger than necessary.
 Box2 bounds(const Curve& curve);
 /// Returns the bounding box of all curves.
 Box2 boundsOfAll(std::span<const Curve> curves);
@@ -44,9 +44,9 @@ Box2 common(const Box2& a, const Box2& b);
 
 /// Replaces arcs by chords: vertices lie on the arcs, chords at most `error` from them.
 Polygon chords(const Curve& curve, double error = kChordError);
-/// Straight edges only.
+/// Converts a polygon to straight edges.
 Curve curveOf(const Polygon& polygon);
-/// Outline and holes.
+/// Converts the outline and the holes.
 std::vector<Curve> curvesWithArcs(const Region& region);
 std::vector<Curve> curvesWithArcs(const Regions& regions);
 
@@ -88,9 +88,9 @@ struct Ellipse {
 /// collisions and contacts use the inscribed one.
 constexpr double kCurveTolerance = 0.00005;
 
-/// Vertices on the curve, a multiple of four at equal steps of the parameter: both axes end in
-/// vertices, so the bounding box is the curve's. Counter-clockwise, at most kCurveTolerance inside
-/// the curve.
+/// Computes vertices on the curve, a multiple of four at equal steps of the parameter: both axes
+/// end in vertices, so the bounding box is the curve's. Counter-clockwise, at most kCurveTolerance
+/// inside the curve.
 Polygon inscribedIn(const Ellipse& ellipse);
 /// The same polygon scaled about the centre to the area of the ellipse: its edges cross the curve.
 Polygon outlineOf(const Ellipse& ellipse);
@@ -108,8 +108,8 @@ Point2 placeOn(const Ellipse& ellipse, double parameter);
 void addArc(const Ellipse& ellipse, const Polygon& outline, double from, double to,
             Polygon& polygon);
 
-/// Parameters at which the tangents from an outside point touch an ellipse, on the viewer's right
-/// and left; the near side lies between them, left < right < left + pi.
+/// Computes the parameters at which the tangents from an outside point touch an ellipse, on the
+/// viewer's right and left; the near side lies between them, left < right < left + pi.
 struct TouchedAt {
     double right, left;
 };

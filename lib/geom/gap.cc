@@ -22,7 +22,7 @@ constexpr std::size_t kMaxClosings = 10000;
 /// A rounded point this near to a line lies on it.
 constexpr double kOnLine = 2 * kWeldDistance;
 
-/// The pieces without the duplicates that overlapping lines leave.
+/// Removes the duplicate pieces of overlapping lines.
 WeldedLines withoutDoubles(const WeldedLines& lines) {
     std::vector<std::tuple<double, double, double, double, std::size_t>> keys;
     for (std::size_t i = 0; i < lines.pieces.size(); ++i) {
@@ -41,7 +41,7 @@ WeldedLines withoutDoubles(const WeldedLines& lines) {
     return unique;
 }
 
-/// The pieces that meet at each vertex.
+/// Stores the pieces that meet at each vertex.
 class Vertices {
   public:
     explicit Vertices(const std::vector<Segment2>& pieces) {
@@ -102,7 +102,7 @@ class GapFinder {
         std::sort(all.begin(), all.end(), [&](const Closing& c, const Closing& d) {
             return std::tuple(key(c), c.a, c.b) < std::tuple(key(d), d.a, d.b);
         });
-        // Two dangling ends find each other from both sides.
+        // Two dangling ends find each other twice.
         all.erase(std::unique(all.begin(), all.end(),
                               [](const Closing& c, const Closing& d) { return c.line == d.line; }),
                   all.end());
@@ -131,7 +131,7 @@ class GapFinder {
         });
     }
 
-    /// A piece on which the point lies.
+    /// Finds a piece that contains the point.
     [[nodiscard]] std::optional<std::size_t> pieceAt(Point2 p) const {
         std::optional<std::size_t> found;
         tree_.search({p, p}, kOnLine, [&](std::size_t i) {
@@ -174,7 +174,7 @@ class GapFinder {
     double extent_ = 0;       // no two points of lines are farther apart
 };
 
-/// The lines together with all closings, cut and welded once for all.
+/// Stores the lines with all closings, cut and welded once.
 class Closed {
   public:
     Closed(std::span<const Segment2> lines, std::span<const Closing> closings) {

@@ -108,7 +108,7 @@ class Bands {
             box_.add(a);
             climbed += std::abs(b.y - a.y);
         }
-        // So many that, on average, an edge lies in three at most.
+        // Enough bands that an edge lies in at most three on average.
         const auto most = static_cast<double>(edges.size());
         const double count = std::min(std::sqrt(most), 2 * most * (box_.depth() / climbed));
         if (count > 1 && count <= most) per_metre_ = std::floor(count) / box_.depth();
@@ -157,7 +157,7 @@ class Bands {
     std::vector<Segment2> edges_;
 };
 
-/// Keeps the candidate farthest from the boundary.
+/// Stores the candidate farthest from the boundary.
 class Best {
   public:
     explicit Best(const Region& region)
@@ -176,7 +176,7 @@ class Best {
             return room != other ? room > other : i < k;
         });
         for (const std::size_t i : order) {
-            // The ends of its chord are near enough to tell.
+            // The distance to the ends of its chord decides.
             if (candidates[i].room < (1 - 1e-9) * clearance_ - rounding_) return;
             offer(candidates[i].at, i);
         }
@@ -198,7 +198,8 @@ class Best {
         return std::isnan(candidate.room) ? std::numeric_limits<double>::infinity()
                                           : candidate.room;
     }
-    /// Distance from the nearest edge, or any smaller number once that is at most `least`.
+    /// Computes the distance from the nearest edge, or any smaller number once that is at most
+    /// `least`.
     [[nodiscard]] double clearance(Point2 p, double least) const {
         double nearest = std::numeric_limits<double>::infinity(), reach = nearest;
         const auto look = [&](const Segment2& e) {
@@ -222,7 +223,7 @@ class Best {
     std::size_t number_ = std::numeric_limits<std::size_t>::max();  ///< among those offered
 };
 
-/// Candidates on scanlines, from both directions.
+/// Finds candidates on scanlines, in both directions.
 std::vector<Candidate> candidates(const Region& region, bool swapped, std::size_t most) {
     constexpr std::size_t kAtOnce = 64;  // levels
     const auto edges = edgesOf(region, swapped);

@@ -36,7 +36,7 @@ std::string roundNumber(double value) {
     return std::to_string(static_cast<std::uint64_t>(std::round(value / unit) * unit));
 }
 
-/// Internal; turned into a message where the lines are known.
+/// Internal; converted to a message by a caller that knows the lines.
 struct TooMany {};
 
 [[noreturn]] void refuse(std::span<const LinePiece> lines, const CrossingMessage& message) {
@@ -89,7 +89,7 @@ class DistinctPoints {
         const double size = kReachesPerCell * reach_;
         return {std::floor(p.x / size), std::floor(p.y / size)};
     }
-    /// The first and the last of the cells that the points in reach may lie in.
+    /// Computes the first and the last cell that may hold points in reach.
     [[nodiscard]] std::pair<Point2, Point2> cellsAbout(Point2 p) const {
         const double size = kReachesPerCell * reach_;
         const Point2 place{p.x / size, p.y / size}, cell{std::floor(place.x), std::floor(place.y)};
@@ -123,7 +123,7 @@ class DistinctPoints {
     std::vector<Index> slots_;  // open addressing; a power of two, at most half full
 };
 
-/// From its lower end to its upper.
+/// Returns the segment from its lower end to its upper.
 Segment2 ordered(const Segment2& s) { return lexLess(s.b, s.a) ? Segment2{s.b, s.a} : s; }
 
 /// One round of cutting; pieces moved by rounding may need another.
@@ -204,7 +204,7 @@ class Cutter {
         for (const Point2 end : {s.a, s.b}) touches |= cutAtEnd(k, end);
         // Else they cross, or not at all.
         if (touches || !intersects(s, t)) return;
-        // The same whichever way they run.
+        // The result does not depend on the directions of the lines.
         const auto [a, b] = ordered(s);
         const auto [from, to] = ordered(t);
         const double right = std::abs(cross(b - a, from - a)),
@@ -284,7 +284,7 @@ void mergeDoubles(std::vector<LinePiece>& pieces) {
     pieces = std::move(merged);
 }
 
-/// \return whether the pieces meet in common ends alone
+/// \return true if the pieces meet at common ends only
 bool cutAll(std::vector<LinePiece>& pieces, double reach) {
     DistinctPoints points(reach, 2 * pieces.size());
     for (LinePiece& piece : pieces)

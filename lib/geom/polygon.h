@@ -20,7 +20,7 @@ enum class Side { Inside, Boundary, Outside };
 /// A closed curve of straight edges; the last vertex joins the first.
 using Polygon = std::vector<Point2>;
 
-/// Signed area, positive if counter-clockwise.
+/// Computes the signed area, positive if counter-clockwise.
 double signedArea(const Polygon& polygon);
 double perimeter(const Polygon& polygon);
 Box2 bounds(const Polygon& polygon);
@@ -30,7 +30,7 @@ Box2 bounds(const Segment2& segment);
 bool isConvex(const Polygon& polygon);
 /// Removes collinear vertices: a fan from any vertex then triangulates the polygon. O(n)
 bool isStrictlyConvex(const Polygon& polygon);
-/// Even-odd rule, exact (robust orientation of the given doubles). O(n).
+/// Locates a point by the even-odd rule; exact (robust orientation of the given doubles). O(n).
 Side locate(const Polygon& polygon, Point2 p);
 
 /// A connected piece of the floor: an outline (counter-clockwise) minus its holes (clockwise).
@@ -65,7 +65,7 @@ struct Regions {
 };
 Box2 bounds(const Regions& regions);
 
-/// Outline and then holes, of one region after another. If the regions are disjoint, the curves
+/// Returns the outline and then the holes of each region. If the regions are disjoint, the curves
 /// enclose the same area by the even-odd rule.
 std::vector<Polygon> curvesOf(const Region& region);
 std::vector<Polygon> curvesOf(const std::vector<Region>& regions);
@@ -97,7 +97,8 @@ struct Triangulation {
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Constrained Delaunay triangulation of the region's interior (CGAL). Curves may touch.
+/// Computes the constrained Delaunay triangulation of the region's interior (CGAL). Curves may
+/// touch.
 Triangulation triangulate(const Region& region);
 
 /// Simplifies closed curves (CGAL's Polyline_simplification_2): no curve moves by more than

@@ -16,17 +16,17 @@ namespace ispace {
 
 enum class Turn { Right = -1, Straight = 0, Left = 1 };
 
-/// On which side of the line a -> b the point c lies; exact for the given doubles (adaptive
-/// arithmetic).
+/// Computes on which side of the line a -> b the point c lies; exact for the given doubles
+/// (adaptive arithmetic).
 Turn orientation(Point2 a, Point2 b, Point2 c);
 
 /// True if the closed segments share a point; exact.
 bool intersects(const Segment2& s, const Segment2& t);
 
-/// Distance of p from the closed segment; rounds.
+/// Computes the distance of p from the closed segment; rounds.
 double distance(Point2 p, const Segment2& s);
 
-/// Point of the closed segment nearest to p; rounds.
+/// Computes the point of the closed segment nearest to p; rounds.
 Point2 nearestPoint(const Segment2& s, Point2 p);
 
 /// The thesis' Insider Judge (section 4.4.4): p is inside if the segment from p to a point known

@@ -34,7 +34,8 @@ SegmentGrid::SegmentGrid(std::span<const Segment2> segments, double margin) : ma
     }
     if (segments.empty()) box_ = {{0, 0}, {0, 0}};
     const auto count = static_cast<double>(std::max<std::size_t>(1, segments.size()));
-    // Not below the mean length, so that the lists stay short; a box of no width is cut in `count`.
+    // Not below the mean length, so that the lists stay short; a box without width is divided by
+    // `count`.
     size_ = std::max({std::sqrt(box_.width() / count) * std::sqrt(box_.depth()), total / count,
                       std::max(box_.width(), box_.depth()) / count, 8 * margin_});
     if (!std::isfinite(size_)) size_ = std::numeric_limits<double>::max();
@@ -86,7 +87,7 @@ void SegmentGrid::forEachCellOf(const Segment2& segment, Visit visit) const {
     for (std::int64_t c = column(a.x - slack); c <= last; ++c) {
         double from = low, to = high;
         if (std::isfinite(slope)) {
-            // The stretch of the segment over this column.
+            // The part of the segment over this column.
             const double left = box_.low.x + static_cast<double>(c) * size_ - slack;
             const double y0 = a.y + (left - a.x) * slope;
             const double y1 = a.y + (left + size_ + 2 * slack - a.x) * slope;
@@ -132,10 +133,10 @@ void BoxTree::build(std::uint32_t first, std::uint32_t count) {
 
 namespace {
 
-/// Coordinates beyond this are not turned: their products would overflow.
+/// Larger coordinates are not rotated, since their products would overflow.
 constexpr double kMaxTurned = 1e100;
 
-/// Direction, modulo a right angle, of most segments, weighted by length.
+/// Computes the direction, modulo a right angle, of most segments, weighted by length.
 Vec2 mainAxis(std::span<const Segment2> segments) {
     // Four times the angle is the same for all sides of a rectangle: sum its unit vectors.
     Vec2 sum{0, 0};
@@ -175,7 +176,7 @@ Box2 SegmentTree::boxOf(const Segment2& segment, double reach) const {
 namespace {
 
 constexpr std::size_t kWidth = BoxOrder::kWidth;
-/// From this depth on ranges are halved, whatever their shape.
+/// From this depth on ranges are halved, regardless of their shape.
 constexpr int kDeep = 12;
 constexpr std::uint32_t kBins = 32;
 
@@ -184,7 +185,7 @@ using Pair = double __attribute__((vector_size(16)));
 
 ISPACE_INLINE void lower(Pair& a, const Pair& b) { a = b < a ? b : a; }
 
-/// A box with its upper ends negated, so that boxes are merged by minima alone.
+/// Stores a box with its upper ends negated, so that minima alone merge boxes.
 struct Extent {
     Pair low = {kNone, kNone}, high = {kNone, kNone};
 
@@ -229,7 +230,7 @@ struct Axis {
     /// \param middle of an item
     [[nodiscard]] ISPACE_INLINE std::uint32_t binOf(double middle) const {
         const double place = (middle - low) * scale;
-        // As integers, which order those from 0 on alike.
+        // Compared as integers, which sort nonnegative numbers in the same order.
         return std::min(static_cast<std::uint32_t>(static_cast<std::int32_t>(place)), kBins - 1);
     }
 };
@@ -308,7 +309,7 @@ class Orderer {
         return out;
     }
 
-    /// The cheapest cut along one axis or the other.
+    /// Finds the cheapest cut along either axis.
     [[nodiscard]] Cut cheapestCut(const Group& all) {
         const std::span items = std::span(items_).subspan(all.begin, all.size());
         Pair low = items.front().middle(), high = -low;
@@ -320,7 +321,7 @@ class Orderer {
         std::array<Axis, 2> axes;
         for (const std::size_t axis : {0U, 1U}) {
             axes[axis].low = low[axis];
-            // Without extent all are in the first bin.
+            // Without extent the first bin holds all items.
             if (low[axis] < -high[axis])
                 axes[axis].scale = static_cast<double>(kBins) / (-high[axis] - low[axis]);
             bins_[axis].used = 0;
@@ -335,7 +336,7 @@ class Orderer {
         return best;
     }
 
-    /// Reorders the items of a group into two.
+    /// Partitions the items of a group.
     std::pair<Group, Group> split(const Group& all, int depth) {
         const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(all.begin);
         const auto end = items_.begin() + static_cast<std::ptrdiff_t>(all.end);

@@ -13,8 +13,8 @@
 
 namespace ispace {
 
-/// Position of a cell along a Morton curve, on which neighbours are mostly close: the bits of x and
-/// y in turn, those of x first.
+/// Computes the position of a cell along a Morton curve, which keeps most neighbours close: the
+/// bits of x and y alternate, those of x first.
 std::uint64_t mortonCode(std::uint32_t x, std::uint32_t y);
 
 /// Finds the segments near a point: square cells over their bounding box, about as many as there
@@ -23,8 +23,8 @@ class SegmentGrid {
   public:
     SegmentGrid(std::span<const Segment2> segments, double margin);
 
-    /// Ascending indices of the segments of p's cell, including all those within `margin` of p. A
-    /// point outside the segments' bounding box is looked up in the nearest cell.
+    /// Returns ascending indices of the segments of p's cell, including all those within `margin`
+    /// of p. A point outside the segments' bounding box is looked up in the nearest cell.
     [[nodiscard]] std::span<const std::uint32_t> near(Point2 p) const;
 
     /// Visits cells around p in growing rings: visit(indices of one cell). After each ring, when

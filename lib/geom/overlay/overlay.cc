@@ -146,7 +146,7 @@ class Lattice {
     Point2 middle_;
 };
 
-/// The part of a segment in a box (Liang and Barsky, 1984); its ends round.
+/// Clips a segment to a box (Liang and Barsky, 1984); its ends round.
 std::optional<Segment2> clipped(const Segment2& s, const Box2& box) {
     double from = 0, to = 1;
     const auto clip = [&](double a, double d, double low, double high) {
@@ -163,8 +163,8 @@ std::optional<Segment2> clipped(const Segment2& s, const Box2& box) {
     return Segment2{from > 0 ? s.a + from * d : s.a, to < 1 ? s.a + to * d : s.b};
 }
 
-/// Area between the chord p -> q and the arc: positive if the arc lies to the right. By radial
-/// projection, so that pieces of arcs add up.
+/// Computes the area between the chord p -> q and the arc: positive if the arc lies to the right.
+/// By radial projection, so that pieces of arcs add up.
 double bulgeOf(const Circle& circle, Point2 p, Point2 q) {
     const Vec2 a = p - circle.center, b = q - circle.center;
     const double along = dot(a, b), across = cross(a, b);
@@ -319,7 +319,7 @@ class Overlay::Maker {
 
 namespace {
 
-/// Layers and walls, rounded to the lattice.
+/// Stores layers and walls, rounded to the lattice.
 struct Rounded {
     ChordCurves curves;
     Lattice lattice;

@@ -86,22 +86,22 @@ class Overlay {
     /// up to that of all faces with this label. Ignore those of {0, 0, 0}, the unbounded face.
     template <typename Add>
     void addAreas(Add add) const;
-    /// Area of all faces whose label satisfies `in`. \pre not in({})
+    /// Computes the area of all faces whose label satisfies `in`. \pre not in({})
     template <typename In>
     [[nodiscard]] double area(In in) const;
-    /// The connected regions of the faces whose label satisfies `in`, with chords for arcs. Regions
-    /// that touch only at a point are separate. Sorted; curves begin at their lowest vertex.
-    /// Vertices within straight edges are removed. \pre not in({})
+    /// Builds the connected regions of the faces whose label satisfies `in`, with chords for arcs.
+    /// Regions that touch only at a point are separate. Sorted; curves begin at their lowest
+    /// vertex. Vertices within straight edges are removed. \pre not in({})
     template <typename In>
     [[nodiscard]] std::vector<Region> regions(In in) const;
 
-    /// The outlines and holes of regions(), with arcs instead of chords.
+    /// Returns the outlines and holes of regions(), with arcs instead of chords.
     template <typename In>
     [[nodiscard]] std::vector<Curve> curves(In in) const {
         return withArcs(regions(in));
     }
 
-    /// The areas of regions(), arcs included.
+    /// Computes the areas of regions(), arcs included.
     [[nodiscard]] std::vector<double> areasOf(std::span<const Region> regions) const;
 
   private:

@@ -119,7 +119,7 @@ std::vector<Pass> passesOfEnds(const std::vector<Edge>& edges, const std::vector
     return passes;
 }
 
-/// start + length * num / den rounded to the nearest, halves up. \pre 0 < num < den
+/// Computes start + length * num / den rounded to the nearest, halves up. \pre 0 < num < den
 std::int32_t along(std::int32_t start, std::int64_t length, std::int64_t num, std::int64_t den) {
     // Doubles err by less than 2^-20 here.
     constexpr double kSure = 1e-5;
@@ -145,7 +145,7 @@ bool crossingOf(const Span& s, const Span& t, Point& pixel) {
     return true;
 }
 
-/// All edges that meet the pixels of ends and crossings.
+/// Finds all edges that meet the pixels of ends and crossings.
 std::vector<Pass> passesOfPixels(const std::vector<Edge>& edges, PointTable& table,
                                  const Columns& columns) {
     std::vector<Pass> passes;
@@ -159,7 +159,7 @@ std::vector<Pass> passesOfPixels(const std::vector<Edge>& edges, PointTable& tab
         for (std::size_t i = 0; i < spans.size(); ++i) {
             for (std::size_t k = i + 1; k < spans.size(); ++k) {
                 Point p;
-                // Each pixel belongs to one cell, which knows all edges that meet it.
+                // Each pixel belongs to one cell, which holds all edges that meet it.
                 if (!crossingOf(spans[i], spans[k], p) || !cell.box.holds(p)) continue;
                 const std::size_t before = table.points().size();
                 if (const Index id = table.add(p); id == before) pixels.push_back(id);

@@ -253,7 +253,7 @@ class Sweep {
         return finish;
     }
 
-    /// The ways of its edges, as far as they lie in it.
+    /// Computes the routes of its edges inside the strip.
     void find(Strip& strip) const {
         strip.table.reserve(2 * strip.points.size());
         for (const Index i : strip.points) strip.table.add(points_[i]);
@@ -267,7 +267,7 @@ class Sweep {
         strip.ways = waysThroughPixels(strip.parts, strip.table, strip.columns);
     }
 
-    /// Joins the ways in a strip to those in the strips before it.
+    /// Joins the routes in a strip to those in the strips before it.
     void link(std::size_t number) {
         Strip& strip = strips_[number];
         const std::vector<Point>& points = strip.table.points();
@@ -295,7 +295,7 @@ class Sweep {
             strips_[i].entering.push_back({edge, last.at, to});
     }
 
-    /// The pieces of its edges that begin in it.
+    /// Returns the pieces of its edges that begin in it.
     [[nodiscard]] Part partOf(Strip& strip) const {
         const auto x_of = [&](Index point) { return strip.table.points()[point].x; };
         for (Index k = 0; k < strip.parts.size(); ++k) {

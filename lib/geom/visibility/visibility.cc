@@ -18,13 +18,13 @@ constexpr double kWholeTurn = 2 * std::numbers::pi;
 
 bool isArc(const VisibilityEdge& edge) { return edge.line == VisibilityEdge::kArc; }
 
-/// From direction a counter-clockwise to b, in [0, 2 pi).
+/// Computes the angle from direction a counter-clockwise to b, in [0, 2 pi).
 double angleBetween(Vec2 a, Vec2 b) {
     const double angle = std::atan2(cross(a, b), dot(a, b));
     return angle < 0 ? angle + kWholeTurn : angle;
 }
 
-/// The point of the edge in a direction.
+/// Computes the point of the edge in a direction.
 Point2 pointIn(const VisibleRegion& region, const VisibilityEdge& edge, Vec2 direction) {
     if (isArc(edge)) return region.viewpoint + region.max_range * direction;
     const Vec2 a = edge.from - region.viewpoint, b = edge.to - region.viewpoint;

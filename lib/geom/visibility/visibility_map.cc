@@ -40,7 +40,7 @@ constexpr double kManyWithinRange = 600;
 double square(double x) { return x * x; }
 double squaredLength(Vec2 v) { return dot(v, v); }
 
-/// Distance of the farthest point of the box.
+/// Computes the distance of the farthest point of the box.
 double farthestIn(const Box2& box, Point2 p) {
     return length(Vec2{std::max(std::abs(box.low.x - p.x), std::abs(box.high.x - p.x)),
                        std::max(std::abs(box.low.y - p.y), std::abs(box.high.y - p.y))});

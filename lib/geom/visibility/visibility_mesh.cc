@@ -50,7 +50,7 @@ struct Kernel : Doubles {
 
 }  // namespace ispace
 
-/// Looks for triangles as with the kernel that it is made of: first with rounded turns.
+/// Finds triangles as its base kernel does: first with rounded orientations.
 template <>
 struct CGAL::Triangulation_structural_filtering_traits<ispace::Kernel> {
     using Use_structural_filtering_tag = CGAL::Tag_true;  // NOLINT: CGAL looks for it
@@ -84,7 +84,7 @@ std::array<Point2, 4> cornersOf(const Box2& box) {
     return {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
 }
 
-/// By a total order, with the help of other threads if they are many.
+/// Sorts by a total order, in parallel if there are many elements.
 template <typename T, typename Less>
 void sortMany(std::vector<T>& items, Less less) {
     if (items.size() < kMany)
@@ -93,7 +93,7 @@ void sortMany(std::vector<T>& items, Less less) {
         tbb::parallel_sort(items.begin(), items.end(), less);
 }
 
-/// Runs both, the second here; at once if it is worth it.
+/// Runs both functions, the second on this thread; in parallel if it pays.
 template <typename F, typename G>
 void runBoth(bool is_worth_it, F f, G g) {
     if (is_worth_it) return tbb::parallel_invoke(f, g);
@@ -171,7 +171,7 @@ std::vector<Delaunay::Face_handle> numberedFaces(const Delaunay& net, const Box2
     return faces;
 }
 
-/// Finds the piece of a line that an edge is.
+/// Finds the line piece that contains an edge.
 class LineFinder {
   public:
     LineFinder(const std::vector<Segment2>& lines, const std::vector<Index>& names)
@@ -270,7 +270,7 @@ void ExpansionMesh::makeTriangles(const std::vector<Segment2>& lines,
                           for (std::size_t i = range.begin(); i < range.end(); ++i)
                               add_portals(faces[i]);
                       });
-    // Lines are found once for both sides.
+    // Finds the line once for both sides.
     for (Index edge = 0; edge < portals.size(); ++edge)
         if (portals[edge].behind < edge && isLine(edge))
             portals[edge].line = portals[portals[edge].behind].line;

@@ -201,7 +201,7 @@ class Cut {
     [[nodiscard]] Reach edgeReach(std::size_t edge) const {
         return Reach::ofLine(side_.places[edge], side_.places[edge + 1]);
     }
-    /// The slopes of covered edge k, clamped to [low, high].
+    /// Computes the slopes of covered edge k, clamped to [low, high].
     [[nodiscard]] std::pair<double, double> interval(std::size_t k, double low, double high) const {
         if (k > 0) {
             const Vec2 begin = side_.frame.local(from(at(k)));
@@ -214,7 +214,7 @@ class Cut {
         return {low, high};
     }
 
-    /// The nearer of body and region over all slopes, in order.
+    /// Finds the nearer of body and region over all slopes, in order.
     void compare() {
         const double lowest = side_.slope(0), highest = side_.slope(side_.places.size() - 1);
         std::size_t edge = 0;
