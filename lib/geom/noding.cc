@@ -53,7 +53,7 @@ struct TooMany {};
     throw FormatError(Diagnostic{"", 0, 0, text});
 }
 
-/// Stores points whose mutual distances are at least `reach`.
+/// Stores points at mutual distances of at least `reach`.
 class DistinctPoints {
   public:
     /// \param count as many will come, about

@@ -230,7 +230,7 @@ struct Axis {
     /// \param middle of an item
     [[nodiscard]] ISPACE_INLINE std::uint32_t binOf(double middle) const {
         const double place = (middle - low) * scale;
-        // Compared as integers, which sort nonnegative numbers in the same order.
+        // Clamped as an integer; from 0 on these sort like the numbers.
         return std::min(static_cast<std::uint32_t>(static_cast<std::int32_t>(place)), kBins - 1);
     }
 };

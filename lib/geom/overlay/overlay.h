@@ -86,7 +86,7 @@ class Overlay {
     /// up to that of all faces with this label. Ignore those of {0, 0, 0}, the unbounded face.
     template <typename Add>
     void addAreas(Add add) const;
-    /// Computes the area of all faces whose label satisfies `in`. \pre not in({})
+    /// Computes the area of all faces with labels that satisfy `in`. \pre not in({})
     template <typename In>
     [[nodiscard]] double area(In in) const;
     /// Builds the connected regions of the faces whose label satisfies `in`, with chords for arcs.

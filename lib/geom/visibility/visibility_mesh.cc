@@ -30,7 +30,7 @@ using Index = std::uint32_t;
 constexpr std::size_t kMany = 20'000;
 using Doubles = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// Plans are full of rectangles, whose corners lie on a circle or next to it. If doubles are not
+/// Plans are full of rectangles; their corners lie on a circle or next to it. If doubles are not
 /// sufficient, pairs of doubles mostly are, in a fraction of the time of exact numbers.
 struct Kernel : Doubles {
     struct Side_of_oriented_circle_2 {            // NOLINT: CGAL's names
