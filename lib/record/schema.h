@@ -24,8 +24,8 @@ using TupleList = std::vector<Tuple>;
 
 /// The value of a key; the type of the key in its schema fixes the alternative.
 ///
-/// A variant that survives running out of memory while copied: libstdc++ 12 would destroy a copy
-/// that it failed to make (std::string and std::vector are "never valueless" to it).
+/// Copying survives running out of memory: libstdc++ 12 would destroy a copy that it failed to
+/// construct (it treats std::string and std::vector as "never valueless").
 class Value : public std::variant<bool, double, std::string, Tuple, TupleList> {
   public:
     using variant::variant;
@@ -38,52 +38,52 @@ class Value : public std::variant<bool, double, std::string, Tuple, TupleList> {
     ~Value() = default;
 };
 
-/// True for a plain word: one or more of ASCII letters, digits and _ - . / + : @
+/// Returns true for a plain word: one or more of ASCII letters, digits and _ - . / + : @
 bool isWord(std::string_view text);
 
-/// How a key's text is read, and which alternative of Value holds it.
+/// Syntax of a key's text, and the alternative of Value that holds it.
 enum class KeyType {
     Flag,       ///< yes/no (also true/false, on/off, in any case); bool
     Number,     ///< double
     Text,       ///< any UTF-8 string without control characters other than tab and newline
     Word,       ///< a plain word: an id, a name; letters, digits and _ - . / + : @
     Choice,     ///< one of KeySpec::choices; string
-    Tuple,      ///< `a,b[,c]`, blanks around numbers allowed where quoted; lengths also as sizes
-                ///< are spoken, "8 × 8", "8x8x2.5", "8 * 8"; Tuple
+    Tuple,      ///< `a,b[,c]`, blanks around numbers allowed in quotes; lengths also as
+                ///< sizes, "8 × 8", "8x8x2.5", "8 * 8"; Tuple
     TupleList,  ///< `a,b;c,d;…`, not empty; TupleList
 };
 
-/// What a key says about where a record stands and what it belongs to, for code that moves or
-/// converts records without knowing their keys.
+/// Role of a key in the geometry and references of a record. Code that moves or converts records
+/// uses roles and need not know the keys.
 enum class Role {
     None,
     Place,       ///< x,y[,z] or a list of them: moves with the record
-    MotionPlan,  ///< the same for a path to follow, besides the record's place
+    MotionPlan,  ///< path that the record follows, besides its position; moves with the record
     Heading,     ///< turns with the record
-    Tilt,        ///< above level; what --tilt changes
-    Carrier,     ///< id of the record in whose frame the places of this one are
+    Tilt,        ///< angle above level; --tilt changes it
+    Carrier,     ///< id of the record that defines the frame of this record's coordinates
     Reference,   ///< id of another record
     File,        ///< a path, relative to the folder of the file that names it
 };
 
 struct KeySpec {
-    std::string name;  ///< empty: of an option, which messages name before what is wrong
+    std::string name;  ///< empty for an option's value: messages already name the option
     KeyType type = KeyType::Number;
     Unit unit = Unit::None;
     std::string help;                          ///< one phrase, for man page and messages
-    std::optional<Value> default_value = {};   ///< never stored as written; none: no default
+    std::optional<Value> default_value = {};   ///< never stored as written; empty: no default
     std::size_t min_count = 1, max_count = 1;  ///< numbers of a tuple, or of each tuple of a list
     double lower = -std::numeric_limits<double>::infinity();  ///< of each number
     double upper = std::numeric_limits<double>::infinity();
-    bool lower_open = false;  ///< `lower` itself is refused ("must be above 0")
-    bool whole = false;       ///< a fraction is refused
+    bool lower_open = false;  ///< rejects `lower` itself ("must be above 0")
+    bool whole = false;       ///< rejects fractions
     std::vector<std::string> choices = {};
     bool required = false;
     Role role = Role::None;
-    double standard_z = 0;  ///< height of a Place that may have three numbers and has two
+    double standard_z = 0;  ///< height of a point written with two of three coordinates
 };
 
-/// The types of the thesis' menus, and records that are placed.
+/// Record types after the menus of the thesis, then placements and metadata.
 enum class RecordType { Space, Floor, Wall, Infra, Other, Placement, Meta };
 
 /// One keyword and its keys, in canonical order. Every schema has the key `id` first.
@@ -95,12 +95,13 @@ struct Schema {
 
     [[nodiscard]] const KeySpec* find(std::string_view name) const;
     [[nodiscard]] std::vector<std::string> keyNames() const;
-    /// Space, Floor, Wall, Infra or Other: belongs to the environment and its digest.
+    /// Returns true for Space, Floor, Wall, Infra and Other: part of the environment and its
+    /// digest.
     [[nodiscard]] bool isEnvironment() const { return type < RecordType::Placement; }
 };
 
-/// The keywords a reader knows. Each folder has its own list; sceneSchemas() in layout joins them.
-/// Records point into it, so it must outlive them; the joined lists are constants.
+/// The keywords that a reader accepts. Each folder defines its list; sceneSchemas() merges them.
+/// Records point into it, so it must outlive them; the merged lists are constants.
 class Schemas {
   public:
     Schemas() = default;
@@ -115,39 +116,39 @@ class Schemas {
     std::vector<Schema> schemas_;
 };
 
-/// Reads one value as the schema's key wants it. `text` is the value's text without quotes.
+/// Parses one value of a key from its text, without quotes.
 /// \throws FormatError whose diagnostic has only a message ("`height`: `tall` is not a number");
-///         the caller adds the place
+///         the caller adds the source location
 Value parseValue(const KeySpec& key, std::string_view text);
 
-/// Canonical text: SI, shortest doubles, quotes where needed.
+/// Writes the canonical text: SI, shortest doubles, quotes where needed.
 std::string formatValue(const KeySpec& key, const Value& value);
 /// Appends formatValue(key, value).
 void appendValue(std::string& out, const KeySpec& key, const Value& value);
 
-/// Checks count, bounds, choices and characters of a value from any source.
+/// Validates count, bounds, choices and characters of a value from any source.
 /// \pre the value has the key's type \throws as parseValue
 void checkValue(const KeySpec& key, const Value& value);
 
-/// Expands a page of the manual, written for man(7): lines `@RECORDS TYPE…@` are replaced by the
-/// keywords of these types (space, floor, wall, infra, other, placement, meta), each with its keys,
-/// their values, units, bounds and defaults.
-/// \throws FormatError for a type that is none
+/// Expands a manual page in man(7) format: replaces each line `@RECORDS TYPE…@` by the keywords of
+/// these types (space, floor, wall, infra, other, placement, meta), each with its keys, their
+/// values, units, bounds and defaults.
+/// \throws FormatError for an unknown type
 std::string expandManual(std::string_view page, const Schemas& schemas);
 
-/// One keyword as a subsection.
+/// Writes one keyword as a subsection of a manual page.
 std::string manualOf(const Schema& schema);
 
-/// One number of the key, with the suffixes its unit allows; bounds are not checked.
+/// Parses one number of the key, with the suffixes its unit allows; bounds are not checked.
 /// \throws as parseValue
 double parseNumber(const KeySpec& key, std::string_view text);
 
-/// The number as the key's canonical text has it: a share in per cent, else the shortest double.
+/// Writes a number in the key's canonical form: a share in per cent, else the shortest double.
 std::string formatNumber(const KeySpec& key, double number);
 /// Appends formatNumber(key, number).
 void appendNumber(std::string& out, const KeySpec& key, double number);
 
-/// Throws "`key`: what", an error about a value whose place the caller adds.
+/// Throws "`key`: …", an error about a value; the caller adds its source location.
 [[noreturn]] void refuseValue(const KeySpec& key, const std::string& what);
 
 }  // namespace ispace
