@@ -54,8 +54,9 @@ std::vector<Record> addedRecords(std::span<const Edit> edits, const Schemas& sch
 /// Edits refer to the ids before the first edit (assignIds), written or automatic. If an edit would
 /// change an automatic id, which layouts may reference, the old id is written into its record. A
 /// new id (`--set l1.id=west`) is updated in the records that reference the old one. If a glob
-/// moves several records, those mounted on another one follow their carrier, and those without
-/// coordinates stay. Any edit removes the `result` records: they describe another layout.
+/// moves several records, it skips those mounted on another of them and those without coordinates:
+/// they follow their carrier or wall. Any edit removes the `result` records: they describe another
+/// layout.
 /// \throws FormatError, each message beginning with the edit ("--move l9:1,0: no record has the id
 ///         …"): an unknown id or key, a value out of bounds, a move of a record without
 ///         coordinates, removal of a record that another one references
@@ -75,7 +76,7 @@ double turnedHeading(double degrees, Angle turn);
 /// Written coordinates are transformed: tuples and tuple lists. If the record has only a default
 /// position (`at`, 0,0), the transformed default is written; without a default, as for an unplaced
 /// sensor or a door located by its wall, the record stays. The heading is turned if `at` moved, and
-/// written if it was a default; a wall between two points has no use for one. Motion plans are
+/// written if it was a default; a wall given by its ends ignores its heading. Motion plans are
 /// always transformed. A record with a carrier stays: its coordinates are in the carrier's frame.
 ///
 /// `dz` is added to the third coordinate. Two coordinates become three if the key allows three and

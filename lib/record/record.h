@@ -218,8 +218,9 @@ std::string spellingHint(std::string_view word, const std::vector<std::string>& 
 /// readers of text and of YAML.
 ///
 ///     if (collector.begin("desk", spot)) {
-///         if (const KeySpec* key = collector.key("height", spot)) collector.text(*key, "5cm",
-///         spot); collector.end();
+///         const KeySpec* const key = collector.key("height", spot);
+///         if (key != nullptr) collector.text(*key, "5cm", spot);
+///         collector.end();
 ///     }
 class RecordCollector {
   public:
