@@ -16,7 +16,7 @@ namespace ispace {
 
 namespace {
 
-/// Calls visit(key) for each key with the role that the record has written.
+/// Calls visit(key) for each written key with the role.
 template <typename Visit>
 void forEachWritten(const Record& record, Role role, Visit visit) {
     for (const KeySpec& key : record.schema().keys)
@@ -29,7 +29,7 @@ const KeySpec* keyOf(const Schema& schema, Role role) {
     return found == schema.keys.end() ? nullptr : &*found;
 }
 
-/// The keys that say where the record is: those written, else the one that has a default.
+/// Returns the keys that hold the record's position: the written ones, else the one with a default.
 std::vector<const KeySpec*> placeKeys(const Record& record) {
     std::vector<const KeySpec*> keys;
     forEachWritten(record, Role::Place, [&keys](const KeySpec& key) { keys.push_back(&key); });
@@ -39,10 +39,10 @@ std::vector<const KeySpec*> placeKeys(const Record& record) {
     return keys;
 }
 
-/// The file that added records are read from.
+/// File name in the source locations of added records.
 constexpr const char* kAdded = "--add";
 
-/// The record of an edit that adds one.
+/// Parses the record of an edit that adds one.
 Record addedRecord(const Edit& edit, const Schemas& schemas) {
     if (edit.kind == Edit::Kind::Add) return readRecord(edit.text, kAdded, schemas);
     const Schema* const schema = schemas.find("fence");
@@ -79,7 +79,8 @@ class Editor {
                 break;
         }
         std::vector<std::size_t> places = found();
-        // A glob means what can be changed so; the rest follows what it is in or on, or stays.
+        // A glob skips records that the edit cannot change; they follow their carrier or wall, or
+        // stay.
         if (places.size() > 1) {
             const std::vector<std::size_t> all = places;
             std::erase_if(places, [&](std::size_t i) { return !isMeant(records_[i], all); });
@@ -88,14 +89,14 @@ class Editor {
         for (const std::size_t i : places) change(i);
     }
 
-    /// \throws FormatError if a record names one that the edits removed
+    /// \throws FormatError if a record references a removed one
     std::vector<Record> finish() {
         checkReferences();
         std::erase_if(records_, [](const Record& r) { return r.keyword() == "result"; });
         return std::move(records_);
     }
 
-    /// Writes the automatic ids that the edits would give to other records.
+    /// Writes the automatic ids that would otherwise shift to other records.
     void keepIds() {
         const std::vector<std::string> now = assignIds(records_);
         std::set<std::string> shifted;  // keywords
@@ -106,7 +107,7 @@ class Editor {
     }
 
   private:
-    /// True if the edit is about this one of several records that its glob names.
+    /// Returns true if the edit changes this record, one of several that match its glob.
     [[nodiscard]] bool isMeant(const Record& record, const std::vector<std::size_t>& all) const {
         const Schema& schema = record.schema();
         switch (edit_->kind) {
@@ -155,7 +156,7 @@ class Editor {
             Diagnostic{"", 0, 0, optionOf(edit_->kind) + ' ' + edit_->text + ": " + message});
     }
 
-    /// The records that the glob names, in their order. \throws FormatError if there are none
+    /// Finds the records that match the glob, in order. \throws FormatError without a match
     [[nodiscard]] std::vector<std::size_t> found() const {
         std::vector<std::size_t> places;
         for (std::size_t i = 0; i < ids_.size(); ++i)
@@ -164,7 +165,8 @@ class Editor {
         return places;
     }
 
-    /// A near id, or the ids that there are: of many the last ones, as layouts follow rooms.
+    /// Suggests a similar id, else lists the known ids: the last ones if there are many, as layouts
+    /// follow rooms.
     [[nodiscard]] std::string knownIds() const {
         constexpr std::size_t kMost = 20;
         std::string text = edit_->ids.isPattern() ? "" : didYouMean(edit_->ids.text(), ids_);
@@ -257,7 +259,7 @@ class Editor {
         if (edit_->key == "id") rename(i);
     }
 
-    /// Another file is named: what was loaded, and its digest, go.
+    /// Removes the loaded content and its digest after a change of the file name.
     static void forgetContent(Record& record) {
         record.setMesh(nullptr);
         if (record.schema().find("digest") != nullptr) record.erase("digest");
@@ -306,7 +308,7 @@ class Editor {
 
     void rotate(Record& record) const {
         const std::vector<const KeySpec*> keys = placeKeys(record);
-        // Two ends, or a path; everything else has one place and a heading.
+        // Two ends, or a path; other records have one point and a heading.
         const bool by_points =
             keys.size() > 1 || (keys.size() == 1 && keys[0]->type == KeyType::TupleList);
         if (!by_points) return turn(record, Role::Heading, "cannot be rotated");
@@ -333,8 +335,8 @@ class Editor {
     }
 
     std::vector<Record> records_;
-    std::vector<std::string> ids_;              // kept through all edits
-    std::set<std::string> taken_;               // the same
+    std::vector<std::string> ids_;              // by record, fixed except for --set ID.id
+    std::set<std::string> taken_;               // the same ids
     std::set<std::string> removed_;             // by --delete
     std::map<std::string, std::size_t> count_;  // last number of added records, by keyword
     const Schemas& schemas_;

@@ -51,12 +51,12 @@ std::vector<Record> addedRecords(std::span<const Edit> edits, const Schemas& sch
 
 /// Applies the edits in order and returns the records.
 ///
-/// Edits refer to the ids before the first edit (assignIds), written or automatic. If an edit would
-/// change an automatic id, which layouts may reference, the old id is written into its record. A
-/// new id (`--set l1.id=west`) is updated in the records that reference the old one. If a glob
-/// moves several records, it skips those mounted on another of them and those without coordinates:
-/// they follow their carrier or wall. Any edit removes the `result` records: they describe another
-/// layout.
+/// Records keep their ids from before the first edit (assignIds), written or automatic. If an edit
+/// would change an automatic id, which other records or layouts may reference, the old one is
+/// written into the record. A new id (`--set l1.id=west`) is updated in the records that reference
+/// the old one. If a glob moves several records, it skips those mounted on another of them and
+/// those without coordinates: they follow their carrier or wall. Any edit removes the `result`
+/// records: they describe another layout.
 /// \throws FormatError, each message beginning with the edit ("--move l9:1,0: no record has the id
 ///         …"): an unknown id or key, a value out of bounds, a move of a record without
 ///         coordinates, removal of a record that another one references

@@ -21,7 +21,7 @@ bool isCarried(const Record& record) {
     return false;
 }
 
-/// Calls visit(key) for the keys that say where the record stands.
+/// Calls visit(key) for each key that holds the record's position.
 template <typename Visit>
 void forEachPlace(const Record& record, Visit visit) {
     bool is_written = false;
@@ -37,17 +37,16 @@ void forEachPlace(const Record& record, Visit visit) {
             return visit(key);
 }
 
-/// The key's value; 0,0 for the place of a carried record that has none.
+/// Returns the key's value, or 0,0 for a carried record without a position.
 Value placeValue(const Record& record, const KeySpec& key) {
     const Value* const value = record.find(key.name);
     return value == nullptr ? Value(Tuple{0, 0}) : *value;
 }
 
-/// The number of at most nine decimals that a sum is meant to be, if there is one.
-/// \param size of the terms it is the sum of, together
+/// Rounds a sum to a number of at most nine decimals if one lies within the rounding error.
+/// \param size sum of the magnitudes of the terms
 double roundSignificant(double number, double size) {
-    // Rounding errors of a few moves across a plan of a kilometre, a picometre, and of larger
-    // numbers than that.
+    // Rounding error of a few moves across a plan of a kilometre (a picometre), or of larger terms.
     constexpr double kGrid = 1e9, kRounding = 0x1p-50, kPlan = 1000;
     const double near = std::round(number * kGrid) / kGrid;
     return std::abs(number - near) <= kRounding * (kPlan + size) ? near + 0.0 : number;
@@ -60,7 +59,7 @@ struct Motion {
 
     [[nodiscard]] bool turns() const { return turn.cos != 1 || turn.sin != 0; }
 
-    /// a + b + c, b and c being products with cosine and sine.
+    /// Computes a + b + c, where b and c are products with cosine and sine.
     [[nodiscard]] double sum(double a, double b, double c) const {
         const bool is_exact =
             (turn.cos == 0 || turn.sin == 0) &&
@@ -155,7 +154,7 @@ Pose2 turnAbout(Point2 centre, Angle turn, Vec2 offset) {
 
 namespace {
 
-/// What an edit's numbers are checked as.
+/// Creates the key that validates an edit's numbers.
 KeySpec numberKey(std::string name, Unit unit) {
     KeySpec key;
     key.name = std::move(name);
@@ -163,7 +162,7 @@ KeySpec numberKey(std::string name, Unit unit) {
     return key;
 }
 
-/// "ID:NUMBERS" at its last colon: ids may hold colons, numbers do not.
+/// Splits "ID:NUMBERS" at its last colon, as ids may contain colons; returns the numbers.
 std::string_view splitNumbers(std::string_view text, const char* wanted, Edit& edit) {
     const std::size_t colon = text.rfind(':');
     if (colon == std::string_view::npos || colon == 0 || colon + 1 == text.size())

@@ -61,7 +61,8 @@ std::uint32_t Record::indexOf(std::string_view key) const {
 }
 
 Record::Data& Record::own() {
-    // Giving up a second reference waits for what those who had one before have read.
+    // The temporary copy's release synchronizes with owners that dropped their reference, so their
+    // reads happen before our writes.
     const bool is_shared = std::shared_ptr(data_).use_count() > 2;
     if (is_shared) data_ = std::make_shared<Data>(*data_);
     return *data_;
@@ -96,7 +97,7 @@ void Record::set(std::string_view key, Value value, const Place& place) {
     if (is_here) entry.spot = {place.line, place.column};
     std::optional<Place> elsewhere;
     if (place.file && !is_here) elsewhere = place;
-    // `place` may be one of this record's own and end here.
+    // Read the argument before this: it may refer into the data that own() and put() free.
     Data& data = own();
     if (data.rare || elsewhere) {
         Rare rare = data.rare ? *data.rare : Rare();
@@ -203,13 +204,13 @@ Diagnostic doubledId(const Record& record, const Record& first) {
     return place.finding(std::move(message));
 }
 
-/// A record whose id an earlier one has, by their indices.
+/// Indices of a record that repeats an id and of the first record with that id.
 struct Doubled {
     std::size_t record, first;
 };
 
-/// All of these, in order. By a sorted list of hashes, much faster to build than a tree or table of
-/// strings. O(n log n)
+/// Finds all records with repeated ids, in order. Sorts hashes, which is much faster than building
+/// a tree or hash table of strings. O(n log n)
 std::vector<Doubled> doubledIds(std::span<const Record> records) {
     std::vector<std::pair<std::uint64_t, std::size_t>> ids;  // hash and record
     ids.reserve(records.size());
@@ -220,7 +221,7 @@ std::vector<Doubled> doubledIds(std::span<const Record> records) {
     for (std::size_t begin = 0, end = 0; begin < ids.size(); begin = end) {
         while (end < ids.size() && ids[end].first == ids[begin].first) ++end;
         if (end - begin < 2) continue;
-        std::map<std::string_view, std::size_t> first;  // of equal hashes
+        std::map<std::string_view, std::size_t> first;  // among equal hashes
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t record = ids[i].second;
             const auto [known, is_new] = first.try_emplace(records[record].text("id"), record);
@@ -249,7 +250,7 @@ std::vector<std::string> assignIds(const std::vector<Record>& records) {
     const IdTable taken(records.size(), [&records](std::size_t i) {
         return records[i].has("id") ? std::string_view(records[i].text("id")) : std::string_view();
     });
-    // Automatic ids are unlike each other but where a keyword ends in a digit ("a" 11, "a1" 1).
+    // Automatic ids can only collide if a keyword ends in a digit ("a" 11, "a1" 1).
     const bool may_meet = std::any_of(records.begin(), records.end(), [](const Record& record) {
         return record.keyword().back() >= '0' && record.keyword().back() <= '9';
     });

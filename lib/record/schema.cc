@@ -73,7 +73,7 @@ namespace {
 
 constexpr std::string_view kMark = "@RECORDS ";
 
-/// Text as man(7) takes it: hyphens that can be copied, no escapes, no leading control character.
+/// Escapes text for man(7): hyphens that can be copied, no escapes, no leading control character.
 std::string roff(std::string_view text) {
     std::string out;
     if (text.starts_with('.') || text.starts_with('\'')) out = "\\&";
@@ -108,7 +108,7 @@ std::string unitName(const KeySpec& key) {
     return key.whole ? "N" : "X";
 }
 
-/// "M,M[,M]"
+/// Writes the form of a tuple, "M,M[,M]".
 std::string tupleForm(const KeySpec& key) {
     const std::string unit = unitName(key);
     std::string form;
@@ -148,7 +148,7 @@ bool isNumeric(const KeySpec& key) {
            key.type == KeyType::TupleList;
 }
 
-/// "Above 0, at most 360."; plans' own limit of a thousand kilometres goes without saying.
+/// Writes the bounds, "Above 0, at most 360."; omits the limit of all plans, a thousand kilometres.
 std::string bounds(const KeySpec& key) {
     constexpr double kUnsaid = 1e6;
     if (!isNumeric(key)) return "";
@@ -164,7 +164,7 @@ std::string bounds(const KeySpec& key) {
     return text;
 }
 
-/// The help as a sentence. A value that it begins with (yes:, x,y) keeps its case.
+/// Writes the help as a sentence. A value at its start (yes:, x,y) keeps its case.
 std::string sentence(std::string help) {
     const auto first = help.substr(0, help.find(' '));
     if (first.find_first_of(":,") == std::string::npos && help[0] >= 'a' && help[0] <= 'z')
@@ -203,7 +203,7 @@ RecordType typeOf(const std::string& name, int line) {
 
 std::string manualOf(const Schema& schema) {
     std::string out = ".SS " + schema.keyword + "\n" + sentence(schema.help);
-    // Every record has an id; the page says so once.
+    // Skip the id: every record has one, and the page documents it once.
     for (std::size_t i = 1; i < schema.keys.size(); ++i) appendKey(out, schema.keys[i]);
     return out;
 }

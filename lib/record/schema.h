@@ -117,8 +117,8 @@ class Schemas {
 };
 
 /// Parses one value of a key from its text, without quotes.
-/// \throws FormatError whose diagnostic has only a message ("`height`: `tall` is not a number");
-///         the caller adds the source location
+/// \throws FormatError with only a message, "`height`: `tall` is not a number"; the caller adds the
+///         source location
 Value parseValue(const KeySpec& key, std::string_view text);
 
 /// Writes the canonical text: SI, shortest doubles, quotes where needed.

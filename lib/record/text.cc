@@ -24,8 +24,8 @@ std::string hexByte(unsigned char byte) {
     return text.data();
 }
 
-/// True of what most texts are: ASCII and its printed characters, tabs and newlines. Without
-/// branches, for many bytes at a time.
+/// Fast check that accepts most texts: printable ASCII, tabs and newlines. Free of branches, so
+/// that the compiler vectorizes it.
 bool isSurelyText(std::string_view bytes) {
     unsigned other = 0;
     for (const char c : bytes) {
@@ -85,7 +85,7 @@ void LineLexer::skipBlanks() {
     while (!atEnd() && isBlank(line_[next_])) ++next_;
 }
 
-/// To the next blank; an opened quote hides blanks.
+/// Skips to the next blank outside quotes.
 void LineLexer::skipPiece() {
     bool quoted = false;
     for (; !atEnd(); ++next_) {
@@ -118,7 +118,7 @@ Field LineLexer::field() {
     if (end == line_.size() || line_[end] != '=' || key.empty()) {
         skipPiece();
         const std::string found = excerpt(line_.substr(begin, next_ - begin));
-        // `key = value` and `key =value`: one error, not three.
+        // Report `key = value` and `key =value` as one error, not three.
         std::size_t sign = line_.find_first_not_of(kBlanks, next_);
         const bool spaced = sign != std::string_view::npos && line_[sign] == '=';
         if (spaced) {
@@ -133,7 +133,7 @@ Field LineLexer::field() {
     next_ = end + 1;
     if (atEnd() || isBlank(line_[next_])) {
         const std::string found = excerpt(line_.substr(begin, next_ - begin));
-        // `key= value`: one error, not two.
+        // Report `key= value` as one error, not two.
         skipBlanks();
         const std::size_t after = next_;
         if (more()) skipPiece();
@@ -153,7 +153,7 @@ Piece LineLexer::plainValue(int column) {
     next_ = std::min(line_.find_first_of(" \t\"#", begin), line_.size());
     const auto value = [&] { return line_.substr(begin, next_ - begin); };
     if (atEnd() || isBlank(line_[next_])) return {value(), column};
-    // Inches, as in 1/2.8", end a value.
+    // An inch sign ends a value, as in 1/2.8".
     const bool is_inch = line_[next_] == '"' && next_ > begin && isDigit(line_[next_ - 1]) &&
                          (next_ + 1 == line_.size() || isBlank(line_[next_ + 1]));
     if (is_inch) {
@@ -223,7 +223,7 @@ DocumentKind parseMagic(std::string_view line, const std::string& name) {
     return magic == kLayoutMagic ? DocumentKind::Layout : DocumentKind::Environment;
 }
 
-/// Reads the record of a line, if it has one.
+/// Reads the record of a line; skips blank lines and comments.
 void readLine(std::string_view line, int number, RecordCollector& collector) {
     LineLexer lexer(line);
     const auto keyword = lexer.keyword();
@@ -259,21 +259,22 @@ bool isRecordText(std::string_view bytes) {
 
 namespace {
 
-/// Texts shorter than this are read before another thread would begin.
+/// Minimum size for a second thread: shorter texts are read before the thread would start.
 constexpr std::size_t kLong = 1 << 18;
 
-/// What follows the first line.
+/// Returns the text after the first line.
 std::string_view afterLine(std::string_view text) {
     return text.substr(std::min(text.find('\n'), text.size() - 1) + 1);
 }
 
-/// Reads the records of all lines, of which `before` go before.
+/// Reads the records of all lines of `text`, which follows `before` lines of the file.
 void readLines(std::string_view text, int before, RecordCollector& collector) {
     LineReader lines(text);
     while (const auto line = lines.next()) readLine(*line, before + lines.number(), collector);
 }
 
-/// The same in two parts, at once. \return false if there are findings, which come in another order
+/// Reads the lines in two halves, in parallel. \return false on any finding: the order of findings
+/// would differ
 bool readInParts(std::string_view text, int before, RecordCollector& first) {
     const std::size_t end = text.find('\n', text.size() / 2);
     if (end == std::string_view::npos) return false;
@@ -370,8 +371,8 @@ namespace ispace {
 
 namespace {
 
-/// By the functions of OpenSSL that need no memory: its newer ones, for which these are deprecated,
-/// read settings, and crash where memory runs out meanwhile.
+/// Computes sha256 by the deprecated functions of OpenSSL, which do not allocate. Their successors
+/// read the OpenSSL configuration and crash if memory runs out meanwhile.
 class Sha256 {
   public:
     Sha256() { SHA256_Init(&context_); }
@@ -392,8 +393,7 @@ class Sha256 {
     SHA256_CTX context_{};
 };
 
-/// Pictures do not change what is measured: they are left out, and with them names that depend on
-/// the folder.
+/// Removes the texture: it does not affect measurements, and its file name depends on the folder.
 Record withoutPicture(Record record) {
     record.erase("texture");
     return record;
@@ -403,9 +403,9 @@ bool hasPicture(const Record& record) {
     return record.schema().find("texture") != nullptr && record.has("texture");
 }
 
-/// A record of a loaded file with the digest of its content in place of the file's name and of
-/// where files that it names may be.
-/// \pre it is loaded
+/// Replaces the file names of a record, and the folder rule of `side_files`, by the digest of the
+/// loaded content.
+/// \pre the record's file is loaded
 Record byContent(Record record) {
     for (const KeySpec& key : record.schema().keys)
         if (key.role == Role::File || key.name == "side_files") record.erase(key.name);

@@ -110,7 +110,7 @@ void appendRecord(std::string& out, const Record& record);
 Record readRecord(std::string_view line, const std::string& name, const Schemas& schemas);
 
 /// Checks that written ids are unique.
-/// \throws FormatError whose findings name both lines
+/// \throws FormatError; its findings name both lines
 void checkIds(const std::vector<Record>& records);
 
 /// Computes "sha256:" and 64 hex digits over the bytes.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values as text and back, and their checks.
+// Parses, validates and writes values.
 
 #include <algorithm>
 #include <charconv>
@@ -25,7 +25,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// Calls visit(piece) for the pieces between separators, blanks around them removed.
+/// Calls visit(piece) for the pieces between separators, without surrounding blanks.
 template <typename Visit>
 void forEachPiece(std::string_view text, std::string_view separator, Visit visit) {
     while (true) {
@@ -36,8 +36,8 @@ void forEachPiece(std::string_view text, std::string_view separator, Visit visit
     }
 }
 
-/// What stands between the numbers of a tuple: a comma, or for lengths the sign of a size such as
-/// "8 × 8" or "8x8x2.5".
+/// Finds the separator of a tuple's numbers: a comma, or for lengths the multiplication sign of a
+/// size such as "8 × 8" or "8x8x2.5".
 std::string_view separatorOf(const KeySpec& key, std::string_view text) {
     constexpr std::string_view kTimes[] = {"\xc3\x97", "x", "X", "*"};
     constexpr std::string_view kBeginnings = "0123456789.+-";
@@ -125,7 +125,7 @@ void checkTupleList(const KeySpec& key, const TupleList& list) {
     }
 }
 
-/// What .env can hold: UTF-8 without control characters but tab and newline.
+/// Validates a text for .env: UTF-8 without control characters other than tab and newline.
 void checkText(const KeySpec& key, std::string_view text) {
     while (!text.empty()) {
         const std::size_t length = utf8Length(text);
@@ -269,7 +269,7 @@ namespace {
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
-/// Length of the number, with sign, that `text` begins with; 0 if there is none.
+/// Returns the length of the signed number at the start of `text`, 0 without one.
 std::size_t numberLength(std::string_view text) {
     std::size_t begin = 0;
     if (text.starts_with('+') || text.starts_with('-')) begin = 1;
@@ -280,7 +280,7 @@ std::size_t numberLength(std::string_view text) {
     return static_cast<std::size_t>(result.ptr - text.data());
 }
 
-/// NaN and infinity, as .env, C and YAML spell them, have their own messages.
+/// Rejects NaN and infinity, in the spellings of .env, C and YAML, with specific messages.
 void refuseNonFinite(const KeySpec& key, std::string_view text) {
     std::string_view bare = text;
     if (bare.starts_with('+') || bare.starts_with('-')) bare.remove_prefix(1);

@@ -18,30 +18,30 @@ namespace ispace {
 
 namespace {
 
-/// Reads a YAML file and what it includes into items. What is wrong with records becomes a finding
-/// of the collector, as do included files that cannot be read.
+/// Reads a YAML file and its includes into items. Reports invalid records and unreadable includes
+/// as findings of the collector.
 class YamlReader {
   public:
-    /// \param operand the file read, for the names of those it includes
+    /// \param operand the file read; its includes are relative to its folder
     /// \param read, where see YamlIncludes
     YamlReader(RecordCollector& collector, const std::string& operand, FileReader read,
                IncludeFiles where)
         : collector_(&collector), includes_(operand, std::move(read), where) {}
 
-    /// \throws FormatError with the findings if the operand is no YAML or holds nothing, and if
-    ///         aliases expand without end or includes are too many
+    /// \throws FormatError with the findings if the operand is invalid YAML or empty, if aliases
+    ///         expand beyond the limit, or if there are too many includes
     YamlScene read(std::string_view bytes);
-    /// Files included, each once, as opened.
+    /// Returns the included files, each once, as opened.
     [[nodiscard]] const std::vector<std::string>& files() const { return includes_.files(); }
 
   private:
     using Items = std::vector<YamlItem>;
-    /// A placement whose part is looked up once its file is read.
+    /// A placement; its part is looked up after the whole file is read.
     struct Pending {
         Items* items;
         std::size_t index;
     };
-    /// What belongs to one file.
+    /// State of one file being read.
     struct File {
         Place place;
         YamlDefaults defaults;
@@ -74,8 +74,8 @@ class YamlReader {
     YamlItemReader item_reader_{*collector_, values_};
     YamlIncludes includes_;
     YamlScene scene_;
-    File file_;             // the file read at present
-    bool in_part_ = false;  // of that file
+    File file_;             // the current file
+    bool in_part_ = false;  // the reader is inside a part of the current file
 };
 
 using Kind = YamlNode::Kind;
@@ -83,7 +83,7 @@ using Kind = YamlNode::Kind;
 constexpr std::string_view kInclude = "include", kDefaults = "defaults", kParts = "parts",
                            kPlace = "place", kRecords = "records";
 
-/// yaml-cpp takes a tab for an end of indentation and reads something else than was meant.
+/// Rejects tabs in indentation: yaml-cpp ends the indentation at a tab and misreads the structure.
 void checkIndentation(std::string_view bytes, const std::string& name) {
     LineReader lines(bytes);
     Diagnostics findings;
@@ -97,7 +97,7 @@ void checkIndentation(std::string_view bytes, const std::string& name) {
     findings.throwIfAny();
 }
 
-/// The nodes of a file that is YAML and holds something.
+/// Parses the nodes of a YAML file that is not empty.
 std::unique_ptr<const YamlTree> parse(std::string_view bytes, const std::string& name) {
     checkTextBytes(bytes, name);
     checkIndentation(bytes, name);
@@ -139,7 +139,7 @@ void YamlReader::readItems(const YamlNode& node, LineColumn at, Items& items) {
     }
 }
 
-/// `- desk: {…}`, a map with one keyword.
+/// Reads `- desk: {…}`, a map with one keyword.
 void YamlReader::readListItem(const YamlNode& item, Items& items) {
     values_.visit(item);
     if (item.kind != Kind::Map || item.items.size() != 2)
@@ -151,7 +151,7 @@ void YamlReader::readListItem(const YamlNode& item, Items& items) {
                         });
 }
 
-/// \return false if it is a keyword
+/// \return false if `key` is a keyword
 bool YamlReader::readDirective(const YamlNode& key, const YamlNode& value, LineColumn at,
                                Items& items) {
     const std::string& name = key.scalar;
@@ -171,7 +171,7 @@ bool YamlReader::readDirective(const YamlNode& key, const YamlNode& value, LineC
     return true;
 }
 
-/// `desk: {…}` or `desk: [{…}, …]`.
+/// Reads `desk: {…}` or `desk: [{…}, …]`.
 void YamlReader::readRecords(const YamlNode& keyword, const YamlNode& value, LineColumn at,
                              Items& items) {
     const bool known =
@@ -197,7 +197,7 @@ void YamlReader::readRecord(const YamlNode& keyword, LineColumn at, const YamlNo
     items.push_back(*std::move(item));
 }
 
-/// Null, and a finding, if there is no such keyword.
+/// Finds the schema of a keyword; returns null and reports a finding if it is unknown.
 const Schema* YamlReader::schemaOf(const YamlNode& keyword) {
     const std::string& name = keyword.scalar;
     if (name == kPlace) return &yamlPlaceSchema();
@@ -253,7 +253,7 @@ void YamlReader::include(const std::string& name, LineColumn at, Items& items) {
     for (const auto& part : parts) addPart(*part.second, place);
 }
 
-/// The file entered, YAML or `.env`.
+/// Reads the included file, YAML or `.env`.
 void YamlReader::readIncluded(std::string_view bytes, Items& items) {
     const std::string& name = *file_.place.file;
     std::unique_ptr<const YamlTree> tree;
@@ -278,7 +278,8 @@ void YamlReader::addRecords(std::vector<Record> records, Items& items) {
     }
 }
 
-/// Files are named relative to the folder of the file that names them; the operand's in the end.
+/// Converts the record's file names, relative to the current file, to names relative to the
+/// operand's folder.
 void YamlReader::rebaseFiles(Record& record) const {
     if (file_.place.included_from == nullptr) return;
     for (const KeySpec& key : record.schema().keys)
@@ -315,7 +316,8 @@ void YamlReader::readPart(const YamlNode& name, const YamlNode& value, LineColum
     in_part_ = false;
 }
 
-/// Makes a part known in the file read at present. A part that comes in on two ways is one.
+/// Adds a part to those of the current file. Including the same part twice is no error; two parts
+/// with one name are.
 void YamlReader::addPart(const YamlPart& part, const Place& at) {
     const auto [known, is_new] = file_.parts.try_emplace(part.name, &part);
     if (is_new) return;
@@ -347,7 +349,7 @@ void YamlReader::resolveParts() {
     file_.pending.clear();
 }
 
-/// Kind and history behind a magic first line, if there is one.
+/// Reads the document kind and history after a magic first line, if present.
 Document readHead(std::string_view bytes, const std::string& name) {
     Document document;
     LineReader lines(withoutBom(bytes));

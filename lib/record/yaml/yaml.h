@@ -21,7 +21,7 @@
 
 namespace ispace {
 
-/// Reads the content of an included file. \throws FormatError whose diagnostic has only a message,
+/// Reads the content of an included file. \throws FormatError with only a message,
 /// std::system_error
 using FileReader = std::function<std::string(const std::string& path)>;
 
@@ -129,8 +129,8 @@ class YamlIncludes {
 
     /// Reads a file that the current file includes, and makes it the current file.
     /// \return its bytes
-    /// \throws FormatError whose diagnostic has only a message: missing file, not a regular file,
-    ///         a cycle (the message names its files), or too many files or bytes
+    /// \throws FormatError with only a message: missing file, not a regular file, a cycle (the
+    ///         message names its files), or too many files or bytes
     std::string enter(const std::string& file);
     /// Returns true once enter() has exceeded the limit of files or bytes.
     [[nodiscard]] bool isExhausted() const { return is_exhausted_; }
@@ -255,9 +255,9 @@ struct YamlScene {
     std::deque<YamlPart> parts;  ///< with stable addresses
 };
 
-/// The keys of `place`: id, part, at, heading.
+/// Schema of placements: id, part, at, heading.
 const Schema& yamlPlaceSchema();
-/// The keys of `repeat`: count, rows, cols, step, heading, turn, about.
+/// Schema of repetitions: count, rows, cols, step, heading, turn, about.
 const Schema& yamlRepeatSchema();
 
 /// Default values for the keys of the records that follow in a file.

@@ -20,7 +20,7 @@ namespace ispace {
 
 namespace {
 
-/// Finds parts that place themselves, on whatever way, and parts placed in each other too deep.
+/// Finds cycles of parts, and parts nested too deep.
 class PartCheck {
   public:
     explicit PartCheck(RecordCollector& collector) : collector_(collector) {}
@@ -31,7 +31,7 @@ class PartCheck {
     }
 
   private:
-    /// Parts in each other from this one on.
+    /// Returns the nesting depth of a part: 1 if it contains no other part.
     std::size_t depthOf(const YamlPart& part) {
         const auto known = depths_.find(&part);
         if (known != depths_.end()) return known->second;
@@ -78,7 +78,7 @@ class PartCheck {
     bool is_sound_ = true;
 };
 
-/// The copies a repetition makes, and where they are.
+/// The copies of a repetition and their motions.
 class Repetition {
   public:
     Repetition(const Record& repeat, const Record& what) {
@@ -101,7 +101,7 @@ class Repetition {
 
     [[nodiscard]] std::size_t count() const { return count_; }
 
-    /// From the record to copy `i`, from 0.
+    /// Returns the motion from the record to copy `i`, counted from 0.
     [[nodiscard]] Pose2 motion(std::size_t i) const {
         const auto k = static_cast<double>(i);
         const std::size_t rows_before = i / cols_;
@@ -109,7 +109,7 @@ class Repetition {
         const Vec2 offset{col * step_[0], is_grid_ ? row * step_[1] : k * step_[1]};
         return turnAbout(centre_, Angle::degrees(k * turn_), frame_ * offset);
     }
-    /// How far copy `i` is lifted.
+    /// Returns the height by which copy `i` is lifted.
     [[nodiscard]] double rise(std::size_t i) const {
         return step_.size() > 2 ? static_cast<double>(i) * step_[2] : 0;
     }
@@ -125,7 +125,7 @@ class Repetition {
 
 bool isPlacement(const YamlItem& item) { return &item.record.schema() == &yamlPlaceSchema(); }
 
-/// Numbers the placements of one scope that have no id.
+/// Numbers the placements without id of one scope.
 class PlacementNumbers {
   public:
     explicit PlacementNumbers(const std::vector<YamlItem>& items) {
@@ -152,7 +152,7 @@ class PlacementNumbers {
     std::map<std::string, std::size_t> count_;
 };
 
-/// Memory a record takes, about.
+/// Estimates the memory of a record.
 std::size_t sizeOf(const Record& record) {
     constexpr std::size_t kEntry = 96;
     std::size_t size = sizeof(Record);
@@ -163,13 +163,13 @@ std::size_t sizeOf(const Record& record) {
 
 bool isName(const KeySpec& key) { return key.role == Role::Carrier || key.role == Role::Reference; }
 
-/// Makes the records of items.
+/// Builds the records of items.
 class Expander {
   public:
     Expander(RecordCollector& collector, const Budget& budget)
         : collector_(collector), budget_(budget) {}
 
-    /// Of the top: what is neither placed nor repeated costs nothing.
+    /// Expands the top-level items. Plain records, neither placed nor repeated, are free of charge.
     std::vector<Record> expand(std::vector<YamlItem> items) {
         records_.reserve(items.size());
         PlacementNumbers numbers(items);
@@ -225,7 +225,7 @@ class Expander {
                    placement.place());
     }
 
-    /// Calls act(dz) to move a record; what is wrong with that becomes a finding.
+    /// Calls act(dz) to move a record, and reports errors as findings.
     template <typename Action>
     void move(const Record& record, double dz, const Place& place, Action act) {
         if (dz != 0 && !canRise(record))
@@ -240,7 +240,7 @@ class Expander {
         if (collector_.findings().full()) collector_.findings().throwIfAny();
     }
 
-    /// Puts the placement's id before those of the records, and before where one names another.
+    /// Prepends the placement's id to the records' ids and to the references among them.
     void rename(std::span<Record> records, const std::string& id, const Place& place) {
         const std::string prefix = id + '/';
         std::set<std::string> own;
@@ -283,7 +283,7 @@ std::vector<Record> expandItems(YamlScene scene, RecordCollector& collector, Bud
 
 namespace {
 
-/// What some version of YAML takes for no text.
+/// Returns true for a word that some version of YAML reads as a flag, null or number.
 bool isReserved(std::string_view word) {
     constexpr std::string_view kReserved[] = {"y",    "n",     "yes",  "no",  "on", "off",
                                               "true", "false", "null", "nan", "inf"};
@@ -294,7 +294,7 @@ bool isReserved(std::string_view word) {
     return std::find(std::begin(kReserved), std::end(kReserved), lower) != std::end(kReserved);
 }
 
-/// A text that every reader of YAML takes for just that without quotes.
+/// Returns true if every YAML reader reads the unquoted text as a string.
 bool isPlain(std::string_view text) {
     const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
     return isWord(text) && is_letter(text.front()) && text.find(':') == std::string_view::npos &&
@@ -309,7 +309,8 @@ unsigned codePointOf(std::string_view sequence) {
     return code;
 }
 
-/// Beyond ASCII: breaks lines, does not print, or might be a byte order mark.
+/// Returns true for characters beyond ASCII that break lines, do not print, or might be a byte
+/// order mark.
 bool isEscaped(unsigned code) {
     return (code >= 0x80 && code <= 0xa0) || code == 0x2028 || code == 0x2029 || code == 0xfeff ||
            (code >= 0xfff0 && code <= 0xffff) || (code & 0xfffeU) == 0xfffe;
@@ -385,7 +386,7 @@ void appendRecord(std::string& out, const Record& record) {
     bool is_first = true;
     record.forEachWritten([&](const KeySpec& key, const Value& value) {
         if (!std::exchange(is_first, false)) out += ", ";
-        appendText(out, key.name);  // the key `on` is a flag to YAML 1.1
+        appendText(out, key.name);  // quotes the key `on`, a flag in YAML 1.1
         out += ": ";
         std::visit(ValueWriter{out, key}, value);
     });

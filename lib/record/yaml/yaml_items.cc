@@ -69,7 +69,7 @@ std::size_t heapSizeOf(const Value& value) {
 
 void YamlValues::grant(std::size_t bytes) {
     max_nodes_ += bytes;
-    max_bytes_ += 2 * bytes;  // the escape \L is two bytes for three
+    max_bytes_ += 2 * bytes;  // the escape \L expands two bytes to three
 }
 
 void YamlValues::spend(std::size_t nodes, std::size_t bytes, LineColumn at) {

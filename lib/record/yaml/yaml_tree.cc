@@ -20,8 +20,8 @@
 
 namespace ispace {
 
-/// Builds the tree from the parser's events. YAML::LoadAll will not do: stray text between
-/// documents keeps it busy until memory ends.
+/// Builds the tree from the parser's events. YAML::LoadAll is unsafe: on stray text between
+/// documents it loops until memory runs out.
 class YamlTreeBuilder final : public YAML::EventHandler {
   public:
     YamlTreeBuilder(YamlTree& tree, const std::string& name) : tree_(tree), name_(name) {}
@@ -96,7 +96,7 @@ YamlTree::YamlTree(std::string_view bytes, const std::string& name) {
         throw FormatError({name, 0, 0,
                            std::to_string(bytes.size()) + " bytes of YAML, wanted at most " +
                                std::to_string(kMaxBytes) + "; records in .env may have more"});
-    // yaml-cpp takes the end of the file for the end of an open quote, but not a document's end.
+    // yaml-cpp accepts an open quote at the end of the file, but rejects one at a document's end.
     const std::string text =
         std::string(bytes) + (bytes.empty() || bytes.ends_with('\n') ? "...\n" : "\n...\n");
     const auto lines = std::count(text.begin(), text.end(), '\n') - 1;
@@ -125,18 +125,18 @@ namespace fs = std::filesystem;
     throw FormatError(std::move(diagnostic));
 }
 
-/// `path` as named in `folder`; an absolute one stays.
+/// Joins `folder` and `path`; returns an absolute path unchanged.
 std::string joined(const fs::path& folder, const std::string& path) {
     return folder.empty() ? path : (folder / path).string();
 }
 
-/// The content of a regular file: others, as devices are, may have no end.
+/// Reads a regular file; rejects others, such as devices, which may have no end.
 std::string readRegularFile(const std::string& name) {
     const std::size_t size = openRegular(name).size;
     if (size > YamlIncludes::kMaxBytes) refuse("it holds more than all included files may");
     InputFile file(name, InputKind::Regular);
     std::string bytes;
-    // Those of /proc may tell a size of 0 and have no end either.
+    // Files in /proc report a size of 0 and may have no end either.
     constexpr std::size_t kMore = 1 << 16;
     while (file.read(bytes))
         if (bytes.size() > size + kMore) refuse("it holds more than its size says");
@@ -150,7 +150,7 @@ YamlIncludes::YamlIncludes(const std::string& operand, FileReader read, IncludeF
     open_.push_back({operand, "", operand == "-" ? operand : identityOf(operand)});
 }
 
-/// Links count on the disk only.
+/// Returns the path that identifies a file; resolves links only for files on disk.
 std::string YamlIncludes::identityOf(const std::string& name) const {
     std::error_code error;
     const fs::path path =
@@ -213,7 +213,7 @@ std::string YamlIncludes::read(const std::string& name) const {
     return {};
 }
 
-/// \throws FormatError if it is there, but not in the folder of the operand or below
+/// \throws FormatError if the file exists outside the folder of the operand and its subfolders
 void YamlIncludes::checkPlace(const std::string& name) const {
     std::error_code error;
     const fs::path file = fs::canonical(name, error);
