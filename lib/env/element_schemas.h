@@ -17,20 +17,20 @@ struct PlacementFrame {
     double bottom = 0, top = 0;
 
     [[nodiscard]] double height() const { return top - bottom; }
-    /// The rectangle between two corners given in the body's frame, `low` left-below of `high`.
+    /// Returns the rectangle between two corners given in the body's frame, `low` left-below of
+    /// `high`.
     [[nodiscard]] Polygon box(Point2 low, Point2 high) const;
     [[nodiscard]] Polygon rectangle() const;
-    /// The ellipse in the rectangle, scaled by `share` about the centre.
+    /// Returns the ellipse in the rectangle, scaled by `share` about the centre.
     [[nodiscard]] Ellipse ellipse(double share = 1) const;
 };
 
-/// One number in `size` stands for length and width. The height is the third number of `size`,
-/// else `height`, else the length.
+/// Reads the frame of a record. One number in `size` stands for length and width. The height is the
+/// third number of `size`, else `height`, else the length.
 PlacementFrame standingOf(const Record& record);
 
-/// Returns true for things whose body depends on `at` and `heading` only in where it is: furniture,
-/// pillars
-/// and floors, but no walls, and no meshes, which have their own frame.
+/// Returns true if `at` and `heading` only move the record's body: furniture, pillars and floors;
+/// not walls, and not meshes, which have a separate frame.
 bool standsByItself(const Record& record);
 
 Body tableBody(const Record& record);
@@ -43,7 +43,8 @@ Body screenBody(const Record& record);
 /// Default height of walls and fences, in metres.
 constexpr double kWallHeight = 2.5;
 
-/// ispace, inside, zone, floor, wall, fence, pillar, table, desk, chair, barrier, cube, cylinder.
+/// Returns the schemas of ispace, inside, zone, floor, wall, fence, pillar, table, desk, chair,
+/// barrier, cube, cylinder and the other elements.
 std::vector<Schema> environmentSchemas();
 
 }  // namespace ispace

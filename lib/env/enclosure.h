@@ -15,14 +15,17 @@ struct Enclosure {
     Point2 inside;
 };
 
-/// Finds the indoor region among the faces of the wall lines, those that open doors join being one.
+/// Finds the indoor region among the faces of the wall lines; faces joined by open doors count as
+/// one.
 ///
-/// With `inside` records it is the faces that hold their points; without, the face that
-/// holds the origin strictly inside, else the largest. A face that lies within other wall lines
-/// which would enclose it but for a gap is not taken without a record: the gap is the error (as
-/// with a closed pillar in a room that leaks). Where something is enclosed, only gaps of at most
-/// half the plan's shorter side count as such.
-/// \throws FormatError where there is no such face: a gap in the lines, or a point out of place
+/// With `inside` records, returns the faces that contain their points; without, the face that
+/// contains the origin strictly inside, else the largest. Without a record, a face within other
+/// wall lines that would enclose it but for a gap is rejected, and the gap is the error (e.g. a
+/// closed pillar in a room that leaks). If any face exists, only gaps of at most half the plan's
+/// shorter side count as leaks.
+/// \throws FormatError if there is no such face: a gap in the lines, or an inside point on a wall
+/// or
+/// outside of all faces
 Enclosure enclose(const WallPlan& plan, std::span<const Region> faces, const Box2& limits,
                   std::span<const Element> elements, std::span<const Record* const> inside);
 

@@ -15,10 +15,10 @@
 
 namespace ispace {
 
-/// Default height of the free floor: that at which a sensor standing on the floor scans.
+/// Default height of the free floor: the scan height of a sensor on the floor.
 constexpr double kScanHeight = 0.15;
 
-/// One record of the environment with its shape.
+/// One record of the environment with its id and its body.
 struct Element {
     Record record;
     std::string id;
@@ -28,44 +28,44 @@ struct Element {
 class Level;
 class RegionIndex;
 
-/// A room: its elements and the region they enclose. Immutable; copies share everything.
+/// A room: its elements and the region they enclose. Immutable; copies share all data.
 class Environment {
   public:
-    /// Reads the environment records among `records` and skips others. `ids` as of
+    /// Reads the environment records among `records` and skips others. `ids` are those of
     /// assignIds(records). O(n log n) for plans whose walls meet at their ends or cross now and
     /// then.
     /// \throws FormatError with all findings: zero-length walls, zero sizes, crossing zone or
-    ///         fence outlines, doors and windows that are in no wall or overlap, nothing that
-    ///         encloses, or lines that do not close ("not enclosed: 0.12 m between w3 and w4 near
-    ///         (4.1, 2.0)"); the last two only where every wall has made its lines
+    /// fence outlines, doors and windows that lie in no wall or overlap, missing walls, or
+    /// lines that do not close ("not enclosed: 0.12 m between w3 and w4 near (4.1, 2.0)");
+    /// reports the last two only if every wall record has valid lines
     Environment(std::span<const Record> records, std::span<const std::string> ids);
 
     [[nodiscard]] const std::vector<Element>& elements() const { return data_->elements; }
-    /// Bounding rectangle of the wall lines (thesis, Limit Acquire).
+    /// Returns the bounding rectangle of the wall lines (thesis, Limit Acquire).
     [[nodiscard]] const Box2& limits() const { return data_->limits; }
-    /// The faces of the wall lines that hold the inside points, each with those joined to it by
-    /// open doors, directly or through others: mostly one part, and one for each room where
-    /// several are meant. Openings else do not count: an open door to the outside joins nothing.
-    /// Walls that stand within the joined rooms are no boundary.
+    /// Returns the faces of the wall lines that contain the inside points, each merged with the
+    /// faces that open doors join to it, directly or through others: usually one part, or one per
+    /// room if several rooms have inside points. Windows, closed doors and open doors to the
+    /// outside join no faces. Walls within the joined rooms are not part of the boundary.
     [[nodiscard]] const Regions& indoor() const { return data_->indoor; }
-    /// The same, made for very many questions; built when first asked for.
+    /// Returns an index of indoor() for bulk queries; built at the first call.
     [[nodiscard]] const RegionIndex& indoorIndex() const { return data_->indoorIndex(); }
-    /// The floor of the indoor region at z = 0.
+    /// Returns the floor of the indoor region at z = 0.
     [[nodiscard]] Mesh floor() const;
-    /// The known inside point: the first record's, else the origin if it lies strictly in a bounded
-    /// face, else a point of the largest face.
+    /// Returns the known inside point: the first record's, else the origin if it lies strictly in a
+    /// bounded face, else a point of the largest face.
     [[nodiscard]] Point2 inside() const { return data_->inside; }
-    /// The wall lines, welded, with all openings closed; for drawings, and for the parity rule
-    /// where no open door joins rooms: there the lines that enclose are the edges of indoor().
+    /// Returns the wall lines, welded, with all openings closed, for drawings. The parity rule may
+    /// use them only if no open door joins rooms; otherwise use the edges of indoor().
     [[nodiscard]] const std::vector<Segment2>& wallLines() const { return data_->wall_lines; }
-    /// Of its records, see environmentDigest(). Computed when it is first asked for; thread-safe.
+    /// Returns environmentDigest() of its records. Computed at the first call; thread-safe.
     [[nodiscard]] const std::string& digest() const;
-    /// Height of the highest wall, in metres.
+    /// Returns the height of the highest wall, in metres.
     [[nodiscard]] double height() const { return data_->height; }
 
     /// Returns the level at a height: its slice, free floor, point location and visibility, see
-    /// env/level.h. Thread-safe. Recent levels are cached, depending on their size; callers keep
-    /// the pointer of a level that they use for long.
+    /// env/level.h. Thread-safe. Caches recent levels up to a total size; store the pointer of a
+    /// level that you use for long.
     [[nodiscard]] std::shared_ptr<const Level> level(double height) const;
     /// Computes the slice that stops light at this height (prisms are closed: top and bottom
     /// count). Computed at each call; a level stores its slice.
@@ -86,7 +86,7 @@ class Environment {
         [[nodiscard]] Slice slice(double at) const;
         [[nodiscard]] const RegionIndex& indoorIndex() const;
         Lazy<std::shared_ptr<const RegionIndex>> indoor_index = {};
-        /// The triangles of each part of the region.
+        /// Returns the triangles of each part of the region.
         [[nodiscard]] const std::vector<Triangulation>& floorParts() const;
         Lazy<std::vector<Triangulation>> floor = {};
         Lazy<std::string> digest = {};
@@ -94,10 +94,10 @@ class Environment {
     struct Levels;
 
     std::shared_ptr<const Data> data_;
-    std::shared_ptr<Levels> levels_;  // apart from the data, which levels hold
+    std::shared_ptr<Levels> levels_;  // separate from the data, which levels own
 };
 
-/// Measures of an environment, for people and for `envc --info --json`.
+/// Measures of an environment, for messages and for `envc --info --json`.
 struct EnvironmentInfo {
     std::string digest;
     Box2 limits;
@@ -112,22 +112,23 @@ struct EnvironmentInfo {
 EnvironmentInfo describe(const Environment& environment, std::span<const Record> records,
                          const std::string& digest);
 
-/// One JSON object and a newline, schema ispace-info/1.
+/// Returns one JSON object and a newline, schema ispace-info/1.
 std::string infoJson(const EnvironmentInfo& info);
 std::string infoText(const EnvironmentInfo& info);
 
-/// Findings about the shape of a record beyond its schema and its wall lines: zones and closed
-/// fences that cross themselves, zones without extent, bodies too small for their place, files of
-/// meshes that are not loaded or hold no body.
+/// Reports defects in the shape of a record beyond its schema and its wall lines: zones and closed
+/// fences that cross themselves, zones without extent, bodies too small for their distance from the
+/// origin, mesh files that are not loaded or contain no body.
 void checkShape(const Record& record, const Body& body, Diagnostics& findings);
 
-/// Writes a point as on a plan, to the centimetre: "(4.1, 2.0)".
+/// Formats a point to the centimetre: "(4.1, 2.0)".
 std::string placeText(Point2 p);
 
-/// "wall w3", "door d1": how findings name an element.
+/// Returns the name of an element in findings: "wall w3", "door d1".
 std::string nameOf(const Element& element);
 
-/// A length as findings give it: at least millimetres and at least two digits: "0.12", "0.0012".
+/// Formats a length for findings, to the millimetre or to two digits if that is finer: "0.12",
+/// "0.0012".
 std::string lengthText(double length);
 
 }  // namespace ispace

@@ -12,35 +12,35 @@
 
 namespace ispace {
 
-/// The environment at one height. Get one from Environment::level(). Each part below is made when
-/// it is first asked for, and shared by all threads from then on.
+/// The environment at one height; Environment::level() returns it. Each derived part below is
+/// computed at the first call and shared by all threads.
 class Level {
   public:
-    /// Of a slice alone, in no room: it has no free floor.
+    /// Creates a level of a slice alone, without a room and so without a free floor.
     explicit Level(Slice slice);
 
     [[nodiscard]] double height() const { return height_; }
     /// Returns the slice at this height, with owners.
     [[nodiscard]] const Slice& slice() const;
-    /// Indoor less the solids. \pre it is of an environment
+    /// Returns the indoor region less the solids. \pre the level belongs to an environment
     [[nodiscard]] const std::vector<Region>& freeFloor() const;
 
-    /// True strictly indoors, in no solid and on no line of the slice; exact.
-    /// \pre it is of an environment
+    /// Returns true strictly indoors, outside all solids and off the lines of the slice; exact.
+    /// \pre the level belongs to an environment
     [[nodiscard]] bool isFree(Point2 p) const;
     /// Returns true deeper in a solid than kRayEpsilon, where a sensor is blind.
     [[nodiscard]] bool isInsideSolid(Point2 p) const;
     /// Returns the solids whose surface p touches (within kRayEpsilon): rays enter them there
     /// without a hit.
     [[nodiscard]] std::vector<Polygon> solidsTouching(Point2 p) const;
-    /// Computes the visible region of a level sensor up to max_range: as VisibilityMap::query among
-    /// the lines and round bodies of the slice; empty where isInsideSolid().
+    /// Computes the visible region of a level sensor up to max_range, as VisibilityMap::query does
+    /// for the lines and round bodies of the slice; empty if isInsideSolid().
     void query(Point2 viewpoint, double max_range, VisibleRegion& region) const;
 
-    /// Builds the index that query() reads, which takes longer than many queries.
+    /// Builds the index that query() reads; this takes longer than many queries.
     void prepareSight() const;
 
-    /// How many lines the slice has; 0 until it is made.
+    /// Returns the number of lines of the slice; 0 before it is computed.
     [[nodiscard]] std::size_t linesMade() const;
 
   private:

@@ -35,10 +35,10 @@ enum class Material {
     Cloth,
     Mat,
     Mesh,
-    View  ///< the field of view of a sensor
+    View  ///< field of view of a sensor
 };
 
-/// How a material looks: colour (linear RGB, opacity), metallic share and roughness.
+/// Appearance of a material: colour (linear RGB, opacity), metallic share and roughness.
 struct Appearance {
     const char* name;
     std::array<double, 3> color;
@@ -47,7 +47,7 @@ struct Appearance {
 
 const Appearance& lookOf(Material material);
 
-/// Material of fields of view in models; skipped when a model is read as a mesh.
+/// Material of fields of view in models; mesh readers skip it.
 inline constexpr const char* kViewMaterial = "sensor-view";
 
 struct Body;
@@ -55,62 +55,61 @@ struct Plate;
 class Record;
 struct Sheet;
 
-/// Triangles of one material, counter-clockwise seen from outside; sheets and plates once.
+/// Triangles of one material, counter-clockwise seen from outside; sheets and plates appear once.
 struct Mesh {
     Material material = Material::Wood;
     std::vector<Point3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    bool open = false;  ///< has a rim, as sheets and plates: is seen from both sides
+    bool open = false;  ///< has a rim, as sheets and plates have; visible from both sides
 };
 
-/// Selects surfaces of a body. Slices follow the rule for light, as level beams do.
+/// Selects surfaces of a body. Slices contain the opaque ones, since level beams are light.
 enum class Surfaces {
     Drawn,  ///< all, patterns on the floor as well
     Solid,  ///< all solid surfaces, which stop sound
     Opaque  ///< surfaces that stop light: all solid ones except clear glass
 };
 
-/// Returns true if a sheet is among these surfaces.
+/// Returns true if the selection contains the sheet.
 bool isAmong(Surfaces surfaces, const Sheet& sheet);
-/// Returns true for a plate.
+/// Returns true if the selection contains the plate.
 bool isAmong(Surfaces surfaces, const Plate& plate);
 
-/// The body's triangles, one mesh per material, in the order of first use.
+/// Returns the body's triangles, one mesh per material, in the order of first use.
 std::vector<Mesh> meshesOf(const Body& body, Surfaces surfaces);
 
-/// Returns true if every edge occurs as often in one direction as in the other: the triangles then
-/// bound a solid. O(triangles) for edges that are well spread over the vertices.
+/// Returns true if every edge occurs as often in one direction as in the other, so that the
+/// triangles bound a solid. O(triangles) if no vertex has very many edges.
 bool isWatertight(const Mesh& mesh);
 
-/// The floor of an indoor region at z = 0, of the triangles of its parts.
+/// Returns the floor of an indoor region at z = 0, from the triangles of its parts.
 Mesh floorMesh(std::span<const Triangulation> parts);
 
 /// Builds the body of a `mesh` record; empty while its file is not loaded.
 ///
-/// The file's numbers are turned so that z is up (y-up: (x, -z, y); x-up: (y, z, x); `auto` and z:
-/// as they are, since the loader resolves `auto`), multiplied by unit and `scale`, turned by
-/// `heading` and moved to `at`: the file's origin stays the origin, also in height. Vertices at
-/// the same place are one, so that triangles share edges though the file may not say so; triangles
-/// with fewer than three corners are dropped. A closed mesh that is inside out is turned.
+/// Maps the file's coordinates to z up (y-up: (x, -z, y); x-up: (y, z, x); z and `auto`, which the
+/// loader resolves: unchanged), multiplies them by unit and `scale`, rotates by `heading` and moves
+/// the file's origin to `at`, height included. Merges vertices with equal coordinates, so that
+/// triangles share edges even if the file repeats its vertices, and removes triangles with fewer
+/// than three distinct corners. Reverses a closed mesh that is inside out.
 Body meshBody(const Record& record);
 
-/// Metres one of the file's numbers is, by `unit` and `scale` of a `mesh` record.
+/// Returns the length of the file's unit in metres, from `unit` and `scale` of a `mesh` record.
 double meshScale(const Record& record);
 
-/// A finding about the file of a `mesh` record if it cannot be a body: not loaded, without any
-/// triangle, or reaching too far.
+/// Reports a `mesh` record whose file cannot be a body: not loaded, without triangles, or reaching
+/// too far.
 void checkMesh(const Record& record, const Body& body, Diagnostics& findings);
 
-/// Turns the list of vertices so that the lowest (lexLess) comes first.
+/// Rotates the list of vertices so that the lowest (lexLess) comes first.
 void beginAtLowest(Polygon& polygon);
 
-/// Polygons for closed curves that have the solid on their left: counter-clockwise ones bound
-/// solids, clockwise ones cavities. A cavity becomes part of the polygon around it, joined by a
-/// seam to the left of its leftmost vertex, there and back, which stays in the solid; one that
-/// nothing solid surrounds is a solid seen from inside, and turned. The polygons begin at their
-/// lowest vertex (lexLess). \pre each curve begins so, too, has an area, and no two equal
-/// neighbours.
-/// O(n log n) for n vertices where solids do not overlap.
+/// Converts closed curves with the solid on their left to polygons: counter-clockwise curves bound
+/// solids, clockwise ones cavities. A cavity is merged with the polygon around it by a seam: from
+/// its leftmost vertex to the left and back, within the solid. A cavity that no solid surrounds is
+/// a solid seen from inside, and is reversed. Each polygon begins at its lowest vertex (lexLess).
+/// \pre each curve begins at its lowest vertex, has an area, and no two equal neighbours.
+/// O(n log n) for n vertices if solids do not overlap.
 std::vector<Polygon> joinCavities(std::vector<Polygon> curves);
 
 }  // namespace ispace

@@ -16,11 +16,11 @@
 
 namespace ispace {
 
-/// A place given for an opening lies on a wall if it is this near to its line, or this near to the
-/// faces of a thick one.
+/// The position given for an opening lies on a wall if it is at most this far from its line, or
+/// from the faces of a thick wall.
 constexpr double kNearWall = 0.3, kNearFace = 0.1;
 
-/// The line of an opening, and its ends along it; they may lie beyond the line's.
+/// The wall line of an opening, and its ends along the line; they may exceed the line's.
 struct OpeningSite {
     std::size_t line = 0;
     double from = 0, to = 0;
@@ -32,19 +32,20 @@ class OpeningSites {
     /// Stores its arguments by reference.
     OpeningSites(std::span<const Element> elements, const WallPlan& plan, Diagnostics& findings);
 
-    /// Finds the line of an opening. Empty, with a finding, if the record gives no point on a wall,
-    /// or several; empty, without one, if its wall has no lines. O(log n) where lines do not crowd.
+    /// Finds the line of an opening. Empty, with a finding, if the record gives no position on a
+    /// wall or several; empty, without one, if its wall has no lines. O(log n) if lines do not
+    /// crowd.
     [[nodiscard]] std::optional<OpeningSite> find(const Element& opening) const;
 
   private:
-    /// The lines that a record may mean.
+    /// The candidate lines of a record.
     struct Lines {
         std::size_t first = 0, last = 0;
-        const Element* wall = nullptr;  ///< whose they are, if it is written
+        const Element* wall = nullptr;  ///< owner of the lines, if `wall` names it
     };
 
     [[nodiscard]] const SegmentGrid& grid() const;
-    /// For the table of ids.
+    /// Returns the id of an element, for the table of ids.
     struct IdOfElement {
         std::span<const Element> elements;
         std::string_view operator()(std::size_t i) const { return elements[i].id; }
@@ -74,8 +75,8 @@ class OpeningSites {
     std::span<const Element> elements_;
     const WallPlan& plan_;
     Diagnostics& findings_;
-    mutable std::optional<SegmentGrid> grid_;  // made when first asked for
-    std::vector<double> starts_;  // of each line when all are laid end to end, and the end
+    mutable std::optional<SegmentGrid> grid_;  // built at the first use
+    std::vector<double> starts_;  // sums of the lengths of all lines before each; then the total
     IdTable<IdOfElement> by_id_;
 };
 

@@ -10,60 +10,61 @@
 
 namespace ispace {
 
-/// An opening whose ends miss the wall's by at most this much is fitted in.
+/// An opening that exceeds its wall by at most this much is fitted in.
 constexpr double kFitDistance = 0.001;
-/// Openings and thick walls reach at most this far to each side of their lines; openings given by a
-/// place are looked for no farther from a wall's mid-line.
+/// Openings and thick walls reach at most this far to each side of their lines; an opening given by
+/// a position is searched for no farther from a wall's mid-line.
 constexpr double kMaxFace = 1;
-/// Thickness of a door's leaf; at most the wall's.
+/// Thickness of a door's leaf, limited by the wall's.
 constexpr double kLeafThickness = 0.04;
 
 /// The filling of an opening.
 enum class Filling { None, Leaf, ClearPane, OpaquePane };
 
-/// A door or window as it lies in one wall line.
+/// A door or window in its wall line.
 struct Opening {
     std::size_t element = 0;     ///< index of its element
-    std::size_t line = 0;        ///< the wall line
+    std::size_t line = 0;        ///< index of the wall line
     double from = 0, to = 0;     ///< along the line, from its beginning
     double bottom = 0, top = 0;  ///< heights
-    double depth = 0;            ///< how far through it reaches, at least the wall's thickness
-    double leaf = 0;             ///< thickness of its filling, 0 for a sheet
+    double depth = 0;            ///< total depth through the wall, at least the wall's thickness
+    double leaf = 0;             ///< thickness of the filling; 0 for a sheet
     Filling filling = Filling::None;
-    bool passage = false;  ///< an open door: the rooms on both sides are one
+    bool passage = false;  ///< an open door, which joins the rooms on both sides
 };
 
 /// Finds the wall line of each `door` and `window` among the elements.
 ///
-/// Its place is given by `wall` and `offset` (along all lines of that record, in the order of
-/// wallLinesOf), by `at` (on the nearest line, of `wall` and parallel to `heading` if they are
-/// written; where several are equally near, the one it fits best, then the first), or by `from`
-/// and `to`. A door stands on the bottom of its wall. Findings: no place or two, no wall there
-/// (with the nearest), what sticks out of its line or above it. O(m log n) for m openings.
+/// The record gives the position by `wall` and `offset` (along all lines of that record, in the
+/// order of wallLinesOf), by `at` (on the nearest line, restricted to `wall` and to lines parallel
+/// to `heading` if the record has them; among equally near lines the one it fits best, then the
+/// first), or by `from` and `to`. A door stands on the bottom of its wall. Reports as findings: no
+/// position or two, no wall there (with the nearest), openings that exceed their line or its
+/// height. O(m log n) for m openings.
 std::vector<Opening> placeOpenings(std::span<const Element> elements, const WallPlan& plan,
                                    Diagnostics& findings);
 
-/// Where an opening goes through a wall line.
+/// The interval of a wall line that an opening cuts out.
 struct OpeningCut {
     std::size_t opening = 0, line = 0;
-    Segment2 jambs;  ///< on the line
+    Segment2 jambs;  ///< its ends, on the line
 };
 
-/// All lines that openings go through, as cutOpenings() finds them: by opening, then by line.
+/// Returns all cuts that cutOpenings() makes: by opening, then by line.
 std::vector<OpeningCut> openingCuts(const WallPlan& plan, std::span<const Opening> openings);
 
-/// Wall lines with the openings cut out.
+/// Wall lines after the openings are cut out.
 struct CutWalls {
-    std::vector<WallPart> parts;     ///< of the walls, then of what fills the openings; sources:
-                                     ///< the line, or the number of lines + the opening
-    std::vector<Segment2> lines;     ///< all lines but the passages
+    std::vector<WallPart> parts;     ///< of walls, then of fillings; source: the line, or number of
+                                     ///< lines + opening
+    std::vector<Segment2> lines;     ///< all lines except passages
     std::vector<Segment2> passages;  ///< through open doors
 };
 
-/// Cuts the openings into all walls that they go through: those on the same line, and those beside
-/// it as far as `depth` reaches or as walls overlap, a metre at most; between walls that stand
-/// apart sheets line the opening. Findings: openings that overlap in one wall, and too many
-/// walls upon each other. O((n + m) log n). \pre welded is the weld of the plan's lines
+/// Cuts the openings out of all walls that they go through: walls on the same line, and walls
+/// beside it within `depth` or overlapping, up to a metre; between walls that stand apart, sheets
+/// line the opening. Reports openings that overlap in one wall, and more coincident walls than it
+/// can cut. O((n + m) log n). \pre welded is the weld of the plan's lines
 CutWalls cutOpenings(std::span<const Element> elements, const WallPlan& plan,
                      const WeldedLines& welded, std::span<const Opening> openings,
                      Diagnostics& findings);

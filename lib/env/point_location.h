@@ -12,15 +12,15 @@
 
 namespace ispace {
 
-/// Answers as Regions::locate does, for points by the ten thousand.
+/// Locates points as Regions::locate does, for bulk queries.
 ///
-/// It is the thesis' Insider Judge (section 4.4.4) with a known point in each cell of a grid, most
-/// often so near that no line lies between: the centres of all cells are located at once, exactly,
-/// by scanline. A query then looks at the edges near the segment from the point to the centre of
-/// its cell. Thread-safe. O(cells + n log n) to build; typically O(log n) a query.
+/// The thesis' Insider Judge (section 4.4.4) with a known point in each cell of a grid, usually so
+/// near that no line lies between: construction locates the centres of all cells at once, exactly,
+/// by scanline. A query reads the edges near the segment from the point to the centre of its cell.
+/// Thread-safe. O(cells + n log n) to build; typically O(log n) per query.
 class RegionIndex {
   public:
-    /// \param regions disjoint, as of Region; they may touch
+    /// \param regions disjoint; they may touch
     explicit RegionIndex(std::span<const Region> regions);
 
     /// Returns the side of a point; exact.
@@ -32,7 +32,7 @@ class RegionIndex {
     void edgesIn(const Box2& window, Visit visit) const {
         tree_.search(window, [&](std::size_t i) { visit(edges_[i]); });
     }
-    /// The cells whose centres are the known points; none without regions.
+    /// Returns the grid, whose cell centres are the known points; empty without regions.
     [[nodiscard]] const Grid& cells() const { return grid_; }
 
   private:
@@ -41,24 +41,24 @@ class RegionIndex {
     std::vector<Segment2> edges_;
     BoxTree tree_;
     Grid grid_;
-    CellSet inside_;  // by the centres of the cells
+    CellSet inside_;  // the cells whose centres lie inside
 };
 
 /// Returns true if p lies strictly inside, farther than `margin` from the edge. O(corners)
 [[nodiscard]] bool containsWithMargin(const Polygon& polygon, Point2 p, double margin);
 
-/// Finds the polygons that hold a point, or whose edges are near it. Thread-safe.
+/// Finds the polygons that contain a point, or have edges near it. Thread-safe.
 class PolygonIndex {
   public:
-    /// \param polygons kept by reference
+    /// \param polygons stored by reference
     explicit PolygonIndex(std::span<const Polygon> polygons);
 
     [[nodiscard]] bool empty() const { return polygons_.empty(); }
-    /// Finds the first polygon that p lies in or on the edge of; exact.
+    /// Finds the first polygon that contains p or has it on its boundary; exact.
     [[nodiscard]] std::optional<std::size_t> holder(Point2 p) const;
-    /// Returns true if one of them contains p with that margin.
+    /// Returns true if any polygon contains p with that margin.
     [[nodiscard]] bool containsWithMargin(Point2 p, double margin) const;
-    /// Returns the polygons whose edges come within `reach` of p.
+    /// Returns the polygons with an edge within `reach` of p.
     [[nodiscard]] std::vector<Polygon> touching(Point2 p, double reach) const;
 
   private:

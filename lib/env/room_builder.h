@@ -19,7 +19,7 @@ struct BuiltRoom {
     double height;
 };
 
-/// Parameters and errors are those of Environment.
+/// Builds the parts; parameters and errors are those of Environment.
 BuiltRoom buildRoom(std::span<const Record> records, std::span<const std::string> ids);
 
 }  // namespace ispace

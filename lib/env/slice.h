@@ -16,19 +16,19 @@ struct Slice {
     double height = 0;             ///< of a band: its lower end
     std::vector<Segment2> sheets;  ///< walls without thickness
     std::vector<Polygon> solids;   ///< closed sets, counter-clockwise; may overlap
-    /// A solid that is a polygon of the same area, outlineOf() it, for want of a curve.
+    /// The ellipse of a solid; the solid is outlineOf() the ellipse, a polygon of the same area.
     struct Round {
         Ellipse curve;
         std::size_t solid = 0;  ///< index in `solids`
     };
     std::vector<Round> rounds = {};  ///< ascending by solid; none in a band
-    /// Indices in Environment::elements(); empty in a slice that is of no environment.
+    /// Indices in Environment::elements(); empty in a slice without an environment.
     std::vector<std::size_t> sheet_owners = {}, solid_owners = {};
 
     /// Calls visit(Segment2) for every line that stops a beam: sheets, then edges of solids.
     template <typename Visit>
     void forEachLine(Visit visit) const;
-    /// The same without the edges of round solids.
+    /// Calls visit as forEachLine() does, but skips the edges of round solids.
     template <typename Visit>
     void forEachStraightLine(Visit visit) const;
     [[nodiscard]] std::vector<Segment2> lines() const;
@@ -57,20 +57,19 @@ void Slice::forEachStraightLine(Visit visit) const {
 }
 
 /// Adds the exact cut of the body's meshes (`Body::meshes`, not its prisms) by the plane z = height
-/// to `out`.
+/// to `out`; stores `owner` for each piece.
 ///
-/// Loops are joined along the edges that triangles share, never by distance. What a closed mesh
-/// encloses becomes solids; a cavity is a loop within the polygon, reached by a seam of no width
-/// (there and back along the same line, inside the solid), so that blocked(), difference() and
-/// beams are right. Where the surface is open its curve becomes sheets. Meshes are closed sets, as
-/// prisms are: a level face counts at its height, whichever side of it is solid; a level face of an
-/// open mesh does not, like a plate. O(triangles + k log k) for k triangles that are cut.
-/// `owner` is entered for each piece.
+/// Joins loops along the edges that triangles share, never by distance. The interior of a closed
+/// mesh becomes solids; a cavity is a loop within the polygon, reached by a seam of no width (there
+/// and back along the same line, inside the solid), which blocked(), difference() and beams rely
+/// on. The curve of an open surface becomes sheets. Meshes are closed sets, as prisms are: a level
+/// face counts at its height, whichever side of it is solid; a level face of an open mesh does not,
+/// like a plate. O(triangles + k log k) for k triangles that are cut.
 void cutMeshes(const Body& body, double height, Slice& out, std::size_t owner = 0);
 
 /// Adds the projection of the body's meshes between two heights, ends included: the cut at
-/// `bottom`, and each triangle between the heights: a solid, or a sheet if it is upright. Stores
-/// `owner` for each. O(triangles). \pre bottom <= top
+/// `bottom`, and each triangle clipped to the heights, as a solid, or as a sheet if it is upright.
+/// Stores `owner` for each piece. O(triangles). \pre bottom <= top
 void bandOfMeshes(const Body& body, double bottom, double top, Slice& out, std::size_t owner);
 
 }  // namespace ispace

@@ -14,10 +14,10 @@ namespace ispace {
 
 struct Element;
 
-/// Walls no thicker than this are sheets.
+/// Walls up to this thickness are sheets.
 constexpr double kThinnest = kWeldDistance;
 
-/// One straight wall line with all that its body needs.
+/// One straight wall line with the data of its body.
 struct WallLine {
     Segment2 line;
     double bottom = 0, top = 0;
@@ -36,44 +36,44 @@ std::vector<WallLine> wallLinesOf(const Record& record, Diagnostics& findings);
 struct WallPlan {
     std::vector<WallLine> walls;
     std::vector<Segment2> lines;     ///< of the walls
-    std::vector<std::size_t> owner;  ///< index of the element of each line, ascending
+    std::vector<std::size_t> owner;  ///< index of each line's element, ascending
 
     void add(const WallLine& wall, std::size_t element);
 };
 
-/// An upright piece of a wall, or what fills an opening in it.
+/// An upright piece of a wall, or the filling of an opening in it.
 struct WallPart {
-    WallLine piece;        ///< its line may bend off the wall's by the weld
-    Vec2 along;            ///< unit, direction of the whole wall line
-    std::size_t source;    ///< number of the body that it belongs to
-    bool filling = false;  ///< a door's leaf or a window's pane: makes no corners with walls
+    WallLine piece;        ///< the weld may have moved its line off the wall's
+    Vec2 along;            ///< unit direction of the whole wall line
+    std::size_t source;    ///< index of the body that it belongs to
+    bool filling = false;  ///< a door's leaf or a window's pane, which forms no corners with walls
     bool clear = false;    ///< see Sheet::clear
 };
 
-/// One part per welded piece; its source is the index of its line.
+/// Returns one part per welded piece; its source is the index of its line.
 std::vector<WallPart> wallParts(std::span<const WallLine> lines, const WeldedLines& welded);
 
-/// Bodies of wall parts, `count` of them: result i has the parts of source i. Parts that meet at a
-/// point leave no crack: sheets share the very same corner, boxes too, or the point itself. Where
-/// thick walls meet at a corner, the notch between their ends is filled by a mitre, as high as both
-/// are, that belongs to the lower source. O(n log n).
+/// Builds `count` bodies; body i has the parts with source i. Parts that meet at a point leave no
+/// crack: sheets have identical corners there, boxes too, or the point itself as a corner. At a
+/// corner of thick walls a mitre, as high as both, fills the notch between their ends and belongs
+/// to the lower source. O(n log n).
 std::vector<Body> wallBodies(std::span<const WallPart> parts, std::size_t count);
 
-/// The same for whole lines. \pre welded is the weld of the lines
+/// Builds the bodies of whole lines. \pre welded is the weld of the lines
 std::vector<Body> wallBodies(std::span<const WallLine> lines, const WeldedLines& welded);
 
-/// Where walls of two elements run through each other.
+/// A crossing or an overlap of the walls of two elements.
 struct WallCrossing {
     std::size_t a, b;  ///< indices of the elements, a < b
-    Point2 place;      ///< the crossing, or the middle of the stretch they have in common
-    bool overlap;      ///< they lie on each other instead of crossing
+    Point2 place;      ///< the crossing, or the middle of the overlap
+    bool overlap;      ///< the walls lie on each other instead of crossing
 };
 
-/// Pairs of wall lines of different elements that cross beyond their ends, or lie on each other
-/// for more than the weld distance; in the order of the elements, the first `most` (of
-/// an element that crosses very many others, any of its own). Walls that share an end or end on
-/// one another do not count, nor do rooms (`ispace`) side by side that share a wall. Takes as long
-/// as weld.
+/// Finds pairs of wall lines of different elements that cross away from their ends, or overlap by
+/// more than the weld distance. Returns them in the order of the elements, the first `most`; an
+/// element with very many crossings contributes an arbitrary selection. Skips walls that share an
+/// end or end on one another, and adjacent rooms (`ispace`) that share a wall. Takes as long as
+/// weld.
 std::vector<WallCrossing> wallCrossings(std::span<const Element> elements, std::size_t most = 1000);
 
 /// Finds a point where two edges of the closed curve cross; empty without one. Edges that only

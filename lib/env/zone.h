@@ -11,30 +11,30 @@
 
 namespace ispace {
 
-/// Part of the floor that somebody names: the id of a `zone` record, `rect:X,Y,X,Y` (two opposite
-/// corners), or `poly:X,Y;X,Y;...` (thesis section 4.4.6); lengths with units as in records.
+/// Part of the floor, named by the id of a `zone` record, `rect:X,Y,X,Y` (two opposite corners), or
+/// `poly:X,Y;X,Y;...` (thesis section 4.4.6); lengths with units as in records.
 struct NamedZone {
     std::string name;  ///< as written
     Polygon outline;   ///< counter-clockwise
-    /// A point inside by which the Insider Judge knows the inside from the outside: the centre of
-    /// gravity, or, where that does not lie strictly inside, another one.
+    /// The Insider Judge's known inside point: the centre of gravity, or another point if that is
+    /// not strictly inside.
     Point2 inside;
     bool is_center_outside = false;  ///< the thesis' warning
 };
 
-/// A record's id goes before what it may read like else.
+/// Reads one zone; the id of a record takes precedence over the other forms.
 /// \throws UsageError for an unknown zone (with the nearest name), a polygon of fewer than three
-///         corners, without area, or that crosses itself
+/// corners, without area, or that crosses itself
 NamedZone readZone(std::string_view text, const Environment& environment);
 
-/// All zones that a text means: `door:GLOB,M` is one for each door whose id matches the glob, the
-/// floor within M of its opening, straight through walls; every other text is one, as readZone()
-/// reads it. Rounded ends are 16 chords to a quarter. \throws UsageError as readZone(), for a
-/// bad distance, and if no door matches
+/// Reads all zones of a text: `door:GLOB,M` is one for each door whose id matches the glob, the
+/// floor within M of its opening, walls ignored; any other text is one zone, as of readZone().
+/// Rounded ends have 16 chords per quarter circle.
+/// \throws UsageError as readZone(), for a bad distance, and if no door matches
 std::vector<NamedZone> readZones(std::string_view text, const Environment& environment);
 
-/// Records of these zones, but for zones that are records already: those at doors have the id
-/// DOOR-zone, or DOOR-zone-2 and so on. \throws UsageError as readZones()
+/// Returns records for these zones, skipping zones that are records already; those at doors have
+/// the id DOOR-zone, or DOOR-zone-2 and so on. \throws UsageError as readZones()
 std::vector<Record> zoneRecords(std::span<const std::string> texts, const Environment& environment,
                                 const Schemas& schemas);
 
