@@ -20,9 +20,9 @@ namespace ispace {
 
 namespace {
 
-/// Coverings lie this far above the floor, so that viewers do not mix them with it.
+/// Height of coverings above the floor, so that viewers do not confuse the two.
 constexpr double kCovering = 0.001;
-/// Edge of the squares of a checkered covering, and the most of them along a side.
+/// Edge of the squares of a checkered covering, and their maximum along a side.
 constexpr double kSquare = 0.5;
 constexpr int kMaxSquares = 64;
 
@@ -70,7 +70,7 @@ Body floorBody(const Record& record) {
         return static_cast<int>(std::clamp(std::round(extent / kSquare), 2.0, 1.0 * kMaxSquares));
     };
     const int columns = squares(length), rows = squares(width);
-    // Written so that neighbours share the very same corners.
+    // This formula gives neighbours bitwise equal corners.
     const auto corner = [&](int column, int row) {
         return world_from_floor *
                Point2{length * column / columns - length / 2, width * row / rows - width / 2};
@@ -86,7 +86,7 @@ Body floorBody(const Record& record) {
     return body;
 }
 
-/// Walls, fences and rooms by themselves; Environment welds those of all records together.
+/// Builds a wall, fence or room from its own lines; Environment welds the lines of all records.
 Body wallBody(const Record& record) {
     Diagnostics findings;
     const std::vector<WallLine> walls = wallLinesOf(record, findings);
@@ -112,7 +112,7 @@ Body roomBody(const Record& record) {
 struct Shape {
     std::string_view keyword;
     Body (*body)(const Record&);
-    bool stands = true;  ///< by itself
+    bool stands = true;  ///< see standsByItself()
 };
 
 constexpr Shape kShapes[] = {
@@ -122,7 +122,7 @@ constexpr Shape kShapes[] = {
     {"barrier", barrierBody},    {"cube", cubeBody},        {"cylinder", cylinderBody},
     {"infra", infraBody},        {"boxes", boxesBody},      {"screen", screenBody}};
 
-/// Null for what has no body.
+/// Returns null if the record has no body.
 const Shape* shapeOf(const Record& record) {
     const auto* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
                                      [&](const Shape& s) { return s.keyword == record.keyword(); });
@@ -173,9 +173,9 @@ Polygon ellipse(Point2 center, double length, double width, Angle heading) {
 
 namespace {
 
-/// The rectangle between two corners given in a frame, `low` left-below of `high`.
+/// Returns the rectangle between two corners given in a frame, `low` left-below of `high`.
 Polygon boxIn(const Pose2& world_from_frame, Point2 low, Point2 high) {
-    // What the frame makes of each corner, with one sine for all.
+    // Transforms each corner, with one sine for all.
     const auto [c, s] = cosSin(world_from_frame.heading);
     const auto at = [&, c = c, s = s](double x, double y) {
         return world_from_frame.position + Vec2{c * x - s * y, s * x + c * y};
@@ -220,17 +220,17 @@ PlacementFrame standingOf(const Record& record) {
 
 namespace {
 
-// Usual measures, in metres; small furniture has them in proportion.
+// Usual dimensions, in metres; small furniture has them in proportion.
 constexpr double kBoard = 0.03;
 constexpr double kDeskLeg = 0.05;
 constexpr double kChairLeg = 0.035;
 constexpr double kPanel = 0.03;
-/// Of the table's diameter.
+/// Shares of the table's diameter.
 constexpr double kStemShare = 0.1, kFootShare = 0.5;
-/// Height of a chair's seat, of the whole: 0.45 m of 0.85 m.
+/// Height of a chair's seat as a share of the whole: 0.45 m of 0.85 m.
 constexpr double kSeatShare = 0.45 / 0.85;
 
-/// At most a quarter of the extent.
+/// Limits a dimension to a quarter of the extent.
 double atMostQuarter(double wanted, double extent) { return std::min(wanted, extent / 4); }
 
 void addLegs(Body& body, const PlacementFrame& thing, double leg, double top, Material material) {
@@ -299,20 +299,21 @@ namespace {
 /// Edge of the square section of the bars.
 constexpr double kBar = 0.05;
 
-/// How a stack of boxes looks: heights, and extents as shares of the widest, in turn from below.
+/// Relative heights of stacked boxes, and extents as shares of the widest, repeated from the
+/// bottom.
 constexpr std::array<double, 3> kBoxHeight{1.2, 1, 0.8};
 struct Share {
     double length, width;
-    double ahead, left;  ///< which way the box is moved within the extent: -1, 0 or 1
+    double ahead, left;  ///< direction in which the box is moved within the extent: -1, 0 or 1
 };
 constexpr std::array<Share, 3> kBoxShare{{{1, 1, 0, 0}, {0.88, 0.94, -1, 1}, {0.92, 0.84, 1, -1}}};
 
-// Of a screen, in metres; small ones have them in proportion.
+// Of a screen, in metres; small screens have them in proportion.
 constexpr double kScreenBoard = 0.02, kPost = 0.04, kFootHeight = 0.03, kFootLength = 0.06;
-/// Height of its lower edge, and how far its feet stand from its ends, of the whole.
+/// Height of the lower edge, and distance of the feet from the ends, as shares of the whole.
 constexpr double kLowerEdge = 0.25, kFootPlace = 0.125;
 
-/// Places of the middles of `count` bars side by side, from edge to edge of the extent.
+/// Returns the middle of bar i of `count`, evenly spaced from edge to edge of the extent.
 double barPlace(int i, int count, double bar, double extent) {
     if (count == 1) return 0;
     return (extent - bar) * (static_cast<double>(i) / (count - 1) - 0.5);
@@ -326,7 +327,7 @@ Body infraBody(const Record& record) {
     const double x = frame.length / 2, y = frame.width / 2;
     const int rows = static_cast<int>(record.number("rows"));
     const int cols = static_cast<int>(record.number("cols"));
-    // Bars that would overlap are thinner.
+    // Bars that would overlap are made thinner.
     const double row = std::min(kBar, frame.width / rows),
                  col = std::min(kBar, frame.length / cols);
     frame.top = frame.bottom + kBar;
@@ -354,7 +355,7 @@ Body boxesBody(const Record& record) {
     double below = 0, bottom = stack.bottom;
     for (std::size_t i = 0; i < count; ++i) {
         below += kBoxHeight[i % kBoxHeight.size()];
-        // Each stands on the very top of the one below, and the last ends at the very top.
+        // Each box stands exactly on the one below, and the last ends exactly at the top.
         const double top =
             i + 1 == count ? stack.top : stack.bottom + stack.height() * below / whole;
         const Share& share = kBoxShare[i % kBoxShare.size()];

@@ -65,8 +65,8 @@ Polygon rectangle(Point2 center, double length, double width, Angle heading);
 /// Reports zero-length lines as findings.
 std::vector<Segment2> wallLines(const Record& record, Diagnostics& findings);
 
-/// Builds the body of an environment record; empty for `inside` and `zone`, and for a `mesh` whose
-/// file is not loaded.
+/// Builds the body of an environment record; empty for `inside` and `zone`, and for a `mesh`
+/// before its file is loaded.
 ///
 /// A wall or fence has one sheet per line, or with a thickness one box per line plus joints that
 /// close the cracks at corners. A table is a round top on a stem and a foot; a desk is a top on

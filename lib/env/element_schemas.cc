@@ -7,7 +7,7 @@ namespace ispace {
 
 namespace {
 
-/// Plans lie within this of the origin, in metres: doubles still tell micrometres apart there.
+/// Limit of coordinates, in metres; doubles still resolve micrometres there.
 constexpr double kMaxDistance = 1e6;
 
 KeySpec idKey() {
@@ -57,7 +57,7 @@ KeySpec headingKey() {
             .role = Role::Heading};
 }
 
-/// Extents, each above 0.
+/// Returns the key of extents, each above 0.
 KeySpec sizeKey(std::string help, std::size_t min_count, std::size_t max_count) {
     KeySpec key = lengths("size", std::move(help), min_count, max_count);
     key.lower = 0;
@@ -170,7 +170,8 @@ void addFloors(std::vector<Schema>& out) {
 }
 
 void addWalls(std::vector<Schema>& out) {
-    // Bounded below by 0 as a whole since a thickness of 0 is usual; the body refuses the others.
+    // The bound of 0 holds for all numbers, since a thickness of 0 is usual; the body rejects zeros
+    // in the others.
     KeySpec wall_size = lengths("size", "length[,thickness[,height]]", 1, 3);
     wall_size.lower = 0;
     out.push_back(
@@ -199,7 +200,7 @@ KeySpec countKey(std::string name, std::string help, double standard, double mos
             .whole = true};
 }
 
-/// Where a door or a window is: on its wall, or at a place that tells the wall.
+/// Returns the keys that give the position of a door or a window.
 std::vector<KeySpec> openingKeys(double standard_width) {
     KeySpec heading = headingKey();
     heading.help = "direction of the wall, where several are near";

@@ -15,12 +15,12 @@ namespace ispace {
 
 namespace {
 
-/// Loose walls about a room are a leaky room only if the gaps between them are at most this share
-/// of the plan's shorter side.
+/// Loose walls around a room count as a leaky room only if the gaps between them are at most this
+/// share of the plan's shorter side.
 constexpr double kLeakShare = 0.5;
 constexpr double kAnyWidth = std::numeric_limits<double>::infinity();
 
-/// Looks for faces and explains where there are none.
+/// Finds faces, and the gap that explains a missing one.
 class Search {
   public:
     Search(const WallPlan& plan, std::span<const Region> faces, std::span<const Element> elements)
@@ -50,22 +50,22 @@ class Search {
         });
     }
 
-    /// Throws the gap that keeps `inside` (or anything) from being enclosed, if there is one of at
-    /// most this width.
+    /// Throws FormatError for the gap that keeps `inside` (or any region) from being enclosed, if
+    /// there is one of at most this width.
     void throwGap(std::optional<Point2> inside, double widest) const {
         const auto gap = findGap(plan_.lines, inside);
         if (gap && gap->width <= widest) throw FormatError(gapFinding(*gap));
     }
 
-    /// A place right outside of the face, if the face lies clear of the limits on all sides and
-    /// that place in no face: then the lines around may be a room that does not close.
+    /// Returns a point just outside of the face, if the face lies clear of the limits on all sides
+    /// and no face contains the point: then the lines around may be a room that does not close.
     [[nodiscard]] std::optional<Point2> openPlaceAround(const Region& face,
                                                         const Box2& limits) const {
         const Box2 box = bounds(face.outline);
         if (box.low.x <= limits.low.x || box.low.y <= limits.low.y || box.high.x >= limits.high.x ||
             box.high.y >= limits.high.y)
             return std::nullopt;
-        // The outermost vertex to the left: nothing of the face is farther left.
+        // A leftmost vertex: no part of the face is farther left.
         const Point2 vertex = *std::min_element(face.outline.begin(), face.outline.end(),
                                                 [](Point2 a, Point2 b) { return a.x < b.x; });
         double free = vertex.x - limits.low.x;
@@ -101,7 +101,8 @@ class Search {
     std::span<const Element> elements_;
 };
 
-/// The face that holds the record's point. \throws FormatError why there is none
+/// Returns the face that contains the record's point.
+/// \throws FormatError with the reason if no face does
 const Region& faceOf(const Record& inside, const Search& search, double leak, bool any_face) {
     const Tuple& at = inside.tuple("at");
     const Point2 point{at[0], at[1]};

@@ -23,9 +23,8 @@ struct Enclosure {
 /// wall lines that would enclose it but for a gap is rejected, and the gap is the error (e.g. a
 /// closed pillar in a room that leaks). If any face exists, only gaps of at most half the plan's
 /// shorter side count as leaks.
-/// \throws FormatError if there is no such face: a gap in the lines, or an inside point on a wall
-/// or
-/// outside of all faces
+/// \throws FormatError if there is no such face: a gap in the lines, or an inside point on a
+///         wall or outside of all faces
 Enclosure enclose(const WallPlan& plan, std::span<const Region> faces, const Box2& limits,
                   std::span<const Element> elements, std::span<const Record* const> inside);
 

@@ -24,8 +24,8 @@ namespace ispace {
 
 namespace {
 
-/// Calls on_sheet(sheet, element) and on_solid(prism, element) for the walls and things that
-/// stand anywhere between two heights; meshes of files are cut elsewhere.
+/// Calls on_sheet(sheet, element) and on_solid(prism, element) for the walls and objects that
+/// extend anywhere between two heights; skips meshes of files.
 template <typename OnSheet, typename OnSolid>
 void forEachStanding(std::span<const Element> elements, double bottom, double top, OnSheet on_sheet,
                      OnSolid on_solid) {
@@ -116,10 +116,11 @@ Slice Environment::band(double bottom, double top) const {
     return band;
 }
 
-/// The levels last asked for, the latest at the end, and those that others still hold.
+/// Cache of the latest levels, the most recent at the end, and weak pointers to evicted levels that
+/// callers still hold.
 struct Environment::Levels {
-    /// A slice takes some 100 bytes a line, and 300 more once it is asked for visibility; free
-    /// floor and indexes are of the same order.
+    /// A slice takes some 100 bytes a line, and 300 more with its visibility; free floor and
+    /// indexes are of the same order.
     static constexpr std::ptrdiff_t kMaxKept = 64;
     static constexpr std::size_t kMaxLines = 500'000;
 
@@ -127,7 +128,7 @@ struct Environment::Levels {
     std::vector<std::shared_ptr<const Level>> kept;
     std::vector<std::weak_ptr<const Level>> let_go;
 
-    /// The one of this height that somebody holds, or a new one.
+    /// Returns the evicted level of this height if a caller still holds it, else a new one.
     std::shared_ptr<const Level> find(double height, const std::shared_ptr<const Data>& data) {
         std::erase_if(let_go, [](const auto& level) { return level.expired(); });
         for (const auto& held : let_go)
@@ -136,7 +137,7 @@ struct Environment::Levels {
         return std::shared_ptr<const Level>(new Level(data, height));
     }
 
-    /// Takes out those that are too many, the latest excepted.
+    /// Evicts the oldest levels above the limits, never the latest.
     std::vector<std::shared_ptr<const Level>> takeSurplus() {
         auto first = std::prev(kept.end());
         std::size_t lines = 0;
@@ -154,7 +155,7 @@ struct Environment::Levels {
 };
 
 std::shared_ptr<const Level> Environment::level(double height) const {
-    std::vector<std::shared_ptr<const Level>> surplus;  // ends after the lock
+    std::vector<std::shared_ptr<const Level>> surplus;  // destroyed after the lock is released
     const std::scoped_lock lock(levels_->mutex);
     auto& kept = levels_->kept;
     const auto known = std::find_if(kept.begin(), kept.end(), [height](const auto& level) {
@@ -260,7 +261,8 @@ void checkZone(const Record& record, Diagnostics& findings) {
         checkCrossing(record, outline, findings);
 }
 
-/// Far from the origin doubles are coarse: what is smaller than their step has no footprint left.
+/// Far from the origin doubles are coarse: bodies smaller than their resolution have no footprint
+/// left.
 bool hasExtent(const Body& body) {
     return std::all_of(body.prisms.begin(), body.prisms.end(), [](const Prism& prism) {
         return signedArea(prism.footprint) > 0 && prism.top > prism.bottom;

@@ -32,12 +32,12 @@ class RegionIndex;
 class Environment {
   public:
     /// Reads the environment records among `records` and skips others. `ids` are those of
-    /// assignIds(records). O(n log n) for plans whose walls meet at their ends or cross now and
-    /// then.
+    /// assignIds(records). O(n log n) for plans with walls that meet at their ends or cross now
+    /// and then.
     /// \throws FormatError with all findings: zero-length walls, zero sizes, crossing zone or
-    /// fence outlines, doors and windows that lie in no wall or overlap, missing walls, or
-    /// lines that do not close ("not enclosed: 0.12 m between w3 and w4 near (4.1, 2.0)");
-    /// reports the last two only if every wall record has valid lines
+    ///         fence outlines, doors and windows that lie in no wall or overlap, missing walls, or
+    ///         lines that do not close ("not enclosed: 0.12 m between w3 and w4 near (4.1, 2.0)");
+    ///         reports the last two only if every wall record has valid lines
     Environment(std::span<const Record> records, std::span<const std::string> ids);
 
     [[nodiscard]] const std::vector<Element>& elements() const { return data_->elements; }
@@ -94,7 +94,7 @@ class Environment {
     struct Levels;
 
     std::shared_ptr<const Data> data_;
-    std::shared_ptr<Levels> levels_;  // separate from the data, which levels own
+    std::shared_ptr<Levels> levels_;  // separate from the data, which levels share
 };
 
 /// Measures of an environment, for messages and for `envc --info --json`.

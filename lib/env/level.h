@@ -30,7 +30,7 @@ class Level {
     [[nodiscard]] bool isFree(Point2 p) const;
     /// Returns true deeper in a solid than kRayEpsilon, where a sensor is blind.
     [[nodiscard]] bool isInsideSolid(Point2 p) const;
-    /// Returns the solids whose surface p touches (within kRayEpsilon): rays enter them there
+    /// Returns the solids with p on their surface (within kRayEpsilon): rays enter them there
     /// without a hit.
     [[nodiscard]] std::vector<Polygon> solidsTouching(Point2 p) const;
     /// Computes the visible region of a level sensor up to max_range, as VisibilityMap::query does

@@ -21,7 +21,7 @@ namespace {
 using Index = std::uint32_t;
 using Triangle = std::array<Index, 3>;
 
-/// Counter-clockwise triangles over the polygon's own vertices.
+/// Triangulates the polygon over its own vertices; triangles are counter-clockwise.
 std::vector<Triangle> trianglesOf(const Polygon& polygon) {
     std::vector<Triangle> out;
     if (isStrictlyConvex(polygon)) {
@@ -108,7 +108,7 @@ std::vector<Mesh> meshesOf(const Body& body, Surfaces surfaces) {
 }
 
 bool isWatertight(const Mesh& mesh) {
-    // Edges by their lower vertex: counted, then laid behind one another.
+    // Edges by their lower vertex: counted, then stored one after another.
     struct End {
         Index high;
         int way;
@@ -155,7 +155,7 @@ namespace {
 using Index = std::uint32_t;
 using Corners = FloatPlace;
 
-/// As far as `at` may be, and as much again.
+/// Twice the limit of `at`.
 constexpr double kMaxDistance = 2e6;
 
 double unitOf(const std::string& unit) {
@@ -166,7 +166,7 @@ double unitOf(const std::string& unit) {
     return 1;
 }
 
-/// From the file's axes to ours; all of these are turns, none a mirror.
+/// Converts the file's axes to ours; all cases are rotations, without mirroring.
 Vec3 upright(const Corners& v, const std::string& up) {
     const double x = v[0], y = v[1], z = v[2];
     if (up == "y") return {x, -z, y};
@@ -178,10 +178,10 @@ bool isFinite(const Corners& v) {
     return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
-/// Vertices by place.
+/// Vertices merged by coordinates.
 struct Welded {
-    std::vector<Corners> places;  ///< in the order of their first vertex
-    std::vector<Index> of;        ///< of each vertex
+    std::vector<Corners> places;  ///< distinct points, in the order of their first vertex
+    std::vector<Index> of;        ///< index of each vertex in `places`
 };
 
 Welded weldPlaces(const std::vector<Corners>& vertices) {
@@ -206,7 +206,7 @@ bool isWhole(const std::vector<Corners>& vertices, const std::array<Index, 3>& t
     });
 }
 
-/// Six times the volume within, positive if the triangles are seen from outside.
+/// Computes six times the enclosed volume, positive if the triangles face outwards.
 double sixVolumes(const Mesh& mesh) {
     const Point3 middle = mesh.vertices.front();
     double sum = 0;
@@ -228,7 +228,7 @@ Body meshBody(const Record& record) {
     const Pose2 world_from_file{{at[0], at[1]}, record.angle("heading")};
     const double bottom = at.size() > 2 ? at[2] : 0;
     Mesh mesh{Material::Mesh, {}, {}};
-    // Vertices come in the order in which triangles use them; those that none uses do not count.
+    // Vertices are stored in the order in which triangles use them; unused ones are skipped.
     constexpr Index kUnused = ~Index{0};
     std::vector<Index> number(welded.places.size(), kUnused);
     mesh.vertices.reserve(welded.places.size());

@@ -97,8 +97,7 @@ Body meshBody(const Record& record);
 /// Returns the length of the file's unit in metres, from `unit` and `scale` of a `mesh` record.
 double meshScale(const Record& record);
 
-/// Reports a `mesh` record whose file cannot be a body: not loaded, without triangles, or reaching
-/// too far.
+/// Reports a mesh file that cannot be a body: not loaded, without triangles, or reaching too far.
 void checkMesh(const Record& record, const Body& body, Diagnostics& findings);
 
 /// Rotates the list of vertices so that the lowest (lexLess) comes first.

@@ -18,15 +18,14 @@ namespace {
 /// The curves in which a plane cuts a mesh.
 struct Curves {
     std::vector<Polygon> closed;  ///< with the solid on their left
-    std::vector<Segment2> open;   ///< of surfaces with a rim
+    std::vector<Segment2> open;   ///< where surfaces have a rim
 };
 
-/// The plane lies at the height, moved down or up by less than any difference: vertices at the
-/// height itself lie above or below it, never in it, so that every curve of a closed surface
-/// closes.
+/// The plane is moved down or up from its height by an infinitesimal: a vertex at the height lies
+/// above or below the plane, never in it, so that all curves of a closed surface close.
 enum class Moved { Down, Up };
 
-/// Which vertices lie above the plane.
+/// Returns a flag per vertex: whether it lies above the plane.
 std::vector<std::uint8_t> verticesAbove(const Mesh& mesh, double height, Moved moved) {
     std::vector<std::uint8_t> above(mesh.vertices.size());
     for (std::size_t i = 0; i < above.size(); ++i) {
@@ -36,15 +35,15 @@ std::vector<std::uint8_t> verticesAbove(const Mesh& mesh, double height, Moved m
     return above;
 }
 
-/// An edge of the mesh by its ends, the lower index first.
+/// An edge of the mesh: its vertex indices, the lower first.
 using EdgeKey = std::uint64_t;
 
 EdgeKey keyOf(std::uint32_t a, std::uint32_t b) {
     return EdgeKey{std::min(a, b)} << 32 | std::max(a, b);
 }
 
-/// A triangle's part of a curve: from a point on one edge to a point on another, the solid on the
-/// left.
+/// One triangle's part of a curve, from a point on one edge to a point on another, with the solid
+/// on the left.
 struct Arc {
     EdgeKey from, to;
 };
@@ -52,8 +51,9 @@ struct Arc {
 /// The arcs of all triangles that the plane cuts.
 struct Arcs {
     std::vector<Arc> one_sided;
-    /// Of triangles that are there from both sides: surfaces drawn twice, to be seen from anywhere,
-    /// and faces that two solids have in common. They close curves of their own or none.
+    /// Arcs of triangles that occur in both directions: surfaces drawn twice so that they are
+    /// visible from both sides, and faces shared by two solids. They are traced separately, since
+    /// they close curves only among themselves.
     std::vector<Arc> two_sided;
 };
 
@@ -75,7 +75,7 @@ std::vector<Arc> allArcs(const Mesh& mesh, const std::vector<std::uint8_t>& abov
 
 Arcs arcsOf(const Mesh& mesh, const std::vector<std::uint8_t>& above) {
     std::vector<Arc> all = allArcs(mesh, above);
-    // The two edges of an arc have all three corners: equal ones are of equal triangles.
+    // The two edges of an arc contain all three corners, so equal arcs come from equal triangles.
     const auto low = [](const Arc& arc) { return std::min(arc.from, arc.to); };
     const auto high = [](const Arc& arc) { return std::max(arc.from, arc.to); };
     std::sort(all.begin(), all.end(), [&](const Arc& a, const Arc& b) {
@@ -96,8 +96,8 @@ Arcs arcsOf(const Mesh& mesh, const std::vector<std::uint8_t>& above) {
     return arcs;
 }
 
-/// Computes the point where an edge passes the height, from the lower index on, so that all its
-/// triangles agree.
+/// Computes the point where an edge crosses the height, always from the lower index, so that all
+/// its triangles get the same point.
 Point2 placeOn(const Mesh& mesh, EdgeKey edge, double height) {
     const Point3 &a = mesh.vertices[edge >> 32], &b = mesh.vertices[edge & 0xffffffffU];
     if (a.z == height) return a.onFloor();
@@ -107,7 +107,7 @@ Point2 placeOn(const Mesh& mesh, EdgeKey edge, double height) {
             std::clamp(a.y + share * (b.y - a.y), std::min(a.y, b.y), std::max(a.y, b.y))};
 }
 
-/// Strings arcs together over the edges they share.
+/// Joins arcs into curves over the edges they share.
 class Tracer {
   public:
     Tracer(const Mesh& mesh, double height, const std::vector<Arc>& arcs)
@@ -146,8 +146,8 @@ class Tracer {
     // Arc i has the ends 2i (where it begins) and 2i + 1.
     static std::size_t otherEnd(std::size_t end) { return end ^ 1; }
 
-    /// Joins the ends at each node in pairs: one that arrives with one that leaves as far as there
-    /// are such, else any two (their triangles disagree about their outside).
+    /// Joins the ends at each node in pairs: an arriving with a leaving end if possible, else any
+    /// two (then their triangles disagree about their outside).
     void link() {
         std::vector<std::size_t> order(node_of_.size());
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -167,7 +167,7 @@ class Tracer {
         }
     }
 
-    /// All that wait arrive, or all leave.
+    /// \pre all waiting ends arrive, or all leave
     void pairUp(std::size_t end, std::vector<std::size_t>& waiting) {
         if (waiting.empty() || waiting.back() % 2 == end % 2) {
             waiting.push_back(end);
@@ -182,7 +182,7 @@ class Tracer {
         links_[b] = a;
     }
 
-    /// Walks from this end on; closed where it comes back to it.
+    /// Follows links from this end; the curve is closed if it returns there.
     void follow(std::size_t start, Curves& curves) {
         std::vector<std::size_t> nodes;
         std::ptrdiff_t forward = 0;
@@ -213,7 +213,8 @@ class Tracer {
         }
     }
 
-    /// Cuts off a loop wherever the curve comes to a node again, so that none passes one twice.
+    /// Splits the curve into loops wherever it returns to a node, so that each loop visits a node
+    /// once.
     void addClosed(const std::vector<std::size_t>& nodes, Curves& curves) {
         seen_.resize(places_.size(), false);
         std::vector<std::size_t> way;
@@ -248,7 +249,7 @@ class Tracer {
             curves.closed.push_back(std::move(polygon));
             return;
         }
-        // A ridge that just reaches the height, or a part without thickness.
+        // A ridge that only touches the height, or a part without thickness.
         if (polygon.size() == 2) {
             curves.open.push_back({polygon[0], polygon[1]});
         } else if (polygon.size() > 2) {
@@ -258,9 +259,9 @@ class Tracer {
 
     std::vector<Point2> places_;        // of the nodes
     std::vector<std::size_t> node_of_;  // of each end
-    std::vector<std::size_t> links_;    // the end that each goes on with
-    std::vector<bool> used_;            // arcs
-    std::vector<bool> seen_;            // nodes on the way
+    std::vector<std::size_t> links_;    // the end at which each continues
+    std::vector<bool> used_;            // by arc
+    std::vector<bool> seen_;            // nodes on the current way
 };
 
 Curves curvesOf(const Mesh& mesh, double height, Moved moved) {
@@ -268,7 +269,7 @@ Curves curvesOf(const Mesh& mesh, double height, Moved moved) {
     Curves curves = Tracer(mesh, height, arcs.one_sided).trace();
     Curves more = Tracer(mesh, height, arcs.two_sided).trace();
     for (Polygon& curve : more.closed) {
-        // Neither side of it is known to be the solid.
+        // The solid's side is unknown.
         if (signedArea(curve) < 0) std::reverse(curve.begin() + 1, curve.end());
         curves.closed.push_back(std::move(curve));
     }
@@ -289,7 +290,7 @@ void cutMesh(const Mesh& mesh, double height, Slice& out) {
         for (Polygon& solid : solids) {
             if (!known.insert(solid).second) continue;
             const double area = signedArea(solid);
-            // Surfaces that run through each other may have cavities larger than themselves.
+            // Surfaces that intersect each other may have cavities larger than themselves.
             if (area < 0) std::reverse(solid.begin() + 1, solid.end());
             if (area == 0)
                 forEachEdge(solid, [&](const Segment2& line) { out.sheets.push_back(line); });
@@ -299,13 +300,14 @@ void cutMesh(const Mesh& mesh, double height, Slice& out) {
     };
     add_solids(joinCavities(std::move(curves.closed)));
     out.sheets.insert(out.sheets.end(), curves.open.begin(), curves.open.end());
-    // Where vertices lie at the very height, what begins there counts as well as what ends there.
+    // If vertices lie exactly at the height, surfaces that begin there count as well as those that
+    // end there.
     const bool is_between = std::none_of(mesh.vertices.begin(), mesh.vertices.end(),
                                          [height](const Point3& p) { return p.z == height; });
     if (is_between) return;
     Curves more = curvesOf(mesh, height, Moved::Up);
     add_solids(joinCavities(std::move(more.closed)));
-    // From left to right, so that both ways along a line are the same.
+    // Equal for both directions of a line.
     const auto ordered = [](const Segment2& s) {
         return lexLess(s.b, s.a) ? Polygon{s.b, s.a} : Polygon{s.a, s.b};
     };

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kNone = ~std::size_t{0};
 
-/// Joins cavities to what is around them.
+/// Merges cavities with the polygons around them.
 class Seams {
   public:
     explicit Seams(std::vector<Polygon> curves) : curves_(std::move(curves)) {
@@ -32,7 +32,7 @@ class Seams {
     }
 
     std::vector<Polygon> join() {
-        // From left to right: what a cavity is joined to has its place already.
+        // From left to right, so that the polygon around a cavity is decided before the cavity.
         std::vector<Seam> seams;
         rank_.resize(curves_.size());
         for (std::size_t i = 0; i < order_.size(); ++i) rank_[order_[i]] = i;
@@ -85,7 +85,7 @@ class Seams {
         tree_ = BoxTree(boxes);
     }
 
-    /// One ring of vertices a curve.
+    /// Links the vertices of each curve in a ring.
     void linkVertices() {
         for (const Polygon& curve : curves_) {
             const std::size_t first = points_.size();
@@ -96,15 +96,15 @@ class Seams {
         }
     }
 
-    /// The nearest edge to the left of a cavity's leftmost vertex that has the solid between, or
-    /// nothing.
+    /// Finds the nearest edge to the left of a cavity's leftmost vertex with the solid between;
+    /// empty if there is none.
     [[nodiscard]] std::optional<Hit> surrounding(std::size_t cavity) const {
         const Point2 from = curves_[cavity].front();
         std::vector<Hit> hits;
         const Box2 window{{-std::numeric_limits<double>::infinity(), from.y}, from};
         tree_.search(window, [&](std::size_t edge) {
             const std::size_t curve = edges_[edge].curve;
-            // Curves that are not placed yet may touch this one; none of them is around it.
+            // Later curves may touch this one, but cannot surround it.
             if (curve == cavity || rank_[curve] > rank_[cavity]) return;
             const auto [a, b] = line(edge);
             if ((a.y > from.y) == (b.y > from.y)) return;
@@ -115,8 +115,8 @@ class Seams {
         std::sort(hits.begin(), hits.end(), [](const Hit& s, const Hit& t) {
             return s.place.x != t.place.x ? s.place.x > t.place.x : s.edge < t.edge;
         });
-        // The solid lies to the right of edges that go down. Whatever ends on the way, going up,
-        // begins further left.
+        // The solid lies to the right of edges that go down. An edge that goes up is the right side
+        // of a solid that begins further left.
         int beside = 0;
         for (const Hit& hit : hits) {
             const Segment2 s = line(hit.edge);
@@ -137,7 +137,7 @@ class Seams {
     }
 
     void splice(std::vector<Seam>& seams) {
-        // Seams of the same edge in the order in which it passes them.
+        // Orders the seams of an edge along it.
         const auto way = [this](const Seam& seam) {
             return distance(line(seam.edge).a, seam.place);
         };
@@ -153,7 +153,7 @@ class Seams {
                 const std::size_t from = turned_[curve] ? after(curve, vertex) : vertex;
                 last = from == 0 ? head[curve] : first_[curve] + from;
             }
-            // To a copy of the first vertex of the cavity, around, and from that vertex back.
+            // To a copy of the cavity's first vertex, around the cavity, and back from that vertex.
             const std::size_t begin = first_[seam.cavity];
             head[seam.cavity] = add(points_[begin], next_[begin]);
             const std::size_t back = add(seam.place, next_[last]);
@@ -183,7 +183,7 @@ class Seams {
 
     std::vector<Polygon> curves_;
     std::vector<std::size_t> order_, rank_;  // from left to right
-    std::vector<bool> root_, turned_;        // bounds a solid; has its edges the other way
+    std::vector<bool> root_, turned_;        // bounds a solid; has reversed edges
     std::vector<Edge> edges_;
     BoxTree tree_;
     std::vector<Point2> points_;

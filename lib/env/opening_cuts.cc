@@ -13,13 +13,12 @@ namespace ispace {
 
 namespace {
 
-/// Walls upon each other that one opening may go through.
+/// Maximum number of coincident walls that one opening may go through.
 constexpr std::size_t kMaxWalls = 64;
-/// Overlaps that are looked for: more than are shown.
+/// Limit of reported overlaps; messages show fewer.
 constexpr std::size_t kMaxOverlaps = 100;
 
-/// A line with its lower end as origin, so that lines on the same place count in the same
-/// direction.
+/// Axis of a line, from its lower end, so that coincident lines measure in the same direction.
 struct Axis {
     Point2 origin;
     Vec2 unit;
@@ -38,13 +37,13 @@ struct Axis {
     [[nodiscard]] Point2 foot(Point2 p) const { return origin + along(p) * unit; }
 };
 
-/// An opening in one of the lines that it goes through, along the line's axis.
+/// Interval of an opening along the axis of one of the lines that it goes through.
 struct Cut {
     std::size_t line;
     std::size_t opening;
     double from, to;
-    Point2 a, b;    ///< the jambs: there
-    double beside;  ///< how far the opening's own line is away
+    Point2 a, b;    ///< the jambs, at `from` and `to`
+    double beside;  ///< distance of the opening's own line
 };
 
 /// Finds the lines that openings go through.
@@ -52,7 +51,7 @@ class CutFinder {
   public:
     explicit CutFinder(const WallPlan& plan) : plan_(plan), tree_(plan.lines) {}
 
-    /// All cuts of one opening; more than kMaxWalls of them are not looked for.
+    /// Appends all cuts of one opening; stops above kMaxWalls.
     void find(std::span<const Opening> openings, std::size_t number, std::vector<Cut>& cuts) {
         const Opening& opening = openings[number];
         const auto [a, b] = jambs(opening);
@@ -117,7 +116,7 @@ class LineCutter {
     LineCutter(const WallPlan& plan, std::span<const Opening> openings, CutWalls& out)
         : plan_(plan), openings_(openings), out_(out) {}
 
-    /// \pre pieces: all of the line, in order; cuts: all in it, by `from`
+    /// \pre pieces are all of the line, in order; cuts are all in it, sorted by `from`
     void cut(std::size_t line, std::span<const Segment2> pieces, std::span<const Cut> cuts) {
         line_ = line;
         const Axis axis(plan_.lines[line]);
@@ -146,7 +145,7 @@ class LineCutter {
                     open);
                 from = to;
             };
-            // A jamb at an end of the piece, or at another jamb, is at its place.
+            // A jamb at an end of the piece, or at another jamb, is merged with it.
             for (; next_jamb < jambs.size() && jambs[next_jamb].along < last.along - kWeldDistance;
                  ++next_jamb)
                 if (jambs[next_jamb].along > from.along + kWeldDistance) step(jambs[next_jamb]);
@@ -160,7 +159,7 @@ class LineCutter {
         Point2 place;
     };
 
-    /// What stands on a stretch of the line between jambs.
+    /// Adds the walls and fillings on a stretch of the line between jambs.
     void emit(const Segment2& stretch, std::vector<const Cut*>& open) {
         std::sort(open.begin(), open.end(), [this](const Cut* c, const Cut* d) {
             return openings_[c->opening].bottom < openings_[d->opening].bottom;
@@ -207,14 +206,14 @@ class LineCutter {
     Vec2 along_;
 };
 
-/// The whole of it, for one plan.
+/// Cuts all openings of one plan.
 class Cutter {
   public:
     Cutter(std::span<const Element> elements, const WallPlan& plan,
            std::span<const Opening> openings, Diagnostics& findings)
         : elements_(elements), plan_(plan), openings_(openings), findings_(findings) {}
 
-    /// Sorted by line, then along it.
+    /// Finds all cuts, sorted by line, then along it.
     [[nodiscard]] std::vector<Cut> findCuts() const {
         std::vector<Cut> cuts;
         CutFinder finder(plan_);
@@ -233,7 +232,8 @@ class Cutter {
         return cuts;
     }
 
-    /// Findings for openings that share a part of a wall. \pre cuts are sorted
+    /// Reports openings that share a part of a wall; returns true if there are any.
+    /// \pre cuts are sorted
     [[nodiscard]] bool findOverlaps(std::span<const Cut> cuts) const {
         std::vector<std::tuple<std::size_t, std::size_t, const Cut*>> pairs;
         std::vector<const Cut*> open;
@@ -252,7 +252,7 @@ class Cutter {
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             const auto& [later, earlier, cut] = pairs[i];
             if (i > 0 && std::get<0>(pairs[i - 1]) == later && std::get<1>(pairs[i - 1]) == earlier)
-                continue;  // in a second wall
+                continue;  // reported for another wall
             std::string message = nameOf(elementOf(later)) + " overlaps ";
             message += nameOf(elementOf(earlier)) + " in ";
             message += nameOf(elements_[plan_.owner[cut->line]]) + " near " + placeText(cut->a);
@@ -269,7 +269,7 @@ class Cutter {
         for (std::size_t from = 0, to = 0; from < welded.pieces.size(); from = to) {
             const std::size_t line = welded.source[from];
             while (to < welded.pieces.size() && welded.source[to] == line) ++to;
-            while (cut < cuts.size() && cuts[cut].line < line) ++cut;  // of lines welded away
+            while (cut < cuts.size() && cuts[cut].line < line) ++cut;  // lost in the weld
             const std::size_t first = cut;
             while (cut < cuts.size() && cuts[cut].line == line) ++cut;
             cutter.cut(line, std::span(welded.pieces).subspan(from, to - from),
@@ -277,8 +277,8 @@ class Cutter {
         }
     }
 
-    /// Sheets between walls that stand apart, so that nothing gets in between them; and lines that
-    /// keep the room between them out of the rooms that the opening joins.
+    /// Adds sheets between walls that stand apart, to close the space between them, and lines that
+    /// separate this space from the rooms that the opening joins.
     void lineReveals(std::span<const Cut> cuts, CutWalls& out) const {
         bool any = false;
         for (const Cut& cut : cuts) {
@@ -295,7 +295,7 @@ class Cutter {
             for (const Point2 jamb : {cut.a, cut.b}) {
                 part.piece.line = {host.foot(jamb), jamb};
                 const Vec2 across = jamb - part.piece.line.a;
-                // Of walls at an angle one jamb may lie on the host's line.
+                // If walls meet at an angle, one jamb may lie on the host's line.
                 if (!(length(across) > 0)) continue;
                 part.along = (1 / length(across)) * across;
                 if (apart > 0 && part.piece.top > part.piece.bottom) out.parts.push_back(part);
@@ -317,7 +317,7 @@ class Cutter {
         return s.bottom < t.top - kWeldDistance && t.bottom < s.top - kWeldDistance;
     }
 
-    /// Lets lines and passages meet after more lines have come.
+    /// Welds lines and passages again after lines were added.
     static void weldAgain(CutWalls& out) {
         std::vector<Segment2> all = out.lines;
         all.insert(all.end(), out.passages.begin(), out.passages.end());
@@ -352,7 +352,7 @@ CutWalls cutOpenings(std::span<const Element> elements, const WallPlan& plan,
                      Diagnostics& findings) {
     const Cutter cutter(elements, plan, openings, findings);
     std::vector<Cut> cuts = cutter.findCuts();
-    if (cutter.findOverlaps(cuts)) cuts.clear();  // an error; the plain walls do
+    if (cutter.findOverlaps(cuts)) cuts.clear();  // an error; plain walls suffice
     CutWalls out;
     cutter.cutAll(welded, cuts, out);
     cutter.lineReveals(cuts, out);

@@ -15,8 +15,8 @@ namespace ispace {
 
 namespace {
 
-/// Walls count as parallel to a heading within a degree, and to the way from `from` to `to` within
-/// thirty, since its ends may be off the line.
+/// Walls count as parallel to a heading within a degree, and to the direction from `from` to `to`
+/// within thirty, since those points may lie off the line.
 constexpr double kParallel = std::numbers::pi / 180, kAlmostParallel = 30 * kParallel;
 
 Point2 pointOf(const Tuple& tuple) { return {tuple[0], tuple[1]}; }
@@ -95,7 +95,7 @@ std::optional<OpeningSites::Lines> OpeningSites::linesOf(const Element& opening)
         return std::nullopt;
     }
     const auto [first, last] = std::equal_range(plan_.owner.begin(), plan_.owner.end(), *found);
-    if (first == last) return std::nullopt;  // that has a finding of its own
+    if (first == last) return std::nullopt;  // the wall's record has a finding
     return Lines{static_cast<std::size_t>(first - plan_.owner.begin()),
                  static_cast<std::size_t>(last - plan_.owner.begin()), &wall};
 }
@@ -131,13 +131,13 @@ double OpeningSites::along(std::size_t line, Point2 p) const {
     return dot(p - a, b - a) / distance(a, b);
 }
 
-/// By how much the site sticks out of its line.
+/// Computes the length of the site beyond the ends of its line.
 double OpeningSites::excess(const OpeningSite& site) const {
     const auto& [a, b] = plan_.lines[site.line];
     return std::max(0.0, -site.from) + std::max(0.0, site.to - distance(a, b));
 }
 
-/// How far off a line its openings may be given.
+/// Returns how far off a line the position of an opening may be.
 double OpeningSites::reach(std::size_t line) const {
     return std::max(kNearWall, std::min(plan_.walls[line].thickness / 2, kMaxFace) + kNearFace);
 }
@@ -147,8 +147,8 @@ bool OpeningSites::isParallel(std::size_t line, Vec2 direction, double within) c
     return std::abs(cross(own, direction)) <= std::sin(within) * length(own) * length(direction);
 }
 
-/// Of the lines around p that are allowed(line) and within reach by off(line), that with the least;
-/// of equally near ones that where site_on(line) sticks out least, then the first.
+/// Finds, among the lines around p with allowed(line), the one with the least off(line) within its
+/// reach; among equally near lines, the one that site_on(line) exceeds least, then the first.
 template <typename Allowed, typename Off, typename SiteOn>
 std::optional<OpeningSite> OpeningSites::nearest(Point2 p, Allowed allowed, Off off,
                                                  SiteOn site_on) const {
@@ -212,7 +212,7 @@ std::optional<OpeningSite> OpeningSites::byEnds(const Element& opening, const Li
         return lines.first <= line && line < lines.last &&
                isParallel(line, to - from, kAlmostParallel);
     };
-    // Off the line to its sides: what sticks out beyond its ends is told later.
+    // Distance sideways; Fitter checks the part beyond the ends of the line.
     const auto off = [&](std::size_t line) {
         const auto& [a, b] = plan_.lines[line];
         const Vec2 side = (1 / distance(a, b)) * perpendicular(b - a);
@@ -242,7 +242,7 @@ void OpeningSites::tellNearest(const Element& opening, std::string_view key, Poi
             nearest_line = line;
         }
     };
-    // Of what is not shown only the number counts.
+    // A message that is not shown needs no nearest wall; the finding is only counted.
     if (!findings_.full()) grid().searchFrom(p, look, [&](double seen) { return nearest <= seen; });
     std::string message = nameOf(opening) + " at " + placeText(p) + " is not on ";
     message += lines.wall != nullptr ? nameOf(*lines.wall) : "a wall";

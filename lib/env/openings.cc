@@ -18,13 +18,13 @@ bool isOpening(const Element& element) {
     return keyword == "door" || keyword == "window";
 }
 
-/// Makes openings of the places found for them.
+/// Converts sites to openings.
 class Fitter {
   public:
     Fitter(std::span<const Element> elements, const WallPlan& plan, Diagnostics& findings)
         : elements_(elements), plan_(plan), findings_(findings) {}
 
-    /// Nothing, with a finding, if the wall is too short or too low.
+    /// Returns empty, with a finding, if the wall is too short or too low.
     std::optional<Opening> fit(std::size_t element, OpeningSite site) {
         const Element& record = elements_[element];
         Opening opening = openingOf(record.record, plan_.walls[site.line]);
@@ -59,7 +59,8 @@ class Fitter {
         return opening;
     }
 
-    /// Moves ends that miss those of the line by little.
+    /// Moves ends within kWeldDistance of the line's ends onto them; reports openings that are too
+    /// narrow or too long.
     bool fitsAlong(const Element& opening, OpeningSite& site) {
         const auto& [a, b] = plan_.lines[site.line];
         const double wall = distance(a, b), width = site.to - site.from;
@@ -86,7 +87,7 @@ class Fitter {
         return true;
     }
 
-    /// The same between the bottom of the wall and its top.
+    /// Fits the heights between the bottom of the wall and its top.
     bool fitsUpright(const Element& element, std::size_t line, Opening& opening) {
         const WallLine& wall = plan_.walls[line];
         const auto fail = [&](std::string_view key, std::string message) {

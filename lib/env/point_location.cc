@@ -11,17 +11,18 @@ namespace ispace {
 
 namespace {
 
-/// About as many cells as keep building quick, and two or three to an edge.
+/// Returns the number of cells along one side of a grid with about three cells per edge, within
+/// limits that keep building quick.
 int cellsAcross(double extent, double other, std::size_t edges) {
     constexpr double kMinCells = 1024, kMaxCells = 250'000, kMaxAcross = 2000;
     const double cells = std::clamp(3 * static_cast<double>(edges), kMinCells, kMaxCells);
     const double across = std::sqrt(cells * extent / other);
-    // Of what has no extent in one direction one gets a row.
+    // A box without extent in one direction gets one row.
     return std::isfinite(across) ? static_cast<int>(std::clamp(across, 1.0, kMaxAcross)) : 1;
 }
 
-/// Cells a little beyond the box, by odd shares: walls are drawn at round numbers, and no centre
-/// should lie on one.
+/// Returns a grid that exceeds the box by odd shares: walls are drawn at round numbers, and no
+/// centre should lie on one.
 Grid gridOver(const Box2& box, std::size_t edges) {
     Grid grid;
     constexpr double kBelow = 0.00317, kAbove = 0.00529;
@@ -33,7 +34,7 @@ Grid gridOver(const Box2& box, std::size_t edges) {
     return grid;
 }
 
-/// The cell along one axis, of a place that may lie beyond the grid.
+/// Returns the cell along one axis; offsets beyond the grid are clamped.
 int cellAlong(double offset, double extent, int count) {
     const double cell = offset / extent * count;
     if (!(cell > 0)) return 0;
@@ -93,7 +94,7 @@ Side RegionIndex::locate(Point2 p) const {
     edgesIn(window, [&](const Segment2& edge) {
         touches = touches || intersects(edge, {p, p});
         is_known = is_known && !intersects(edge, {known, known});
-        // One edge: an even number of crossings is none.
+        // Tests one edge; an even number of crossings keeps the side.
         if (!insideByParity(p, known, {&edge, 1})) is_same = !is_same;
     });
     if (touches) return Side::Boundary;
@@ -101,7 +102,7 @@ Side RegionIndex::locate(Point2 p) const {
     return inside_.test(cell) == is_same ? Side::Inside : Side::Outside;
 }
 
-/// By the crossings of the ray towards +x, end points by the half-open rule.
+/// Counts crossings of the ray towards +x, end points by the half-open rule.
 Side RegionIndex::locateByRay(Point2 p) const {
     bool inside = false;
     edgesIn({p, {std::max(grid_.limits.high.x, p.x), p.y}}, [&](const Segment2& edge) {

@@ -27,12 +27,12 @@ class RegionIndex {
     [[nodiscard]] Side locate(Point2 p) const;
     /// Returns true if an edge comes within `reach` of p, or p lies inside.
     [[nodiscard]] bool isWithin(Point2 p, double reach) const;
-    /// Calls visit(const Segment2&) for the edges whose bounds meet the window.
+    /// Calls visit(const Segment2&) for the edges with bounds that meet the window.
     template <typename Visit>
     void edgesIn(const Box2& window, Visit visit) const {
         tree_.search(window, [&](std::size_t i) { visit(edges_[i]); });
     }
-    /// Returns the grid, whose cell centres are the known points; empty without regions.
+    /// Returns the grid; its cell centres are the known points. Empty without regions.
     [[nodiscard]] const Grid& cells() const { return grid_; }
 
   private:
@@ -41,7 +41,7 @@ class RegionIndex {
     std::vector<Segment2> edges_;
     BoxTree tree_;
     Grid grid_;
-    CellSet inside_;  // the cells whose centres lie inside
+    CellSet inside_;  // the cells with centres inside
 };
 
 /// Returns true if p lies strictly inside, farther than `margin` from the edge. O(corners)

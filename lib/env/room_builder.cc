@@ -17,8 +17,7 @@ namespace ispace {
 
 namespace {
 
-/// Builds the body of a record without its walls: those follow from the lines of all records,
-/// welded.
+/// Builds the body of a record without its walls, which need the welded lines of all records.
 Body bodyBesideWalls(const Record& record) {
     if (!isWall(record)) return bodyOf(record);
     Body body;
@@ -39,7 +38,7 @@ void addBody(Body& body, Body&& more) {
     append(body.prisms, std::move(more.prisms));
 }
 
-/// The `inside` records.
+/// Returns the `inside` records.
 std::vector<const Record*> insideRecords(std::span<const Element> elements) {
     std::vector<const Record*> inside;
     for (const Element& element : elements)
@@ -47,9 +46,9 @@ std::vector<const Record*> insideRecords(std::span<const Element> elements) {
     return inside;
 }
 
-/// What the shapes of things may have in corners: so many, and more for each record that is written
-/// than for those that a repetition makes. A few lines can make round and checkered things without
-/// end; a plan that somebody wrote stays far below.
+/// Limit of corners in all shapes: a constant, and more for each written record than for one that a
+/// repetition creates. A few lines can define round and checkered objects without end; hand-written
+/// plans stay far below the limit.
 constexpr std::size_t kMaxCorners = 1'000'000, kMaxCornersWritten = 1000, kMaxCornersMade = 10;
 
 std::size_t cornersOf(const Body& body) {
@@ -59,7 +58,7 @@ std::size_t cornersOf(const Body& body) {
     return corners;
 }
 
-/// For findings about the file as a whole.
+/// Returns a finding about the file as a whole.
 Diagnostic fileFinding(std::span<const Element> elements, std::string message) {
     if (elements.empty()) return {{}, 0, 0, std::move(message)};
     Diagnostic diagnostic = elements.front().record.finding(std::move(message));
@@ -67,11 +66,10 @@ Diagnostic fileFinding(std::span<const Element> elements, std::string message) {
     return diagnostic;
 }
 
-/// Builds an environment step by step, with as many findings together as do not follow from each
-/// other.
+/// Builds an environment step by step and collects all findings that are independent of each other.
 class Builder {
   public:
-    /// \param with_things else giveThings() is still to be called
+    /// \param with_things false: giveThings() must follow
     void takeRecords(std::span<const Record> records, std::span<const std::string> ids,
                      bool with_things) {
         elements_.reserve(static_cast<std::size_t>(
@@ -87,11 +85,11 @@ class Builder {
         inside_ = insideRecords(elements_);
         if (plan_.walls.empty() && walls_whole_)
             findings_.add(fileFinding(elements_, noWallsText()));
-        // The region inside a self-crossing wall means little, and may take long to find.
+        // The region inside a self-crossing wall is meaningless and may take long to find.
         if (plan_.walls.empty() || !walls_simple_) findings_.throwIfAny();
     }
 
-    /// A mesh may be the room itself.
+    /// Suggests slicing if there is a mesh, which may be the room itself.
     [[nodiscard]] std::string noWallsText() const {
         const bool has_mesh =
             std::any_of(elements_.begin(), elements_.end(),
@@ -104,8 +102,8 @@ class Builder {
                "add an ispace, wall or fence record";
     }
 
-    /// Builds the shapes of all elements except walls, in parallel to the walls. \throws
-    /// FormatError
+    /// Builds the shapes of all elements except walls, in parallel to the walls.
+    /// \throws FormatError with all findings
     void giveThings() {
         Diagnostics findings;
         for (Element& element : elements_) {
@@ -116,7 +114,7 @@ class Builder {
     }
 
     /// Computes the wall lines and cuts the openings. \pre there are walls
-    /// \throws FormatError with all findings so far, or some if `at_once`
+    /// \throws FormatError with all findings so far, or only some if `at_once`
     void cutWalls(bool at_once) {
         const auto place = [this] { openings_ = placeOpenings(elements_, plan_, findings_); };
         const auto weld_all = [&] { welded_ = at_once ? weld(plan_.lines) : weldedLines(); };
@@ -137,7 +135,7 @@ class Builder {
         return ispace::wallBodies(parts, plan_.walls.size() + openings_.size());
     }
 
-    /// \param bodies those of takeWallBodies(). \pre all else has its shape
+    /// \param bodies those of takeWallBodies(). \pre all other elements have their shape
     void addWalls(std::vector<Body> bodies) {
         const std::size_t walls = plan_.walls.size();
         for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -145,7 +143,7 @@ class Builder {
                     std::move(bodies[i]));
     }
 
-    /// \throws FormatError with all findings
+    /// Finds the indoor region. \throws FormatError with all findings
     void enclose() {
         try {
             enclosure_ = enclosed();
@@ -156,7 +154,7 @@ class Builder {
         findings_.throwIfAny();
     }
 
-    /// \pre all is done
+    /// Moves the result out. \pre all steps are done
     [[nodiscard]] BuiltRoom take() {
         double height = 0;
         for (const WallLine& wall : plan_.walls) height = std::max(height, wall.top);
@@ -199,7 +197,7 @@ class Builder {
         takeFindings(begun.findings);
     }
 
-    /// The walls of all, and the things without their shapes.
+    /// Reads the records in parallel blocks: walls with their lines, objects without shapes.
     void takeInBlocks(std::span<const Record> records, std::span<const std::string> ids) {
         constexpr std::size_t kBlock = 512;
         std::array<std::vector<Begun>, kBlocksAtOnce> slots;
@@ -240,7 +238,7 @@ class Builder {
         }
     }
 
-    /// Findings about lines as such, without a place of their own.
+    /// Adds the file to findings about lines, which have no position.
     [[nodiscard]] FormatError withFile(const FormatError& error) const {
         std::vector<Diagnostic> all = error.diagnostics();
         for (Diagnostic& diagnostic : all) {
@@ -265,7 +263,7 @@ class Builder {
     std::size_t corners_ = 0, max_corners_ = kMaxCorners;  // without walls and meshes
     WallPlan plan_;
     bool walls_whole_ = true;   // every record has all its lines
-    bool walls_simple_ = true;  // none crosses itself
+    bool walls_simple_ = true;  // no wall crosses itself
     std::vector<const Record*> inside_;
     std::vector<Opening> openings_;
     CutWalls cut_;
@@ -274,7 +272,7 @@ class Builder {
     Enclosure enclosure_;
 };
 
-/// One step after another, so that findings come in order.
+/// Runs one step after another, so that findings are in order.
 void buildInOrder(std::span<const Record> records, std::span<const std::string> ids,
                   Builder& builder) {
     builder.takeRecords(records, ids, true);
@@ -284,7 +282,7 @@ void buildInOrder(std::span<const Record> records, std::span<const std::string> 
 }
 
 /// Finds the region enclosed by the walls, the longest task, in parallel to the other shapes.
-/// \throws FormatError if there are findings: some of them
+/// \throws FormatError with some of the findings
 void buildAtOnce(std::span<const Record> records, std::span<const std::string> ids,
                  Builder& builder) {
     builder.takeRecords(records, ids, false);

@@ -12,8 +12,8 @@ namespace ispace {
 
 namespace {
 
-/// All lines that for_each(visit) calls visit with, counted first: they are most of what a large
-/// slice takes.
+/// Stores all lines that for_each(visit) visits. Counts them first, since they take most of the
+/// memory of a large slice.
 template <typename ForEach>
 std::vector<Segment2> gathered(ForEach for_each) {
     std::size_t count = 0;
@@ -48,10 +48,10 @@ bool Slice::blocked(Point2 p) const {
 
 namespace {
 
-/// The part of a triangle between two heights, seen from above.
+/// Returns the part of a triangle between two heights, seen from above.
 Polygon projected(const std::array<Point3, 3>& triangle, double bottom, double top) {
     std::vector<Point3> part(triangle.begin(), triangle.end());
-    // What lies on the inner side of sign * z <= sign * height.
+    // Keeps the points with sign * z <= sign * height.
     const auto clip = [&part](double height, double sign) {
         std::vector<Point3> kept;
         for (std::size_t i = 0; i < part.size(); ++i) {
@@ -76,7 +76,7 @@ Polygon projected(const std::array<Point3, 3>& triangle, double bottom, double t
     return out;
 }
 
-/// The line on which all these points lie, as far as doubles tell.
+/// Returns the extent of points on one line, up to rounding.
 Segment2 spanOf(const Polygon& points) {
     const auto [low, high] = std::minmax_element(points.begin(), points.end(), lexLess);
     return {*low, *high};
@@ -85,7 +85,7 @@ Segment2 spanOf(const Polygon& points) {
 }  // namespace
 
 void bandOfMeshes(const Body& body, double bottom, double top, Slice& out, std::size_t owner) {
-    // What stands higher and reaches lower than the band has no face in it.
+    // A mesh that reaches above and below the band has no face in it; the cut finds its interior.
     Slice slice;
     cutMeshes(body, bottom, slice);
     out.solids.insert(out.solids.end(), slice.solids.begin(), slice.solids.end());

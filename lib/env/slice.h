@@ -21,7 +21,7 @@ struct Slice {
         Ellipse curve;
         std::size_t solid = 0;  ///< index in `solids`
     };
-    std::vector<Round> rounds = {};  ///< ascending by solid; none in a band
+    std::vector<Round> rounds = {};  ///< ascending by solid; empty in a band
     /// Indices in Environment::elements(); empty in a slice without an environment.
     std::vector<std::size_t> sheet_owners = {}, solid_owners = {};
 

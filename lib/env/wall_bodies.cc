@@ -12,27 +12,27 @@ namespace ispace {
 
 namespace {
 
-/// A mitre reaches at most this many half thicknesses beyond its corner, as drawing programs have
-/// it; sharper corners are cut off straight.
+/// Limit of a mitre's length beyond its corner, in half thicknesses, as in drawing programs;
+/// sharper corners are cut off straight.
 constexpr double kMitreLimit = 4;
-/// Heights at one point that are treated apart; with more of them mitres are as high as both of
-/// their neighbours, whatever stands between them.
+/// Maximum number of heights at one point that are treated separately; above it, mitres are as high
+/// as both neighbours, whatever stands between them.
 constexpr std::size_t kMaxLevels = 32;
-/// With more ends at one point, the point is simply a corner of all boxes.
+/// With more ends at one point, the point becomes a corner of all boxes.
 constexpr std::size_t kFewEnds = 16;
 
-/// An end of a part, seen from there along the wall. Those of sheets have one point as corners.
+/// An end of a part, seen from there along the wall. Both corners of a sheet are its end point.
 struct End {
     Point2 at;
     std::size_t part;
-    bool is_b;           ///< the part's second end
+    bool is_b;           ///< true for the part's second end
     Vec2 direction;      ///< unit, away from the end
     Point2 left, right;  ///< corners at this end
     double angle;        ///< of direction, radians
-    bool meets = false;  ///< the point itself has to be a corner of the box
+    bool meets = false;  ///< the point itself must be a corner of the box
 };
 
-/// A mitre and the body it belongs to.
+/// A mitre and the body that it belongs to.
 struct Joint {
     std::size_t source;
     Prism prism;
@@ -40,8 +40,8 @@ struct Joint {
 
 bool isThick(const WallPart& part) { return part.piece.thickness > kThinnest; }
 
-/// From the mid-line to the left face. The same for all parts of a line, so that they share
-/// corners, unless the weld has turned a tiny part off its line.
+/// Returns the vector from the mid-line to the left face: the same for all parts of a line, so that
+/// they share corners, unless the weld has rotated a tiny part.
 Vec2 sideOf(const WallPart& part) {
     const Vec2 along = part.piece.line.b - part.piece.line.a;
     const double l = length(along);
@@ -66,8 +66,8 @@ std::vector<End> endsOf(std::span<const WallPart> parts) {
     return ends;
 }
 
-/// Fills the notch that is left between two ends at a point where the turn from the first to the
-/// second, counter-clockwise, is more than half a circle.
+/// Fills the notch between two ends at a point if the turn from the first to the second,
+/// counter-clockwise, exceeds half a circle.
 std::optional<Polygon> mitre(const End& first, const End& second) {
     const Point2 corner = first.at, a = first.left, b = second.right;
     if (distance(a, b) <= kWeldDistance) return std::nullopt;
@@ -87,7 +87,7 @@ std::optional<Polygon> mitre(const End& first, const End& second) {
 /// Finds the mitres at one point.
 class Corner {
   public:
-    /// \pre ends: of thick walls at one point, by angle
+    /// \pre ends belong to thick walls at one point, sorted by angle
     Corner(std::span<const WallPart> parts, std::vector<const End*> ends,
            std::vector<Joint>& joints)
         : parts_(parts), ends_(std::move(ends)), joints_(joints) {}
@@ -101,8 +101,8 @@ class Corner {
         std::sort(levels.begin(), levels.end());
         levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
         if (levels.size() > kMaxLevels) levels = {levels.front(), levels.back()};
-        // Bodies between two neighbouring levels make a separate corner; equal ones above merge
-        // into one mitre.
+        // Bodies between two neighbouring levels form a separate corner; equal ones on top of each
+        // other merge into one mitre.
         const std::size_t first = joints_.size();
         for (std::size_t i = 1; i < levels.size(); ++i) {
             std::vector<const End*> standing;
@@ -154,7 +154,7 @@ class Corner {
     std::vector<Joint>& joints_;
 };
 
-/// Returns true if two boxes end face to face without the very same corners.
+/// Returns true if two boxes meet face to face without identical corners.
 bool goOn(const End& s, const End& t) {
     const double half = std::max(distance(s.at, s.left), distance(t.at, t.left));
     return dot(s.direction, t.direction) < 0 &&
@@ -162,8 +162,8 @@ bool goOn(const End& s, const End& t) {
            (s.left != t.right || s.right != t.left);
 }
 
-/// Marks the ends of boxes that meet something there without sharing its corners: sheets, what
-/// fills openings, and walls that go on in the same direction but for rounding.
+/// Marks the ends of boxes that meet a part without sharing its corners: sheets, fillings of
+/// openings, and walls that continue in the same direction up to rounding.
 void markMeetings(std::span<const WallPart> parts, std::span<End> ends) {
     const bool all =
         ends.size() > kFewEnds || std::any_of(ends.begin(), ends.end(), [&](const End& end) {
@@ -175,7 +175,7 @@ void markMeetings(std::span<const WallPart> parts, std::span<End> ends) {
     }
 }
 
-/// Marks the ends that meet at each point, and returns the mitres.
+/// Marks the ends that meet at each point; returns the mitres.
 std::vector<Joint> joinEnds(std::span<const WallPart> parts, std::span<End> ends) {
     std::vector<Joint> joints;
     for (std::size_t from = 0, to = 0; from < ends.size(); from = to) {
@@ -219,7 +219,7 @@ std::vector<WallPart> wallParts(std::span<const WallLine> lines, const WeldedLin
 
 std::vector<Body> wallBodies(std::span<const WallPart> parts, std::size_t count) {
     std::vector<Body> bodies(count);
-    std::vector<std::pair<bool, bool>> meets;  // of each part's ends
+    std::vector<std::pair<bool, bool>> meets;  // per part: whether its ends meet others
     std::vector<Joint> joints;
     if (std::any_of(parts.begin(), parts.end(), isThick)) {
         std::vector<End> ends = endsOf(parts);

@@ -27,12 +27,13 @@ Material materialOf(const std::string& kind) {
     return Material::Wall;
 }
 
-/// What the weld would make one point of is no line.
+/// Returns true if the weld would merge both ends.
 bool isZeroLength(const Segment2& line) { return distance(line.a, line.b) <= kWeldDistance; }
 
 bool hasAnEnd(const Record& record) { return record.has("from") || record.has("to"); }
 
-/// The line from `from` to `to`; findings for half of it, or if another key gives the place too.
+/// Returns the line from `from` to `to`. Reports a missing end, and keys that give the position
+/// again.
 /// \pre hasAnEnd(record)
 std::optional<Segment2> lineByEnds(const Record& record,
                                    std::initializer_list<std::string_view> others,
@@ -51,7 +52,8 @@ std::optional<Segment2> lineByEnds(const Record& record,
     return std::nullopt;
 }
 
-/// Lays a wall by `at`, `heading` and `size`. False, with a finding, if that gives no wall.
+/// Computes a wall from `at`, `heading` and `size`. Returns false, with a finding, if they define
+/// no wall.
 bool layAlong(const Record& record, WallLine& wall, Diagnostics& findings) {
     if (!record.has("size")) {
         findings.add(record.finding("wall has no extent: give `from` and `to`, or `size`"));
@@ -88,7 +90,7 @@ std::vector<WallLine> wallLine(const Record& record, Diagnostics& findings) {
     return {};
 }
 
-/// Points of a fence as written; none, with a finding, if it has no extent.
+/// Reads the points of a fence; empty, with a finding, if it has no extent.
 std::vector<Point2> fencePoints(const Record& record, Diagnostics& findings) {
     std::vector<Point2> points;
     if (hasAnEnd(record)) {
@@ -106,7 +108,7 @@ std::vector<WallLine> fenceLines(const Record& record, Diagnostics& findings) {
     if (points.empty()) return {};
     const std::string_view extent = record.has("path") ? "path" : "to";
     const bool closed = record.flag("closed");
-    // A closed path that repeats its first point is closed all the same.
+    // A closed path may repeat its first point.
     if (closed && points.size() > 1 && points.front() == points.back()) points.pop_back();
     const std::size_t least = closed ? 3 : 2;
     if (points.size() < least) {
@@ -213,8 +215,8 @@ std::optional<Point2> selfCrossing(const Polygon& polygon) {
 
 namespace {
 
-/// Crossings of one element found before they are sorted, as a multiple of `most`: for one that
-/// runs through very many others these are enough.
+/// Limit of crossings of one element before sorting, as a multiple of `most`; enough for an element
+/// that crosses very many others.
 constexpr std::size_t kPerElement = 16;
 
 struct Meeting {
@@ -229,7 +231,7 @@ bool apart(const Segment2& s, const Segment2& t) {
            std::max(t.a.y, t.b.y) < std::min(s.a.y, s.b.y) - kWeldDistance;
 }
 
-/// The ends of the stretch where one line lies on the other, if it is longer than the weld.
+/// Finds the overlap of two lines, if it is longer than twice the weld distance.
 std::optional<Meeting> overlapOf(const Segment2& s, const Segment2& t) {
     Point2 from = s.a, to = s.a;
     bool any = false;
@@ -247,12 +249,12 @@ std::optional<Meeting> overlapOf(const Segment2& s, const Segment2& t) {
     return Meeting{from + 0.5 * (to - from), true};
 }
 
-/// Where two lines run through each other, if they do.
+/// Finds the crossing or overlap of two lines.
 std::optional<Meeting> meetingOf(const Segment2& s, const Segment2& t) {
     if (apart(s, t)) return std::nullopt;
     if (const auto overlap = overlapOf(s, t)) return overlap;
     if (!intersects(s, t)) return std::nullopt;
-    // An end on the other line is no crossing, nor one that pokes out on its far side by rounding.
+    // An end on the other line is no crossing, even if rounding puts it just beyond.
     for (const Point2 p : {s.a, s.b})
         if (distance(p, t) <= kWeldDistance) return std::nullopt;
     for (const Point2 p : {t.a, t.b})
@@ -269,23 +271,23 @@ bool same(const WallCrossing& c, const WallCrossing& d) {
     return c.a == d.a && c.b == d.b && c.place == d.place;
 }
 
-/// The crossings of one plan, found line by line.
+/// Finds the crossings of one plan line by line.
 class CrossingFinder {
   public:
     explicit CrossingFinder(std::span<const Element> elements) : elements_(elements) {
-        Diagnostics ignored;  // elements are made of records without findings
+        Diagnostics ignored;  // records of elements have no findings
         for (std::size_t i = 0; i < elements.size(); ++i) {
             for (const WallLine& wall : wallLinesOf(elements[i].record, ignored))
                 plan_.add(wall, i);
         }
     }
 
-    /// Those of the first elements, at most `most`.
+    /// Returns the crossings of the first elements, at most `most`.
     [[nodiscard]] std::vector<WallCrossing> find(std::size_t most) const {
         const SegmentTree tree(plan_.lines);
         std::vector<WallCrossing> found;
         std::vector<std::size_t> later;
-        std::size_t sorted = 0;  // crossings of elements before the one of this line
+        std::size_t sorted = 0;  // number of crossings of earlier elements
         for (std::size_t i = 0; i < plan_.lines.size(); ++i) {
             if (i > 0 && plan_.owner[i] != plan_.owner[i - 1]) sortFrom(sorted, found);
             if (found.size() >= most &&
@@ -311,7 +313,7 @@ class CrossingFinder {
         return is_room(i) && is_room(k);
     }
 
-    /// Returns false for lines of one element, and for the walls of equal rooms, however many.
+    /// Returns false for lines of one element, and for coincident walls of two rooms.
     [[nodiscard]] bool mayCross(std::size_t i, std::size_t k) const {
         return plan_.owner[i] != plan_.owner[k] &&
                !(plan_.lines[i] == plan_.lines[k] && areRooms(i, k));
@@ -323,7 +325,7 @@ class CrossingFinder {
         found.push_back({plan_.owner[i], plan_.owner[k], meeting->place, meeting->overlap});
     }
 
-    /// Puts what was found since into order, each crossing once.
+    /// Sorts the crossings found since and removes duplicates.
     static void sortFrom(std::size_t& sorted, std::vector<WallCrossing>& found) {
         const auto first = found.begin() + static_cast<std::ptrdiff_t>(sorted);
         std::sort(first, found.end(), less);

@@ -70,9 +70,9 @@ struct WallCrossing {
 };
 
 /// Finds pairs of wall lines of different elements that cross away from their ends, or overlap by
-/// more than the weld distance. Returns them in the order of the elements, the first `most`; an
-/// element with very many crossings contributes an arbitrary selection. Skips walls that share an
-/// end or end on one another, and adjacent rooms (`ispace`) that share a wall. Takes as long as
+/// more than twice the weld distance. Returns them in the order of the elements, the first `most`;
+/// an element with very many crossings contributes an arbitrary selection. Skips walls that share
+/// an end or end on one another, and adjacent rooms (`ispace`) that share a wall. Takes as long as
 /// weld.
 std::vector<WallCrossing> wallCrossings(std::span<const Element> elements, std::size_t most = 1000);
 

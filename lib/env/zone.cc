@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::string_view kRectangle = "rect:", kPolygon = "poly:";
 
-/// As the coordinates of records: with units, and within 1000 km.
+/// Returns the key of coordinates: with units, and within 1000 km.
 KeySpec coordinates(std::string_view prefix) {
     constexpr double kMaxDistance = 1e6;
     KeySpec key{.name = std::string(prefix),
@@ -70,7 +70,7 @@ Polygon parsedOutline(std::string_view text) {
     }
 }
 
-/// \throws UsageError for what encloses nothing, or not one thing
+/// \throws UsageError for an outline without area or one that crosses itself
 void mustEnclose(const Polygon& outline, std::string_view text) {
     const auto refuse = [text](const std::string& what) {
         throw UsageError("zone " + excerpt(text) + ' ' + what);
@@ -83,7 +83,7 @@ void mustEnclose(const Polygon& outline, std::string_view text) {
     if (!(signedArea(outline) > 0)) refuse("has no area");
 }
 
-/// Centre of gravity of the area. \pre the area is above 0
+/// Returns the centre of gravity of the area. \pre the area is above 0
 Point2 centerOfGravity(const Polygon& polygon) {
     // Relative to the first vertex, so that a small polygon far from the origin keeps its digits.
     double twice = 0;
@@ -138,9 +138,9 @@ NamedZone readZone(std::string_view text, const Environment& environment) {
 namespace {
 
 constexpr std::string_view kDoor = "door:";
-constexpr int kChords = 16;  // to a quarter of a circle
+constexpr int kChords = 16;  // per quarter circle
 
-/// A door's id, and the rectangle in the floor that its opening is.
+/// A door's id, and the rectangle of its opening in the floor.
 struct Doorway {
     std::string id;
     Segment2 line;
@@ -149,7 +149,7 @@ struct Doorway {
 
 std::vector<Doorway> doorwaysOf(const Environment& environment) {
     const std::vector<Element>& elements = environment.elements();
-    Diagnostics findings;  // stays empty: the environment would not be there
+    Diagnostics findings;  // stays empty: an environment has none
     WallPlan plan;
     for (std::size_t i = 0; i < elements.size(); ++i)
         for (const WallLine& wall : wallLinesOf(elements[i].record, findings)) plan.add(wall, i);
@@ -166,7 +166,7 @@ std::vector<Doorway> doorwaysOf(const Environment& environment) {
     return doors;
 }
 
-/// All points within the distance of the doorway, counter-clockwise.
+/// Returns all points within the distance of the doorway, counter-clockwise.
 Polygon around(const Doorway& door, double distance_from_it) {
     const Vec2 way = door.line.b - door.line.a;
     const Vec2 along = 1 / length(way) * way, across = perpendicular(along);

@@ -24,11 +24,11 @@ struct NamedZone {
 
 /// Reads one zone; the id of a record takes precedence over the other forms.
 /// \throws UsageError for an unknown zone (with the nearest name), a polygon of fewer than three
-/// corners, without area, or that crosses itself
+///         corners, without area, or that crosses itself
 NamedZone readZone(std::string_view text, const Environment& environment);
 
-/// Reads all zones of a text: `door:GLOB,M` is one for each door whose id matches the glob, the
-/// floor within M of its opening, walls ignored; any other text is one zone, as of readZone().
+/// Reads all zones of a text: `door:GLOB,M` means one zone for each door with a matching id: the
+/// floor within M of its opening, walls ignored. Any other text is one zone, as of readZone().
 /// Rounded ends have 16 chords per quarter circle.
 /// \throws UsageError as readZone(), for a bad distance, and if no door matches
 std::vector<NamedZone> readZones(std::string_view text, const Environment& environment);
