@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/env: the environment: its records, bodies, indoor region, slices, mesh. Uses record, geom.
+// Schemas of the environment records, and the bodies of furniture.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/env: the environment: its records, bodies, indoor region, slices, mesh. Uses record, geom.
 #pragma once
 
 #include <map>

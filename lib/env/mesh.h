@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/env: materials and meshes of bodies, and the polygons of their cuts.
+// Materials and meshes of bodies, and the polygons of their cuts.
 #pragma once
 
 #include <array>

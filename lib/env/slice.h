@@ -61,10 +61,10 @@ void Slice::forEachStraightLine(Visit visit) const {
 ///
 /// Joins loops along the edges that triangles share, never by distance. The interior of a closed
 /// mesh becomes solids; a cavity is a loop within the polygon, reached by a seam of no width (there
-/// and back along the same line, inside the solid), which blocked(), difference() and beams rely
-/// on. The curve of an open surface becomes sheets. Meshes are closed sets, as prisms are: a level
-/// face counts at its height, whichever side of it is solid; a level face of an open mesh does not,
-/// like a plate. O(triangles + k log k) for k triangles that are cut.
+/// and back along the same line, inside the solid), which keeps blocked(), difference() and beams
+/// correct. The curve of an open surface becomes sheets. Meshes are closed sets, as prisms are: a
+/// level face counts at its height, whichever side of it is solid; a level face of an open mesh
+/// does not, like a plate. O(triangles + k log k) for k triangles that are cut.
 void cutMeshes(const Body& body, double height, Slice& out, std::size_t owner = 0);
 
 /// Adds the projection of the body's meshes between two heights, ends included: the cut at
