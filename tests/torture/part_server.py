@@ -16,7 +16,9 @@ import lab as labs
 import part_kills
 
 MOST_WAIT = 1.0          # seconds
-MOST_MEMORY = 1 << 30    # bytes, of the whole run
+# Bytes of the whole run, from the sums of ispace-protocol(7): during a change two worlds of half a gigabyte each, 64
+# million pixels of requested pictures at 7 bytes, 128 MiB of unread answers, and what the allocator keeps.
+MOST_MEMORY = 2 << 30
 ROUND = 15               # seconds
 HALL = ["#env 1", "ispace at=0,0 size=16,6"]
 LAYOUT = ["#3dm 1", "robot id=honest at=-6,2 model=pioneer-2dx", "laser id=eye_laser at=7,-2 heading=90 fov=180 step=1 rate=40",
