@@ -111,8 +111,8 @@ class SvgSheet {
     void apply(pugi::xml_node node, SvgProperties& properties) const;
 
   private:
-    std::deque<std::string> texts_;                         // without comments
-    std::unordered_map<std::string, SvgProperties> rules_;  // by selector, views of the texts
+    std::deque<std::string> texts_;                              // without comments
+    std::unordered_map<std::string_view, SvgProperties> rules_;  // by selector, views of the texts
 };
 
 /// Returns the name without the prefix of a namespace.

@@ -87,12 +87,14 @@ void SvgProperties::addStronger(const SvgProperties& others) {
 
 void SvgSheet::add(std::string_view css) {
     std::string_view rest = texts_.emplace_back(withoutComments(css));
+    // Growing a table of millions of rules step by step costs more than filling it.
+    const auto more = static_cast<std::size_t>(std::ranges::count(rest, ',')) + 1;
+    if (more > rules_.size()) rules_.reserve(rules_.size() + more);
     while (!rest.empty()) {
         std::string_view selectors = takeUntil(rest, '{');
         SvgProperties declared;
         declared.declare(takeUntil(rest, '}'));
-        while (!selectors.empty())
-            rules_[std::string(trimmed(takeUntil(selectors, ',')))].addStronger(declared);
+        while (!selectors.empty()) rules_[trimmed(takeUntil(selectors, ','))].addStronger(declared);
     }
 }
 
