@@ -202,7 +202,8 @@ Bound unpackBound(Unpacker& from, const Problem& problem) {
     bound.multipliers = from.all<std::uint32_t>();
     bound.scale = static_cast<std::uint32_t>(from.number());
     const std::uint64_t kinds = from.number();
-    if (kinds > problem.kinds.size()) Unpacker::refuse();
+    // None, or one list for each kind: RootRelaxation::keepOnly() reads all.
+    if (kinds != 0 && kinds != problem.kinds.size()) Unpacker::refuse();
     for (std::uint64_t k = 0; k < kinds; ++k) {
         bound.survivors.push_back(from.all<std::uint32_t>());
         for (const std::uint32_t candidate : bound.survivors.back())

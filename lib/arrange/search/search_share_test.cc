@@ -203,5 +203,24 @@ TEST(PackedSearch, DamageIsRefused) {
     EXPECT_THROW((void)unpackResult(unknown, random.problem), FormatError);
 }
 
+TEST(PackedSearch, SurvivorsAreOneListForEachKindOrNone) {
+    const RandomProblem random = hardProblem(36);
+    Problem problem = random.problem;
+    problem.kinds.push_back(problem.kinds.front());
+    for (std::size_t lists = 0; lists <= 3; ++lists) {
+        Bound bound;
+        bound.multipliers.resize(problem.cells());
+        bound.survivors.resize(lists);
+        Packer to;
+        pack(to, bound);
+        Unpacker from(to.bytes());
+        if (lists == 0 || lists == 2) {
+            EXPECT_EQ(unpackBound(from, problem).survivors.size(), lists);
+        } else {
+            EXPECT_THROW((void)unpackBound(from, problem), FormatError) << lists;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace ispace
