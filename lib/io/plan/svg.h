@@ -80,6 +80,8 @@ class SvgProperties {
     }
     /// Parses `a: b; c: d`; the last declaration of a key wins. O(length)
     void declare(std::string_view declarations);
+    /// Returns true if no value is set.
+    [[nodiscard]] bool isEmpty() const { return values_ == decltype(values_){}; }
     /// Copies values that are unset here.
     void addWeaker(const SvgProperties& others);
     /// Copies values that are set in `others`.

@@ -94,6 +94,7 @@ void SvgSheet::add(std::string_view css) {
         std::string_view selectors = takeUntil(rest, '{');
         SvgProperties declared;
         declared.declare(takeUntil(rest, '}'));
+        if (declared.isEmpty()) continue;
         while (!selectors.empty()) rules_[trimmed(takeUntil(selectors, ','))].addStronger(declared);
     }
 }
