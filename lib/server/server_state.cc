@@ -192,6 +192,10 @@ bool ServerState::goOnSeeking() {
 
 /// \returns false if no preparation is needed
 bool ServerState::prepare(std::optional<SimTime> to) {
+    // A change drops readings of the last step that are not recorded yet: these come first.
+    const WallTime now = std::chrono::steady_clock::now();
+    if (!to && !(simulation_->world().readSome(now) && simulation_->finishRecord(now)))
+        return false;
     auto work = simulation_->preparation(to);
     if (!work) return false;
     is_changing_ = true;
