@@ -6,10 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
-#include <numeric>
+#include <map>
 #include <random>
-#include <set>
 #include <utility>
 
 #include "base/error.h"
@@ -21,41 +19,58 @@ namespace ispace {
 
 namespace {
 
-/// Finds for each point the representative of all points within kWeldDistance of it.
-///
+/// The points that represent all others within kWeldDistance of them, sorted, and for each point
+/// the index of its representative.
+struct WeldedPoints {
+    std::vector<Point2> standing;
+    std::vector<std::uint32_t> of;
+};
+
 /// Points are processed from left to right; each joins the nearest representative in reach or
 /// becomes one, so no point moves farther than kWeldDistance however many lie close together.
-std::vector<Point2> weldPoints(const std::vector<Point2>& points) {
-    std::vector<std::size_t> order(points.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
-        return points[i] == points[k] ? i < k : lexLess(points[i], points[k]);
+WeldedPoints weldPoints(std::span<const Segment2> lines) {
+    struct End {
+        Point2 at;
+        std::uint32_t index;
+    };
+    std::vector<End> ends;
+    ends.reserve(2 * lines.size());
+    for (const auto& [a, b] : lines)
+        for (const Point2 p : {a, b}) ends.push_back({p, static_cast<std::uint32_t>(ends.size())});
+    std::sort(ends.begin(), ends.end(), [](const End& e, const End& f) {
+        return e.at == f.at ? e.index < f.index : lexLess(e.at, f.at);
     });
-    std::vector<Point2> welded(points.size());
-    std::deque<Point2> recent;                   // standing points in reach along x, …
-    std::set<std::pair<double, double>> by_y_x;  // … and the same to be searched along y
-    for (const std::size_t i : order) {
-        const Point2 p = points[i];
-        while (!recent.empty() && recent.front().x < p.x - kWeldDistance) {
-            by_y_x.erase({recent.front().y, recent.front().x});
-            recent.pop_front();
+    WeldedPoints welded;
+    welded.of.resize(ends.size());
+    std::size_t oldest = 0;  // of the standing points in reach along x, …
+    std::map<std::pair<double, double>, std::uint32_t> by_y_x;  // … to be searched along y
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const Point2 p = ends[i].at;
+        std::uint32_t& own = welded.of[ends[i].index];
+        if (i > 0 && p == ends[i - 1].at) {
+            own = welded.of[ends[i - 1].index];
+            continue;
+        }
+        for (; oldest < welded.standing.size(); ++oldest) {
+            const Point2 left = welded.standing[oldest];
+            if (left.x >= p.x - kWeldDistance) break;
+            by_y_x.erase({left.y, left.x});
         }
         double nearest = kWeldDistance;
-        welded[i] = p;
         bool joined = false;
         for (auto it = by_y_x.lower_bound({p.y - kWeldDistance, p.x - kWeldDistance});
-             it != by_y_x.end() && it->first <= p.y + kWeldDistance; ++it) {
-            const Point2 standing{it->second, it->first};
-            const double apart = distance(p, standing);
+             it != by_y_x.end() && it->first.first <= p.y + kWeldDistance; ++it) {
+            const double apart = distance(p, welded.standing[it->second]);
             if (joined ? apart < nearest : apart <= nearest) {
-                welded[i] = standing;
+                own = it->second;
                 nearest = apart;
                 joined = true;
             }
         }
         if (joined) continue;
-        recent.push_back(p);
-        by_y_x.emplace(p.y, p.x);
+        own = static_cast<std::uint32_t>(welded.standing.size());
+        welded.standing.push_back(p);
+        by_y_x.emplace(std::pair(p.y, p.x), own);
     }
     return welded;
 }
@@ -100,7 +115,7 @@ class TouchFinder {
         for (const Point2 p : points) {
             tree.search({p, p}, kWeldDistance, [&](std::size_t i) {
                 ++tests_;
-                if (!isSurelyOff(segments_[i], p)) test(i, p);
+                test(i, p);
             });
             checkTouches();
             if (tests_ > kTestsAnyway + kTestsPerLine * segments_.size())
@@ -121,7 +136,7 @@ class TouchFinder {
     void test(std::size_t i, Point2 p) {
         const Segment2& s = segments_[i];
         // Distances that overflow are not near.
-        if (p == s.a || p == s.b || !(distance(p, s) <= kWeldDistance)) return;
+        if (isSurelyOff(s, p) || p == s.a || p == s.b || !(distance(p, s) <= kWeldDistance)) return;
         touching_[i].push_back(p);
         ++touches_;
     }
@@ -138,12 +153,9 @@ class TouchFinder {
 };
 
 /// For each segment the points of others that lie on its inside, in order along it.
-std::vector<std::vector<Point2>> touchingPoints(const std::vector<Segment2>& segments) {
-    std::vector<Point2> points;
-    points.reserve(2 * segments.size());
-    for (const auto& [a, b] : segments) points.insert(points.end(), {a, b});
-    std::sort(points.begin(), points.end(), [](Point2 a, Point2 b) { return lexLess(a, b); });
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+/// \param points all ends, each once
+std::vector<std::vector<Point2>> touchingPoints(const std::vector<Segment2>& segments,
+                                                std::span<const Point2> points) {
     auto touching = TouchFinder(segments).find(points);
     for (std::size_t i = 0; i < segments.size(); ++i) {
         const Vec2 along = segments[i].b - segments[i].a;
@@ -157,19 +169,20 @@ std::vector<std::vector<Point2>> touchingPoints(const std::vector<Segment2>& seg
 }  // namespace
 
 WeldedLines weld(std::span<const Segment2> lines) {
-    std::vector<Point2> ends;
-    ends.reserve(2 * lines.size());
-    for (const auto& [a, b] : lines) ends.insert(ends.end(), {a, b});
-    const std::vector<Point2> welded_ends = weldPoints(ends);
-
+    const WeldedPoints ends = weldPoints(lines);
+    std::vector<bool> is_end(ends.standing.size());
     WeldedLines whole;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        const Segment2 line{welded_ends[2 * i], welded_ends[2 * i + 1]};
-        if (line.a == line.b) continue;
-        whole.pieces.push_back(line);
+        const std::uint32_t a = ends.of[2 * i], b = ends.of[2 * i + 1];
+        if (a == b) continue;
+        is_end[a] = is_end[b] = true;
+        whole.pieces.push_back({ends.standing[a], ends.standing[b]});
         whole.source.push_back(i);
     }
-    const auto touching = touchingPoints(whole.pieces);
+    std::vector<Point2> points;
+    for (std::size_t i = 0; i < is_end.size(); ++i)
+        if (is_end[i]) points.push_back(ends.standing[i]);
+    const auto touching = touchingPoints(whole.pieces, points);
 
     WeldedLines split;
     for (std::size_t i = 0; i < whole.pieces.size(); ++i) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/rotation.h"
+
 namespace ispace {
 
 Point2 Pose2::operator*(Point2 local) const { return position + *this * Vec2{local.x, local.y}; }

@@ -2,8 +2,6 @@
 // Poses in the plane and in space, and their transforms.
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include "geom/point.h"
 
 namespace ispace {
@@ -54,20 +52,5 @@ struct Frame3 {
         return {dot(way, forward), dot(way, left), dot(way, up)};
     }
 };
-
-/// Maps points of the pose's frame to the outer frame; exact where angles are multiples of 90
-/// degrees.
-Eigen::Isometry3d isometryOf(const Pose3& pose);
-/// A unit quaternion; exact at multiples of 180 degrees.
-Eigen::Quaterniond quaternionOf(const Pose3& pose);
-/// A rotation about one of the axes 0 (x), 1 (y), 2 (z).
-Eigen::Quaterniond turnAbout(int axis, Angle angle);
-
-/// The pose at `position` with this rotation, which is not 0 and need not be normalised. Exactly
-/// level if its x and y parts are 0.
-Pose3 poseOf(Point3 position, const Eigen::Quaterniond& rotation);
-
-inline Eigen::Vector3d vectorOf(Vec3 v) { return {v.x, v.y, v.z}; }
-inline Vec3 vecOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/pose.h"
+#include "geom/rotation.h"
 
 #include <gtest/gtest.h>
 

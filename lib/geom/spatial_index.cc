@@ -49,13 +49,13 @@ SegmentGrid::SegmentGrid(std::span<const Segment2> segments, double margin) : ma
     // Count, then fill: the lists of all cells lie in one array.
     first_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
     for (const Segment2& s : segments)
-        forEachCellOf(s, [&](std::size_t cell) { ++first_[cell + 1]; });
+        forEachCellOf(s, [&](auto column, auto row) { ++first_[indexOf(column, row) + 1]; });
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
     indices_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t i = 0; i < segments.size(); ++i) {
-        forEachCellOf(segments[i], [&](std::size_t cell) {
-            indices_[next[cell]++] = static_cast<std::uint32_t>(i);
+        forEachCellOf(segments[i], [&](auto column, auto row) {
+            indices_[next[indexOf(column, row)]++] = static_cast<std::uint32_t>(i);
         });
     }
 }
@@ -67,7 +67,7 @@ std::int64_t SegmentGrid::cellOf(double offset, std::int64_t count) const {
 }
 
 std::span<const std::uint32_t> SegmentGrid::cell(std::int64_t column, std::int64_t row) const {
-    const auto i = static_cast<std::size_t>(row * columns_ + column);
+    const std::size_t i = indexOf(column, row);
     return std::span(indices_).subspan(first_[i], first_[i + 1] - first_[i]);
 }
 
@@ -75,56 +75,32 @@ std::span<const std::uint32_t> SegmentGrid::near(Point2 p) const {
     return cell(column(p.x), row(p.y));
 }
 
-template <typename Visit>
-void SegmentGrid::forEachCellOf(const Segment2& segment, Visit visit) const {
-    auto [a, b] = segment;
-    if (a.x > b.x) std::swap(a, b);
-    const double low = std::min(a.y, b.y), high = std::max(a.y, b.y);
-    // Widened by a part of a cell, against rounding.
-    const double slack = margin_ + size_ / 1024;
-    const double slope = (b.y - a.y) / (b.x - a.x);
-    const std::int64_t last = column(b.x + slack);
-    for (std::int64_t c = column(a.x - slack); c <= last; ++c) {
-        double from = low, to = high;
-        if (std::isfinite(slope)) {
-            // The part of the segment over this column.
-            const double left = box_.low.x + static_cast<double>(c) * size_ - slack;
-            const double y0 = a.y + (left - a.x) * slope;
-            const double y1 = a.y + (left + size_ + 2 * slack - a.x) * slope;
-            from = std::max(low, std::min(y0, y1));
-            to = std::min(high, std::max(y0, y1));
-        }
-        for (std::int64_t r = row(from - slack); r <= row(to + slack); ++r)
-            visit(static_cast<std::size_t>(r * columns_ + c));
-    }
-}
-
-BoxTree::BoxTree(std::span<const Box2> boxes) : boxes_(boxes.begin(), boxes.end()) {
+BoxTree::BoxTree(std::span<const Box2> boxes) {
     items_.reserve(boxes.size());
     for (std::uint32_t i = 0; i < boxes.size(); ++i)
-        if (!boxes[i].empty()) items_.push_back(i);
+        if (!boxes[i].empty()) items_.push_back({boxes[i], i});
     if (!items_.empty()) build(0, static_cast<std::uint32_t>(items_.size()));
 }
 
 void BoxTree::build(std::uint32_t first, std::uint32_t count) {
+    const std::span<Item> items = std::span(items_).subspan(first, count);
     Box2 box;
-    for (std::uint32_t i = first; i < first + count; ++i) {
-        box.add(boxes_[items_[i]].low);
-        box.add(boxes_[items_[i]].high);
+    for (const Item& item : items) {
+        box.add(item.box.low);
+        box.add(item.box.high);
     }
     const auto at = static_cast<std::uint32_t>(nodes_.size());
     nodes_.push_back({box, first, count, 0});
     if (count <= kLeaf) return;
     const bool is_wide = box.width() >= box.depth();
-    const auto place = [&](std::uint32_t item) {
-        const Point2 center = boxes_[item].center();
-        return is_wide ? center.x : center.y;
+    const auto center = [is_wide](const Item& item) {
+        return is_wide ? item.box.center().x : item.box.center().y;
     };
     const std::uint32_t half = count / 2;
-    std::nth_element(items_.begin() + first, items_.begin() + first + half,
-                     items_.begin() + first + count, [&](std::uint32_t a, std::uint32_t b) {
-                         const double x = place(a), y = place(b);
-                         return x < y || (x == y && a < b);
+    std::nth_element(items.begin(), items.begin() + half, items.end(),
+                     [&](const Item& a, const Item& b) {
+                         const double x = center(a), y = center(b);
+                         return x < y || (x == y && a.index < b.index);
                      });
     build(first, half);  // depth is the logarithm of the number
     nodes_[at].right = static_cast<std::uint32_t>(nodes_.size());

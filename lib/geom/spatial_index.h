@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geom/point.h"
@@ -43,6 +45,13 @@ class SegmentGrid {
     template <typename Visit>
     void searchBox(const Box2& box, Visit visit) const;
 
+    /// Visits the cells that the segment touches: visit(indices of one cell). All segments within
+    /// the margin of a point of it are visited; an index may be visited more than once.
+    template <typename Visit>
+    void searchAlong(const Segment2& segment, Visit visit) const {
+        forEachCellOf(segment, [&](std::int64_t c, std::int64_t r) { visit(cell(c, r)); });
+    }
+
     /// Visits the cells below p, starting with its own, until visit(indices, bottom) returns true.
     /// By then all segments that cross the vertical from p down to `bottom` have been visited.
     template <typename Visit>
@@ -52,6 +61,9 @@ class SegmentGrid {
     [[nodiscard]] std::int64_t column(double x) const { return cellOf(x - box_.low.x, columns_); }
     [[nodiscard]] std::int64_t row(double y) const { return cellOf(y - box_.low.y, rows_); }
     [[nodiscard]] std::int64_t cellOf(double offset, std::int64_t count) const;
+    [[nodiscard]] std::size_t indexOf(std::int64_t column, std::int64_t row) const {
+        return static_cast<std::size_t>(row * columns_ + column);
+    }
     [[nodiscard]] std::span<const std::uint32_t> cell(std::int64_t column, std::int64_t row) const;
     template <typename Visit>
     void forEachCellOf(const Segment2& segment, Visit visit) const;
@@ -106,6 +118,29 @@ void SegmentGrid::searchBelow(Point2 p, Visit visit) const {
     }
 }
 
+template <typename Visit>
+void SegmentGrid::forEachCellOf(const Segment2& segment, Visit visit) const {
+    auto [a, b] = segment;
+    if (a.x > b.x) std::swap(a, b);
+    const double low = std::min(a.y, b.y), high = std::max(a.y, b.y);
+    // Widened by a part of a cell, against rounding.
+    const double slack = margin_ + size_ / 1024;
+    const double slope = (b.y - a.y) / (b.x - a.x);
+    const std::int64_t last = column(b.x + slack);
+    for (std::int64_t c = column(a.x - slack); c <= last; ++c) {
+        double from = low, to = high;
+        if (std::isfinite(slope)) {
+            // The part of the segment over this column.
+            const double left = box_.low.x + static_cast<double>(c) * size_ - slack;
+            const double y0 = a.y + (left - a.x) * slope;
+            const double y1 = a.y + (left + size_ + 2 * slack - a.x) * slope;
+            from = std::max(low, std::min(y0, y1));
+            to = std::min(high, std::max(y0, y1));
+        }
+        for (std::int64_t r = row(from - slack); r <= row(to + slack); ++r) visit(c, r);
+    }
+}
+
 /// True if the closed boxes share a point; an empty box shares none.
 inline bool meets(const Box2& a, const Box2& b) {
     return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
@@ -124,9 +159,13 @@ class BoxTree {
     void search(const Box2& window, Visit visit) const;
 
   private:
+    struct Item {
+        Box2 box;
+        std::uint32_t index;
+    };
     struct Node {
         Box2 box;
-        std::uint32_t first, count;  // its leaves, in items_
+        std::uint32_t first, count;  // of items_
         std::uint32_t right;         // the second child; the first one follows; 0: a leaf
     };
     static constexpr std::uint32_t kLeaf = 4;
@@ -134,8 +173,7 @@ class BoxTree {
 
     void build(std::uint32_t first, std::uint32_t count);
 
-    std::vector<Box2> boxes_;
-    std::vector<std::uint32_t> items_;
+    std::vector<Item> items_;  // leaf after leaf
     std::vector<Node> nodes_;
 };
 
@@ -154,7 +192,7 @@ void BoxTree::search(const Box2& window, Visit visit) const {
             continue;
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-            if (meets(boxes_[items_[i]], window)) visit(std::size_t{items_[i]});
+            if (meets(items_[i].box, window)) visit(std::size_t{items_[i].index});
     }
 }
 

@@ -131,6 +131,32 @@ TEST(SegmentTree, LooksAtFewOfAHatchInAnyHeading) {
     }
 }
 
+TEST(SegmentGrid, FindsWhatLiesAlongALine) {
+    constexpr double kMargin = 0.1;
+    std::mt19937_64 random(5);
+    const auto any = [&] {
+        const auto coordinate = [&] { return static_cast<double>(random() % 200) / 10; };
+        return Segment2{{coordinate(), coordinate()}, {coordinate(), coordinate()}};
+    };
+    std::vector<Segment2> segments(300);
+    for (Segment2& segment : segments) segment = any();
+    const SegmentGrid grid(segments, kMargin);
+    for (int run = 0; run < 300; ++run) {
+        const Segment2 line = any();
+        std::vector<bool> visited(segments.size());
+        grid.searchAlong(line, [&](std::span<const std::uint32_t> cell) {
+            for (const std::uint32_t i : cell) visited[i] = true;
+        });
+        for (std::size_t i = 0; i < segments.size(); ++i) {
+            const Segment2& s = segments[i];
+            const bool is_near = intersects(s, line) ||
+                                 std::min({distance(s.a, line), distance(s.b, line),
+                                           distance(line.a, s), distance(line.b, s)}) <= kMargin;
+            EXPECT_TRUE(visited[i] || !is_near) << run << ' ' << i;
+        }
+    }
+}
+
 TEST(SegmentGrid, PointsBeyondTheBoxCountAsInTheNearestCell) {
     std::vector<Segment2> row;
     for (int i = 0; i < 10; ++i) row.push_back({{1.0 * i, 0}, {1.0 * i, 1}});
