@@ -40,7 +40,7 @@ constexpr std::size_t kMaxMessage = 1 << 16;  // bytes
 /// Limit of an idle child, in multiples of its processor time.
 constexpr std::size_t kPatience = 5;
 
-std::string pathOf(const std::string& program) {
+std::string modulePath(const std::string& program) {
     return (std::filesystem::path(programPrefix()) / "lib" / "ispace" / program).string();
 }
 
@@ -140,7 +140,7 @@ class ConfinedReader::Reading {
           is_next_(reader.child_ != nullptr),
           child_(is_next_ ? *reader.child_ : start(reader)) {
         if (child_.startError() != 0)
-            fail(task_.subject + " read by " + printable(pathOf(task_.program)) +
+            fail(task_.subject + " read by " + printable(modulePath(task_.program)) +
                  ", which cannot be started: " + ::strerror(child_.startError()) + task_.hint);
         give_up_ = Clock::now() + std::chrono::seconds(kPatience * limits_.seconds);
         if (!is_next_) return;
@@ -175,12 +175,12 @@ class ConfinedReader::Reading {
   private:
     Child& start(ConfinedReader& reader) {
         ++reader.starts_;
-        reader.child_ = std::make_unique<Child>(pathOf(task_.program), arguments(), task_.file);
+        reader.child_ = std::make_unique<Child>(modulePath(task_.program), arguments(), task_.file);
         return *reader.child_;
     }
 
     [[nodiscard]] std::vector<std::string> arguments() const {
-        std::vector<std::string> words{pathOf(task_.program)};
+        std::vector<std::string> words{modulePath(task_.program)};
         words.insert(words.end(), task_.arguments.begin(), task_.arguments.end());
         for (const std::size_t number :
              {static_cast<std::size_t>(::getpid()), bytes_, limits_.memory, limits_.seconds})
@@ -315,7 +315,7 @@ class ConfinedReader::Reading {
             fail(bad() + task_.reader + " crashes on it (" + ::strsignal(signal) +
                  "); is the file damaged, or nested too deep?");
         if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-            fail(task_.subject + " read by " + printable(pathOf(task_.program)) +
+            fail(task_.subject + " read by " + printable(modulePath(task_.program)) +
                  ", which cannot be started" + task_.hint);
         fail(bad() + "what reads it did not finish");
     }

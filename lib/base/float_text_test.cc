@@ -5,9 +5,11 @@
 
 #include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <string>
 
 namespace ispace {
 namespace {
@@ -17,13 +19,28 @@ std::string written(float value) {
     return {buffer.data(), writeFloat(buffer.data(), value)};
 }
 
+std::string written(double value) { return formatDouble(value); }
+
+/// The shortest text by the library, in the same notation.
+template <typename Float>
+std::string byLibrary(Float value) {
+    const Float size = std::fabs(value);
+    const bool is_plain =
+        size == 0 || (size >= static_cast<Float>(1e-5) && size < static_cast<Float>(1e15));
+    std::array<char, 64> buffer;
+    const auto end =
+        std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + Float(0),
+                      is_plain ? std::chars_format::fixed : std::chars_format::scientific);
+    return {buffer.data(), end.ptr};
+}
+
 TEST(FloatText, SomeNumbers) {
-    EXPECT_EQ(written(0), "0");
+    EXPECT_EQ(written(0.0F), "0");
     EXPECT_EQ(written(-0.0F), "0");
     EXPECT_EQ(written(0.1F), "0.1");
     EXPECT_EQ(written(-4.095F), "-4.095");
-    EXPECT_EQ(written(30), "30");
-    EXPECT_EQ(written(-12), "-12");
+    EXPECT_EQ(written(30.0F), "30");
+    EXPECT_EQ(written(-12.0F), "-12");
     EXPECT_EQ(written(1.0F / 3), "0.33333334");
     EXPECT_EQ(written(8388607.5F), "8388607.5");
     EXPECT_EQ(written(0.0012F), "0.0012");
@@ -33,9 +50,9 @@ TEST(FloatText, SomeNumbers) {
 TEST(FloatText, WholeMillimetresAndTheirNeighbours) {
     for (int k = -100'000; k <= 100'000; ++k) {
         const float value = static_cast<float>(k) / 1000;
-        ASSERT_EQ(written(value), formatFloat(value));
+        ASSERT_EQ(written(value), byLibrary(value));
         const float next = std::nextafter(value, 1e9F);
-        ASSERT_EQ(written(next), formatFloat(next));
+        ASSERT_EQ(written(next), byLibrary(next));
     }
 }
 
@@ -44,7 +61,7 @@ TEST(FloatText, AnyFloat) {
     for (int i = 0; i < 2'000'000; ++i) {
         const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
         if (!std::isfinite(value)) continue;
-        ASSERT_EQ(written(value), formatFloat(value)) << i;
+        ASSERT_EQ(written(value), byLibrary(value)) << i;
     }
 }
 
@@ -53,11 +70,40 @@ TEST(FloatText, FloatsOfEachSize) {
     for (int exponent = -16; exponent <= 26; ++exponent) {
         const float power = std::ldexp(1.0F, exponent);
         for (const float edge : {power, std::nextafter(power, 0.0F), std::nextafter(power, 1e9F)})
-            ASSERT_EQ(written(edge), formatFloat(edge));
+            ASSERT_EQ(written(edge), byLibrary(edge));
         std::uniform_real_distribution<float> in_binade(power, 2 * power);
         for (int i = 0; i < 30'000; ++i) {
             const float value = in_binade(random);
-            ASSERT_EQ(written(value), formatFloat(value)) << i;
+            ASSERT_EQ(written(value), byLibrary(value)) << i;
+        }
+    }
+}
+
+TEST(FloatText, AnyDouble) {
+    std::mt19937_64 random(8);
+    for (int i = 0; i < 2'000'000; ++i) {
+        const auto value = std::bit_cast<double>(random());
+        if (!std::isfinite(value)) continue;
+        ASSERT_EQ(written(value), byLibrary(value)) << i;
+    }
+}
+
+TEST(FloatText, DoublesOfEachSize) {
+    std::mt19937_64 random(10);
+    for (int exponent = -19; exponent <= 55; ++exponent) {
+        const double power = std::ldexp(1.0, exponent);
+        for (const double edge : {power, std::nextafter(power, 0.0), std::nextafter(power, 1e300)})
+            ASSERT_EQ(written(-edge), byLibrary(-edge));
+        std::uniform_real_distribution<double> in_binade(power, 2 * power);
+        for (int i = 0; i < 20'000; ++i) {
+            const double value = in_binade(random);
+            ASSERT_EQ(written(value), byLibrary(value)) << i;
+            // Of each number of digits.
+            const double few = roundSignificant(value, 1 + i % 17);
+            ASSERT_EQ(written(few), byLibrary(few)) << i;
+            // Half way between two decimals, and beside it.
+            const double half = std::ldexp(std::floor(value * 1024) + 0.5, -10);
+            ASSERT_EQ(written(half), byLibrary(half)) << i;
         }
     }
 }
@@ -68,7 +114,7 @@ TEST(FloatText, FewDigits) {
         const double digits = static_cast<double>(random() % 100'000);
         const auto value =
             static_cast<float>(digits * std::pow(10, -static_cast<int>(random() % 9)));
-        ASSERT_EQ(written(value), formatFloat(value)) << i;
+        ASSERT_EQ(written(value), byLibrary(value)) << i;
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/number.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -8,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <system_error>
 
@@ -27,27 +29,6 @@ std::string_view shortest(Float value, std::array<char, kBuffer>& buffer) {
     const auto format = plain ? std::chars_format::fixed : std::chars_format::scientific;
     const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format).ptr;
     return {buffer.data(), static_cast<std::size_t>(end - buffer.data())};
-}
-
-/// Appends numbers of up to three decimals, as most lengths have, without searching for the
-/// shortest digits: decimals of up to 15 digits read as distinct doubles. Skips other numbers.
-bool appendThousandths(std::string& out, double value) {
-    constexpr double kMaxThousandths = 1e12, kThousand = 1000;
-    const double scaled = std::fabs(value) * kThousand;
-    if (!(scaled < kMaxThousandths)) return false;
-    const auto thousandths = static_cast<std::int64_t>(scaled);
-    if (static_cast<double>(thousandths) / kThousand != std::fabs(value)) return false;
-    std::array<char, kBuffer> buffer;
-    char* end = buffer.data();
-    if (value < 0) *end++ = '-';
-    end = std::to_chars(end, buffer.data() + buffer.size(), thousandths / 1000).ptr;
-    if (auto rest = static_cast<int>(thousandths % 1000); rest != 0) {
-        *end++ = '.';
-        for (int unit = 100; rest != 0; rest %= unit, unit /= 10)
-            *end++ = static_cast<char>('0' + rest / unit);
-    }
-    out.append(buffer.data(), end);
-    return true;
 }
 
 }  // namespace
@@ -89,28 +70,6 @@ std::optional<std::int64_t> parseInteger(std::string_view text) {
     const auto result = std::from_chars(text.data(), end, value);
     if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
     return value;
-}
-
-std::string formatDouble(double value) {
-    std::string text;
-    appendDouble(text, value);
-    return text;
-}
-
-void appendDouble(std::string& out, double value) {
-    if (appendThousandths(out, value)) return;
-    std::array<char, kBuffer> buffer;
-    out += shortest(value, buffer);
-}
-
-std::string formatFloat(float value) {
-    std::array<char, kBuffer> buffer;
-    return std::string(shortest(value, buffer));
-}
-
-void appendFloat(std::string& out, float value) {
-    std::array<char, kBuffer> buffer;
-    out += shortest(value, buffer);
 }
 
 std::string formatFixed(double value, int decimals) {
@@ -223,84 +182,147 @@ std::string suffixNames(Unit unit) {
 
 namespace {
 
-constexpr int kMantissaBits = 23, kExponentBias = 127;
-constexpr std::uint32_t kSignBit = 0x80000000U, kMantissaMask = 0x7FFFFFU;
-// Exponents of two for which the fast path works: 2^-13 up to 2^23.
-constexpr int kMinExponent = -13, kEndExponent = 23;
-// Most decimals in this range; a float times 10^12 is exact in double: 24 bits and the 28 of 5^12.
-constexpr int kMaxDecimals = 12;
-
-constexpr auto kPowers = [] {
-    std::array<double, kMaxDecimals + 1> powers{};
-    double power = 1;
-    for (double& p : powers) {
-        p = power;
-        power *= 10;
+template <typename Number, std::size_t kCount>
+constexpr std::array<Number, kCount> powersOf(Number base) {
+    std::array<Number, kCount> powers{};
+    Number power = 1;
+    for (Number& each : powers) {
+        each = power;
+        power *= base;
     }
     return powers;
-}();
+}
 
-/// Properties shared by all floats of one exponent.
-struct Binade {
-    double half_ulp = 0;  ///< half the distance between neighbours
-    int decimals = 0;     ///< enough to distinguish any two neighbours
-};
+constexpr auto kFives = powersOf<std::uint64_t, 22>(5);
+constexpr auto kTens = powersOf<std::uint64_t, 18>(10);
+constexpr auto kTenths = powersOf<double, 18>(0.1);
 
-constexpr auto kBinades = [] {
-    std::array<Binade, kEndExponent - kMinExponent> binades{};
-    double ulp = 1.0 / static_cast<double>(1ULL << (kMantissaBits - kMinExponent));
-    for (Binade& binade : binades) {
-        binade.half_ulp = ulp / 2;
-        while (kPowers[static_cast<std::size_t>(binade.decimals)] * ulp < 1) ++binade.decimals;
-        ulp *= 2;
-    }
-    return binades;
-}();
-
-constexpr auto kPairs = [] {
-    std::array<char, 200> pairs{};
-    for (std::size_t i = 0; i < 100; ++i) {
-        pairs[2 * i] = static_cast<char>('0' + i / 10);
-        pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
-    }
-    return pairs;
-}();
-
-/// Nearest integer in 0 .. 2^51; halves round to even.
+/// Integer nearest to a value in 0 .. 2^51; halves round to even.
 double nearest(double value) {
     constexpr double kWholeFrom = 1ULL << 52U;  // doubles from here on are integers
     return (value + kWholeFrom) - kWholeFrom;
 }
 
-/// Writes number / 10^decimals with all digits. \pre number < 10^15, decimals < 16
+/// Writes eight digits: those of two halves, of their halves, and of these, all in one word.
+void putEight(char* to, std::uint32_t number) {
+    static_assert(std::endian::native == std::endian::little);
+    constexpr std::uint64_t kLow = 0x0000000F'0000000F, kPairs = 0x000F000F'000F000F;
+    const std::uint64_t halves = number / 10'000 | std::uint64_t{number % 10'000} << 32U;
+    const std::uint64_t hundreds = ((halves * 10'486) >> 20U) & (kLow | kLow << 4U);
+    const std::uint64_t pairs = hundreds | (halves - 100 * hundreds) << 16U;
+    const std::uint64_t tens = ((pairs * 103) >> 10U) & kPairs;
+    const std::uint64_t digits = (tens | (pairs - 10 * tens) << 8U) + 0x30303030'30303030;
+    std::memcpy(to, &digits, sizeof digits);
+}
+
+/// Writes 16 digits. \pre number < 10^16
+void putSixteen(char* to, std::uint64_t number) {
+    putEight(to, static_cast<std::uint32_t>(number / kTens[8]));
+    putEight(to + 8, static_cast<std::uint32_t>(number % kTens[8]));
+}
+
+/// Writes number / 10^decimals with all decimals. \pre number < 10^17, decimals < 22
 char* writeScaled(char* to, std::uint64_t number, int decimals) {
-    // Writes all digits right-aligned after zeros, then the two sides of the point as blocks.
-    constexpr std::size_t kRoom = 32;
-    std::array<char, kRoom + 16> digits;
-    std::memset(digits.data(), '0', kRoom);
-    char* at = digits.data() + kRoom;
-    auto rest = number;
-    while (rest >= 100) {
-        at -= 2;
-        std::memcpy(at, &kPairs[2 * (rest % 100)], 2);
-        rest /= 100;
+    constexpr int kBlock = 16, kHalf = 8;  // decimals written at once
+    if (decimals > kBlock) {
+        std::memcpy(to, "0.00000", 8);
+        to += 2 + decimals - kBlock;
+        to[-1] = static_cast<char>('0' + number / kTens[kBlock]);
+        putSixteen(to, number % kTens[kBlock]);
+        return to + kBlock;
     }
-    at -= 2;
-    std::memcpy(at, &kPairs[2 * rest], 2);
-    if (rest < 10) ++at;
-    const char* const point = digits.data() + kRoom - decimals;
-    const char* const first = at < point ? at : point - 1;
-    std::memcpy(to, first, 16);
-    to += point - first;
+    const std::uint64_t unit = kTens[static_cast<std::size_t>(decimals)];
+    // By a product of doubles, faster than a quotient of integers, and off by one at most.
+    const double quotient = static_cast<double>(static_cast<std::int64_t>(number)) *
+                            kTenths[static_cast<std::size_t>(decimals)];
+    auto whole = static_cast<std::uint64_t>(static_cast<std::int64_t>(quotient));
+    if (whole * unit > number) --whole;
+    if (number - whole * unit >= unit) ++whole;
+    if (whole < 10)
+        *to++ = static_cast<char>('0' + whole);
+    else
+        to = writeInteger(to, whole);
     if (decimals == 0) return to;
     *to++ = '.';
-    std::memcpy(to, point, 16);
+    const std::uint64_t rest = number - whole * unit;
+    if (decimals <= kHalf)
+        putEight(to, static_cast<std::uint32_t>(rest *
+                                                kTens[static_cast<std::size_t>(kHalf - decimals)]));
+    else
+        putSixteen(to, rest * kTens[static_cast<std::size_t>(kBlock - decimals)]);
     return to + decimals;
 }
 
-char* writeShortest(char* to, float value) {
-    const std::string text = formatFloat(value);
+template <typename Float>
+char* writeByLibrary(char* to, Float value) {
+    std::array<char, kBuffer> buffer;
+    const std::string_view text = shortest(value, buffer);
     return to + text.copy(to, text.size());
+}
+
+/// Writes number / 10^decimals without trailing zeros.
+char* writeStripped(char* to, std::uint64_t number, int decimals) {
+    for (; decimals > 0 && number % 10 == 0; --decimals) number /= 10;
+    return writeScaled(to, number, decimals);
+}
+
+/// Writes the shortest text that reads back as the same value.
+///
+/// It is the multiple of 10^-d nearest to the value, with the least d for which it is nearer to the
+/// value than half way to a neighbour. Distances are compared as integers, exactly: a mantissa
+/// times 5^d, which `Wide` holds, is the value times 10^d 2^shift. The library writes numbers out
+/// of range and powers of two with many decimals, whose neighbours are at unequal distances.
+template <typename Wide, typename Float, typename Bits>
+char* writeShortest(char* to, Float value, Bits bits) {
+    constexpr int kMantissaBits = std::numeric_limits<Float>::digits - 1;
+    constexpr int kBias = std::numeric_limits<Float>::max_exponent - 1 + kMantissaBits;
+    constexpr int kLeast = -16 - kMantissaBits, kMost = std::min(-2, 48 - kMantissaBits);
+    const Bits fraction = bits & ((Bits{1} << kMantissaBits) - 1);
+    // Of two, of the mantissa's last bit.
+    const int exponent = static_cast<int>((bits << 1U) >> (kMantissaBits + 1U)) - kBias;
+    *to = value == 0 ? '0' : '-';
+    if (value == 0) return to + 1;
+    if (exponent < kLeast || exponent > kMost) return writeByLibrary(to, value);
+    char* const first = value < 0 ? to + 1 : to;
+    // Enough to distinguish neighbours: the least with 10^d 2^exponent >= 1.
+    int decimals = ((-exponent * 1233) >> 12) + 1;
+    // Settings and devices have whole millimetres and less; only one of these is that near.
+    constexpr int kFew = 3;
+    const double size = std::fabs(static_cast<double>(value)), few = nearest(size * 1000);
+    if (decimals > kFew && static_cast<Float>(few / 1000) == static_cast<Float>(size))
+        return writeStripped(first, static_cast<std::uint64_t>(static_cast<std::int64_t>(few)),
+                             kFew);
+
+    const std::uint64_t five = kFives[static_cast<std::size_t>(decimals)];
+    const int shift = -exponent - decimals;
+    const Wide half = Wide{1} << (shift - 1);
+    const Wide sum = Wide{fraction | (Bits{1} << kMantissaBits)} * five + half;
+    const auto whole = static_cast<std::uint64_t>(sum >> shift);
+    // By which the value exceeds the multiple.
+    const auto more =
+        static_cast<std::int64_t>((sum & (2 * half - 1))) - static_cast<std::int64_t>(half);
+    if (fraction == 0 || -more == static_cast<std::int64_t>(half)) return writeByLibrary(to, value);
+    // Near enough, with `off` more in units of the last decimal.
+    const auto is_near = [&](std::uint64_t off) {
+        const std::uint64_t room = (five - 1) / 2;
+        return (off << shift) + static_cast<std::uint64_t>(more) + room <= 2 * room;
+    };
+    // Half of all numbers have a digit less, unpredictably: without a branch.
+    const std::uint64_t tens = (whole + (more < 0 ? 4 : 5)) / 10;
+    const bool is_shorter = is_near(whole - 10 * tens);
+    std::uint64_t number = whole ^ ((whole ^ tens) & (std::uint64_t{0} - is_shorter));
+    int digits = is_shorter;
+    // Few have two. No multiple farther away than this is near enough.
+    constexpr std::uint64_t kReach = 5;
+    for (std::uint64_t unit = 100; digits < decimals && (whole + kReach) % unit <= 2 * kReach;
+         unit *= 10) {
+        const std::uint64_t multiple = (whole + kReach) / unit;
+        if (!is_near(whole - multiple * unit)) break;
+        number = multiple;
+        ++digits;
+    }
+    decimals -= digits;
+    return writeScaled(first, number, decimals);
 }
 
 }  // namespace
@@ -310,42 +332,31 @@ double nineDecimals(double value) {
     return std::fabs(value) < kMaxExact ? std::round(value * kUnits) / kUnits : value;
 }
 
+std::string formatDouble(double value) {
+    std::string text;
+    appendDouble(text, value);
+    return text;
+}
+
+void appendDouble(std::string& out, double value) {
+    std::array<char, kBuffer> buffer;
+    out.append(buffer.data(), writeShortest<unsigned __int128>(
+                                  buffer.data(), value, std::bit_cast<std::uint64_t>(value)));
+}
+
+std::string formatFloat(float value) {
+    std::string text;
+    appendFloat(text, value);
+    return text;
+}
+
+void appendFloat(std::string& out, float value) {
+    std::array<char, kBuffer> buffer;
+    out.append(buffer.data(), writeFloat(buffer.data(), value));
+}
+
 char* writeFloat(char* to, float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    const int exponent =
-        static_cast<int>((bits & ~kSignBit) >> static_cast<unsigned>(kMantissaBits)) -
-        kExponentBias;
-    // The neighbours of a power of two are at unequal distances; the library converts these, and
-    // very small or large values.
-    if (exponent < kMinExponent || exponent >= kEndExponent || (bits & kMantissaMask) == 0)
-        return writeShortest(to, value);
-
-    // The shortest text is the multiple of 10^-d nearest to the value, with the least d for which
-    // it is nearer to the value than half way to a neighbour. All numbers here are exact. If two
-    // multiples are equally near, the library decides.
-    const double size = std::fabs(static_cast<double>(value));
-    const Binade& binade = kBinades[static_cast<std::size_t>(exponent - kMinExponent)];
-    int decimals = -1;
-    double number = 0;
-    const auto try_decimals = [&](int d) {
-        const double power = kPowers[static_cast<std::size_t>(d)];
-        const double scaled = size * power, whole = nearest(scaled);
-        const double off = std::fabs(scaled - whole), reach = binade.half_ulp * power;
-        if (off == reach || off == 0.5) return -1;
-        if (off > reach) return 0;
-        decimals = d;
-        number = whole;
-        return 1;
-    };
-    // Devices measure whole millimetres; else a few decimals less than the most are enough.
-    int found = binade.decimals > 3 ? try_decimals(3) : 0;
-    if (found == 0) found = try_decimals(binade.decimals);
-    while (found == 1 && decimals > 0) found = try_decimals(decimals - 1);
-    if (found < 0 || decimals < 0) return writeShortest(to, value);
-
-    *to = '-';
-    to += bits >> 31U;
-    return writeScaled(to, static_cast<std::uint64_t>(number), decimals);
+    return writeShortest<std::uint64_t>(to, value, std::bit_cast<std::uint32_t>(value));
 }
 
 char* writeNineDecimals(char* to, double value) {
@@ -357,11 +368,8 @@ char* writeNineDecimals(char* to, double value) {
         const std::string text = formatDouble(nineDecimals(value));
         return to + text.copy(to, text.size());
     }
-    auto number = static_cast<std::uint64_t>(units);
-    int decimals = kDecimals;
-    for (; decimals > 0 && number % 10 == 0; --decimals) number /= 10;
     if (value < 0) *to++ = '-';
-    return writeScaled(to, number, decimals);
+    return writeStripped(to, static_cast<std::uint64_t>(units), kDecimals);
 }
 
 char* writeInteger(char* to, std::size_t value) {

@@ -38,8 +38,8 @@ std::uint32_t crcOfBoth(std::uint32_t first, std::uint32_t second, std::uint64_t
 
 namespace {
 
-constexpr std::uint32_t kLocalHead = 0x04034b50, kCentralHead = 0x02014b50, kEnd = 0x06054b50,
-                        kEnd64 = 0x06064b50, kEnd64Locator = 0x07064b50;
+constexpr std::uint32_t kLocalHead = 0x04034b50, kCentralHead = 0x02014b50,
+                        kDirectoryEnd = 0x06054b50, kEnd64 = 0x06064b50, kEnd64Locator = 0x07064b50;
 constexpr std::uint16_t kVersion = 20, kVersion64 = 45, kUtf8Names = 1U << 11U;
 constexpr std::uint16_t kFirstDay = 1U << 5U | 1U;  // the first of January 1980, as ZIP counts
 constexpr std::uint64_t kMax32 = std::numeric_limits<std::uint32_t>::max();
@@ -134,7 +134,7 @@ void ZipWriter::finish() {
         appendLittle(end, std::uint32_t{1});
     }
     const auto files = static_cast<std::uint16_t>(std::min(count, kMax16));
-    appendLittle(end, kEnd);
+    appendLittle(end, kDirectoryEnd);
     appendLittle(end, std::uint32_t{0});  // both disks
     appendLittle(end, files);
     appendLittle(end, files);

@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -19,7 +18,6 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/random.h"
-#include "base/run_files.h"
 
 namespace ispace {
 
@@ -150,6 +148,45 @@ std::string partRecordText(std::string_view key, std::string_view bytes) {
     return text.append(hexText(hashOf(bytes))).append("\n").append(bytes).append("\n");
 }
 
+void JobResults::File::openAs(int flags) {
+    struct stat info {};
+    const auto check = [&](bool is_found) {
+        if (!is_found) failOn(name);
+        if (!S_ISREG(info.st_mode)) refuse("a part is a regular file: it is read more than once");
+    };
+    // Checked before opening, as in openRegular().
+    const bool is_there = ::stat(name.c_str(), &info) == 0;
+    if (is_there || errno != ENOENT || (flags & O_CREAT) == 0) check(is_there);
+    constexpr mode_t kMode = 0666;
+    open = OpenFile(::open(name.c_str(), flags | O_NONBLOCK | O_CLOEXEC, kMode));
+    check(open.fd() >= 0 && ::fstat(open.fd(), &info) == 0);
+}
+
+bool JobResults::File::lock() const {
+    // Without locks in the file system two processes may write.
+    if (::flock(open.fd(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        refuse("another process works on this job: wait for it, or end it");
+    struct stat own {};
+    struct stat named {};
+    return ::fstat(open.fd(), &own) == 0 && ::stat(name.c_str(), &named) == 0 &&
+           own.st_dev == named.st_dev && own.st_ino == named.st_ino;
+}
+
+void JobResults::File::append(std::string_view bytes) const {
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t n = ::write(open.fd(), bytes.data() + done, bytes.size() - done);
+        if (n >= 0) {
+            done += static_cast<std::size_t>(n);
+        } else if (errno != EINTR) {
+            const int error = errno;
+            // A reader would skip the half record, but the next record requires its space.
+            static_cast<void>(::ftruncate(open.fd(), static_cast<off_t>(end)) == 0);
+            throw std::system_error(error, std::generic_category(), name);
+        }
+    }
+}
+
 std::string JobResults::File::read(std::uint64_t at, std::size_t size) const {
     std::string bytes(size, '\0');
     std::size_t done = 0;
@@ -201,21 +238,14 @@ void JobResults::File::readHead() {
 
 void JobResults::addFile(const std::string& name) {
     File file{.name = name};
-    struct stat info {};
-    const auto check = [&](bool is_found) {
-        if (!is_found) failOn(name);
-        if (!S_ISREG(info.st_mode))
-            file.refuse("a part is a regular file: it is read more than once");
-    };
-    // Checked before opening, as in openRegular(); but a kept file is an output as well.
-    check(::stat(name.c_str(), &info) == 0);
-    const int mode = is_kept_ ? O_RDWR | O_APPEND : O_RDONLY;
-    file.open = OpenFile(::open(name.c_str(), mode | O_NONBLOCK | O_CLOEXEC));
-    check(file.open.fd() >= 0 && ::fstat(file.open.fd(), &info) == 0);
-    // Without locks in the file system two processes may write.
-    if (is_kept_ && ::flock(file.open.fd(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-        file.refuse("another process works on this job: wait for it, or end it");
+    file.openAs(O_RDONLY);
+    addFile(std::move(file));
+}
+
+void JobResults::addFile(File file) {
     file.readHead();
+    struct stat info {};
+    if (::fstat(file.open.fd(), &info) != 0) failOn(file.name);
     files_.push_back(std::move(file));
     readRecords(files_.back(), static_cast<std::uint64_t>(info.st_size));
 }
@@ -281,8 +311,7 @@ std::string JobResults::keptFile(const std::string& output, const Shard& shard) 
 JobResults::JobResults(const std::string& output, const JobId& job, Shard shard, bool is_kept)
     : is_kept_(is_kept) {
     if (is_kept) {
-        files_.push_back({.name = keptFile(output, shard)});
-        openKept({job, shard});
+        openKept(keptFile(output, shard), {job, shard});
         return;
     }
     File file{.name = output, .open = namelessFileBeside(output), .head = {job, shard}};
@@ -290,22 +319,45 @@ JobResults::JobResults(const std::string& output, const JobId& job, Shard shard,
     files_.push_back(std::move(file));
 }
 
-void JobResults::openKept(const PartHead& head) {
-    const std::string name = files_.front().name;
-    std::error_code ignored;
-    if (!std::filesystem::exists(name, ignored)) writeAll(name, partHeadText(head));
-    files_.clear();
-    records_.clear();
-    live_ = 0;
-    addFile(name);
-    const File& file = files_.front();
-    std::string difference = file.head.job.differenceFrom(head.job);
-    if (difference.empty() && file.head.shard != head.shard)
-        difference = "the shard (" + file.head.shard.text() + ", " + head.shard.text() + ")";
+void JobResults::File::start(const PartHead& job) const {
+    const std::string text = partHeadText(job), found = read(0, text.size());
+    if (found.size() == text.size() || !text.starts_with(found)) return;
+    try {
+        if (::ftruncate(open.fd(), 0) != 0) failOn(name);
+        append(text);
+    } catch (const std::system_error&) {
+        ::unlink(name.c_str());
+        throw;
+    }
+}
+
+void JobResults::openKept(const std::string& name, const PartHead& head) {
+    File file{.name = name};
+    do file.openAs(O_RDWR | O_APPEND | O_CREAT);
+    while (!file.lock());
+    file.start(head);
+    addFile(std::move(file));
+    const File& kept = files_.front();
+    std::string difference = kept.head.job.differenceFrom(head.job);
+    if (difference.empty() && kept.head.shard != head.shard)
+        difference = "the shard (" + kept.head.shard.text() + ", " + head.shard.text() + ")";
     if (!difference.empty())
-        file.refuse("what a job left, and not this one: " + difference +
+        kept.refuse("what a job left, and not this one: " + difference +
                     " differs; delete the file, or write to another");
-    if (::ftruncate(file.open.fd(), static_cast<off_t>(file.end)) != 0) failOn(name);
+    if (::ftruncate(kept.open.fd(), static_cast<off_t>(kept.end)) != 0) failOn(name);
+}
+
+void JobResults::rewriteKept() {
+    OutputFile anew(file());
+    anew.write(partHeadText(head()));
+    writeRecords(anew, {});
+    anew.commit();
+    JobResults rewritten;  // until it has been read, the results are those of the old file
+    rewritten.is_kept_ = true;
+    rewritten.openKept(file(), head());
+    files_ = std::move(rewritten.files_);
+    records_ = std::move(rewritten.records_);
+    live_ = rewritten.live_;
 }
 
 std::vector<std::string> JobResults::keys() const {
@@ -323,38 +375,16 @@ std::optional<std::string> JobResults::find(const std::string& key) const {
     return bytesOf(key, at->second);
 }
 
-void JobResults::append(std::string_view bytes) {
-    const File& file = files_.front();
-    std::size_t done = 0;
-    while (done < bytes.size()) {
-        const ssize_t n = ::write(file.open.fd(), bytes.data() + done, bytes.size() - done);
-        if (n >= 0) {
-            done += static_cast<std::size_t>(n);
-        } else if (errno != EINTR) {
-            const int error = errno;
-            // A reader would skip the half record, but the next record requires its space.
-            static_cast<void>(::ftruncate(file.open.fd(), static_cast<off_t>(file.end)) == 0);
-            throw std::system_error(error, std::generic_category(), file.name);
-        }
-    }
-}
-
 void JobResults::store(const std::string& key, std::string_view bytes) {
     if (is_merge_) return;
     const std::lock_guard lock(*mutex_);
     const Clock::time_point begin = Clock::now();
     const std::string record = partRecordText(key, bytes);
     try {
-        append(record);
+        files_.front().append(record);
         const std::uint64_t start = files_.front().end + record.size() - bytes.size() - 1;
         keep(key, {0, start, bytes.size(), hashOf(bytes)});
-        if (is_kept_ && files_.front().end > 2 * live_ + kMaxReplacedBytes) {
-            OutputFile anew(files_.front().name);
-            anew.write(partHeadText(head()));
-            writeRecords(anew, {});
-            anew.commit();
-            openKept(PartHead(head()));
-        }
+        if (is_kept_ && files_.front().end > 2 * live_ + kMaxReplacedBytes) rewriteKept();
     } catch (const std::system_error& error) {
         if (!is_optional_) throw;
         trouble_ = error.what();
@@ -399,105 +429,6 @@ void JobResults::setInterval(double seconds) {
 bool JobResults::isDue() {
     const std::lock_guard lock(*mutex_);
     return is_kept_ && Clock::now() >= next_;
-}
-
-PartHead partHeadOf(const std::string& file) {
-    JobResults results;
-    results.addFile(file);
-    return results.head();
-}
-
-bool isPartOf(const std::string& file, const PartHead& head) {
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) return false;
-    JobResults results;
-    try {
-        results.addFile(file);
-        for (const std::string& key : results.keys()) static_cast<void>(results.find(key));
-    } catch (const FormatError&) {
-        return false;
-    }
-    return results.files_.front().is_finished && results.head().shard == head.shard &&
-           results.head().job.differenceFrom(head.job).empty();
-}
-
-namespace {
-
-/// "3", "2 and 5", "2, 4, 7 and 12 more"
-std::string numberList(const std::vector<int>& numbers) {
-    constexpr std::size_t kMaxNamed = 20;
-    std::string text;
-    for (std::size_t i = 0; i < std::min(numbers.size(), kMaxNamed); ++i) {
-        if (i > 0) text += i + 1 == numbers.size() ? " and " : ", ";
-        text += std::to_string(numbers[i]);
-    }
-    if (numbers.size() > kMaxNamed)
-        text += " and " + std::to_string(numbers.size() - kMaxNamed) + " more";
-    return text;
-}
-
-/// Opens all parts and keeps them open; raises the limit of open files if necessary.
-void allowFiles(std::size_t count) {
-    constexpr rlim_t kOthers = 64;
-    const rlim_t wanted = count + kOthers;
-    rlimit limit{};
-    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return;
-    limit.rlim_cur = std::min(wanted, limit.rlim_max);
-    ::setrlimit(RLIMIT_NOFILE, &limit);
-}
-
-/// Reason why a part cannot be merged with `first`; "" if it can.
-std::string mergeProblem(const PartHead& head, bool is_finished, std::string_view tool,
-                         const std::optional<PartHead>& first, const std::string& first_name) {
-    if (head.job.tool != tool)
-        return "a part of a job of " + head.job.tool + ": merge it with " + head.job.tool +
-               " --merge";
-    if (!is_finished)
-        return "shard " + head.shard.text() +
-               " was cut short: run it again, with --resume if it ran so before";
-    if (!first) return "";
-    if (head.shard.count != first->shard.count)
-        return "shard " + head.shard.text() + ", and " + first_name + " is shard " +
-               first->shard.text();
-    const std::string difference = head.job.differenceFrom(first->job);
-    if (difference.empty()) return "";
-    return "not of the same job as " + first_name + ": " + difference + " differs";
-}
-
-}  // namespace
-
-JobResults mergeParts(std::span<const std::string> files, std::string_view tool) {
-    JobResults merged;
-    merged.is_merge_ = true;
-    Diagnostics findings;
-    allowFiles(files.size());
-    std::optional<PartHead> first;
-    std::map<int, std::string> names;  // by shard
-    for (const std::string& name : files) {
-        noteInput(name);
-        merged.addFile(name);
-        const JobResults::File& file = merged.files_.back();
-        const Shard& shard = file.head.shard;
-        std::string problem = mergeProblem(file.head, file.is_finished, tool, first,
-                                           names.empty() ? "" : names.begin()->second);
-        if (problem.empty()) {
-            first = file.head;
-            const auto [at, is_new] = names.emplace(shard.index, name);
-            if (!is_new)
-                problem = "shard " + shard.text() + " is given twice, as " + at->second + ", too";
-        }
-        if (!problem.empty()) findings.add({name, 0, 0, problem});
-    }
-    findings.throwIfAny();
-    const int count = first ? first->shard.count : 0;
-    std::vector<int> missing;
-    for (int i = 1; i <= count; ++i)
-        if (!names.contains(i)) missing.push_back(i);
-    if (!missing.empty())
-        throw FormatError({"", 0, 0,
-                           (missing.size() == 1 ? "missing shard " : "missing shards ") +
-                               numberList(missing) + " of " + std::to_string(count)});
-    return merged;
 }
 
 }  // namespace ispace

@@ -121,19 +121,28 @@ class JobResults {
         std::uint64_t begin = 0, end = 0;  // of its complete records
         bool is_finished = false;
 
+        /// \param flags of open(2); with O_CREAT a missing file is created
+        void openAs(int flags);
+        /// Locks the file against other processes; false if its name no longer leads to it.
+        [[nodiscard]] bool lock() const;
+        /// Writes the header if the file is empty or, after a crash, ends within it.
+        void start(const PartHead& job) const;
         [[nodiscard]] std::string read(std::uint64_t at, std::size_t size) const;
+        /// \throws std::system_error if the disk is full; the file then ends at `end`
+        void append(std::string_view bytes) const;
         [[noreturn]] void refuse(const std::string& message, int line = 0) const;
         void readHead();
     };
 
     JobResults() = default;
     void addFile(const std::string& name);
+    void addFile(File file);
     void readRecords(File& file, std::uint64_t size);
     void keep(const std::string& key, const Record& record);
     [[nodiscard]] bool readRecord(const Record& record, std::string& bytes) const;
     [[nodiscard]] std::string bytesOf(const std::string& key, const Record& record) const;
-    void openKept(const PartHead& head);
-    void append(std::string_view bytes);
+    void openKept(const std::string& name, const PartHead& head);
+    void rewriteKept();
     void writeRecords(OutputFile& to, std::span<const std::string_view> prefixes) const;
 
     std::vector<File> files_;

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <filesystem>
+#include <latch>
+#include <optional>
 #include <system_error>
 #include <thread>
 
@@ -216,8 +219,8 @@ TEST_F(PartFileTest, KeptResultsGoOnWhereTheyWereCut) {
         EXPECT_EQ(results.find("a"), "first");
     }
     const std::string whole = readAll(file);
-    const std::size_t first = whole.find("=a"), second = whole.find("=b");
-    for (std::size_t size = first; size <= whole.size(); ++size) {
+    const std::size_t second = whole.find("=b");
+    for (std::size_t size = 0; size <= whole.size(); ++size) {
         writeAll(file, whole.substr(0, size));
         JobResults results(output, head().job, {}, true);
         const std::size_t kept = size == whole.size() ? 2 : size >= second ? 1 : 0;
@@ -252,6 +255,64 @@ TEST_F(PartFileTest, KeptResultsOfAnotherJobAreLeftAlone) {
     EXPECT_EQ(held.find("a"), "first");
     EXPECT_NE(errorsOf([&] { JobResults(output, head().job, {}, true); }).find("another process"),
               std::string::npos);
+}
+
+TEST_F(PartFileTest, KeptResultsHaveOneOwner) {
+    constexpr int kThreads = 4, kRounds = 200;
+    for (int round = 0; round < kRounds; ++round) {
+        const std::string output = path("c" + std::to_string(round));
+        std::latch start(kThreads), end(kThreads);
+        std::atomic<int> owners = 0;
+        std::vector<std::thread> threads;
+        for (int i = 0; i < kThreads; ++i)
+            threads.emplace_back([&] {
+                std::optional<JobResults> results;
+                start.arrive_and_wait();
+                try {
+                    results.emplace(output, head().job, Shard(), true);
+                    ++owners;
+                } catch (const FormatError&) {
+                    // Another thread has it open.
+                }
+                end.arrive_and_wait();
+            });
+        for (std::thread& thread : threads) thread.join();
+        ASSERT_EQ(owners, 1) << round;
+    }
+}
+
+TEST_F(PartFileTest, KeptResultsSurviveAFailedRewrite) {
+    const std::string output = path("c"), file = output + ".resume";
+    JobResults results(output, head().job, {}, true);
+    results.store("kept", "small");
+    fs::remove(file);
+    fs::create_symlink("/dev/null", file);
+    std::string state(1 << 20, 'x');
+    int failures = 0;
+    for (int i = 0; i < 24; ++i) {
+        state[0] = static_cast<char>('a' + i);
+        try {
+            results.store("state", state);
+        } catch (const FormatError&) {
+            ++failures;
+        }
+        ASSERT_EQ(results.find("state"), state) << i;
+    }
+    EXPECT_GT(failures, 0);
+    EXPECT_EQ(results.find("kept"), "small");
+}
+
+TEST_F(PartFileTest, RewrittenResultsStayLocked) {
+    const std::string output = path("c"), file = output + ".resume";
+    JobResults results(output, head().job, {}, true);
+    const std::string state(6U << 20U, 'x');
+    for (int i = 0; i < 5; ++i) results.store("state", state);
+    EXPECT_LT(fs::file_size(file), 7U << 20U);
+    EXPECT_NE(errorsOf([&] { JobResults(output, head().job, {}, true); }).find("another process"),
+              std::string::npos);
+    results.store("next", "bytes");
+    EXPECT_EQ(results.find("next"), "bytes");
+    EXPECT_EQ(results.find("state"), state);
 }
 
 TEST_F(PartFileTest, KeptResultsDoNotGrowByThoseReplaced) {
