@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
+#include <unordered_set>
 #include <utility>
 
 #include "base/error.h"
@@ -61,11 +63,8 @@ Record addedRecord(const Edit& edit, const Schemas& schemas) {
 
 class Editor {
   public:
-    Editor(std::vector<Record> records, const Schemas& schemas)
-        : records_(std::move(records)),
-          ids_(assignIds(records_)),
-          taken_(ids_.begin(), ids_.end()),
-          schemas_(schemas) {}
+    Editor(std::vector<Record> records, std::vector<std::string> ids, const Schemas& schemas)
+        : records_(std::move(records)), ids_(std::move(ids)), schemas_(schemas) {}
 
     void apply(const Edit& edit) {
         edit_ = &edit;
@@ -98,10 +97,12 @@ class Editor {
 
     /// Writes the automatic ids that would otherwise shift to other records.
     void keepIds() {
+        if (keeps_ids_) return;
         const std::vector<std::string> now = assignIds(records_);
         std::set<std::string> shifted;  // keywords
         for (std::size_t i = 0; i < records_.size(); ++i)
             if (now[i] != ids_[i]) shifted.insert(records_[i].keyword());
+        if (shifted.empty()) return;
         for (std::size_t i = 0; i < records_.size(); ++i)
             if (shifted.count(records_[i].keyword()) > 0) records_[i].set("id", ids_[i]);
     }
@@ -134,13 +135,14 @@ class Editor {
         return is_on;
     }
 
-    void checkReferences() const {
+    void checkReferences() {
+        if (removed_.empty()) return;
         Diagnostics findings;
         for (std::size_t i = 0; i < records_.size(); ++i)
             for (const Role role : {Role::Carrier, Role::Reference})
                 forEachWritten(records_[i], role, [&](const KeySpec& key) {
                     const std::string& named = records_[i].text(key.name);
-                    if (removed_.count(named) == 0 || taken_.count(named) > 0) return;
+                    if (removed_.count(named) == 0 || taken().count(named) > 0) return;
                     std::string message = "--delete " + named + ": `";
                     for (const std::string& part :
                          {ids_[i], std::string("` has `"), key.name, std::string("="), named})
@@ -185,14 +187,21 @@ class Editor {
         return records_.at(static_cast<std::size_t>(found - ids_.begin()));
     }
 
+    /// Returns the set of the ids, which most edits do not read.
+    [[nodiscard]] std::unordered_set<std::string>& taken() {
+        if (!taken_) taken_.emplace(ids_.begin(), ids_.end(), 2 * ids_.size());
+        return *taken_;
+    }
+
     void add(Record record) {
+        keeps_ids_ = false;
         std::string id = record.writtenId();
         if (id.empty()) {
             std::size_t& n = count_[record.keyword()];
             do {
                 id = record.keyword() + std::to_string(++n);
-            } while (!taken_.insert(id).second);
-        } else if (!taken_.insert(id).second) {
+            } while (!taken().insert(id).second);
+        } else if (!taken().insert(id).second) {
             fail(takenText(id, holderOf(id)));
         }
         records_.push_back(std::move(record));
@@ -200,13 +209,16 @@ class Editor {
     }
 
     void erase() {
+        keeps_ids_ = false;
         std::vector<Record> records;
         std::vector<std::string> ids;
+        records.reserve(records_.size());
+        ids.reserve(ids_.size());
         const std::vector<std::size_t> places = found();
         auto next = places.begin();
         for (std::size_t i = 0; i < records_.size(); ++i) {
             if (next != places.end() && *next == i) {
-                taken_.erase(ids_[i]);
+                if (taken_) taken_->erase(ids_[i]);
                 removed_.insert(std::move(ids_[i]));
                 ++next;
                 continue;
@@ -267,14 +279,15 @@ class Editor {
 
     void rename(std::size_t i) {
         const std::string id = records_[i].writtenId();
+        keeps_ids_ = false;
         if (id == ids_[i]) return;
-        if (!taken_.insert(id).second) fail(takenText(id, holderOf(id)));
+        if (!taken().insert(id).second) fail(takenText(id, holderOf(id)));
         for (Record& record : records_)
             for (const Role role : {Role::Carrier, Role::Reference})
                 forEachWritten(record, role, [&](const KeySpec& key) {
                     if (record.text(key.name) == ids_[i]) record.set(key.name, id);
                 });
-        taken_.erase(ids_[i]);
+        taken().erase(ids_[i]);
         ids_[i] = id;
     }
 
@@ -335,8 +348,9 @@ class Editor {
     }
 
     std::vector<Record> records_;
-    std::vector<std::string> ids_;              // by record, fixed except for --set ID.id
-    std::set<std::string> taken_;               // the same ids
+    std::vector<std::string> ids_;  // by record, fixed except for --set ID.id
+    std::optional<std::unordered_set<std::string>> taken_;  // the same ids, once required
+    bool keeps_ids_ = true;                     // no edit so far may have shifted automatic ids
     std::set<std::string> removed_;             // by --delete
     std::map<std::string, std::size_t> count_;  // last number of added records, by keyword
     const Schemas& schemas_;
@@ -365,9 +379,10 @@ std::vector<Record> addedRecords(std::span<const Edit> edits, const Schemas& sch
 }
 
 std::vector<Record> edited(std::vector<Record> records, std::span<const Edit> edits,
-                           const Schemas& schemas) {
+                           const Schemas& schemas, const std::vector<std::string>* ids) {
     if (edits.empty()) return records;
-    Editor editor(std::move(records), schemas);
+    std::vector<std::string> known = ids == nullptr ? assignIds(records) : *ids;
+    Editor editor(std::move(records), std::move(known), schemas);
     for (const Edit& edit : edits) editor.apply(edit);
     editor.keepIds();
     return editor.finish();

@@ -57,11 +57,12 @@ std::vector<Record> addedRecords(std::span<const Edit> edits, const Schemas& sch
 /// the old one. If a glob moves several records, it skips those mounted on another of them and
 /// those without coordinates: they follow their carrier or wall. Any edit removes the `result`
 /// records: they describe another layout.
+/// \param ids assignIds(records), if they are known
 /// \throws FormatError, each message beginning with the edit ("--move l9:1,0: no record has the id
 ///         …"): an unknown id or key, a value out of bounds, a move of a record without
 ///         coordinates, removal of a record that another one references
 std::vector<Record> edited(std::vector<Record> records, std::span<const Edit> edits,
-                           const Schemas& schemas);
+                           const Schemas& schemas, const std::vector<std::string>* ids = nullptr);
 
 /// Computes a + b + c in decimal arithmetic: 0.1 + 0.2 is 0.3. The sum is rounded to a number with
 /// at most nine decimals if one lies within the rounding error (a picometre for terms up to a

@@ -75,6 +75,10 @@ const Record::Entry* Record::written(std::string_view key) const {
 }
 
 std::string Record::writtenId() const {
+    // For bulk queries: `id` is the first key of most schemas, so the first entry tells.
+    const std::vector<Entry>& entries = data_->entries;
+    if (!entries.empty() && entries.front().key > 0 && schema_->keys.front().name == "id")
+        return "";
     const Entry* const entry = written("id");
     return entry == nullptr ? "" : std::get<std::string>(entry->value);
 }
@@ -247,25 +251,26 @@ void checkIds(const std::vector<Record>& records) {
 }
 
 std::vector<std::string> assignIds(const std::vector<Record>& records) {
-    const IdTable taken(records.size(), [&records](std::size_t i) {
-        return records[i].has("id") ? std::string_view(records[i].text("id")) : std::string_view();
-    });
+    std::vector<std::string> ids;
+    ids.reserve(records.size());
+    for (const Record& record : records) ids.push_back(record.writtenId());
+    const IdTable taken(ids.size(), [&ids](std::size_t i) { return std::string_view(ids[i]); });
     // Automatic ids can only collide if a keyword ends in a digit ("a" 11, "a1" 1).
     const bool may_meet = std::any_of(records.begin(), records.end(), [](const Record& record) {
         return record.keyword().back() >= '0' && record.keyword().back() <= '9';
     });
     std::unordered_set<std::string> made;
     std::unordered_map<std::string_view, std::size_t> count;
-    std::vector<std::string> ids;
-    ids.reserve(records.size());
-    for (const Record& record : records) {
-        std::string id = record.writtenId();
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (!ids[i].empty()) continue;
+        std::size_t& number = count[records[i].keyword()];
+        std::string id;
         while (id.empty()) {
-            id = record.keyword();
-            id += std::to_string(++count[record.keyword()]);
+            id = records[i].keyword();
+            id += std::to_string(++number);
             if (taken.find(id) || (may_meet && !made.insert(id).second)) id.clear();
         }
-        ids.push_back(std::move(id));
+        ids[i] = std::move(id);
     }
     return ids;
 }

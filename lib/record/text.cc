@@ -16,7 +16,6 @@ namespace {
 constexpr std::string_view kBlanks = " \t";
 
 bool isBlank(char c) { return c == ' ' || c == '\t'; }
-bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
 std::string hexByte(unsigned char byte) {
     std::array<char, 8> text{};
@@ -154,7 +153,8 @@ Piece LineLexer::plainValue(int column) {
     const auto value = [&] { return line_.substr(begin, next_ - begin); };
     if (atEnd() || isBlank(line_[next_])) return {value(), column};
     // An inch sign ends a value, as in 1/2.8".
-    const bool is_inch = line_[next_] == '"' && next_ > begin && isDigit(line_[next_ - 1]) &&
+    const bool is_inch = line_[next_] == '"' && next_ > begin && line_[next_ - 1] >= '0' &&
+                         line_[next_ - 1] <= '9' &&
                          (next_ + 1 == line_.size() || isBlank(line_[next_ + 1]));
     if (is_inch) {
         ++next_;

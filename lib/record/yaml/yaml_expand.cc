@@ -379,7 +379,7 @@ struct ValueWriter {
     }
 };
 
-void appendRecord(std::string& out, const Record& record) {
+void appendItem(std::string& out, const Record& record) {
     out += "- ";
     out += record.keyword();
     out += ": {";
@@ -405,7 +405,7 @@ std::string writeYaml(const Document& document) {
         out += '\n';
     }
     if (document.records.empty()) out += "[]\n";
-    for (const Record& record : document.records) appendRecord(out, record);
+    for (const Record& record : document.records) appendItem(out, record);
     return out;
 }
 
