@@ -39,14 +39,16 @@ class Carriers {
     [[nodiscard]] Place place(const Record& sensor);
 
   private:
-    struct Thing {
-        const Record* record;
-        std::size_t index;  // among the robots or the people, for a mover
-        std::optional<double> top = {};
+    struct IdOfRecord {
+        const std::vector<std::string>* ids;
+        std::string_view operator()(std::size_t i) const { return (*ids)[i]; }
     };
 
-    std::map<std::string, Thing> things_;
-    std::vector<std::string> candidates_;  // ids, for hints
+    const std::vector<Record>& records_;
+    const std::vector<std::string>& ids_;
+    std::optional<IdTable<IdOfRecord>> by_id_;             // if a sensor has a carrier
+    std::unordered_map<std::size_t, std::size_t> movers_;  // among robots or people, by record
+    std::unordered_map<std::size_t, double> tops_;         // of objects that carry, by record
 };
 
 /// Returns true for furniture, pillars and the like, which have a position and a top.
@@ -62,40 +64,44 @@ bool isCarrier(const Record& record) {
 /// Height of a sensor on a person without a written height: the eyes, as a share of the person.
 constexpr double kEyes = 0.94;
 
-Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids) {
-    const auto is_carried = [](const Record& record) { return record.has("on"); };
-    if (std::none_of(records.begin(), records.end(), is_carried)) return;
+Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids)
+    : records_(records), ids_(ids) {
     std::size_t robots = 0, people = 0;
     for (std::size_t i = 0; i < records.size(); ++i) {
-        const bool is_human = records[i].keyword() == "human";
-        things_.emplace(ids[i], Thing{&records[i], is_human ? people : robots});
-        if (records[i].keyword() == "robot") ++robots;
-        if (is_human) ++people;
-        if (isCarrier(records[i])) candidates_.push_back(ids[i]);
+        if (records[i].schema().type != RecordType::Placement) continue;
+        if (records[i].keyword() == "robot") movers_.emplace(i, robots++);
+        if (records[i].keyword() == "human") movers_.emplace(i, people++);
+        if (!by_id_ && records[i].has("on")) by_id_.emplace(ids.size(), IdOfRecord{&ids});
     }
 }
 
 Carriers::Place Carriers::place(const Record& sensor) {
     const std::string& on = sensor.text("on");
-    const auto found = things_.find(on);
-    if (found == things_.end())
+    const auto found = by_id_->find(on);
+    if (!found) {
+        std::vector<std::string> candidates;
+        for (std::size_t i = 0; i < records_.size(); ++i)
+            if (isCarrier(records_[i])) candidates.push_back(ids_[i]);
         throw FormatError(sensor.finding(
-            "on", "`on`: nothing has the id `" + on + '`' + didYouMean(on, candidates_)));
-    auto& [record, index, top] = found->second;
-    if (!isCarrier(*record))
-        throw FormatError(
-            sensor.finding("on", "`on`: `" + on + "` is a `" + record->keyword() +
-                                     "`; only robots, people and objects carry sensors"));
-    const Pose2 carrier = floorPoseOf(*record);
-    Pose3 local = poseOf(sensor);
-    if (record->keyword() == "robot") return {mountedPose(carrier, local), Mount{index, local}};
-    if (record->keyword() == "human") {
-        const bool has_height = sensor.has("at") && sensor.tuple("at").size() > 2;
-        if (!has_height) local.position.z = kEyes * record->number("height");
-        return {mountedPose(carrier, local), std::nullopt, index};
+            "on", "`on`: nothing has the id `" + on + '`' + didYouMean(on, candidates)));
     }
-    if (!top) top = topOf(bodyOf(*record));
-    local.position.z += *top;
+    const Record& record = records_[*found];
+    if (!isCarrier(record))
+        throw FormatError(
+            sensor.finding("on", "`on`: `" + on + "` is a `" + record.keyword() +
+                                     "`; only robots, people and objects carry sensors"));
+    const Pose2 carrier = floorPoseOf(record);
+    Pose3 local = poseOf(sensor);
+    if (record.keyword() == "robot")
+        return {mountedPose(carrier, local), Mount{movers_.at(*found), local}};
+    if (record.keyword() == "human") {
+        const bool has_height = sensor.has("at") && sensor.tuple("at").size() > 2;
+        if (!has_height) local.position.z = kEyes * record.number("height");
+        return {mountedPose(carrier, local), std::nullopt, movers_.at(*found)};
+    }
+    const auto [top, is_new] = tops_.try_emplace(*found, 0);
+    if (is_new) top->second = topOf(bodyOf(record));
+    local.position.z += top->second;
     return {mountedPose(carrier, local), std::nullopt};
 }
 
@@ -184,32 +190,18 @@ class Resolver {
 
 /// Builds the environment; reports its errors together with the findings about sensors.
 Environment makeEnvironment(const std::vector<Record>& records, const std::vector<std::string>& ids,
-                            Diagnostics& findings) {
+                            const Scene* before, Diagnostics& findings) {
     std::optional<Environment> environment;
     try {
-        environment.emplace(records, ids);
+        if (before != nullptr)
+            environment.emplace(records, ids, before->environment);
+        else
+            environment.emplace(records, ids);
     } catch (const FormatError& error) {
         findings.add(error);
     }
     findings.throwIfAny();
     return std::move(*environment);
-}
-
-/// Returns true if all records of the room are equal, with the same ids and files.
-bool isSameRoom(const Scene& before, const std::vector<Record>& records,
-                const std::vector<std::string>& ids) {
-    const auto next = [](const std::vector<Record>& all, std::size_t i) {
-        while (i < all.size() && !all[i].schema().isEnvironment()) ++i;
-        return i;
-    };
-    std::size_t i = next(before.records, 0), j = next(records, 0);
-    while (i < before.records.size() && j < records.size()) {
-        const Record &was = before.records[i], &is = records[j];
-        if (before.ids[i] != ids[j] || was.mesh() != is.mesh() || !(was == is)) return false;
-        i = next(before.records, i + 1);
-        j = next(records, j + 1);
-    }
-    return i == before.records.size() && j == records.size();
 }
 
 /// Builds a scene from records without meta records, except for `records` and `digest`.
@@ -218,9 +210,7 @@ Scene sceneOf(const std::vector<Record>& records, const Scene* before,
     std::vector<std::string> ids = assignIds(records);
     Diagnostics findings;
     Placements placements = Resolver(records, ids, devices).resolve(findings);
-    const bool is_same = before != nullptr && isSameRoom(*before, records, ids);
-    if (is_same) findings.throwIfAny();
-    Environment room = is_same ? before->environment : makeEnvironment(records, ids, findings);
+    Environment room = makeEnvironment(records, ids, before, findings);
     return {.records = {},
             .ids = std::move(ids),
             .environment = std::move(room),
@@ -376,12 +366,13 @@ const char* fileKeyOf(const Record& record) {
 
 bool touchFiles(const std::vector<Edit>& edits, const Scene& scene) {
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
-        if (fileKeyOf(scene.records[i]) == nullptr) continue;
         const bool is_last = i + 1 == scene.records.size();
         const auto touches = [&](const Edit& edit) {
             return edit.kind == Edit::Kind::Add ? is_last : isAbout(edit, scene.ids[i]);
         };
-        if (std::any_of(edits.begin(), edits.end(), touches)) return true;
+        if (std::any_of(edits.begin(), edits.end(), touches) &&
+            fileKeyOf(scene.records[i]) != nullptr)
+            return true;
     }
     return false;
 }
@@ -400,7 +391,7 @@ std::vector<Record> editedRecords(const Scene& scene, const std::vector<Edit>& e
         records[i].set("at", Tuple{pose->position.x, pose->position.y});
         records[i].set("heading", pose->heading.degrees());
     }
-    return edited(std::move(records), edits, sceneSchemas());
+    return edited(std::move(records), edits, sceneSchemas(), &scene.ids);
 }
 
 void placeAgain(std::vector<Record>& records, std::span<const std::string> ids,

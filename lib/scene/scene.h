@@ -71,15 +71,14 @@ std::vector<Sensor> sensorsOf(const Scene& scene) {
 std::vector<Record> joinRecords(const std::vector<Record>& environment,
                                 const std::vector<Record>& layout);
 
-/// Builds a scene. \param before another scene, whose room is shared if its records are equal; may
-/// be null
-/// \throws FormatError as Environment does, for unknown models, and for `on` without a valid
-/// carrier
+/// Builds a scene. \param before another scene, with which the environment shares its data as far
+/// as the records are equal; may be null \throws FormatError as Environment does, for unknown
+/// models, and for `on` without a valid carrier
 Scene makeScene(const Document& environment, const Document* layout, const DeviceCatalogue& devices,
                 const Scene* before = nullptr);
 
-/// Builds the scene of changed records. The room of `before` is shared if its records are equal;
-/// the digest stays. \throws FormatError as above
+/// Builds the scene of changed records. The environment shares its data with that of `before` as
+/// far as the records are equal; the digest stays. \throws FormatError as above
 Scene makeScene(std::vector<Record> records, const Scene& before, const DeviceCatalogue& devices);
 
 /// The reference of a LAYOUT to its ENV, if any.

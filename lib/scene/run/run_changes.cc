@@ -98,14 +98,32 @@ std::vector<RunChange> recordedChanges(const std::string& folder) {
     return changes;
 }
 
+namespace {
+
+/// A genuine record has rows for each step between its changes.
+Budget budgetOf(const std::string& folder, std::optional<std::uint64_t> max_work) {
+    const RecordedFiles files(folder);
+    std::uint64_t bytes = 0;
+    for (const std::string* file : {&files.robots, &files.people, &files.events}) {
+        std::error_code missing;
+        const std::uintmax_t size = std::filesystem::file_size(*file, missing);
+        if (!missing) bytes += size;
+    }
+    return Budget(0, max_work.value_or(Budget::kMost + Budget::kPerByte * bytes));
+}
+
+}  // namespace
+
 RunChanges::RunChanges(const std::string& folder, Scene start, DeviceCatalogue devices,
-                       ReadScene read)
+                       ReadScene read, std::optional<std::uint64_t> max_work)
     : folder_(folder),
       first_(std::make_shared<const Scene>(std::move(start))),
       start_(first_),
       devices_(std::move(devices)),
       read_(std::move(read)),
-      changes_(recordedChanges(folder)) {}
+      changes_(recordedChanges(folder)),
+      whole_(budgetOf(folder, max_work)),
+      budget_(whole_) {}
 
 RunChanges::Step RunChanges::stepOf(const RunChange& change, const Scene& now,
                                     const MoverPlaces& places) {
@@ -133,6 +151,10 @@ std::optional<RunChanges::Step> RunChanges::next(double before, const Scene& now
                                                  const MoverPlaces& places) {
     while (isDue(before)) {
         const RunChange& change = changes_[next_++];
+        if (!budget_.take(now.records.size())) {
+            refuse("it and those before make " + budget_.excess());
+            continue;
+        }
         try {
             return stepOf(change, now, places);
         } catch (const FormatError& error) {
@@ -148,6 +170,7 @@ std::optional<RunChanges::Step> RunChanges::next(double before, const Scene& now
 
 void RunChanges::rewind() {
     next_ = 0;
+    budget_ = whole_;
     start_ = first_;
 }
 

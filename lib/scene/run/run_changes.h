@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/budget.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "scene/run/run_reader.h"
@@ -113,13 +115,16 @@ struct RunChange {
 std::vector<RunChange> recordedChanges(const std::string& folder);
 
 /// Repeats the changes of a recorded run. A change that fails, as in a scene other than the
-/// recorded one, is skipped.
+/// recorded one, is skipped; so are all changes beyond a bound of work: 1 unit for each change and
+/// record of its scene, Budget::kMost and Budget::kPerByte for each byte of the record in all.
 class RunChanges {
   public:
     /// Reads a scene of the record.
     using ReadScene = std::function<Scene(const std::string& file)>;
     /// \param start the scene at the start of the run, which RESET restores
-    RunChanges(const std::string& folder, Scene start, DeviceCatalogue devices, ReadScene read);
+    /// \param max_work of --max-work, replaces the bound
+    RunChanges(const std::string& folder, Scene start, DeviceCatalogue devices, ReadScene read,
+               std::optional<std::uint64_t> max_work = {});
 
     /// A repeated change.
     struct Step {
@@ -132,7 +137,7 @@ class RunChanges {
     [[nodiscard]] bool isDue(double before) const;
     /// Returns the next change before a time; empty after the last. \param now the scene before it
     std::optional<Step> next(double before, const Scene& now, const MoverPlaces& places);
-    /// Restarts at the first change.
+    /// Restarts at the first change, with all of the work.
     void rewind();
     /// Reports that the step which next() returned last failed. \param why the error's text
     void refuse(const std::string& why);
@@ -148,6 +153,7 @@ class RunChanges {
     ReadScene read_;
     std::vector<RunChange> changes_;
     std::size_t next_ = 0;
+    Budget whole_, budget_;  // before the first change, and now
     std::string failure_;
 };
 

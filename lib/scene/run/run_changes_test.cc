@@ -22,7 +22,7 @@ constexpr const char* kHead = "t,kind,id,other,x,y,value,text\n";
 
 class RunChangesTest : public ::testing::Test {
   protected:
-    RunChanges changes(const std::string& rows) {
+    RunChanges changes(const std::string& rows, std::optional<std::uint64_t> max_work = {}) {
         writeAll((folder_ / "events.csv").string(), kHead + rows);
         return {folder_.path().string(),
                 testing::scene(kRoom, kWho),
@@ -31,7 +31,8 @@ class RunChangesTest : public ::testing::Test {
                     EXPECT_EQ(file, (folder_ / "scenes/scene-000001.env").string());
                     if (!fs::exists(file)) throw FormatError({file, 0, 0, "is gone"});
                     return testing::scene("ispace id=other size=4,4\n", "robot id=r9 at=1,1\n");
-                }};
+                },
+                max_work};
     }
     static std::optional<Pose2> nowhere(const std::string& /*id*/) { return std::nullopt; }
 
@@ -52,6 +53,25 @@ TEST_F(RunChangesTest, AreThoseOfTheTable) {
     EXPECT_EQ(rows[1].scene, "scenes/scene-000001.env");
     EXPECT_EQ(rows[1].text, "LOAD other.env");
     EXPECT_EQ(rows[2].text, "ADD wall name=\"a, b\" from=0,0");
+}
+
+TEST_F(RunChangesTest, BeyondTheWorkAreSkipped) {
+    std::string rows;
+    for (int i = 0; i < 5; ++i)
+        rows += "0.5,change,,,,,,SET r1.heading=" + std::to_string(i) + "\n";
+    const Scene scene = testing::scene(kRoom, kWho);
+    RunChanges bounded = changes(rows, 3 * scene.records.size());
+    for (int round = 0; round < 2; ++round) {
+        int steps = 0;
+        while (bounded.next(1, scene, nowhere)) ++steps;
+        EXPECT_EQ(steps, 3);
+        EXPECT_NE(bounded.failure().find("events.csv:5: `SET r1.heading=3` at t=0.5 cannot be made "
+                                         "again: it and those before make more than 9 units of "
+                                         "work (`--max-work 18` allows more)"),
+                  std::string::npos)
+            << bounded.failure();
+        bounded.rewind();
+    }
 }
 
 TEST_F(RunChangesTest, HaveTimesOfARun) {

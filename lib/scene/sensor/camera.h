@@ -93,6 +93,8 @@ struct Camera {
     [[nodiscard]] bool isLopsided() const {
         return lens == Lens::Pinhole && (distortion[2] != 0 || distortion[3] != 0);
     }
+    /// The noise of light is always there.
+    [[nodiscard]] static bool isNoisy() { return true; }
     /// Returns true if its whole circle is in the picture and it faces straight up or down.
     [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const;
     friend bool operator==(const Camera&, const Camera&) = default;

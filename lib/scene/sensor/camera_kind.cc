@@ -323,7 +323,7 @@ void addCameraKeys(std::vector<KeySpec>& keys) {
 }
 
 /// Builds the view up to `limits.far`: the picture's edges as a curved surface.
-Mesh viewOf(const Sensor& sensor, double reach) {
+Mesh cameraView(const Sensor& sensor, double reach) {
     const Camera& camera = sensor.as<Camera>();
     const ViewLimits limits = viewLimits(camera.min_range, camera.max_range, reach);
     // A point -1..1 across and upright in the picture; beyond the circle of the lens, clipped to
@@ -363,12 +363,14 @@ const SensorKind kCameraKind = {
                 std::to_string(camera.columns) + "x" + std::to_string(camera.rows),
                 formatDouble(camera.rate)};
     },
-    .view = viewOf,
+    .view = cameraView,
     .bearings = [](const SensorModel& model) -> BearingSpan {
         const Camera& camera = std::get<Camera>(model);
         const Angle half = 0.5 * camera.fovX();
         return {-half, half, camera.max_range};
     },
+    .field_of_view =
+        [](const Sensor& sensor) { return fieldOfView(sensor.as<Camera>(), sensor.pose); },
     .is_read = true,
     .is_arranged = true,
     .is_overhead = true,

@@ -262,15 +262,15 @@ Mesh sweptOf(const Sensor& sensor, ViewLimits limits) {
     return mesh;
 }
 
-Mesh viewOf(const Sensor& sensor, double reach) {
+Mesh laserView(const Sensor& sensor, double reach) {
     const Laser& laser = sensor.as<Laser>();
     const ViewLimits range = viewLimits(laser.min_range, laser.max_range, reach);
     return laser.sweep == SweepAxis::None ? fanOf(laser, range) : sweptOf(sensor, range);
 }
 
-std::vector<Mesh> body() { return {noseBox()}; }
+std::vector<Mesh> laserBody() { return {noseBox()}; }
 
-DeviceSummary summaryOf(const SensorModel& model) {
+DeviceSummary laserSummary(const SensorModel& model) {
     const Laser& laser = std::get<Laser>(model);
     return {rangeText(laser.min_range, laser.max_range), degreesText(laser.span()),
             std::to_string(laser.beams), formatDouble(laser.rate)};
@@ -285,12 +285,12 @@ const SensorKind kLaserKind = {
     .heading_help = "direction of bearing 0, from +x",
     .device_help = "a planar laser range finder one can buy",
     .add_keys = addLaserKeys,
-    .body = body,
+    .body = laserBody,
     .read = [](const Record& record, const Record* device) -> SensorModel {
         return laserOf(record, device);
     },
-    .summary = summaryOf,
-    .view = viewOf,
+    .summary = laserSummary,
+    .view = laserView,
     .bearings = [](const SensorModel& model) -> BearingSpan {
         const Laser& laser = std::get<Laser>(model);
         return {laser.first, laser.first + laser.span(), laser.max_range};

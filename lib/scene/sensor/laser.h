@@ -66,6 +66,7 @@ struct Laser {
     [[nodiscard]] std::size_t rays() const {
         return static_cast<std::size_t>(beams) * static_cast<std::size_t>(scans());
     }
+    [[nodiscard]] bool isNoisy() const { return !noise.isNone(); }
     [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const {
         return mount.isLevel() && seesAround();
     }

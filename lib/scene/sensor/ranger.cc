@@ -118,7 +118,7 @@ Vec3 edgeRay(const Ranger& ranger, double across, double upright) {
     return {1, -across * tan(0.5 * ranger.fov_x), upright * tan(0.5 * ranger.fov_y)};
 }
 
-Mesh viewOf(const Sensor& sensor, double reach) {
+Mesh rangerView(const Sensor& sensor, double reach) {
     const Ranger& ranger = sensor.as<Ranger>();
     const bool is_bent = ranger.projection == Projection::Spherical || !ranger.measures_depth;
     const auto at = [&](double across, double upright, double range) {
@@ -131,9 +131,9 @@ Mesh viewOf(const Sensor& sensor, double reach) {
                        viewLimits(ranger.min_range, ranger.max_range, reach), is_all_around, at);
 }
 
-std::vector<Mesh> body() { return lensBox({0.05, 0.18, 0.05}, {-0.05, 0.05}, 0.015); }
+std::vector<Mesh> rangerBody() { return lensBox({0.05, 0.18, 0.05}, {-0.05, 0.05}, 0.015); }
 
-DeviceSummary summaryOf(const SensorModel& model) {
+DeviceSummary rangerSummary(const SensorModel& model) {
     const Ranger& ranger = std::get<Ranger>(model);
     return {rangeText(ranger.min_range, ranger.max_range),
             degreesText(ranger.fov_x) + "x" + degreesText(ranger.fov_y),
@@ -151,16 +151,18 @@ const SensorKind kRangerKind = {
     .device_help = "a 3-D range camera one can buy",
     .sign = SensorSign::Square,
     .add_keys = addRangerKeys,
-    .body = body,
+    .body = rangerBody,
     .read = [](const Record& record, const Record* device) -> SensorModel {
         return rangerOf(record, device);
     },
-    .summary = summaryOf,
-    .view = viewOf,
+    .summary = rangerSummary,
+    .view = rangerView,
     .bearings = [](const SensorModel& model) -> BearingSpan {
         const Ranger& ranger = std::get<Ranger>(model);
         return {-0.5 * ranger.fov_x, 0.5 * ranger.fov_x, ranger.max_range};
     },
+    .field_of_view =
+        [](const Sensor& sensor) { return fieldOfView(sensor.as<Ranger>(), sensor.pose); },
     .is_read = true,
     .is_arranged = true,
     .follows_poses = true};

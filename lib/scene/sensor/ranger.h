@@ -59,6 +59,7 @@ struct Ranger {
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
     [[nodiscard]] std::size_t rays() const { return pixels(); }
+    [[nodiscard]] bool isNoisy() const { return !noise.isNone(); }
     [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const {
         return projection == Projection::Spherical && fov_x >= Angle::degrees(360) &&
                mount.isLevel();

@@ -2,7 +2,7 @@
 #include "scene/sensor/sensor.h"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 
 #include "env/environment.h"
 #include "scene/sensor/sensor_keys.h"
@@ -29,15 +29,17 @@ std::size_t rayCount(const SensorModel& model) {
     return std::visit([](const auto& one) { return one.rays(); }, model);
 }
 
+bool isNoisy(const SensorModel& model) {
+    return std::visit([](const auto& one) { return one.isNoisy(); }, model);
+}
+
 bool isOmnidirectional(const SensorModel& model, const Pose3& mount) {
     return std::visit([&](const auto& one) { return one.isOmnidirectional(mount); }, model);
 }
 
 std::optional<FieldOfView> fieldOfView(const Sensor& sensor) {
-    if (sensor.is<Ranger>()) return fieldOfView(sensor.as<Ranger>(), sensor.pose);
-    if (sensor.is<Camera>()) return fieldOfView(sensor.as<Camera>(), sensor.pose);
-    if (sensor.is<Receiver>()) return fieldOfView(sensor.as<Receiver>(), sensor.pose);
-    return std::nullopt;
+    const auto view = kindOf(sensor.model).field_of_view;
+    return view == nullptr ? std::nullopt : std::optional(view(sensor));
 }
 
 Pose3 poseOf(const Record& record) {
@@ -61,12 +63,8 @@ Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor)
 
 namespace {
 
-/// The table, in the order of the alternatives of SensorModel.
-constexpr std::array<const SensorKind*, 5> kKinds = {&kLaserKind, &kRangerKind, &kUltrasoundKind,
-                                                     &kTagKind, &kCameraKind};
-/// The order in which manuals list their records.
-constexpr std::array<const SensorKind*, 5> kSchemaOrder = {&kLaserKind, &kRangerKind, &kCameraKind,
-                                                           &kUltrasoundKind, &kTagKind};
+static_assert(std::size(kSensorKinds) == std::variant_size_v<SensorModel>);
+static_assert(std::size(kManualOrder) + kFloorKinds == std::size(kSensorKinds));
 
 Schema schemaOf(const SensorKind& kind) {
     Schema schema{.keyword = std::string(kind.keyword),
@@ -84,34 +82,44 @@ Schema schemaOf(const SensorKind& kind) {
 
 }  // namespace
 
-std::span<const SensorKind* const> sensorKinds() { return kKinds; }
-
-const SensorKind* sensorKind(std::string_view keyword) {
-    const auto* const found =
-        std::find_if(kKinds.begin(), kKinds.end(),
-                     [&](const SensorKind* kind) { return kind->keyword == keyword; });
-    return found == kKinds.end() ? nullptr : *found;
+std::span<const SensorKind* const> sensorKinds() {
+    return std::span(kSensorKinds).first(std::size(kManualOrder));
 }
 
-const SensorKind& kindOf(const SensorModel& model) { return *kKinds[model.index()]; }
+const SensorKind* sensorKind(std::string_view keyword) {
+    const auto kinds = sensorKinds();
+    const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const SensorKind* kind) {
+        return kind->keyword == keyword;
+    });
+    return found == kinds.end() ? nullptr : *found;
+}
+
+const SensorKind& kindOf(const SensorModel& model) { return *kSensorKinds[model.index()]; }
 
 std::vector<std::string_view> keywordsOf(bool SensorKind::*flag) {
     std::vector<std::string_view> keywords;
-    for (const SensorKind* kind : kKinds)
+    for (const SensorKind* kind : sensorKinds())
         if (kind->*flag) keywords.push_back(kind->keyword);
+    return keywords;
+}
+
+std::vector<std::string> manualKeywords(bool (*is_meant)(const SensorKind& kind)) {
+    std::vector<std::string> keywords;
+    for (const SensorKind* kind : kManualOrder)
+        if (is_meant(*kind)) keywords.emplace_back(kind->keyword);
     return keywords;
 }
 
 std::vector<Schema> sensorSchemas() {
     std::vector<Schema> schemas;
-    schemas.reserve(kSchemaOrder.size());
-    for (const SensorKind* kind : kSchemaOrder) schemas.push_back(schemaOf(*kind));
+    schemas.reserve(std::size(kManualOrder));
+    for (const SensorKind* kind : kManualOrder) schemas.push_back(schemaOf(*kind));
     return schemas;
 }
 
 std::vector<Schema> sensorDeviceSchemas() {
     std::vector<Schema> schemas;
-    for (const SensorKind* kind : kSchemaOrder)
+    for (const SensorKind* kind : kManualOrder)
         if (!kind->device_help.empty())
             schemas.push_back(deviceSchema(std::string(kind->keyword),
                                            std::string(kind->device_help), kind->add_keys));

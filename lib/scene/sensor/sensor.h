@@ -15,16 +15,9 @@
 #include "geom/pose.h"
 #include "record/record.h"
 #include "record/schema.h"
-#include "scene/sensor/camera.h"
-#include "scene/sensor/laser.h"
-#include "scene/sensor/ranger.h"
-#include "scene/sensor/ultrasound.h"
+#include "scene/sensor/kinds.h"
 
 namespace ispace {
-
-/// Parameters of a sensor of any simulated kind. Only this header, the sources of the kinds and the
-/// computation of readings distinguish kinds.
-using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera>;
 
 /// The carrier of a moving sensor.
 struct Mount {
@@ -53,11 +46,18 @@ struct Sensor {
     [[nodiscard]] Model& as() {
         return std::get<Model>(model);
     }
+    /// Returns null for another kind.
+    template <typename Model>
+    [[nodiscard]] const Model* tryAs() const {
+        return std::get_if<Model>(&model);
+    }
+    /// Returns true if this robot carries it.
+    [[nodiscard]] bool isOn(std::size_t robot) const { return mount && mount->robot == robot; }
 };
 
 /// Returns the name of the device, "" for a bare sensor.
 const std::string& deviceName(const SensorModel& model);
-/// Returns the maximum range in metres; +infinity for a tag.
+/// Returns the maximum range in metres; +infinity for a tag, 0 on the floor.
 double maxRange(const SensorModel& model);
 /// Returns the readings a second: of a swept laser, whole sweeps.
 double readingRate(const SensorModel& model);
@@ -65,6 +65,8 @@ double readingRate(const SensorModel& model);
 double readingTime(const SensorModel& model);
 /// Estimates the rays of one reading, as the cost of its simulation.
 std::size_t rayCount(const SensorModel& model);
+/// Returns true if its readings have noise, where noise is requested.
+bool isNoisy(const SensorModel& model);
 /// Returns true if, mounted with this tilt and roll, its view does not depend on its heading.
 bool isOmnidirectional(const SensorModel& model, const Pose3& mount);
 
@@ -93,18 +95,18 @@ struct BearingSpan {
 };
 
 /// One kind of sensor, with all its properties that other folders use. A new kind is a source with
-/// such a row, listed in sensorKinds(), and an alternative of SensorModel.
+/// such a row, listed in kinds.h.
 struct SensorKind {
-    std::string_view keyword;       ///< of its records
-    std::string_view noun;          ///< its name in messages
-    std::string_view help;          ///< of the record
-    std::string_view heading_help;  ///< of its key `heading`
-    std::string_view device_help;   ///< of a device file's record; "": there are no devices
+    std::string_view keyword;            ///< of its records
+    std::string_view noun;               ///< its name in messages
+    std::string_view help = {};          ///< of the record
+    std::string_view heading_help = {};  ///< of its key `heading`
+    std::string_view device_help = {};   ///< of a device file's record; "": there are no devices
     SensorSign sign = SensorSign::Disc;
     /// Keys besides those that all sensors have.
-    void (*add_keys)(std::vector<KeySpec>& keys);
+    void (*add_keys)(std::vector<KeySpec>& keys) = nullptr;
     /// Builds its body in its own frame: optical centre at the origin, facing +x.
-    std::vector<Mesh> (*body)();
+    std::vector<Mesh> (*body)() = nullptr;
 
     /// Reads the parameters of a record: its explicit keys, else the device's (if not null), else
     /// those of a bare one. \throws FormatError with all findings
@@ -114,6 +116,8 @@ struct SensorKind {
     /// `reach`. Null: not drawn.
     Mesh (*view)(const Sensor& sensor, double reach) = nullptr;
     BearingSpan (*bearings)(const SensorModel& model) = nullptr;
+    /// Null: it scans a plane, or sees no floor.
+    FieldOfView (*field_of_view)(const Sensor& sensor) = nullptr;
 
     /// Surfaces that stop its light or sound.
     Surfaces stopped_by = Surfaces::Opaque;
@@ -126,14 +130,17 @@ struct SensorKind {
     std::size_t together = 1;
 };
 
-/// Returns all kinds, in the order in which reports list them.
+/// Returns the kinds of Scene::sensors, in the order in which reports list them: all but those on
+/// the floor.
 std::span<const SensorKind* const> sensorKinds();
-/// Finds the kind with this keyword; null if unknown.
+/// Finds the kind of Scene::sensors with this keyword; null for any other.
 const SensorKind* sensorKind(std::string_view keyword);
 /// Returns the kind of a model.
 const SensorKind& kindOf(const SensorModel& model);
 /// Returns the keywords of the kinds for which `flag` holds, in the order of the table.
 std::vector<std::string_view> keywordsOf(bool SensorKind::*flag);
+/// Returns the keywords of the kinds that `is_meant` selects, in the order of manuals.
+std::vector<std::string> manualKeywords(bool (*is_meant)(const SensorKind& kind));
 
 /// Returns the schemas of all kinds' records and of device files.
 std::vector<Schema> sensorSchemas();

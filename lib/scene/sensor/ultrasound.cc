@@ -85,7 +85,7 @@ Mesh coneOf(const Receiver& receiver, ViewLimits limits) {
     return mesh;
 }
 
-Mesh viewOf(const Sensor& sensor, double reach) {
+Mesh receiverView(const Sensor& sensor, double reach) {
     const Receiver& receiver = sensor.as<Receiver>();
     return coneOf(receiver, viewLimits(receiver.min_range, receiver.max_range, reach));
 }
@@ -122,11 +122,13 @@ const SensorKind kUltrasoundKind = {
         return {rangeText(receiver.min_range, receiver.max_range), degreesText(receiver.fov), "-",
                 formatDouble(receiver.rate)};
     },
-    .view = viewOf,
+    .view = receiverView,
     .bearings = [](const SensorModel& model) -> BearingSpan {
         const Receiver& receiver = std::get<Receiver>(model);
         return {-0.5 * receiver.fov, 0.5 * receiver.fov, receiver.max_range};
     },
+    .field_of_view =
+        [](const Sensor& sensor) { return fieldOfView(sensor.as<Receiver>(), sensor.pose); },
     .stopped_by = Surfaces::Solid,
     .is_read = true,
     .is_arranged = true,

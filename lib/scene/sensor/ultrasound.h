@@ -27,6 +27,7 @@ struct Receiver {
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
     [[nodiscard]] static std::size_t rays() { return 1; }
+    [[nodiscard]] bool isNoisy() const { return !noise.isNone(); }
     [[nodiscard]] static bool isOmnidirectional(const Pose3& mount);
     friend bool operator==(const Receiver&, const Receiver&) = default;
 };
@@ -47,6 +48,7 @@ struct Tag {
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
     [[nodiscard]] static std::size_t rays() { return 64; }  ///< one for each of some receivers
+    [[nodiscard]] bool isNoisy() const { return is_simple; }
     [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return false; }
     friend bool operator==(const Tag&, const Tag&) = default;
 };
