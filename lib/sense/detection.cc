@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/detection.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,6 +28,7 @@ struct Watcher {
     Pose3 from_carrier;                   // of a sensor mounted on a mover
     std::optional<FieldOfView> view;      // of all but lasers, at the start
     std::optional<BearingWindow> window;  // of lasers
+    double reach = 0;                     // no point in view is farther away on the floor
     std::size_t together = 1;             // number of its kind required for a detection
     bool is_blind = false;                // it is inside a solid
 
@@ -56,9 +59,11 @@ Watcher watcherOf(const Sensor& sensor, const std::vector<Pose2>& people, double
     if (Camera* camera = std::get_if<Camera>(&watcher.sensor.model))
         *camera = withDensity(*camera, density);
     watcher.view = fieldOfView(watcher.sensor);
-    if (const Laser* laser = std::get_if<Laser>(&watcher.sensor.model))
-        // A counter-clockwise sweep adds its whole angle to the first bearing.
-        watcher.window.emplace(*laser, laser->sweptSpan() - laser->span());
+    const Laser* const laser = std::get_if<Laser>(&watcher.sensor.model);
+    // A counter-clockwise sweep adds its whole angle to the first bearing.
+    if (laser != nullptr) watcher.window.emplace(*laser, laser->sweptSpan() - laser->span());
+    const double range = laser != nullptr ? laser->max_range : watcher.view.value().farthest();
+    watcher.reach = range * (1 + kFarSlack) + kRayEpsilon;
     watcher.together = kindOf(sensor.model).together;
     if (sensor.mount)
         watcher.from_carrier = sensor.mount->robot_from_sensor;
@@ -72,7 +77,7 @@ Watcher watcherOf(const Sensor& sensor, const std::vector<Pose2>& people, double
 struct DetectionMonitor::Data {
     Data(const Scene& scene, const WatchOptions& options);
 
-    [[nodiscard]] bool sees(const Watcher& watcher, Point2 place, const WatchMoment& moment) const;
+    [[nodiscard]] bool sees(const Watcher& watcher, const Pose3& pose, Point2 place) const;
     [[nodiscard]] bool scans(const Watcher& watcher, const Pose3& pose, Point2 place) const;
     [[nodiscard]] bool scansAslant(const Watcher& watcher, const Pose3& pose, Point2 place) const;
     [[nodiscard]] bool isClear(const Sensor& sensor, Point3 origin, Point3 target) const;
@@ -148,10 +153,10 @@ bool DetectionMonitor::Data::scansAslant(const Watcher& watcher, const Pose3& po
            isClear(watcher.sensor, pose.position, target);
 }
 
-bool DetectionMonitor::Data::sees(const Watcher& watcher, Point2 place,
-                                  const WatchMoment& moment) const {
+bool DetectionMonitor::Data::sees(const Watcher& watcher, const Pose3& pose, Point2 place) const {
     if (watcher.is_blind) return false;
-    const Pose3 pose = watcher.poseAt(moment);
+    const Vec2 way = place - pose.position.onFloor();
+    if (dot(way, way) > watcher.reach * watcher.reach) return false;
     if (!watcher.view) {
         const bool is_level = scansSlice(watcher.sensor.as<Laser>(), pose);
         return is_level ? scans(watcher, pose, place) : scansAslant(watcher, pose, place);
@@ -186,18 +191,37 @@ bool DetectionMonitor::rides() const {
 }
 
 std::size_t DetectionMonitor::seenBy(const Target& target, const WatchMoment& moment) const {
-    std::size_t count = 0, parts = 0, together = 0;
-    for (const Watcher& watcher : data_->watchers) {
-        const bool is_own = watcher.rides() && watcher.carrier == target.owner;
-        if (is_own || !data_->sees(watcher, target.place, moment)) continue;
-        if (watcher.together == 1) {
-            ++count;
-        } else {
-            ++parts;
-            together = watcher.together;
-        }
+    return seenBy(std::span(&target, 1), moment).front();
+}
+
+std::vector<std::size_t> DetectionMonitor::seenBy(std::span<const Target> targets,
+                                                  const WatchMoment& moment) const {
+    const std::vector<Watcher>& watchers = data_->watchers;
+    std::vector<Pose3> poses;
+    std::vector<Point2> places;
+    double reach = 0;
+    for (const Watcher& watcher : watchers) {
+        poses.push_back(watcher.poseAt(moment));
+        places.push_back(poses.back().position.onFloor());
+        reach = std::max(reach, watcher.reach);
     }
-    return count + (parts > 0 && parts >= together ? 1 : 0);
+    FloorGrid grid;
+    grid.rebuild(places, reach);
+    const auto count = [&](const Target& target) {
+        std::size_t alone = 0, parts = 0, together = 0;
+        grid.forEachNear({target.place, target.place}, [&](std::size_t k) {
+            const Watcher& watcher = watchers[k];
+            const bool is_own = watcher.rides() && watcher.carrier == target.owner;
+            if (is_own || !data_->sees(watcher, poses[k], target.place)) return;
+            ++(watcher.together == 1 ? alone : parts);
+            if (watcher.together > 1) together = watcher.together;
+        });
+        return alone + (parts > 0 && parts >= together ? 1 : 0);
+    };
+    std::vector<std::size_t> counts(targets.size());
+    tbb::parallel_for(std::size_t{0}, targets.size(),
+                      [&](std::size_t i) { counts[i] = count(targets[i]); });
+    return counts;
 }
 
 }  // namespace ispace

@@ -14,7 +14,7 @@ namespace ispace {
 
 /// Conditions of a detection.
 struct WatchOptions {
-    double plane = 0;    ///< height at which rangers, cameras and ultrasound detect movers
+    double plane = 0;    ///< height at which all sensors but level lasers detect movers
     double density = 0;  ///< pixels a metre that a camera requires; 0: any
 };
 
@@ -52,6 +52,9 @@ class DetectionMonitor {
     };
     /// Returns the number of sensors that see the target now. Thread-safe.
     [[nodiscard]] std::size_t seenBy(const Target& target, const WatchMoment& moment = {}) const;
+    /// The same for each target, in parallel: much faster for many than one after another.
+    [[nodiscard]] std::vector<std::size_t> seenBy(std::span<const Target> targets,
+                                                  const WatchMoment& moment = {}) const;
 
   private:
     struct Data;

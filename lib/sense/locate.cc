@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "geom/rotation.h"
 #include "sense/ultrasound.h"
 
 namespace ispace {

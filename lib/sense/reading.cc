@@ -39,6 +39,67 @@ std::vector<Scan> scansOf(const Laser& laser, const ReadingJob& job) {
 
 }  // namespace
 
+namespace {
+
+struct AtOnce {
+    const Sensor& sensor;
+    const Pose3& pose;
+    int frame;
+    double time;
+    const RayWorld& mesh;
+    const MovingBodies& bodies;
+    std::span<const Sensor> receivers;
+    const TakerOptions& options;
+
+    Reading operator()(const Ranger& /*ranger*/) const {
+        DepthFrame depths = castDepth(mesh, bodies, sensor, pose, frame, {options.noise_seed});
+        depths.time = time;
+        return depths;
+    }
+    Reading operator()(const Tag& /*tag*/) const {
+        Sensor tag = sensor;
+        tag.pose = pose;
+        return castBurst(mesh, bodies, tag, receivers, frame, time,
+                         {options.celsius, options.noise_seed});
+    }
+    Reading operator()(const Radar& /*radar*/) const {
+        RadarFrame seen =
+            castRadar(mesh, bodies, options.velocities, sensor, pose, frame, options.noise_seed);
+        seen.time = time;
+        return seen;
+    }
+    // Lasers take time, cameras need light, receivers hear tags, mats and gates have no rays.
+    template <typename Model>
+    Reading operator()(const Model& /*model*/) const {
+        return {};
+    }
+};
+
+}  // namespace
+
+ReadingValue valueOf(Reading reading) {
+    return std::visit(
+        [](auto& value) -> ReadingValue {
+            if constexpr (std::is_same_v<decltype(value), std::vector<Scan>&>)
+                return std::move(value.front());
+            else
+                return std::move(value);
+        },
+        reading);
+}
+
+bool isReadAtOnce(const SensorModel& model) {
+    return rayCount(model) > 0 && !std::holds_alternative<Laser>(model) &&
+           !std::holds_alternative<Camera>(model) && !std::holds_alternative<Receiver>(model);
+}
+
+Reading readAtOnce(const Sensor& sensor, const Pose3& pose, int frame, double time,
+                   const RayWorld& mesh, const MovingBodies& bodies,
+                   std::span<const Sensor> receivers, const TakerOptions& options) {
+    return std::visit(AtOnce{sensor, pose, frame, time, mesh, bodies, receivers, options},
+                      sensor.model);
+}
+
 struct ReadingSampler::Data {
     const Sensors& sensors;
     Worlds& worlds;
@@ -61,20 +122,7 @@ struct ReadingSampler::Data {
         return *caster;
     }
 
-    // Preparations and readings of each kind of sensor.
     void prepare(const Laser& laser, const ReadingJob& job);
-    void prepare(const Ranger& /*ranger*/, const ReadingJob& /*job*/) { worlds.prepareMesh(); }
-    void prepare(const Tag& /*tag*/, const ReadingJob& /*job*/) {
-        worlds.prepareMesh(Surfaces::Solid);
-    }
-    Reading take(const Laser& laser, const ReadingJob& job);
-    Reading take(const Ranger& ranger, const ReadingJob& job);
-    Reading take(const Tag& tag, const ReadingJob& job);
-    // Receivers have no readings; they hear tags.
-    void prepare(const Receiver& /*receiver*/, const ReadingJob& /*job*/) {}
-    static Reading take(const Receiver& /*receiver*/, const ReadingJob& /*job*/) { return {}; }
-    void prepare(const Camera& /*camera*/, const ReadingJob& /*job*/) {}
-    Reading take(const Camera& camera, const ReadingJob& job);
 };
 
 void ReadingSampler::Data::prepare(const Laser& laser, const ReadingJob& job) {
@@ -90,46 +138,35 @@ void ReadingSampler::Data::prepare(const Laser& laser, const ReadingJob& job) {
         worlds.prepareMesh();
 }
 
-Reading ReadingSampler::Data::take(const Laser& laser, const ReadingJob& job) {
-    std::vector<Scan> scans = scansOf(laser, job);
-    LaserCaster& caster = casterOf(job.sensor);
-    for (Scan& scan : scans) caster.cast(scan);
-    return scans;
-}
-
-Reading ReadingSampler::Data::take(const Ranger& /*ranger*/, const ReadingJob& job) {
-    const Pose3 pose = job.way.empty() ? job.pose : poseAlong(job.way, job.time);
-    DepthFrame frame = castDepth(worlds.mesh(), bodies, sensors.read[job.sensor], pose, job.frame,
-                                 {options.noise_seed});
-    frame.time = job.time;
-    return frame;
-}
-
-Reading ReadingSampler::Data::take(const Tag& /*tag*/, const ReadingJob& job) {
-    return castBurst(worlds.mesh(Surfaces::Solid), bodies, sensors.read[job.sensor],
-                     sensors.receivers, job.frame, job.time, {options.celsius, options.noise_seed});
-}
-
-Reading ReadingSampler::Data::take(const Camera& /*camera*/, const ReadingJob& job) {
-    const Pose3 pose = job.way.empty() ? job.pose : poseAlong(job.way, job.time);
-    Photo photo = options.photographer->take(sensors.read[job.sensor], pose, job.frame);
-    photo.time = job.time;
-    return photo;
-}
-
 ReadingSampler::ReadingSampler(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,
                                const TakerOptions& options)
     : data_(std::make_unique<Data>(Data{sensors, worlds, bodies, options, {}})) {}
 ReadingSampler::~ReadingSampler() = default;
 
 void ReadingSampler::prepare(const ReadingJob& job) {
-    std::visit([&](const auto& model) { data_->prepare(model, job); },
-               data_->sensors.read[job.sensor].model);
+    const SensorModel& model = data_->sensors.read[job.sensor].model;
+    if (const auto* const laser = std::get_if<Laser>(&model)) data_->prepare(*laser, job);
+    if (isReadAtOnce(model)) data_->worlds.prepareMesh(kindOf(model).stopped_by);
 }
 
 Reading ReadingSampler::take(const ReadingJob& job) {
-    return std::visit([&](const auto& model) { return data_->take(model, job); },
-                      data_->sensors.read[job.sensor].model);
+    const Sensor& sensor = data_->sensors.read[job.sensor];
+    const TakerOptions& options = data_->options;
+    if (const auto* const laser = sensor.tryAs<Laser>()) {
+        std::vector<Scan> scans = scansOf(*laser, job);
+        LaserCaster& caster = data_->casterOf(job.sensor);
+        for (Scan& scan : scans) caster.cast(scan);
+        return scans;
+    }
+    const Pose3 pose = job.way.empty() ? job.pose : poseAlong(job.way, job.time);
+    if (sensor.is<Camera>()) {
+        Photo photo = options.photographer->take(sensor, pose, job.frame);
+        photo.time = job.time;
+        return photo;
+    }
+    return readAtOnce(sensor, pose, job.frame, job.time,
+                      data_->worlds.mesh(kindOf(sensor.model).stopped_by), data_->bodies,
+                      data_->sensors.receivers, options);
 }
 
 }  // namespace ispace

@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
 #include "sense/depth.h"
 #include "sense/photo.h"
+#include "sense/radar_frame.h"
 #include "sense/scan.h"
 #include "sense/selection.h"
 #include "sense/trajectory.h"
@@ -28,8 +31,29 @@ struct ReadingJob {
     std::vector<TimedPose> way;
 };
 
-/// The scans of a sweep (or a single one), a depth picture, a burst, or a picture.
-using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo>;
+/// Movers on a mat: people with a leg on it, robots with the body over it; edges count.
+struct MatState {
+    std::vector<std::string> on;  ///< robots first, in the order of the scene
+};
+
+/// Passages of a gate since the start. A mover passes when its centre crosses the line between the
+/// posts.
+struct GateState {
+    std::int64_t in = 0, out = 0;
+    std::string last;  ///< mover that passed last; "" before the first
+    bool last_in = false;
+    bool broken = false;  ///< a mover interrupts the beam
+};
+
+/// A reading of a sensor of any kind, of a sweep one scan.
+using ReadingValue =
+    std::variant<Scan, DepthFrame, Photo, Burst, Hearings, MatState, GateState, RadarFrame>;
+
+/// The scans of a sweep (or a single one), a depth picture, a burst, a picture, or detections.
+using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame>;
+
+/// Returns the first scan of a sweep, or the value of another reading.
+ReadingValue valueOf(Reading reading);
 
 struct TakerOptions {
     std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
@@ -38,7 +62,16 @@ struct TakerOptions {
     bool follows_poses = false;
     /// Required for cameras; null: no cameras. It outlives the sampler.
     const Photographer* photographer = nullptr;
+    MoverVelocities velocities = {};  ///< of the movers whose bodies sensors meet
 };
+
+/// Returns true if readAtOnce() reads sensors like this one.
+bool isReadAtOnce(const SensorModel& model);
+/// Reads a ranger, a tag or a radar at a pose. \pre isReadAtOnce(sensor.model); `mesh` are the
+/// surfaces that stop its rays
+Reading readAtOnce(const Sensor& sensor, const Pose3& pose, int frame, double time,
+                   const RayWorld& mesh, const MovingBodies& bodies,
+                   std::span<const Sensor> receivers, const TakerOptions& options);
 
 /// Takes readings in any order on any thread; each depends only on its job.
 class ReadingSampler {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/per_thread.h"
 #include "base/simd.h"
 #include "geom/tolerance.h"
 #include "sense/noise.h"
@@ -153,7 +154,7 @@ Beams::Beams(const Laser& laser, bool turns, std::shared_ptr<const Directions> l
 
 const Directions& Beams::at(const Pose3& pose) {
     if (turns_) {
-        thread_local Directions turned;  // reuses its memory
+        auto& turned = perThread<Directions, struct TurnedBeams>();
         turn(pose, turned);
         return turned;
     }
@@ -279,7 +280,7 @@ struct LaserCaster::RaysApart {
 
     /// Returns the buffer of this thread, which takes many scans.
     static RaysApart& ofThread(std::size_t count) {
-        thread_local RaysApart rays;
+        auto& rays = perThread<RaysApart, RaysApart>();
         rays.directions.resize(count);
         rays.origins.resize(count);
         return rays;
@@ -295,7 +296,7 @@ std::span<float> valuesOf(std::span<float> values, const BeamsAmong& part) {
 
 const Directions& partOf(const Directions& all, const BeamsAmong& part) {
     if (part.begin == 0 && part.end == all.size()) return all;
-    thread_local Directions some;  // reuses its memory
+    auto& some = perThread<Directions, struct SomeBeams>();
     const auto copy = [&part](const std::vector<double>& from, std::vector<double>& to) {
         to.assign(from.begin() + static_cast<std::ptrdiff_t>(part.begin),
                   from.begin() + static_cast<std::ptrdiff_t>(part.end));

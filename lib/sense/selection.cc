@@ -123,4 +123,32 @@ std::vector<MovingBody> bodiesOf(const Scene& scene) {
     return bodies;
 }
 
+MoverVelocity MoverVelocities::of(std::uint32_t owner) const {
+    const bool is_person = owner >= kFirstPerson && owner != MovingBodies::kNoOwner;
+    const std::vector<MoverVelocity>& all = is_person ? people : robots;
+    const std::size_t index = is_person ? owner - kFirstPerson : owner;
+    return index < all.size() ? all[index] : MoverVelocity();
+}
+
+MoverVelocities startVelocities(const Scene& scene) {
+    const auto of = [](const Pose2& pose, const MotionPlan& plan, double speed) {
+        const auto next = std::find_if(plan.path.begin(), plan.path.end(),
+                                       [&](Point2 point) { return point != pose.position; });
+        MoverVelocity motion{pose.position, {}};
+        if (next != plan.path.end()) {
+            const Vec2 way = *next - pose.position;
+            motion.linear = speed / length(way) * way;
+        } else if (plan.wander) {
+            motion.linear = speed * unitVector(pose.heading);
+        }
+        return motion;
+    };
+    MoverVelocities all;
+    for (const PlacedRobot& robot : scene.robots)
+        all.robots.push_back(of(robot.pose, robot.course, robot.model.speed));
+    for (const PlacedPerson& person : scene.people)
+        all.people.push_back(of(person.pose, person.course, person.speed));
+    return all;
+}
+
 }  // namespace ispace

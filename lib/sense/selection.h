@@ -45,6 +45,27 @@ constexpr std::uint32_t kFirstPerson = 1U << 31U;
 /// MovingBodies::kNoOwner.
 std::uint32_t carrierOf(const Sensor& sensor);
 
+/// Motion of a mover on the floor, of its limbs too.
+struct MoverVelocity {
+    Point2 center;    ///< of rotation
+    Vec2 linear;      ///< m/s, of the centre
+    double turn = 0;  ///< radians a second
+    [[nodiscard]] Vec2 at(Point2 point) const {
+        const Vec2 arm = point - center;
+        return linear + turn * Vec2{-arm.y, arm.x};
+    }
+};
+
+/// Motions of robots and people, in the order of the scene; missing ones are at rest.
+struct MoverVelocities {
+    std::vector<MoverVelocity> robots, people;
+    [[nodiscard]] MoverVelocity of(std::uint32_t owner) const;
+};
+
+/// Returns the motions at the start: movers with a path go towards its first point, wanderers along
+/// their heading, at the speed of their model; others stand.
+MoverVelocities startVelocities(const Scene& scene);
+
 MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner);
 /// Returns a person's limbs, trunk and head: humanParts() at its pose.
 std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner,

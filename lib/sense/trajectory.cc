@@ -7,7 +7,8 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "geom/pose.h"
+#include "geom/rotation.h"
+#include "scene/sensor/sensor_keys.h"
 
 namespace ispace {
 
@@ -28,9 +29,6 @@ std::string_view nextWord(std::string_view& line) {
 [[noreturn]] void fail(int column, const std::string& message) {
     throw FormatError({"", 0, column, message});
 }
-
-/// Maximum distance from the origin, metres.
-constexpr double kMaxDistance = 1e6;
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "geom/pose.h"
+#include "geom/rotation.h"
 
 namespace ispace {
 

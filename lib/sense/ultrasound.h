@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "scene/sensor/sensor.h"
@@ -67,6 +68,17 @@ struct Burst {
     std::vector<TimeOfFlight> heard;  ///< sorted as the receivers
     std::optional<PositionFix> fix;   ///< of a tag located by times of flight
     std::optional<Point2> simple;     ///< of a tag located by the simple model
+};
+
+/// Signal of one tag at a receiver.
+struct HeardTag {
+    std::string tag;
+    std::optional<double> time_of_flight;  ///< seconds; empty: not heard
+};
+
+/// Signals at a receiver: all tags, in the order of the scene.
+struct Hearings {
+    std::vector<HeardTag> tags;
 };
 
 struct UltrasoundOptions {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "base/number.h"
 #include "sense/selection.h"
@@ -103,6 +105,39 @@ TEST(DetectionMonitor, SensorsRideAndDoNotSeeTheirCarrier) {
     EXPECT_EQ(watch.seenBy({{1, 0}, kFirstPerson}, moved), 0U);
     EXPECT_EQ(watch.seenBy({{3, 2}}), 1U) << "the camera where it starts";
     EXPECT_EQ(watch.seenBy({{3, 2}}, moved), 0U);
+}
+
+TEST(DetectionMonitor, CountsManyTargetsAsItCountsEachWithEachSensor) {
+    const std::vector<std::string> sensors = {
+        "laser at=-4,-4 range=3\n",
+        "laser at=4,4,0.5 range=30 fov=90 heading=-135\n",
+        "laser on=r1 range=2\n",
+        "laser on=r2 range=1.5 fov=360\n",
+        "laser at=0,4,2 tilt=-30 range=9\n",
+        "camera at=4,-4,2 heading=135 tilt=-20 range=6\n",
+        "laser at=1,1,0.2\n",  // within the cube
+    };
+    const std::string things =
+        "cube at=1,1 size=0.6,0.6,1\nrobot id=r1 at=-2,2\nrobot id=r2 at=2,-2\n";
+    std::vector<DetectionMonitor::Target> targets;
+    for (int i = 0; i < 400; ++i) {
+        const Point2 place{-4.75 + 0.5 * (i % 20), -4.75 + 0.5 * static_cast<double>(i / 20)};
+        targets.push_back({place, static_cast<std::uint32_t>(i % 3)});
+    }
+    const std::vector<Pose2> robots{{{-3, 0}, Angle::degrees(20)}, {{3, 1}, Angle()}};
+    const WatchMoment moment{.robots = robots};
+    std::vector<std::size_t> sums(targets.size());
+    std::string all = kRoom + things;
+    for (const std::string& sensor : sensors) {
+        all += sensor;
+        const Scene one = scene(kRoom + things + sensor);
+        const DetectionMonitor watch(one);
+        for (std::size_t i = 0; i < targets.size(); ++i)
+            sums[i] += watch.seenBy(targets[i], moment);
+    }
+    const Scene room = scene(all);
+    EXPECT_EQ(DetectionMonitor(room).seenBy(targets, moment), sums);
+    EXPECT_GT(*std::max_element(sums.begin(), sums.end()), 3U);
 }
 
 }  // namespace

@@ -184,7 +184,7 @@ std::uint64_t rowsIn(const Spool& spool, const GrowingArray& array) {
 }
 
 /// The arrays of all sensors.
-struct Layout {
+struct ArrayTable {
     std::vector<GrowingArray> growing;
     std::vector<std::uint32_t> first;  ///< of each sensor, index in `growing`
     std::vector<FixedArray> fixed;
@@ -192,7 +192,7 @@ struct Layout {
 
 class NpzStream final : public ReadingStream {
   public:
-    NpzStream(ByteSink write, const Layout& arrays)
+    NpzStream(ByteSink write, const ArrayTable& arrays)
         : zip_(std::move(write)), arrays_(arrays), rows_(arrays.growing.size()) {}
     void write(std::string_view appended) override {
         forEachRow(appended,
@@ -213,7 +213,7 @@ class NpzStream final : public ReadingStream {
 
   private:
     ZipWriter zip_;
-    const Layout& arrays_;
+    const ArrayTable& arrays_;
     std::vector<Spool> rows_;
 };
 
@@ -269,7 +269,7 @@ class Npz final : public FormatBase {
     [[nodiscard]] bool isBinary() const override { return true; }
 
   private:
-    Layout arrays_;
+    ArrayTable arrays_;
 };
 
 class Npy final : public FormatBase {

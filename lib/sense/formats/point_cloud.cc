@@ -9,7 +9,8 @@
 #include <utility>
 
 #include "base/number.h"
-#include "geom/pose.h"
+#include "base/per_thread.h"
+#include "geom/rotation.h"
 
 namespace ispace {
 
@@ -65,7 +66,7 @@ const std::vector<Vec2>& beamsOf(const Laser& laser) {
         Angle first, step;
         std::vector<Vec2> beams;
     };
-    thread_local Known known;
+    Known& known = perThread<Known, Known>();
     const auto count = static_cast<std::size_t>(laser.beams);
     if (known.beams.size() == count && known.first == laser.first && known.step == laser.step)
         return known.beams;

@@ -1,61 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/formats/reading_fields.h"
 
-#include <array>
 #include <cmath>
-#include <functional>
-#include <limits>
 
 #include "base/message.h"
 #include "raster/codec.h"
+#include "sense/formats/field_values.h"
 #include "sense/formats/point_cloud.h"
 #include "sense/formats/reading_picture.h"
 
 namespace ispace {
 
+extern const ReadingKind kLaserReadings, kRangerReadings, kCameraReadings, kTagReadings,
+    kReceiverReadings, kRadarReadings, kMatReadings, kGateReadings;
+
 namespace {
 
-using View = ReadingView;
-
-constexpr std::string_view kFloat32 = "<f4", kFloat64 = "<f8", kByte8 = "|u1";
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-
-FieldValue fieldOf(double value) { return value; }
-FieldValue fieldOf(Angle value) { return value; }
-FieldValue fieldOf(int value) { return std::int64_t{value}; }
-FieldValue fieldOf(std::size_t value) { return static_cast<std::int64_t>(value); }
-FieldValue fieldOf(const char* value) { return FieldText(value); }
-FieldValue fieldOf(const std::vector<float>& values) { return std::span(values); }
-FieldValue fieldOf(const std::vector<std::uint8_t>& values) { return std::span(values); }
-
-/// Reads a member of the model, or of the measured value.
-template <typename Model, auto kMember>
-FieldValue figure(const View& reading) {
-    return fieldOf(std::invoke(kMember, reading.sensor.as<Model>()));
-}
-template <typename One, auto kMember>
-FieldValue measured(const View& reading) {
-    return fieldOf(std::invoke(kMember, reading.as<One>()));
-}
-
-template <typename Model>
-FieldValue limitsOf(const View& reading) {
-    const Model& model = reading.sensor.as<Model>();
-    return std::vector<double>{model.min_range, model.max_range};
-}
-
-template <typename Model>
-std::vector<std::uint64_t> sizeOf(const View& reading) {
-    const Model& model = reading.sensor.as<Model>();
-    return {static_cast<std::uint64_t>(model.rows), static_cast<std::uint64_t>(model.columns)};
-}
-
-template <typename Model>
-std::vector<std::uint64_t> sizeTimesThree(const View& reading) {
-    std::vector<std::uint64_t> shape = sizeOf<Model>(reading);
-    shape.push_back(3);
-    return shape;
-}
+using namespace fields;
 
 // Lasers.
 
@@ -75,12 +36,36 @@ FieldValue anglesOf(const View& reading) {
     return angles;
 }
 
+/// On the floor in millimetres, angles in hundredths of a degree.
+FieldValue pagePose(const View& reading) {
+    const auto whole = [](double value) { return std::int64_t{std::llround(value)}; };
+    const Pose3& pose = reading.pose;
+    constexpr double kLength = 1000, kAngle = 100;
+    return std::vector{whole(pose.position.x * kLength), whole(pose.position.y * kLength),
+                       whole(pose.heading.degrees() * kAngle), whole(pose.tilt.degrees() * kAngle),
+                       whole(pose.roll.degrees() * kAngle)};
+}
+
+FieldValue spinOf(const View& reading) {
+    const double spin = laserOf(reading).spin;
+    return spin == 0 ? FieldValue() : FieldValue(spin);
+}
+
 constexpr ReadingField kLaserFields[] = {
-    {"angle_min", kInJson, figure<Laser, &Laser::first>},
-    {"angle_max", kInJson, figure<Laser, &Laser::last>},
+    {"pose", kInPage, pagePose},
+    {"first", kInPage, figure<Laser, &Laser::first>},
+    {"angle_min", kInJson | kInInfo | kInLine, figure<Laser, &Laser::first>},
+    {"angle_max", kInJson | kInInfo | kInLine, figure<Laser, &Laser::last>},
     {"angle_increment", kInJson, figure<Laser, &Laser::step>},
-    {"range_min", kInJson, figure<Laser, &Laser::min_range>},
-    {"range_max", kInJson, figure<Laser, &Laser::max_range>},
+    {"step", kInInfo | kInLine | kInPage, figure<Laser, &Laser::step>},
+    {"max", kInPage, figure<Laser, &Laser::max_range>},
+    {"n", kInInfo, figure<Laser, &Laser::beams>},
+    {"n", kInLine, [](const View& r) { return fieldOf(r.as<Scan>().ranges.size()); }},
+    {"range_min", kInJson | kInInfo, figure<Laser, &Laser::min_range>},
+    {"range_max", kInJson | kInInfo, figure<Laser, &Laser::max_range>},
+    {"rate", kInInfo, figure<Laser, &Laser::rate>},
+    {"spin", kInInfo, spinOf},
+    {"r", kInLine | kInPage, measured<Scan, &Scan::ranges>},
     {"bearing_deg", kInColumn, bearingsOf},
     {"range", kInColumn, measured<Scan, &Scan::ranges>},
     {"ranges", kInJson | kInArray, measured<Scan, &Scan::ranges>, kFloat32,
@@ -126,27 +111,28 @@ FieldValue raysOfPixels(const View& reading) {
 }
 
 constexpr ReadingField kRangerFields[] = {
-    {"width", kInJson, figure<Ranger, &Ranger::columns>},
-    {"height", kInJson, figure<Ranger, &Ranger::rows>},
-    {"projection", kInJson,
+    {"width", kInJson | kInInfo, figure<Ranger, &Ranger::columns>},
+    {"height", kInJson | kInInfo, figure<Ranger, &Ranger::rows>},
+    {"projection", kInJson | kInInfo,
      [](const View& r) { return fieldOf(isPinhole(r.sensor) ? "pinhole" : "spherical"); }},
-    {"fx", kInJson, ofPinhole<&Ranger::fx>},
-    {"fy", kInJson, ofPinhole<&Ranger::fy>},
-    {"cx", kInJson, ofPinhole<&Ranger::cx>},
-    {"cy", kInJson, ofPinhole<&Ranger::cy>},
-    {"fov", kInJson,
+    {"fx", kInJson | kInInfo, ofPinhole<&Ranger::fx>},
+    {"fy", kInJson | kInInfo, ofPinhole<&Ranger::fy>},
+    {"cx", kInJson | kInInfo, ofPinhole<&Ranger::cx>},
+    {"cy", kInJson | kInInfo, ofPinhole<&Ranger::cy>},
+    {"fov", kInJson | kInInfo,
      [](const View& r) {
          return isPinhole(r.sensor) ? FieldValue()
                                     : FieldValue(std::vector{rangerOf(r).fov_x, rangerOf(r).fov_y});
      }},
-    {"measures", kInJson,
+    {"measures", kInJson | kInInfo,
      [](const View& r) { return fieldOf(rangerOf(r).measures_depth ? "depth" : "distance"); }},
-    {"range_min", kInJson, figure<Ranger, &Ranger::min_range>},
-    {"range_max", kInJson, figure<Ranger, &Ranger::max_range>},
+    {"range_min", kInJson | kInInfo, figure<Ranger, &Ranger::min_range>},
+    {"range_max", kInJson | kInInfo, figure<Ranger, &Ranger::max_range>},
     {"ambiguity", kInJson,
      [](const View& r) {
          return rangerOf(r).ambiguity > 0 ? FieldValue(rangerOf(r).ambiguity) : FieldValue();
      }},
+    {"rate", kInInfo, figure<Ranger, &Ranger::rate>},
     {"depth", kInColumn, measured<DepthFrame, &DepthFrame::depths>},
     {"depths", kInJson | kInArray | kIsFrame, measured<DepthFrame, &DepthFrame::depths>, kFloat32,
      sizeOf<Ranger>},
@@ -200,22 +186,23 @@ std::string pngOfPhoto(const View& reading) {
 }
 
 constexpr ReadingField kCameraFields[] = {
-    {"width", kInJson, figure<Camera, &Camera::columns>},
-    {"height", kInJson, figure<Camera, &Camera::rows>},
-    {"projection", kInJson,
+    {"width", kInJson | kInInfo, figure<Camera, &Camera::columns>},
+    {"height", kInJson | kInInfo, figure<Camera, &Camera::rows>},
+    {"projection", kInJson | kInInfo,
      [](const View& r) {
          const Lens lens = cameraOf(r).lens;
          return fieldOf(lens == Lens::Pinhole   ? "pinhole"
                         : lens == Lens::Fisheye ? "fisheye"
                                                 : "omni");
      }},
-    {"fx", kInJson, ofLens<&Camera::fx>},
-    {"fy", kInJson, ofLens<&Camera::fy>},
-    {"cx", kInJson, ofLens<&Camera::cx>},
-    {"cy", kInJson, ofLens<&Camera::cy>},
-    {"mirror", kInJson, mirrorOf},
-    {"coefficients", kInJson,
+    {"fx", kInJson | kInInfo, ofLens<&Camera::fx>},
+    {"fy", kInJson | kInInfo, ofLens<&Camera::fy>},
+    {"cx", kInJson | kInInfo, ofLens<&Camera::cx>},
+    {"cy", kInJson | kInInfo, ofLens<&Camera::cy>},
+    {"mirror", kInJson | kInInfo, mirrorOf},
+    {"coefficients", kInJson | kInInfo,
      [](const View& r) { return cameraOf(r).isDistorted() ? coefficientsOf(r) : FieldValue(); }},
+    {"rate", kInInfo, figure<Camera, &Camera::rate>},
     {"png", kInJson | kIsFrame,
      [](const View& r) { return FieldValue(FieldText(base64(pngOfPhoto(r)))); }},
     {"rgb", kInArray, measured<Photo, &Photo::rgb>, kByte8, sizeTimesThree<Camera>},
@@ -237,159 +224,56 @@ constexpr RosTopic kCameraTopics[] = {
      [](const RosHeader& header, const View& r) { return cameraInfoMessage(header, cameraOf(r)); },
      [](const Sensor& sensor) { return !hasMirror(sensor); }}};
 
-// Tags and receivers.
-
-const Burst& burstOf(const View& reading) { return reading.as<Burst>(); }
-
-/// Returns the position by either method of locating, unknown coordinates empty.
-std::array<std::optional<double>, 3> positionOf(const Burst& burst) {
-    if (burst.fix) return {burst.fix->position.x, burst.fix->position.y, burst.fix->position.z};
-    if (burst.simple) return {burst.simple->x, burst.simple->y, std::nullopt};
-    return {};
-}
-
-template <std::size_t kAxis>
-FieldValue coordinate(const View& reading) {
-    return Measured{positionOf(burstOf(reading))[kAxis]};
-}
-
-template <double PositionFix::*kPart>
-FieldValue ofFix(const View& reading) {
-    const Burst& burst = burstOf(reading);
-    return burst.fix ? Measured{(*burst.fix).*kPart} : Measured{};
-}
-
-FieldValue knownPosition(const View& reading) {
-    std::vector<Measured> known;
-    for (const auto& part : positionOf(burstOf(reading)))
-        if (part) known.push_back({part});
-    return known.empty() ? FieldValue(Measured{}) : FieldValue(known);
-}
-
-FieldValue wholePosition(const View& reading) {
-    std::vector<double> parts;
-    for (const auto& part : positionOf(burstOf(reading))) parts.push_back(part.value_or(kNoValue));
-    return parts;
-}
-
-FieldValue heardReceivers(const View& reading) {
-    std::vector<FieldRecord> heard;
-    for (const TimeOfFlight& flight : burstOf(reading).heard)
-        heard.push_back({{{"receiver", FieldText(reading.receivers[flight.receiver].id)},
-                          {"time_of_flight", Measured{flight.time}},
-                          {"range", Measured{flight.distance}}}});
-    return heard;
-}
-
-/// Formats RECEIVER=SECONDS pairs, separated by blanks.
-FieldValue timesOfFlight(const View& reading) {
-    std::string times;
-    for (const TimeOfFlight& flight : burstOf(reading).heard) {
-        if (!times.empty()) times += ' ';
-        times.append(reading.receivers[flight.receiver].id).append("=");
-        appendDouble(times, flight.time);
-    }
-    return FieldText(times);
-}
-
-FieldValue rangesOfReceivers(const View& reading) {
-    std::vector<double> ranges(reading.receivers.size(), kNoValue);
-    for (const TimeOfFlight& flight : burstOf(reading).heard)
-        ranges[flight.receiver] = flight.distance;
-    return ranges;
-}
-
-FieldValue receiverIds(const View& reading) {
-    std::vector<std::string> ids;
-    for (const Sensor& receiver : reading.receivers) ids.push_back(receiver.id);
-    return ids;
-}
-
-FieldValue receiverPositions(const View& reading) {
-    std::vector<double> parts;
-    for (const Sensor& receiver : reading.receivers) {
-        const Point3& at = receiver.pose.position;
-        parts.insert(parts.end(), {at.x, at.y, at.z});
-    }
-    return parts;
-}
-
-FieldValue heardCount(const View& reading) { return fieldOf(burstOf(reading).heard.size()); }
-
-constexpr ReadingField kTagFields[] = {
-    {"heard", kInJson, heardReceivers},
-    {"position", kInJson, knownPosition},
-    {"x", kInColumn, coordinate<0>},
-    {"y", kInColumn, coordinate<1>},
-    {"z", kInColumn, coordinate<2>},
-    {"residual", kInJson | kInColumn, ofFix<&PositionFix::residual>},
-    {"pdop", kInJson | kInColumn, ofFix<&PositionFix::pdop>},
-    {"hdop", kInJson | kInColumn, ofFix<&PositionFix::hdop>},
-    {"vdop", kInJson | kInColumn, ofFix<&PositionFix::vdop>},
-    {"heard", kInColumn, heardCount},
-    {"times", kInColumn, timesOfFlight},
-    {"ranges", kInArray, rangesOfReceivers, kFloat64,
-     [](const View& r) { return std::vector<std::uint64_t>{r.receivers.size()}; }},
-    {"positions", kInArray, wholePosition, kFloat64,
-     [](const View&) { return std::vector<std::uint64_t>{3}; }},
-    {"receivers", kInFixed, receiverIds},
-    {"receiver_positions", kInFixed, receiverPositions, kFloat64, [](const View& r) {
-         return std::vector<std::uint64_t>{r.receivers.size(), 3};
-     }}};
-
-constexpr RosTopic kTagTopics[] = {
-    {RosType::PointStamped, "position", RosFrame::World,
-     [](const RosHeader& header, const View& r) {
-         const auto [x, y, z] = positionOf(burstOf(r));
-         if (!x) return std::string();
-         return pointMessage(header, {*x, *y, z.value_or(r.pose.position.z)});
-     }}};
-
 constexpr std::string_view kBeamIndex[] = {"beam"}, kPixelIndices[] = {"column", "row"};
 
 /// Sorted as the alternatives of SensorModel.
-constexpr ReadingKind kReadingKinds[] = {
-    {.fields = kLaserFields,
-     .topics = kLaserTopics,
-     .indices = kBeamIndex,
-     .counts =
-         [](const Sensor& sensor) {
-             return std::vector{static_cast<std::size_t>(sensor.as<Laser>().beams)};
-         },
-     .points =
-         [](const Sensor& sensor, const Reading& reading, Coordinates in) {
-             return cloudOf(sensor.as<Laser>(), std::get<std::vector<Scan>>(reading), in);
-         },
-     .parts =
-         [](const Sensor& sensor) {
-             const Laser& laser = sensor.as<Laser>();
-             return laser.sweep == SweepAxis::None ? 0 : laser.scans();
-         },
-     .part = [](const View& r) { return r.as<Scan>().number; },
-     .delay = [](const Sensor& sensor,
-                 std::size_t beam) { return sensor.as<Laser>().timeOf(static_cast<int>(beam)); },
-     .pose = [](const View& r, std::size_t beam) -> const Pose3& {
-         return r.as<Scan>().poseAt(beam);
-     }},
-    {.fields = kRangerFields,
-     .topics = kRangerTopics,
-     .indices = kPixelIndices,
-     .counts =
-         [](const Sensor& sensor) {
-             const Ranger& ranger = sensor.as<Ranger>();
-             return std::vector{static_cast<std::size_t>(ranger.columns),
-                                static_cast<std::size_t>(ranger.rows)};
-         },
-     .points =
-         [](const Sensor& sensor, const Reading& reading, Coordinates in) {
-             return cloudOf(sensor.as<Ranger>(), std::get<DepthFrame>(reading), in);
-         }},
-    {},
-    {.fields = kTagFields, .topics = kTagTopics},
-    {.fields = kCameraFields, .topics = kCameraTopics}};
+constexpr const ReadingKind* kReadingKinds[] = {
+    &kLaserReadings,  &kRangerReadings, &kReceiverReadings, &kTagReadings,
+    &kCameraReadings, &kRadarReadings,  &kMatReadings,      &kGateReadings};
 static_assert(std::size(kReadingKinds) == std::variant_size_v<SensorModel>);
 
 }  // namespace
+
+const ReadingKind kLaserReadings = {
+    .fields = kLaserFields,
+    .topics = kLaserTopics,
+    .indices = kBeamIndex,
+    .counts =
+        [](const Sensor& sensor) {
+            return std::vector{static_cast<std::size_t>(sensor.as<Laser>().beams)};
+        },
+    .points =
+        [](const Sensor& sensor, const Reading& reading, Coordinates in) {
+            return cloudOf(sensor.as<Laser>(), std::get<std::vector<Scan>>(reading), in);
+        },
+    .parts =
+        [](const Sensor& sensor) {
+            const Laser& laser = sensor.as<Laser>();
+            return laser.sweep == SweepAxis::None ? 0 : laser.scans();
+        },
+    .part = [](const View& r) { return r.as<Scan>().number; },
+    .delay = [](const Sensor& sensor,
+                std::size_t beam) { return sensor.as<Laser>().timeOf(static_cast<int>(beam)); },
+    .pose = [](const View& r, std::size_t beam) -> const Pose3& {
+        return r.as<Scan>().poseAt(beam);
+    }};
+
+const ReadingKind kRangerReadings = {
+    .fields = kRangerFields,
+    .topics = kRangerTopics,
+    .indices = kPixelIndices,
+    .counts =
+        [](const Sensor& sensor) {
+            const Ranger& ranger = sensor.as<Ranger>();
+            return std::vector{static_cast<std::size_t>(ranger.columns),
+                               static_cast<std::size_t>(ranger.rows)};
+        },
+    .points =
+        [](const Sensor& sensor, const Reading& reading, Coordinates in) {
+            return cloudOf(sensor.as<Ranger>(), std::get<DepthFrame>(reading), in);
+        }};
+
+const ReadingKind kCameraReadings = {.fields = kCameraFields, .topics = kCameraTopics};
 
 std::vector<ReadingView> viewsOf(const Sensor& sensor, const Reading& reading,
                                  std::span<const Sensor> receivers) {
@@ -406,7 +290,7 @@ std::vector<ReadingView> viewsOf(const Sensor& sensor, const Reading& reading,
     return views;
 }
 
-const ReadingKind& readingKind(const SensorModel& model) { return kReadingKinds[model.index()]; }
+const ReadingKind& readingKind(const SensorModel& model) { return *kReadingKinds[model.index()]; }
 
 int partsOf(const Sensor& sensor) {
     const ReadingKind& kind = readingKind(sensor.model);

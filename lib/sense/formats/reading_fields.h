@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of readings: the quantities that each kind of sensor measures, and their names in
-// formats. Formats and records read the table and do not depend on kinds.
+// formats. Formats, records, protocol and page read the table and do not depend on kinds.
 #pragma once
 
 #include <cstddef>
@@ -19,10 +19,17 @@
 
 namespace ispace {
 
+/// Pointers to the alternatives of a variant; std::monostate: none.
+template <typename Variant>
+struct PointersTo;
+template <typename... Ones>
+struct PointersTo<std::variant<Ones...>> {
+    using Type = std::variant<std::monostate, const Ones*...>;
+};
+
 /// A reading, or one scan of a sweep, with all inputs of its fields. Refers to its arguments.
 struct ReadingView {
-    using Value =
-        std::variant<std::monostate, const Scan*, const DepthFrame*, const Photo*, const Burst*>;
+    using Value = PointersTo<ReadingValue>::Type;
 
     const Sensor& sensor;
     Value value = {};  ///< std::monostate: not measured yet, for fields of the sensor alone
@@ -58,10 +65,10 @@ using FieldText = std::optional<std::string>;  ///< empty: unknown
 /// std::monostate: this sensor or reading lacks the field. Floats are ranges, infinite without a
 /// return. Spans belong to the reading.
 using FieldValue =
-    std::variant<std::monostate, std::int64_t, double, Angle, Measured, Computed, FieldText,
+    std::variant<std::monostate, bool, std::int64_t, double, Angle, Measured, Computed, FieldText,
                  std::vector<double>, std::vector<Angle>, std::vector<Measured>,
-                 std::vector<std::string>, std::vector<float>, std::span<const float>,
-                 std::span<const std::uint8_t>, std::vector<FieldRecord>>;
+                 std::vector<std::int64_t>, std::vector<std::string>, std::vector<float>,
+                 std::span<const float>, std::span<const std::uint8_t>, std::vector<FieldRecord>>;
 /// Named values: of each receiver, of each tag.
 struct FieldRecord {
     std::vector<std::pair<std::string_view, FieldValue>> values;
@@ -73,7 +80,10 @@ enum FieldUse : unsigned {
     kInColumn = 2,  ///< CSV: a value a row, or floats, one for each element
     kInArray = 4,   ///< NumPy: a row a reading
     kInFixed = 8,   ///< NumPy: an array of the sensor
-    kIsFrame = 16   ///< JSON writes a file name instead if the frame has a file
+    kIsFrame = 16,  ///< JSON writes a file name instead if the frame has a file
+    kInInfo = 32,   ///< the protocol's description of the sensor; angles in degrees
+    kInLine = 64,   ///< the protocol's line of a reading: floats last, or as bytes after it
+    kInPage = 128   ///< frames of the page, lengths in millimetres
 };
 
 struct ReadingField {
@@ -107,6 +117,8 @@ struct ReadingKind {
     std::span<const std::string_view> indices = {};
     /// Numbers of elements in the order of `indices`; null if that is empty.
     std::vector<std::size_t> (*counts)(const Sensor& sensor) = nullptr;
+    /// The number of elements varies, up to counts(): formats of equal readings refuse the kind.
+    bool varies = false;
     /// Returns a point for each element; null: the kind has no points.
     PointCloud (*points)(const Sensor& sensor, const Reading& reading, Coordinates in) = nullptr;
     /// Returns the number of scans of a sweep (0: a reading is one scan), and the index of this

@@ -128,7 +128,10 @@ class FormatBase : public ReadingFormat {
                                     const Sensor& one);
     /// Writes a reading as a separate file.
     [[nodiscard]] virtual std::string whole(std::size_t index, const Reading& reading) const;
-    static bool hasRanges(const Sensor& one) { return readingKind(one.model).points != nullptr; }
+    static bool hasRanges(const Sensor& one) {
+        const ReadingKind& kind = readingKind(one.model);
+        return kind.points != nullptr && !kind.varies;
+    }
     static bool isCamera(const Sensor& one) { return one.is<Camera>(); }
 
     static constexpr const char* kCameraInfo = ".yaml";

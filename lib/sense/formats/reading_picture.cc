@@ -212,7 +212,7 @@ Angle onPage(Angle bearing) { return bearing + Angle::degrees(90); }
 Point2 place(Angle bearing, double range) { return Point2{} + range * unitVector(onPage(bearing)); }
 
 /// Measures of the picture, in pixels unless stated otherwise.
-struct Layout {
+struct PageLayout {
     double size;    ///< of the page
     double em;      ///< of text
     double disc;    ///< radius of the polar grid
@@ -220,7 +220,7 @@ struct Layout {
     double ring;    ///< metres between rings
     Point2 center;
 
-    Layout(const Laser& laser, const Scan& scan, int pixels)
+    PageLayout(const Laser& laser, const Scan& scan, int pixels)
         : size(pixels), em(std::clamp(pixels / 48.0, 7.0, 40.0)) {
         double farthest = 0;
         for (const float range : scan.ranges)
@@ -248,7 +248,7 @@ void drawView(Picture& picture, const Laser& laser, double extent) {
         picture.line({}, place(edge, extent), {kViewEdge, 1});
 }
 
-void drawGrid(Picture& picture, const Layout& layout) {
+void drawGrid(Picture& picture, const PageLayout& layout) {
     const Stroke fine{kGrid, 1};
     const int rings = static_cast<int>(std::floor(layout.extent / layout.ring + 1e-6));
     for (int k = 1; k <= rings; ++k) picture.circle({}, k * layout.ring, {fine});
@@ -267,7 +267,7 @@ void writeAt(Picture& picture, Point2 page, std::string_view text, const TextSty
 }
 
 /// Writes bearings outside the rim, distances on their rings.
-void drawLabels(Picture& picture, const Layout& layout) {
+void drawLabels(Picture& picture, const PageLayout& layout) {
     TextStyle style{layout.em, false, Align::Center, kFaint, {}};
     for (int spoke = -5; spoke <= 6; ++spoke) {
         const Angle bearing = Angle::degrees(30 * spoke);
@@ -287,7 +287,7 @@ void drawLabels(Picture& picture, const Layout& layout) {
     }
 }
 
-void drawReturns(Picture& picture, const Laser& laser, const Scan& scan, const Layout& layout) {
+void drawReturns(Picture& picture, const Laser& laser, const Scan& scan, const PageLayout& layout) {
     const double radius = std::clamp(layout.size / 380, 1.2, 6.0) * layout.extent / layout.disc;
     for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
         const double range = scan.ranges[k];
@@ -297,7 +297,7 @@ void drawReturns(Picture& picture, const Laser& laser, const Scan& scan, const L
 }
 
 /// Draws a triangle that points to bearing 0.
-void drawSensor(Picture& picture, const Layout& layout) {
+void drawSensor(Picture& picture, const PageLayout& layout) {
     const double metre = layout.extent / layout.disc, size = 0.62 * layout.em * metre;
     const Polygon mark = {
         {0, 1.15 * size}, {-0.8 * size, -0.75 * size}, {0.8 * size, -0.75 * size}};
@@ -323,7 +323,7 @@ std::string subtitle(const Laser& laser, const Scan& scan) {
 std::string obstacleMapPng(const Sensor& sensor, const Scan& scan, int pixels) {
     const Laser& laser = sensor.as<Laser>();
     Picture picture(pixels, pixels);
-    const Layout layout(laser, scan, pixels);
+    const PageLayout layout(laser, scan, pixels);
     const double margin = layout.em, room = layout.size - 2 * margin;
     const TextStyle title{1.25 * layout.em, true, Align::Left, kInk, {}};
     const TextStyle small{layout.em, false, Align::Left, kFaint, {}};

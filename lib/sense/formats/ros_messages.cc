@@ -7,7 +7,7 @@
 #include <iterator>
 #include <limits>
 
-#include "geom/pose.h"
+#include "geom/rotation.h"
 #include "sense/formats/reading_picture.h"
 
 namespace ispace {
@@ -138,18 +138,27 @@ std::string laserScanMessage(const RosHeader& header, const Laser& laser, double
     return out.sequence(ranges).count(0).take();  // no intensities
 }
 
-std::string pointCloudMessage(const RosHeader& header, const PointCloud& cloud) {
+std::string pointCloudMessage(const RosHeader& header, const PointCloud& cloud,
+                              std::span<const PointField> others) {
     constexpr std::uint8_t kFloat32 = 7;
-    constexpr std::size_t kPoint = 3 * sizeof(float);
+    std::vector<const char*> names{"x", "y", "z"};
+    for (const PointField& other : others) names.push_back(other.name);
+    const std::size_t point = names.size() * sizeof(float);
     CdrWriter out;
-    out.put(header).count(cloud.height).count(cloud.width).count(3);
+    out.put(header).count(cloud.height).count(cloud.width).count(names.size());
     std::uint32_t offset = 0;
-    for (const char* const name : {"x", "y", "z"}) {
+    for (const char* const name : names) {
         out.put(name).put(offset).put(kFloat32).count(1);
         offset += sizeof(float);
     }
-    out.put(false).count(kPoint).count(kPoint * cloud.width);  // little-endian
-    out.bytes({reinterpret_cast<const char*>(cloud.xyz.data()), cloud.xyz.size() * sizeof(float)});
+    out.put(false).count(point).count(point * cloud.width);  // little-endian
+    std::vector<float> numbers;
+    for (std::size_t i = 0; i < cloud.size() && !others.empty(); ++i) {
+        numbers.insert(numbers.end(), &cloud.xyz[3 * i], &cloud.xyz[3 * i] + 3);
+        for (const PointField& other : others) numbers.push_back(other.values[i]);
+    }
+    const std::vector<float>& all = others.empty() ? cloud.xyz : numbers;
+    out.bytes({reinterpret_cast<const char*>(all.data()), all.size() * sizeof(float)});
     return out.put(false).take();  // points may be missing
 }
 

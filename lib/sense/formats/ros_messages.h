@@ -54,7 +54,13 @@ std::string transformsMessage(std::span<const RosTransform> transforms);
 /// 0
 std::string laserScanMessage(const RosHeader& header, const Laser& laser, double time_increment,
                              std::span<const float> ranges);
-std::string pointCloudMessage(const RosHeader& header, const PointCloud& cloud);
+/// A number of each point beside x, y, z.
+struct PointField {
+    const char* name = nullptr;
+    std::span<const float> values = {};
+};
+std::string pointCloudMessage(const RosHeader& header, const PointCloud& cloud,
+                              std::span<const PointField> others = {});
 /// Writes depths in metres as 32FC1 (REP 118); no return is NaN.
 std::string depthImageMessage(const RosHeader& header, const Ranger& ranger,
                               std::span<const float> depths);

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scene/sensor/sensor.h"
+#include "sense/selection.h"
+#include "trace/moving_bodies.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+/// A mover as a radar reports it, in the radar's frame.
+struct Detection {
+    double range = 0;  ///< metres, along the line of sight to its surface
+    Angle bearing, elevation;
+    double speed = 0;  ///< m/s, radial: above 0 it moves away
+};
+
+/// One reading of a radar.
+struct RadarFrame {
+    double time = 0;  ///< seconds
+    int frame = 0;
+    Pose3 pose;
+    std::vector<Detection> detections;  ///< the nearest first
+};
+
+/// Detects the movers that a radar at `pose` sees move.
+///
+/// A mover is seen where the ray towards the centre of one of its bodies meets that body, in the
+/// field of view and in range (ends included, as float32), if neither `mesh` nor a body of another
+/// mover is before it; of its bodies the nearest so seen counts. Bodies of the radar's carrier do
+/// not block it. The radial speed is the rate of change of the distance due to the mover: a radar
+/// on a robot compensates its own motion. Movers below the least radial speed have no detection.
+///
+/// Two movers nearer to each other than all three resolutions are one detection, the nearest. Then
+/// speeds are folded into [-max_speed, max_speed). Noise, if a seed is given, depends on seed,
+/// sensor, frame and mover alone, and changes neither the order nor, but for drop-outs, the number.
+/// \param mesh surfaces that stop its rays; not a slice
+RadarFrame castRadar(const RayWorld& mesh, const MovingBodies& bodies,
+                     const MoverVelocities& velocities, const Sensor& radar, const Pose3& pose,
+                     int frame, std::optional<std::uint64_t> noise_seed);
+
+}  // namespace ispace
