@@ -24,18 +24,46 @@ namespace ispace {
 
 namespace {
 
-/// Calls on_sheet(sheet, element) and on_solid(prism, element) for the walls and objects that
-/// extend anywhere between two heights; skips meshes of files.
-template <typename OnSheet, typename OnSolid>
-void forEachStanding(std::span<const Element> elements, double bottom, double top, OnSheet on_sheet,
-                     OnSolid on_solid) {
-    const auto stands = [&](const auto& part) { return part.bottom <= top && bottom <= part.top; };
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-        for (const Sheet& sheet : elements[i].body.sheets)
-            if (stands(sheet)) on_sheet(sheet, i);
-        for (const Prism& prism : elements[i].body.prisms)
-            if (stands(prism)) on_solid(prism, i);
+/// Calls visit(element, its index) for the elements with these indices; for all without a list.
+template <typename Visit>
+void forEachOf(std::span<const Element> elements, const std::span<const std::size_t>* which,
+               Visit visit) {
+    const std::size_t count = which == nullptr ? elements.size() : which->size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t i = which == nullptr ? k : (*which)[k];
+        visit(elements[i], i);
     }
+}
+
+/// Cuts the elements: the slice at `bottom`, or the band.
+Slice cutOf(std::span<const Element> elements, const std::span<const std::size_t>* which,
+            double bottom, double top, bool is_slice) {
+    assert(is_slice || bottom <= top);  // a slice at NaN is empty
+    Slice cut;
+    cut.height = bottom;
+    const auto stands = [&](const auto& part) { return part.bottom <= top && bottom <= part.top; };
+    forEachOf(elements, which, [&](const Element& element, std::size_t owner) {
+        for (const Sheet& sheet : element.body.sheets) {
+            if (!stands(sheet) || (is_slice && !isAmong(Surfaces::Opaque, sheet))) continue;
+            cut.sheets.push_back(sheet.line);
+            cut.sheet_owners.push_back(owner);
+        }
+        for (const Prism& prism : element.body.prisms) {
+            if (!stands(prism)) continue;
+            const bool is_round = is_slice && prism.curve;
+            if (is_round) cut.rounds.push_back({*prism.curve, cut.solids.size()});
+            cut.solids.push_back(is_round ? outlineOf(*prism.curve) : prism.footprint);
+            cut.solid_owners.push_back(owner);
+        }
+    });
+    forEachOf(elements, which, [&](const Element& element, std::size_t owner) {
+        if (element.body.meshes.empty()) return;
+        if (is_slice)
+            cutMeshes(element.body, bottom, cut, owner);
+        else
+            bandOfMeshes(element.body, bottom, top, cut, owner);
+    });
+    return cut;
 }
 
 }  // namespace
@@ -43,18 +71,58 @@ void forEachStanding(std::span<const Element> elements, double bottom, double to
 Environment::Environment(std::span<const Record> records, std::span<const std::string> ids) {
     assert(records.size() == ids.size());
     BuiltRoom room = buildRoom(records, ids);
+    auto walls = std::make_shared<Walls>();
+    walls->indoor = std::move(room.enclosure.indoor);
+    walls->inside = room.enclosure.inside;
+    walls->limits = room.limits;
+    walls->height = room.height;
+    walls->lines = std::move(room.wall_lines);
     auto data = std::make_shared<Data>();
-    data->indoor = std::move(room.enclosure.indoor);
-    data->inside = room.enclosure.inside;
-    data->limits = room.limits;
-    data->height = room.height;
     data->elements = std::move(room.elements);
-    data->wall_lines = std::move(room.wall_lines);
+    data->corners = room.corners;
+    data->walls = std::move(walls);
     data_ = std::move(data);
     levels_ = std::make_shared<Levels>();
 }
 
-const std::vector<Triangulation>& Environment::Data::floorParts() const {
+Environment::Environment(std::span<const Record> records, std::span<const std::string> ids,
+                         const Environment& before)
+    : Environment(before) {
+    assert(records.size() == ids.size());
+    auto edited = editElements(elements(), data_->corners, records, ids);
+    if (!edited) {
+        *this = Environment(records, ids);
+    } else if (edited->is_changed) {
+        auto data = std::make_shared<Data>();
+        data->elements = std::move(edited->elements);
+        data->corners = edited->corners;
+        data->walls = data_->walls;
+        data_ = std::move(data);
+        levels_ = std::make_shared<Levels>();
+    }
+}
+
+std::optional<ElementChanges> Environment::changesSince(const Environment& before) const {
+    if (data_->walls != before.data_->walls) return std::nullopt;
+    constexpr std::size_t kMost = 512, kMostShare = 4;
+    ElementChanges changes;
+    const std::vector<Element>&was = before.elements(), &is = elements();
+    const std::size_t most = std::min(kMost, was.size() / kMostShare + 1);
+    for (std::size_t i = 0, j = 0; i < was.size() || j < is.size();) {
+        if (i < was.size() && j < is.size() && was[i].shape == is[j].shape) {
+            ++i;
+            ++j;
+        } else if (j == is.size() || (i < was.size() && was[i].slot <= is[j].slot)) {
+            changes.removed.push_back(i++);
+        } else {
+            changes.added.push_back(j++);
+        }
+        if (changes.size() > most) return std::nullopt;
+    }
+    return changes;
+}
+
+const std::vector<Triangulation>& Environment::Walls::floorParts() const {
     return floor.get([this] {
         std::vector<Triangulation> parts;
         parts.reserve(indoor.parts.size());
@@ -63,7 +131,7 @@ const std::vector<Triangulation>& Environment::Data::floorParts() const {
     });
 }
 
-Mesh Environment::floor() const { return floorMesh(data_->floorParts()); }
+Mesh Environment::floor() const { return floorMesh(data_->walls->floorParts()); }
 
 const std::string& Environment::digest() const {
     return data_->digest.get([this] {
@@ -74,46 +142,22 @@ const std::string& Environment::digest() const {
     });
 }
 
-const RegionIndex& Environment::Data::indoorIndex() const {
+const RegionIndex& Environment::Walls::indoorIndex() const {
     return *indoor_index.get([this] { return std::make_shared<const RegionIndex>(indoor.parts); });
 }
 
-Slice Environment::Data::slice(double at) const {
-    Slice slice;
-    slice.height = at;
-    const auto add_sheet = [&](const Sheet& sheet, std::size_t owner) {
-        if (!isAmong(Surfaces::Opaque, sheet)) return;
-        slice.sheets.push_back(sheet.line);
-        slice.sheet_owners.push_back(owner);
-    };
-    const auto add_solid = [&](const Prism& prism, std::size_t owner) {
-        if (prism.curve) slice.rounds.push_back({*prism.curve, slice.solids.size()});
-        slice.solids.push_back(prism.curve ? outlineOf(*prism.curve) : prism.footprint);
-        slice.solid_owners.push_back(owner);
-    };
-    forEachStanding(elements, at, at, add_sheet, add_solid);
-    for (std::size_t i = 0; i < elements.size(); ++i)
-        if (!elements[i].body.meshes.empty()) cutMeshes(elements[i].body, at, slice, i);
-    return slice;
+Slice Environment::Data::slice(double at) const { return cutOf(elements, nullptr, at, at, true); }
+
+Slice Environment::slice(double height, std::span<const std::size_t> which) const {
+    return cutOf(elements(), &which, height, height, true);
 }
 
 Slice Environment::band(double bottom, double top) const {
-    assert(bottom <= top);
-    Slice band;
-    band.height = bottom;
-    const auto add_sheet = [&](const Sheet& sheet, std::size_t owner) {
-        band.sheets.push_back(sheet.line);
-        band.sheet_owners.push_back(owner);
-    };
-    const auto add_solid = [&](const Prism& prism, std::size_t owner) {
-        band.solids.push_back(prism.footprint);
-        band.solid_owners.push_back(owner);
-    };
-    forEachStanding(elements(), bottom, top, add_sheet, add_solid);
-    for (std::size_t i = 0; i < elements().size(); ++i)
-        if (!elements()[i].body.meshes.empty())
-            bandOfMeshes(elements()[i].body, bottom, top, band, i);
-    return band;
+    return cutOf(elements(), nullptr, bottom, top, false);
+}
+
+Slice Environment::band(double bottom, double top, std::span<const std::size_t> which) const {
+    return cutOf(elements(), &which, bottom, top, false);
 }
 
 /// Cache of the latest levels, the most recent at the end, and weak pointers to evicted levels that

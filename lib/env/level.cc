@@ -34,8 +34,9 @@ const Slice& Level::slice() const {
 
 const std::vector<Region>& Level::freeFloor() const {
     assert(room_ != nullptr);
-    return free_floor_.get(
-        [this] { return uncancelled([this] { return less(room_->indoor, slice().solids); }); });
+    return free_floor_.get([this] {
+        return uncancelled([this] { return less(room_->walls->indoor, slice().solids); });
+    });
 }
 
 const PolygonIndex& Level::solids() const {
@@ -59,7 +60,7 @@ void Level::prepareSight() const {
 
 bool Level::isFree(Point2 p) const {
     assert(room_ != nullptr);
-    if (room_->indoorIndex().locate(p) != Side::Inside || solids().holder(p)) return false;
+    if (room_->walls->indoorIndex().locate(p) != Side::Inside || solids().holder(p)) return false;
     const std::vector<Segment2>& sheets = slice().sheets;
     bool is_on_sheet = false;
     sheets_.get([&] { return SegmentTree(sheets); }).search({p, p}, 0, [&](std::size_t i) {

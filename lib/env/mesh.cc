@@ -156,7 +156,7 @@ using Index = std::uint32_t;
 using Corners = FloatPlace;
 
 /// Twice the limit of `at`.
-constexpr double kMaxDistance = 2e6;
+constexpr double kMaxCoordinate = 2e6;
 
 double unitOf(const std::string& unit) {
     if (unit == "cm") return 0.01;
@@ -269,8 +269,8 @@ void checkMesh(const Record& record, const Body& body, Diagnostics& findings) {
         findings.add(record.finding("file", "the mesh file " + file + " has no triangle"));
     } else {
         const auto is_far = [](const Point3& p) {
-            return !(std::abs(p.x) <= kMaxDistance && std::abs(p.y) <= kMaxDistance &&
-                     std::abs(p.z) <= kMaxDistance);
+            return !(std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate &&
+                     std::abs(p.z) <= kMaxCoordinate);
         };
         const std::vector<Point3>& vertices = body.meshes.front().vertices;
         if (std::any_of(vertices.begin(), vertices.end(), is_far))

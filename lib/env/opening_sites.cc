@@ -19,8 +19,6 @@ namespace {
 /// within thirty, since those points may lie off the line.
 constexpr double kParallel = std::numbers::pi / 180, kAlmostParallel = 30 * kParallel;
 
-Point2 pointOf(const Tuple& tuple) { return {tuple[0], tuple[1]}; }
-
 OpeningSite siteAround(std::size_t line, double middle, const Record& record) {
     const double half = record.tuple("size")[0] / 2;
     return {line, middle - half, middle + half};

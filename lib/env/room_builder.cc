@@ -106,9 +106,9 @@ class Builder {
     /// \throws FormatError with all findings
     void giveThings() {
         Diagnostics findings;
-        for (Element& element : elements_) {
-            if (!isWall(element.record)) giveShape(element, findings);
-            countCorners(element);
+        for (std::size_t i = 0; i < elements_.size(); ++i) {
+            if (!isWall(elements_[i].record)) giveShape(elements_[i], *bodies_[i], findings);
+            countCorners(elements_[i]);
         }
         findings.throwIfAny();
     }
@@ -139,7 +139,7 @@ class Builder {
     void addWalls(std::vector<Body> bodies) {
         const std::size_t walls = plan_.walls.size();
         for (std::size_t i = 0; i < bodies.size(); ++i)
-            addBody(elements_[i < walls ? plan_.owner[i] : openings_[i - walls].element].body,
+            addBody(*bodies_[i < walls ? plan_.owner[i] : openings_[i - walls].element],
                     std::move(bodies[i]));
     }
 
@@ -158,8 +158,9 @@ class Builder {
     [[nodiscard]] BuiltRoom take() {
         double height = 0;
         for (const WallLine& wall : plan_.walls) height = std::max(height, wall.top);
-        return {std::move(elements_), std::move(welded_.pieces), std::move(enclosure_), limits_,
-                height};
+        for (std::size_t i = 0; i < elements_.size(); ++i) elements_[i].slot = i;
+        return {std::move(elements_),  corners_, std::move(welded_.pieces),
+                std::move(enclosure_), limits_,  height};
     }
 
   private:
@@ -172,15 +173,17 @@ class Builder {
     /// The result of one record alone.
     struct Begun {
         Element element;
+        std::shared_ptr<Body> body;
         std::vector<WallLine> walls = {};
         Diagnostics wall_findings = {}, findings = {};
     };
 
     [[nodiscard]] Begun begun(const Record& record, const std::string& id, bool with_things) const {
-        Begun begun{{record, id, {}}};
+        const auto body = std::make_shared<Body>();
+        Begun begun{{record, id, body}, body};
         const bool is_wall = isWall(record);
         if (is_wall) begun.walls = wallLinesOf(record, begun.wall_findings);
-        if (is_wall || with_things) giveShape(begun.element, begun.findings);
+        if (is_wall || with_things) giveShape(begun.element, *body, begun.findings);
         return begun;
     }
 
@@ -192,6 +195,7 @@ class Builder {
             takeFindings(begun.wall_findings);
         }
         elements_.push_back(std::move(begun.element));
+        bodies_.push_back(std::move(begun.body));
         if (with_things) countCorners(elements_.back());
         walls_simple_ = walls_simple_ && (begun.findings.empty() || !is_wall);
         takeFindings(begun.findings);
@@ -216,9 +220,9 @@ class Builder {
         orderedPipeline((records.size() + kBlock - 1) / kBlock, begin, take_all);
     }
 
-    void giveShape(Element& element, Diagnostics& findings) const {
-        element.body = bodyBesideWalls(element.record);
-        checkShape(element.record, element.body, findings);
+    static void giveShape(const Element& element, Body& body, Diagnostics& findings) {
+        body = bodyBesideWalls(element.record);
+        checkShape(element.record, body, findings);
     }
 
     void countCorners(const Element& element) {
@@ -260,6 +264,7 @@ class Builder {
 
     Diagnostics findings_;
     std::vector<Element> elements_;
+    std::vector<std::shared_ptr<Body>> bodies_;            // of the elements
     std::size_t corners_ = 0, max_corners_ = kMaxCorners;  // without walls and meshes
     WallPlan plan_;
     bool walls_whole_ = true;   // every record has all its lines
@@ -313,6 +318,77 @@ BuiltRoom buildRoom(std::span<const Record> records, std::span<const std::string
     Builder builder;
     buildInOrder(records, ids, builder);
     return builder.take();
+}
+
+namespace {
+
+/// Returns true for the records that determine the walls and the indoor region.
+bool shapesWalls(const Record& record) {
+    const std::string& keyword = record.keyword();
+    return isWall(record) || keyword == "door" || keyword == "window" || keyword == "inside";
+}
+
+Record withId(Record record, const std::string& id) {
+    record.set("id", id);
+    return record;
+}
+
+/// Returns true if findings about the records would be the same, too.
+bool isSame(const Record& a, const Record& b) {
+    if (!(a == b) || a.mesh() != b.mesh()) return false;
+    const Place &x = a.place(), &y = b.place();
+    return x.line == y.line && (x.file == y.file || (x.file && y.file && *x.file == *y.file));
+}
+
+}  // namespace
+
+std::optional<EditedElements> editElements(std::span<const Element> before, std::size_t corners,
+                                           std::span<const Record> records,
+                                           std::span<const std::string> ids) {
+    EditedElements edited{{}, corners};
+    edited.elements.reserve(before.size() + 1);
+    std::size_t next = 0;  // of `before`
+    const auto is_at = [&](std::size_t i, std::size_t record) {
+        return i < before.size() && record < ids.size() && before[i].id == ids[record];
+    };
+    const auto drop = [&](const Element& element) {
+        edited.is_changed = true;
+        edited.corners -= cornersOf(element.body);
+        return !shapesWalls(element.record);
+    };
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (!records[i].schema().isEnvironment()) continue;
+        // Deleted elements end at the one with this id; a renamed one precedes the next equal id.
+        const bool is_renamed = !is_at(next, i) && is_at(next + 1, i + 1);
+        while (!is_renamed && next < before.size() && !is_at(next, i))
+            if (!drop(before[next++])) return std::nullopt;
+        const bool is_new = next == before.size();
+        const bool is_same = is_at(next, i) && isSame(before[next].record, records[i]);
+        // A new id, or an automatic one that an edit writes, leaves the shape.
+        if (is_same ||
+            (!is_new && isSame(withId(before[next].record, ids[i]), withId(records[i], ids[i])))) {
+            edited.is_changed = edited.is_changed || !is_same;
+            edited.elements.push_back({records[i], ids[i], before[next].shape, before[next].slot});
+            ++next;
+            continue;
+        }
+        std::size_t slot = edited.elements.empty() ? 0 : edited.elements.back().slot + 1;
+        if (!is_new) {
+            slot = before[next].slot;
+            if (!drop(before[next++])) return std::nullopt;
+        }
+        const auto body = std::make_shared<Body>(bodyBesideWalls(records[i]));
+        Diagnostics findings;
+        checkShape(records[i], *body, findings);
+        if (shapesWalls(records[i]) || !findings.empty()) return std::nullopt;
+        edited.is_changed = true;
+        edited.corners += cornersOf(*body);
+        edited.elements.push_back({records[i], ids[i], body, slot});
+    }
+    while (next < before.size())
+        if (!drop(before[next++])) return std::nullopt;
+    if (edited.corners > kMaxCorners) return std::nullopt;
+    return edited;
 }
 
 }  // namespace ispace

@@ -18,8 +18,6 @@ namespace ispace {
 
 namespace {
 
-Point2 pointOf(const Tuple& tuple) { return {tuple[0], tuple[1]}; }
-
 Material materialOf(const std::string& kind) {
     if (kind == "brick") return Material::Brick;
     if (kind == "wood") return Material::Wood;
@@ -263,7 +261,7 @@ std::optional<Meeting> meetingOf(const Segment2& s, const Segment2& t) {
     return Meeting{s.a + cross(t.a - s.a, other) / cross(along, other) * along, false};
 }
 
-bool less(const WallCrossing& c, const WallCrossing& d) {
+bool isBefore(const WallCrossing& c, const WallCrossing& d) {
     return std::tuple(c.a, c.b, c.place.x, c.place.y) < std::tuple(d.a, d.b, d.place.x, d.place.y);
 }
 
@@ -328,7 +326,7 @@ class CrossingFinder {
     /// Sorts the crossings found since and removes duplicates.
     static void sortFrom(std::size_t& sorted, std::vector<WallCrossing>& found) {
         const auto first = found.begin() + static_cast<std::ptrdiff_t>(sorted);
-        std::sort(first, found.end(), less);
+        std::sort(first, found.end(), isBefore);
         found.erase(std::unique(first, found.end(), same), found.end());
         sorted = found.size();
     }

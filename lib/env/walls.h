@@ -62,6 +62,9 @@ std::vector<Body> wallBodies(std::span<const WallPart> parts, std::size_t count)
 /// Builds the bodies of whole lines. \pre welded is the weld of the lines
 std::vector<Body> wallBodies(std::span<const WallLine> lines, const WeldedLines& welded);
 
+/// Returns the point of a tuple x,y.
+inline Point2 pointOf(const Tuple& tuple) { return {tuple[0], tuple[1]}; }
+
 /// A crossing or an overlap of the walls of two elements.
 struct WallCrossing {
     std::size_t a, b;  ///< indices of the elements, a < b

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/per_thread.h"
 #include "trace/flat_kernels.h"
 
 namespace ispace {
@@ -204,10 +205,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kAngularSlack = 5e-5;
 
 /// Kept to reuse its memory: threads read many scans.
-std::vector<float>& farthestOfThread() {
-    thread_local std::vector<float> farthest;
-    return farthest;
-}
+std::vector<float>& farthestOfThread() { return perThread<std::vector<float>, struct Farthest>(); }
 
 }  // namespace
 

@@ -1,31 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trace/embree_bodies.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace ispace {
 
 namespace {
 
-/// Bounding box of the body, enlarged by more than the float32 rounding of rays and corners.
+/// Bounding box of the body.
 void boundsOf(const RTCBoundsFunctionArguments* args) {
     const auto* const bodies = static_cast<const TracedBody*>(args->geometryUserPtr);
     const MovingBody& body = bodies[args->primID].body;
     const double around = body.reach() + body.sway();
-    const auto [x, y] = body.pose.position;
-    const double far = std::max({std::fabs(x), std::fabs(y), body.top}) + around;
-    const double slack = 1e-6 * (1 + far);
-    const auto low = [&](double at) { return static_cast<float>(at - slack); };
-    const auto high = [&](double at) { return static_cast<float>(at + slack); };
-    RTCBounds& box = *args->bounds_o;
-    box.lower_x = low(x - around);
-    box.lower_y = low(y - around);
-    box.lower_z = low(body.bottom);
-    box.upper_x = high(x + around);
-    box.upper_y = high(y + around);
-    box.upper_z = high(body.top);
+    const Vec2 reach{around, around};
+    const Point2 place = body.pose.position;
+    setBounds({place - reach, place + reach}, body.bottom, body.top, *args->bounds_o);
 }
 
 /// Calls met(lane, multiple) for each ray that the body stops.
@@ -49,37 +36,22 @@ void meetBody(const Arguments& args, RTCRayN* rays, Met met) {
 }
 
 void intersect(const RTCIntersectFunctionNArguments* args) {
-    const unsigned count = args->N;
-    RTCRayN* const rays = RTCRayHitN_RayN(args->rayhit, count);
-    RTCHitN* const hits = RTCRayHitN_HitN(args->rayhit, count);
-    meetBody(*args, rays, [&](unsigned lane, float multiple) {
-        RTCRayN_tfar(rays, count, lane) = multiple;
-        RTCHitN_primID(hits, count, lane) = args->primID;
-        RTCHitN_geomID(hits, count, lane) = args->geomID;
-        RTCHitN_instID(hits, count, lane, 0) = args->context->instID[0];
+    meetBody(*args, RTCRayHitN_RayN(args->rayhit, args->N), [&](unsigned ray, float multiple) {
+        setHit(*args, ray, multiple, args->geomID, args->primID);
     });
 }
 
 void occlude(const RTCOccludedFunctionNArguments* args) {
-    meetBody(*args, args->ray, [&](unsigned lane, float /*multiple*/) {
-        RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
-    });
+    meetBody(*args, args->ray, [&](unsigned ray, float /*multiple*/) { setOccluded(*args, ray); });
 }
 
 }  // namespace
 
 EmbreeSceneHandle buildBodies(RTCDeviceTy* device, std::span<const TracedBody> bodies,
                               unsigned geometry_id) {
-    return buildScene(
-        device, RTC_GEOMETRY_TYPE_USER, bodies.size(), geometry_id, [&](RTCGeometry geometry) {
-            rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(bodies.size()));
-            // Read-only use; Embree's interface lacks const.
-            rtcSetGeometryUserData(geometry, const_cast<TracedBody*>(bodies.data()));  // NOLINT
-            rtcSetGeometryBoundsFunction(
-                geometry, [](const RTCBoundsFunctionArguments* args) { boundsOf(args); }, nullptr);
-            rtcSetGeometryIntersectFunction(geometry, intersect);
-            rtcSetGeometryOccludedFunction(geometry, occlude);
-        });
+    return buildScene(device, [&](RTCScene scene) {
+        attachBodies(device, scene, bodies, geometry_id, {boundsOf, intersect, occlude});
+    });
 }
 
 }  // namespace ispace

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "trace/embree_query.h"
+#include "trace/round_view.h"
 
 namespace ispace {
 
@@ -53,22 +54,25 @@ std::size_t nativeWidthOf(RTCDeviceTy* device) {
     return has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8 : 4;
 }
 
-EmbreeSceneHandle buildTriangles(RTCDeviceTy* device, const TriangleSet& triangles,
-                                 unsigned geometry_id) {
-    const std::size_t count = triangles.size();
-    return buildScene(
-        device, RTC_GEOMETRY_TYPE_TRIANGLE, count, geometry_id, [&](RTCGeometry geometry) {
-            using Corners = TriangleSet::FloatTriangle;
-            auto* const corners = static_cast<Corners*>(
-                rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                        sizeof(Corners) / 3, 3 * count));
-            auto* const indices = static_cast<std::uint32_t*>(
-                rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                        3 * sizeof(std::uint32_t), count));
-            throwIfEmbreeFailed(device);
-            triangles.enlarge({corners, count});
-            for (std::size_t i = 0; i < 3 * count; ++i) indices[i] = static_cast<std::uint32_t>(i);
-        });
+EmbreeSceneHandle buildSurfaces(RTCDeviceTy* device, const TriangleSet& surfaces,
+                                unsigned geometry_id) {
+    const std::size_t count = surfaces.triangles();
+    const auto fill = [&](RTCGeometry geometry) {
+        using Corners = TriangleSet::FloatTriangle;
+        auto* const corners = static_cast<Corners*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                    sizeof(Corners) / 3, 3 * count));
+        auto* const indices = static_cast<std::uint32_t*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    3 * sizeof(std::uint32_t), count));
+        throwIfEmbreeFailed(device);
+        surfaces.enlarge({corners, count});
+        for (std::size_t i = 0; i < 3 * count; ++i) indices[i] = static_cast<std::uint32_t>(i);
+    };
+    return buildScene(device, [&](RTCScene scene) {
+        if (count > 0) attachGeometry(device, scene, RTC_GEOMETRY_TYPE_TRIANGLE, geometry_id, fill);
+        attachRounds(device, scene, surfaces.rounds(), geometry_id);
+    });
 }
 
 }  // namespace ispace

@@ -30,10 +30,11 @@ void throwIfEmbreeFailed(RTCDeviceTy* device);
 /// Number of rays that the processor traces together: 4, 8 or 16.
 std::size_t nativeWidthOf(RTCDeviceTy* device);
 
-/// Builds a scene of the enlarged triangles, ROBUST and of high quality; hits hold this geometry
-/// id. O(n log n)
+/// Builds a scene of the enlarged triangles and of the round bodies, ROBUST and of high quality;
+/// hits hold this geometry id and the number of the surface. O(n log n)
+/// \pre the round bodies stay at the same address while the scene lives
 /// \throws as throwIfEmbreeFailed()
-EmbreeSceneHandle buildTriangles(RTCDeviceTy* device, const TriangleSet& triangles,
-                                 unsigned geometry_id);
+EmbreeSceneHandle buildSurfaces(RTCDeviceTy* device, const TriangleSet& surfaces,
+                                unsigned geometry_id);
 
 }  // namespace ispace

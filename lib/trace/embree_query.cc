@@ -11,9 +11,15 @@ namespace ispace {
 
 namespace {
 
-/// Collects surfaces with bounds near the query's point.
+/// Surfaces with bounds near a point.
+struct NearSurfaces {
+    std::size_t triangles;  ///< number of the first round body
+    std::vector<std::size_t> found = {};
+};
+
 bool collect(RTCPointQueryFunctionArguments* args) {
-    static_cast<std::vector<unsigned>*>(args->userPtr)->push_back(args->primID);
+    auto& near = *static_cast<NearSurfaces*>(args->userPtr);
+    near.found.push_back((args->geomID < kRoundGeometries ? 0 : near.triangles) + args->primID);
     return false;
 }
 
@@ -46,11 +52,10 @@ IgnoredSurfaces::IgnoredSurfaces(RTCScene scene, const TriangleSet& set, double 
     query.radius = static_cast<float>(ray_epsilon + set.tolerance());
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
-    std::vector<unsigned> near;
+    NearSurfaces near{set.triangles()};
     rtcPointQuery(scene, &query, &context, collect, &near);
-    for (const unsigned triangle : near)
-        if (set.distance(triangle, origin) <= ray_epsilon)
-            normals_.push_back(set.planes()[triangle].normal);
+    for (const std::size_t surface : near.found)
+        set.addTouched(surface, origin, ray_epsilon, normals_);
 }
 
 bool IgnoredSurfaces::contains(std::size_t triangle, Point3 origin) const {
@@ -67,8 +72,10 @@ bool IgnoredSurfaces::contains(std::size_t triangle, Point3 origin) const {
 PassingQuery::PassingQuery(const IgnoredSurfaces& surfaces, Point3 from)
     : EmbreeQuery(surfaces.touches() ? passIgnored : nullptr), ignored(surfaces), origin(from) {}
 
-SingleQuery::SingleQuery(const IgnoredSurfaces& surfaces, const Ray& asked)
-    : EmbreeQuery(passUnmet), ignored(surfaces), ray(asked) {}
+SingleQuery::SingleQuery(const IgnoredSurfaces& surfaces, const RayPacket& packet, std::size_t lane)
+    : EmbreeQuery(passUnmet), ignored(surfaces), ray(packet.ray(lane)) {
+    rays = {&packet, false, surfaces.rayEpsilon()};
+}
 
 namespace {
 

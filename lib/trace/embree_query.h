@@ -7,11 +7,14 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "trace/embree_device.h"
@@ -20,13 +23,23 @@
 
 namespace ispace {
 
-// A query for Embree 3 or 4. Its context is the first member, so that filter callbacks can cast
-// back to the query.
+struct RayPacket;
+
+/// The rays of a query in doubles, for Embree's callbacks.
+struct ExactRays {
+    const RayPacket* packet = nullptr;  ///< by the ids of the rays; null: as Embree has them
+    bool have_one_origin = false;
+    double ray_epsilon = 0;  ///< see meetRound()
+};
+
+// A query for Embree 3 or 4. Its context is the first member, so that callbacks can cast back to
+// the query.
 #if RTC_VERSION_MAJOR >= 4
 constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 struct EmbreeQuery {
     RTCRayQueryContext context;
     RTCIntersectArguments arguments;
+    ExactRays rays;
 
     explicit EmbreeQuery(RTCFilterFunctionN filter = nullptr) {
         rtcInitRayQueryContext(&context);
@@ -52,6 +65,7 @@ struct EmbreeQuery {
 constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 struct EmbreeQuery {
     RTCIntersectContext context;
+    ExactRays rays;
 
     explicit EmbreeQuery(RTCFilterFunctionN filter = nullptr) {
         rtcInitIntersectContext(&context);
@@ -67,24 +81,84 @@ struct EmbreeQuery {
 };
 #endif
 
-/// Builds a scene of one geometry, ROBUST and of high quality, with primitives set by
-/// fill(geometry); empty for a count of 0.
+/// Adds a geometry with primitives set by fill(geometry).
 /// \throws as throwIfEmbreeFailed()
 template <typename Fill>
-EmbreeSceneHandle buildScene(RTCDevice device, RTCGeometryType type, std::size_t count,
-                             unsigned geometry_id, Fill fill) {
+void attachGeometry(RTCDevice device, RTCScene scene, RTCGeometryType type, unsigned geometry_id,
+                    Fill fill) {
+    const RTCGeometry geometry = rtcNewGeometry(device, type);
+    throwIfEmbreeFailed(device);
+    rtcAttachGeometryByID(scene, geometry, geometry_id);
+    rtcReleaseGeometry(geometry);  // the scene holds it
+    fill(geometry);
+    rtcCommitGeometry(geometry);
+}
+
+/// Geometry ids of round bodies: those of the surfaces they belong to plus this.
+constexpr unsigned kRoundGeometries = 1U << 8U;
+
+/// Embree's callbacks of bodies with intersections computed in doubles.
+struct BodyCallbacks {
+    RTCBoundsFunction bounds;
+    RTCIntersectFunctionN intersect;
+    RTCOccludedFunctionN occlude;
+};
+
+/// Adds bodies, which stay at their address while the scene lives; none for an empty list.
+/// \throws as throwIfEmbreeFailed()
+template <typename SomeBody>
+void attachBodies(RTCDevice device, RTCScene scene, std::span<const SomeBody> bodies,
+                  unsigned geometry_id, const BodyCallbacks& callbacks) {
+    if (bodies.empty()) return;
+    attachGeometry(device, scene, RTC_GEOMETRY_TYPE_USER, geometry_id, [&](RTCGeometry geometry) {
+        rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(bodies.size()));
+        // Read-only use; Embree's interface lacks const.
+        rtcSetGeometryUserData(geometry, const_cast<SomeBody*>(bodies.data()));  // NOLINT
+        rtcSetGeometryBoundsFunction(geometry, callbacks.bounds, nullptr);
+        rtcSetGeometryIntersectFunction(geometry, callbacks.intersect);
+        rtcSetGeometryOccludedFunction(geometry, callbacks.occlude);
+    });
+}
+
+/// Sets a body's bounds, enlarged by more than the float32 rounding of rays and corners.
+inline void setBounds(const Box2& plan, double bottom, double top, RTCBounds& box) {
+    const double far = std::max({std::fabs(plan.low.x), std::fabs(plan.low.y),
+                                 std::fabs(plan.high.x), std::fabs(plan.high.y), top});
+    const double slack = 1e-6 * (1 + far);
+    const auto low = [&](double at) { return static_cast<float>(at - slack); };
+    const auto high = [&](double at) { return static_cast<float>(at + slack); };
+    box.lower_x = low(plan.low.x);
+    box.lower_y = low(plan.low.y);
+    box.lower_z = low(bottom);
+    box.upper_x = high(plan.high.x);
+    box.upper_y = high(plan.high.y);
+    box.upper_z = high(top);
+}
+
+/// Records a body that a ray meets.
+inline void setHit(const RTCIntersectFunctionNArguments& args, unsigned ray, float multiple,
+                   unsigned geometry_id, unsigned surface) {
+    RTCHitN* const hits = RTCRayHitN_HitN(args.rayhit, args.N);
+    RTCRayN_tfar(RTCRayHitN_RayN(args.rayhit, args.N), args.N, ray) = multiple;
+    RTCHitN_primID(hits, args.N, ray) = surface;
+    RTCHitN_geomID(hits, args.N, ray) = geometry_id;
+    RTCHitN_instID(hits, args.N, ray, 0) = args.context->instID[0];
+}
+
+/// Records that a body stops a ray.
+inline void setOccluded(const RTCOccludedFunctionNArguments& args, unsigned ray) {
+    RTCRayN_tfar(args.ray, args.N, ray) = -std::numeric_limits<float>::infinity();
+}
+
+/// Builds a scene, ROBUST and of high quality, of the geometries that attach_all(scene) attaches.
+/// \throws as throwIfEmbreeFailed()
+template <typename AttachAll>
+EmbreeSceneHandle buildScene(RTCDevice device, AttachAll attach_all) {
     EmbreeSceneHandle scene(rtcNewScene(device));
     throwIfEmbreeFailed(device);
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | kFilterFlag);
     rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
-    if (count > 0) {
-        const RTCGeometry geometry = rtcNewGeometry(device, type);
-        throwIfEmbreeFailed(device);
-        rtcAttachGeometryByID(scene.get(), geometry, geometry_id);
-        rtcReleaseGeometry(geometry);  // the scene holds it
-        fill(geometry);
-        rtcCommitGeometry(geometry);
-    }
+    attach_all(scene.get());
     rtcCommitScene(scene.get());
     throwIfEmbreeFailed(device);
     return scene;
@@ -171,9 +245,10 @@ class IgnoredSurfaces {
     /// Surfaces stop rays if their planes are farther from the origin than this.
     [[nodiscard]] double reach() const { return touches() ? ray_epsilon_ : kEdgeOn; }
     [[nodiscard]] bool contains(std::size_t triangle, Point3 origin) const;
-    /// Computes the intersection with a triangle found by Embree, if it stops the ray.
+    [[nodiscard]] double rayEpsilon() const { return ray_epsilon_; }
+    /// Computes the intersection with a surface found by Embree, if it stops the ray.
     [[nodiscard]] RayHit meet(std::size_t triangle, const Ray& ray) const {
-        if (!set_.isRound(triangle) && contains(triangle, ray.origin)) return {};
+        if (set_.roundOf(triangle) == nullptr && contains(triangle, ray.origin)) return {};
         return set_.meet(triangle, ray, ray_epsilon_);
     }
 
@@ -191,12 +266,13 @@ struct PassingQuery : EmbreeQuery {
     PassingQuery(const IgnoredSurfaces& surfaces, Point3 from);
 };
 
-/// A query for one ray that skips surfaces which do not stop it.
+/// A query for one ray of a packet, its number the ray's id, that skips surfaces which do not stop
+/// it.
 struct SingleQuery : EmbreeQuery {
     const IgnoredSurfaces& ignored;
-    const Ray& ray;
+    Ray ray;
 
-    SingleQuery(const IgnoredSurfaces& surfaces, const Ray& asked);
+    SingleQuery(const IgnoredSurfaces& surfaces, const RayPacket& packet, std::size_t lane);
 };
 
 /// Rays traced together, in doubles, and their hits.

@@ -80,8 +80,10 @@ struct EmbreeScene::Caster {
         packet.reach.fill(farthest >= 0 ? farthest * (1 + kFarSlack) : -1);
         roundReach(packet, tail, far);
         setOrigins({&origin, 1});
+        query.rays = {&packet, true, surfaces.rayEpsilon()};
         valid.fill(-1);
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        for (unsigned lane = 0; lane < kLanes; ++lane) {
+            hits.ray.id[lane] = lane;
             hits.ray.mask[lane] = ~0U;
             hits.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
         }
@@ -127,7 +129,7 @@ struct EmbreeScene::Caster {
         const double* const margins = set.margins().data();
         if (is_alike && meetOnePlane(hits, planes, margins, sure, packet)) return;
         std::uint32_t care = meetPlanes(hits, planes, margins, sure.clear, most, packet);
-        if (is_alike && !needs_slopes) care = meetRounds(care);
+        if (query.rays.have_one_origin && !needs_slopes) care = meetRounds(care);
         for (; care != 0; care &= care - 1)
             lookCloser(static_cast<std::size_t>(std::countr_zero(care)));
     }
@@ -173,7 +175,7 @@ struct EmbreeScene::Caster {
         return alike;
     }
 
-    /// True for hits near a triangle's rim, on a round body, or on a surface that may be ignored.
+    /// For hits near a triangle's rim, on a round body, or on a surface that may be ignored.
     void lookCloser(std::size_t lane) {
         const Ray ray = packet.ray(lane);
         RayHit hit = ignored.meet(hits.hit.primID[lane], ray);
@@ -200,9 +202,10 @@ struct EmbreeScene::Caster {
         const double reach = ray.reach * (1 + kFarSlack) + tail;
         one.ray.tfar = static_cast<float>(std::min(reach, kMaxRayReach));
         one.ray.mask = ~0U;
+        one.ray.id = static_cast<unsigned>(lane);
         one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        SingleQuery(ignored, ray).trace(scene.scene_.get(), &one);
+        SingleQuery(ignored, packet, lane).trace(scene.scene_.get(), &one);
         if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
         return ignored.meet(one.hit.primID, ray);
     }
@@ -239,7 +242,7 @@ struct EmbreeScene::Caster {
 EmbreeScene::EmbreeScene(const TriangleSoup& soup, double ray_epsilon, int packet_width)
     : set_(soup), ray_epsilon_(ray_epsilon) {
     device_ = makeEmbreeDevice();
-    scene_ = buildTriangles(device_.get(), set_, 0);
+    scene_ = buildSurfaces(device_.get(), set_, 0);
     width_ =
         packet_width > 0 ? static_cast<std::size_t>(packet_width) : nativeWidthOf(device_.get());
 }
@@ -269,7 +272,8 @@ void EmbreeScene::cast(std::span<const Point3> origins, const Directions& direct
     const IgnoredSurfaces nothing(set_, ray_epsilon_);
     const bool may_touch = mayTouch(origins);
     Caster caster(*this, nothing, origins.front(), most);
-    caster.is_alike = false;
+    caster.is_alike = caster.query.rays.have_one_origin = false;
+    caster.needs_slopes = !results.cosines.empty();
     for (std::size_t first = 0; first < directions.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, directions.size() - first);
         if (may_touch && mayTouch(origins.subspan(first, lanes))) {
@@ -333,7 +337,7 @@ void EmbreeScene::query(Point3 origin, std::span<const Point3> targets,
     const IgnoredSurfaces ignored(scene_.get(), set_, ray_epsilon_, origin);
     Caster caster(*this, ignored, origin, 0);
     caster.most = kNoReturn;
-    caster.is_alike = false;
+    caster.is_alike = caster.needs_slopes = false;
     for (std::size_t first = 0; first < targets.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, targets.size() - first);
         if (lanes < kLanes) caster.keep(lanes);

@@ -42,7 +42,7 @@ void addGlobe(TriangleSoup& soup, Point3 middle, int rings, int sectors, std::mt
     }
 }
 
-/// A room 8 m by 6 m with boxes and globes that touch nothing.
+/// A room 8 m by 6 m with boxes, globes and round bodies that touch nothing.
 TriangleSoup furnished() {
     std::mt19937_64 random(30);
     TriangleSoup soup;
@@ -50,6 +50,9 @@ TriangleSoup furnished() {
     for (int i = 0; i < 4; ++i) {
         addBox(soup, {2.0 * i - 3, -1.5, 0.8}, {0.4, 0.3, 0.4}, 0.7 * i);
         addGlobe(soup, {2.0 * i - 3, 1.5, 1}, 12, 18, random);
+        soup.rounds.push_back(
+            {Ellipse({2.0 * i - 3, 0.3}, 0.9, 0.3 + 0.2 * i, Angle::degrees(25.0 * i)), 0.3 * i,
+             1.1 + 0.2 * i});
     }
     return soup;
 }
@@ -243,6 +246,84 @@ TEST(EmbreeScene, SightEndsWhereItIsTold) {
     std::vector<std::uint8_t> seen(20, 7);
     scene.query({0.2, 0, 0.1}, targets, seen);
     for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(seen[i], targets[i].y < 1 ? 1 : 0);
+}
+
+TEST(EmbreeScene, ManyRoundBodiesStopRaysAsFewDo) {
+    const TriangleSoup few = furnished();
+    TriangleSoup many = few;
+    for (int i = 0; i < 200; ++i)
+        many.rounds.push_back({Ellipse({0.01 * i, 0}, 2, 2, {}), -0.2, -0.1});
+    std::mt19937_64 random(35);
+    std::uniform_real_distribution<double> x(-3.9, 3.9), y(-2.9, 2.9), z(0.1, 2.4);
+    for (const int width : kWidths) {
+        const EmbreeScene scene(few, kTouching, width), other(many, kTouching, width);
+        for (int i = 0; i < 40; ++i) {
+            const Point3 origin{x(random), y(random), z(random)};
+            Beams beams(997);
+            aimAll(beams, few, origin, i % 2, random);
+            Beams again = beams;
+            beams.cast(scene, origin);
+            again.cast(other, origin);
+            EXPECT_EQ(again.ranges, beams.ranges) << i;
+            EXPECT_EQ(again.cosines, beams.cosines) << i;
+            other.cast(origin, beams.directions, 60, {again.ranges, {}});
+            EXPECT_EQ(again.ranges, beams.ranges) << i;
+            std::vector<Point3> targets;
+            for (std::size_t k = 0; k < 997; ++k)
+                targets.push_back(origin + 3 * beams.directions[k]);
+            std::vector<std::uint8_t> seen(997), seen_again(997);
+            scene.query(origin, targets, seen);
+            other.query(origin, targets, seen_again);
+            EXPECT_EQ(seen_again, seen) << i;
+        }
+    }
+}
+
+TEST(EmbreeScene, RoundBodiesStopRaysOnTheirCurves) {
+    TriangleSoup soup;
+    addQuad(soup, {3, -2, -1}, {0, 4, 0}, {0, 0, 4});
+    addQuad(soup, {1, -1, 1}, {1, 0, 0}, {0, 2, 0});  // at the height of the body's top
+    soup.rounds.push_back({Ellipse({0, 0}, 1, 1, {}), 0, 1});
+    // Alone, and among so many that they are a tree of their own.
+    TriangleSoup many = soup;
+    for (int i = 0; i < 200; ++i) many.rounds.push_back({Ellipse({9, 9}, 1, 1, {}), -3, -2});
+    EXPECT_EQ(TriangleSet(soup).rounds().size(), 0U);
+    EXPECT_EQ(TriangleSet(many).rounds().size(), 201U);
+    for (const bool is_few : {true, false})
+        for (const int width : kWidths) {
+            const EmbreeScene scene(is_few ? soup : many, kTouching, width);
+            const auto expect = [&](Point3 origin, Vec3 way, float range, float cosine) {
+                // As a packet of their like, and alone; with an origin for each.
+                for (const std::size_t count : {std::size_t{1}, std::size_t{17}}) {
+                    Beams beams(count);
+                    for (std::size_t k = 0; k < count; ++k) beams.aim(k, way);
+                    beams.cast(scene, origin);
+                    EXPECT_NEAR(beams.ranges.back(), range, 1e-6 * range) << width;
+                    EXPECT_NEAR(beams.cosines.back(), cosine, 1e-6) << width;
+                    std::vector<float> plain(count), own(count);
+                    scene.cast(origin, beams.directions, 60, {plain, {}});
+                    EXPECT_EQ(plain, beams.ranges);
+                    scene.cast(std::vector<Point3>(count, origin), beams.directions, 60, {own, {}});
+                    EXPECT_EQ(own, beams.ranges);
+                    const Point3 target = origin + (0.999 * range) * beams.directions[0];
+                    std::uint8_t seen = 7;
+                    scene.query(origin, {&target, 1}, {&seen, 1});
+                    EXPECT_EQ(seen, 1);
+                }
+            };
+            expect({-2, 0, 0.5}, {1, 0, 0}, 1.5F, 1);
+            expect({-2, 0.3, 0.5}, {1, 0, 0}, 1.6F, 0.8F);
+            expect({-2, 0.5, 0.5}, {1, 0, 0}, 2, 0);  // a tangent
+            expect({-2, 0.5 + 1e-9, 0.5}, {1, 0, 0}, 5, 1);
+            expect({0, 0, 3}, {0, 0, -1}, 2, 1);
+            expect({-2, 0, 1 + 1e-9}, {1, 0, 0}, 5, 1);  // over it, and the sheet seen edge-on
+            expect({0.1, 0, 0.5}, {1, 0, 0}, 0.4F, 1);   // from inside
+            expect({0.5, 0, 0.5}, {-1, 0, 0}, 1, 1);     // from its side, through it
+            expect({0.5, 0, 0.5}, {1, 0, 0}, 2.5F, 1);
+            // From its top, whose plane the sheet continues.
+            expect({0.2, 0, 1 + 9e-5}, {1, 0, -6e-5}, 2.8F, 1);
+            expect({0.2, 0, 1 + 2e-4}, {1, 0, -1.5e-4}, 2e-4F / 1.5e-4F, 1.5e-4F);
+        }
 }
 
 TEST(EmbreeScene, EmptyOrWithoutAreaStopsNothing) {

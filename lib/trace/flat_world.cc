@@ -19,7 +19,7 @@ namespace ispace {
 namespace {
 
 constexpr std::size_t kWidth = FlatTree::kWidth;
-static_assert(kWidth == BoxOrder::kWidth && FlatTree::kDepth == BoxOrder::kDepth);
+static_assert(kWidth == BoxOrder::kWidth && FlatTree::kDepth == BoxOrder::kDepth + 1);
 
 /// Builds nodes in a given order.
 class Builder {
@@ -83,12 +83,16 @@ double squareOf(const Segment2& line) {
 /// Shortest lengths also count as points.
 bool isPoint(const Segment2& line) { return squareOf(line) == 0; }
 
+/// The line as leaves store it.
+Segment2 ordered(const Segment2& line) {
+    return lexLess(line.a, line.b) ? line : Segment2{line.b, line.a};
+}
+
 FlatTree::Leaf leafOf(std::span<const std::uint32_t> items, std::span<const Segment2> lines) {
     FlatTree::Leaf made{};
     for (std::size_t i = 0; i < kWidth; ++i) {
         const bool is_used = i < items.size();
-        const Segment2& given = lines[items[is_used ? i : 0]];
-        const Segment2 line = lexLess(given.a, given.b) ? given : Segment2{given.b, given.a};
+        const Segment2 line = ordered(lines[items[is_used ? i : 0]]);
         const Point2 b = is_used ? line.b : line.a;
         made.ax[i] = line.a.x;
         made.ay[i] = line.a.y;
@@ -162,6 +166,123 @@ FlatTree::FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> rou
     round_root = Builder(round_order, *this).build([&](std::span<const std::uint32_t> items) {
         return std::pair{~static_cast<std::int32_t>(items.front()), boxes[items.front()]};
     });
+}
+
+namespace {
+
+/// Removes a line from its leaf. \returns false if the leaf does not have it
+bool removeFrom(FlatTree::Leaf& leaf, const Segment2& line) {
+    const int last = leaf.count() - 1;
+    for (int i = 0; i <= last; ++i) {
+        if (Point2{leaf.ax[i], leaf.ay[i]} != line.a || Point2{leaf.bx[i], leaf.by[i]} != line.b)
+            continue;
+        for (double* lanes : {leaf.ax, leaf.ay, leaf.bx, leaf.by, leaf.length})
+            lanes[i] = lanes[last];
+        leaf.bx[last] = leaf.ax[last] = leaf.ax[0];
+        leaf.by[last] = leaf.ay[last] = leaf.ay[0];
+        leaf.length[last] = 0;
+        return true;
+    }
+    return false;
+}
+
+/// Visits the nodes around a point from `root` on, visit(node, child), until a visit of a leaf
+/// returns true.
+template <typename Visit>
+void findLeaf(FlatTree& tree, std::int32_t root, Point2 p, Visit visit) {
+    std::vector<std::int32_t> open{root};
+    while (!open.empty()) {
+        FlatTree::Node& node = tree.nodes[static_cast<std::size_t>(open.back())];
+        open.pop_back();
+        for (int i = 0; i < node.count; ++i) {
+            if (!meets({{node.left[i], node.low[i]}, {node.right[i], node.high[i]}}, {p, p}))
+                continue;
+            if (node.child[i] >= 0)
+                open.push_back(node.child[i]);
+            else if (visit(node, i))
+                return;
+        }
+    }
+    assert(false && "the tree has it");
+}
+
+/// Removes a line; the boxes around it stay.
+void remove(FlatTree& tree, const Segment2& line) {
+    findLeaf(tree, 0, line.a, [&](FlatTree::Node& node, int child) {
+        return removeFrom(tree.leaves[~static_cast<std::uint32_t>(node.child[child])], line);
+    });
+}
+
+/// Removes a round body from its node.
+void remove(FlatTree& tree, const FlatTree::Round& round) {
+    findLeaf(tree, tree.round_root, {round.cx, round.cy}, [&](FlatTree::Node& node, int child) {
+        if (tree.round(node.child[child]) != round) return false;
+        const int last = --node.count;
+        for (double* lanes : {node.left, node.right, node.low, node.high}) {
+            lanes[child] = lanes[last];
+            lanes[last] = lanes[0];
+        }
+        node.child[child] = node.child[last];
+        return true;
+    });
+}
+
+/// Returns a node above two subtrees.
+FlatTree::Node joined(const FlatTree& tree, std::int32_t a, std::int32_t b) {
+    FlatTree::Node made{};
+    made.count = 2;
+    for (std::size_t i = 0; i < kWidth; ++i) {
+        made.child[i] = i == 1 ? b : a;
+        const FlatTree::Node& node = tree.node(made.child[i]);
+        made.left[i] = *std::min_element(node.left, node.left + kWidth);
+        made.right[i] = *std::max_element(node.right, node.right + kWidth);
+        made.low[i] = *std::min_element(node.low, node.low + kWidth);
+        made.high[i] = *std::max_element(node.high, node.high + kWidth);
+    }
+    return made;
+}
+
+}  // namespace
+
+FlatTree::FlatTree(const FlatTree& base, const FlatBodies& removed, const FlatBodies& added)
+    : round_root(base.round_root) {
+    const FlatTree more(added.lines, added.rounds);
+    const auto copy = [](auto& items, const auto& from, std::size_t others) {
+        items.reserve(from.size() + others);
+        items = from;
+    };
+    constexpr std::size_t kRoots = 3;
+    copy(nodes, base.nodes, more.nodes.size() + kRoots);
+    copy(leaves, base.leaves, more.leaves.size());
+    copy(rounds, base.rounds, more.rounds.size());
+    for (const Segment2& line : removed.lines)
+        if (!isPoint(line)) remove(*this, ordered(line));
+    for (const Ellipse& body : removed.rounds) remove(*this, unitMapOf(body));
+    if (more.nodes.empty()) return;
+    if (nodes.empty()) nodes.push_back({});
+    const auto first = static_cast<std::int32_t>(nodes.size());
+    const auto first_leaf = static_cast<std::int32_t>(leaves.size());
+    const auto first_round = static_cast<std::int32_t>(rounds.size());
+    for (const Node& node : more.nodes) {
+        const bool is_of_lines =
+            more.round_root < 0 || &node < &more.nodes[static_cast<std::size_t>(more.round_root)];
+        Node& copy = nodes.emplace_back(node);
+        for (std::int32_t& child : copy.child)
+            child += child >= 0 ? first : -(is_of_lines ? first_leaf : first_round);
+    }
+    leaves.insert(leaves.end(), more.leaves.begin(), more.leaves.end());
+    rounds.insert(rounds.end(), more.rounds.begin(), more.rounds.end());
+    const auto append = [&](const Node& node) {
+        nodes.push_back(Node(node));
+        return static_cast<std::int32_t>(nodes.size() - 1);
+    };
+    if (nodes.front().count == 0)
+        nodes.front() = Node(node(first));
+    else if (node(first).count > 0)
+        nodes.front() = joined(*this, append(nodes.front()), first);
+    if (more.round_root < 0) return;
+    const std::int32_t root = more.round_root + first;
+    round_root = round_root < 0 ? root : append(joined(*this, round_root, root));
 }
 
 namespace {
@@ -316,8 +437,8 @@ struct FlatWorld::Data {
     double widest_packet;
     bool is_for_scan;
 
-    Data(std::span<const Segment2> lines, std::span<const Ellipse> rounds)
-        : tree(lines, rounds), widest_packet(widestPacket(tree)), is_for_scan(isForScan(tree)) {}
+    explicit Data(FlatTree made)
+        : tree(std::move(made)), widest_packet(widestPacket(tree)), is_for_scan(isForScan(tree)) {}
 
     void castRay(const Cast& cast, std::size_t i) const {
         const Point2 origin = cast.origin(i);
@@ -409,10 +530,10 @@ struct FlatWorld::Data {
 };
 
 FlatWorld::FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds)
-    : data_(new Data(lines, rounds)) {}
-FlatWorld::FlatWorld(FlatWorld&&) noexcept = default;
-FlatWorld& FlatWorld::operator=(FlatWorld&&) noexcept = default;
-FlatWorld::~FlatWorld() = default;
+    : data_(std::make_shared<const Data>(FlatTree(lines, rounds))) {}
+
+FlatWorld::FlatWorld(const FlatWorld& base, const FlatBodies& removed, const FlatBodies& added)
+    : data_(std::make_shared<const Data>(FlatTree(base.data_->tree, removed, added))) {}
 
 void FlatWorld::cast(Point2 origin, const Directions& directions, double max_range,
                      double ray_epsilon, std::span<float> ranges, std::span<float> cosines) const {

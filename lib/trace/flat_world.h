@@ -13,13 +13,19 @@
 
 namespace ispace {
 
+/// Lines and round bodies of a slice.
+struct FlatBodies {
+    std::vector<Segment2> lines;
+    std::vector<Ellipse> rounds;
+};
+
 /// A bounding volume hierarchy over lines on the floor, with eight boxes or lines per node, one
 /// array per component for vector units. Skips lines without length. Round bodies form a second
 /// hierarchy in the same nodes, traversed after that of the lines.
 struct FlatTree {
     static constexpr int kWidth = 8;
     /// Maximum depth; traversals stack fewer than kWidth nodes per level.
-    static constexpr int kDepth = 24;
+    static constexpr int kDepth = 25;
     static constexpr int kStack = kWidth * kDepth;
 
     /// Child i is node child[i], or leaf ~child[i] if that is negative. Boxes beyond `count` repeat
@@ -45,10 +51,15 @@ struct FlatTree {
     /// Maps a round body's plane, as (x - cx, y - cy), to the frame of the unit disc.
     struct Round {
         double cx, cy, xx, xy, yx, yy;
+        friend bool operator==(const Round&, const Round&) = default;
     };
 
     /// Builds the tree, skipping lines that are points. O(n log n)
     explicit FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies = {});
+    /// Copies a tree that was built from lines, without some of its lines and bodies, and adds a
+    /// tree of others. O(lines) to copy; the removed ones are found by their boxes.
+    /// \pre `base` has the removed ones
+    FlatTree(const FlatTree& base, const FlatBodies& removed, const FlatBodies& added);
 
     /// Returns the node of a child.
     [[nodiscard]] const Node& node(std::int32_t child) const {
@@ -89,9 +100,8 @@ struct FlatTree {
 class FlatWorld {
   public:
     explicit FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});
-    FlatWorld(FlatWorld&&) noexcept;
-    FlatWorld& operator=(FlatWorld&&) noexcept;
-    ~FlatWorld();
+    /// \pre `base` was built from bodies, which include the removed ones
+    FlatWorld(const FlatWorld& base, const FlatBodies& removed, const FlatBodies& added);
 
     /// Computes the distance to the first line or round body along each direction (x and y count),
     /// up to max_range inclusive; +infinity without return. Fastest for directions with an arc,
@@ -106,7 +116,7 @@ class FlatWorld {
 
   private:
     struct Data;
-    std::unique_ptr<Data> data_;
+    std::shared_ptr<const Data> data_;
 };
 
 }  // namespace ispace

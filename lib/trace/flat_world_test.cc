@@ -280,6 +280,51 @@ TEST(FlatWorld, LinesTooShortForALengthCountAsPoints) {
     }
 }
 
+/// Chooses items of `all` that are removed, and counts the others.
+template <typename T>
+std::vector<T> chosen(const std::vector<T>& all, double share, std::mt19937_64& random,
+                      std::vector<T>& rest) {
+    std::vector<T> some;
+    std::bernoulli_distribution is_chosen(share);
+    for (const T& item : all) (is_chosen(random) ? some : rest).push_back(item);
+    return some;
+}
+
+TEST(FlatWorld, AnUpdatedTreeAnswersLikeANewOne) {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> place(0, 20), size(0.1, 1), turn(-180, 180);
+    const auto rounds = [&](int count) {
+        std::vector<Ellipse> made;
+        for (int i = 0; i < count; ++i)
+            made.emplace_back(Point2{place(random), place(random)}, size(random), size(random),
+                              Angle::degrees(turn(random)));
+        return made;
+    };
+    for (const auto& [lines, bodies, more_lines, more_bodies] :
+         {std::array{300, 20, 40, 5}, std::array{300, 0, 0, 3}, std::array{0, 9, 30, 0},
+          std::array{0, 0, 12, 2}, std::array{9, 1, 0, 0}, std::array{1, 1, 1, 1}})
+        for (const double share : {0.0, 0.1, 1.0}) {
+            FlatBodies base{tangle(random, static_cast<std::size_t>(lines), 20), rounds(bodies)};
+            if (lines > 0) base.lines.push_back(base.lines.front());  // once more
+            base.lines.push_back({{3, 3}, {3, 3}});
+            FlatBodies after;
+            const FlatBodies removed{chosen(base.lines, share, random, after.lines),
+                                     chosen(base.rounds, share, random, after.rounds)};
+            const FlatBodies added{tangle(random, static_cast<std::size_t>(more_lines), 20),
+                                   rounds(more_bodies)};
+            after.lines.insert(after.lines.end(), added.lines.begin(), added.lines.end());
+            after.rounds.insert(after.rounds.end(), added.rounds.begin(), added.rounds.end());
+            const FlatWorld before(base.lines, base.rounds);
+            const FlatWorld updated(before, removed, added), made(after.lines, after.rounds);
+            for (int i = 0; i < 30; ++i) {
+                const Point2 origin{place(random), place(random)};
+                const Directions beams = scan(Angle::degrees(turn(random)), Angle::degrees(1), 361);
+                EXPECT_EQ(cast(updated, origin, beams), cast(made, origin, beams));
+                EXPECT_EQ(castApart(updated, origin, beams, 5), castApart(made, origin, beams, 5));
+            }
+        }
+}
+
 }  // namespace
 
 }  // namespace ispace

@@ -43,10 +43,18 @@ ISPACE_SIMD_CLONES void limit(std::span<float> ranges, float far) {
 }  // namespace
 
 struct RayWorld::Data {
+    /// A world of a level, of which others are made.
+    struct Base {
+        Environment environment;
+        Box2 plan;
+        FlatWorld flat;
+    };
+
     Point3 middle;
     // One of both; in a slice z of rays does not count.
     std::optional<FlatWorld> flat = {};
     std::optional<EmbreeScene> mesh = {};
+    std::shared_ptr<const Base> base = {};
 
     [[nodiscard]] Point3 local(Point3 p) const { return relative(p, middle); }
 };
@@ -56,51 +64,86 @@ RayWorld::RayWorld(RayWorld&&) noexcept = default;
 RayWorld& RayWorld::operator=(RayWorld&&) noexcept = default;
 RayWorld::~RayWorld() = default;
 
-RayWorld RayWorld::ofSlice(const Slice& slice) {
+namespace {
+
+Box2 planOf(const Slice& slice) {
     Box2 plan;
     slice.forEachLine([&](const Segment2& line) {
         plan.add(line.a);
         plan.add(line.b);
     });
-    auto data = std::make_unique<Data>(Data{middleOf(plan)});
-    const auto local = [&](Point2 p) { return data->local({p.x, p.y, 0}).onFloor(); };
-    std::vector<Segment2> straight = slice.straightLines();
-    for (Segment2& line : straight) line = {local(line.a), local(line.b)};
-    std::vector<Ellipse> rounds = slice.curves();
-    for (Ellipse& round : rounds) round.center = local(round.center);
-    data->flat.emplace(straight, rounds);
+    return plan;
+}
+
+/// Returns the lines and round bodies relative to a point.
+FlatBodies bodiesOf(const Slice& slice, Point3 middle) {
+    const auto local = [&](Point2 p) { return relative({p.x, p.y, 0}, middle).onFloor(); };
+    FlatBodies bodies{slice.straightLines(), slice.curves()};
+    for (Segment2& line : bodies.lines) line = {local(line.a), local(line.b)};
+    for (Ellipse& round : bodies.rounds) round.center = local(round.center);
+    return bodies;
+}
+
+/// True if the box does not touch the lines, which then do not determine it.
+bool isInside(const Box2& plan, const Slice& slice) {
+    const Box2 part = planOf(slice);
+    return part.empty() || (plan.low.x < part.low.x && plan.low.y < part.low.y &&
+                            part.high.x < plan.high.x && part.high.y < plan.high.y);
+}
+
+}  // namespace
+
+RayWorld RayWorld::ofSlice(const Slice& slice) {
+    auto data = std::make_unique<Data>(Data{middleOf(planOf(slice))});
+    const FlatBodies bodies = bodiesOf(slice, data->middle);
+    data->flat.emplace(bodies.lines, bodies.rounds);
     return RayWorld(std::move(data));
+}
+
+RayWorld RayWorld::ofLevel(const Environment& environment, double height, const RayWorld* before) {
+    if (before != nullptr && before->data_->base) {
+        const Data::Base& base = *before->data_->base;
+        if (const auto changes = environment.changesSince(base.environment)) {
+            const Slice removed = base.environment.slice(height, changes->removed);
+            const Slice added = environment.slice(height, changes->added);
+            if (isInside(base.plan, removed) && isInside(base.plan, added)) {
+                auto data = std::make_unique<Data>(Data{before->data_->middle});
+                data->flat.emplace(base.flat, bodiesOf(removed, data->middle),
+                                   bodiesOf(added, data->middle));
+                data->base = before->data_->base;
+                return RayWorld(std::move(data));
+            }
+        }
+    }
+    const Slice& slice = environment.level(height)->slice();
+    RayWorld world = ofSlice(slice);
+    world.data_->base = std::make_shared<const Data::Base>(
+        Data::Base{environment, planOf(slice), *world.data_->flat});
+    return world;
 }
 
 namespace {
 
-/// Adds a mesh. Its triangles represent a round body or flat surfaces.
-void addMesh(const Mesh& mesh, std::uint32_t round, TriangleSoup& soup) {
+void addMesh(const Mesh& mesh, TriangleSoup& soup) {
     const auto first = static_cast<std::uint32_t>(soup.vertices.size());
     soup.vertices.insert(soup.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
     for (const auto& [a, b, c] : mesh.triangles)
         soup.triangles.push_back({first + a, first + b, first + c});
-    soup.round_of.resize(soup.triangles.size(), round);
 }
 
-/// Adds the given surfaces of all bodies, then the floor, then round bodies.
+/// Returns the given surfaces of all bodies, and the floor.
 TriangleSoup soupOf(const Environment& environment, Surfaces surfaces) {
     TriangleSoup soup;
-    std::vector<const Prism*> rounds;
     for (const Element& element : environment.elements()) {
-        const std::size_t before = rounds.size();
+        const std::size_t before = soup.rounds.size();
         for (const Prism& prism : element.body.prisms)
-            if (prism.curve) rounds.push_back(&prism);
-        const bool is_flat = rounds.size() == before;
+            if (prism.curve) soup.rounds.push_back({*prism.curve, prism.bottom, prism.top});
+        const bool is_flat = soup.rounds.size() == before;
         for (const Mesh& mesh :
              meshesOf(is_flat ? element.body : withoutRounds(element.body), surfaces))
-            addMesh(mesh, TriangleSoup::kFlat, soup);
+            addMesh(mesh, soup);
     }
-    addMesh(environment.floor(), TriangleSoup::kFlat, soup);
-    for (const Prism* const round : rounds) {
-        addMesh(meshAround(*round), static_cast<std::uint32_t>(soup.rounds.size()), soup);
-        soup.rounds.push_back({*round->curve, round->bottom, round->top});
-    }
+    addMesh(environment.floor(), soup);
     return soup;
 }
 
@@ -111,6 +154,10 @@ RayWorld RayWorld::ofEnvironment(const Environment& environment, Surfaces surfac
     TriangleSoup soup = soupOf(environment, surfaces);
     Box2 plan;
     for (const Point3& vertex : soup.vertices) plan.add(vertex.onFloor());
+    for (const RoundBody& round : soup.rounds) {
+        plan.add(round.curve.box().low);
+        plan.add(round.curve.box().high);
+    }
     auto data = std::make_unique<Data>(Data{middleOf(plan)});
     for (Point3& vertex : soup.vertices) vertex = data->local(vertex);
     for (RoundBody& round : soup.rounds) {
@@ -181,12 +228,19 @@ bool hasClearGlass(const Environment& environment) {
 Worlds::Worlds(const Environment& environment)
     : environment_(&environment), has_clear_(hasClearGlass(environment)) {}
 
-void Worlds::prepare(const Pose3& pose) {
+const RayWorld* Worlds::sliceAt(double height) const {
+    const std::shared_lock lock(mutex_);
+    const auto slice = slices_.find(height);
+    return slice == slices_.end() ? nullptr : &slice->second;
+}
+
+void Worlds::prepare(const Pose3& pose, const Worlds* before) {
     if (!pose.isLevel()) return prepareMesh();
     const double height = pose.position.z;
     if (slices_.contains(height)) return;
     if (slices_.size() >= kMaxSlices) return prepareMesh();
-    RayWorld slice = RayWorld::ofSlice(environment_->level(height)->slice());
+    RayWorld slice = RayWorld::ofLevel(*environment_, height,
+                                       before == nullptr ? nullptr : before->sliceAt(height));
     const std::unique_lock lock(mutex_);
     slices_.emplace(height, std::move(slice));
 }
@@ -200,11 +254,8 @@ void Worlds::prepareMesh(Surfaces surfaces) {
 }
 
 const RayWorld& Worlds::at(const Pose3& pose) const {
-    if (pose.isLevel()) {
-        const std::shared_lock lock(mutex_);
-        const auto slice = slices_.find(pose.position.z);
-        if (slice != slices_.end()) return slice->second;
-    }
+    if (pose.isLevel())
+        if (const RayWorld* const slice = sliceAt(pose.position.z)) return *slice;
     return mesh();
 }
 

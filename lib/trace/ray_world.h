@@ -31,6 +31,11 @@ class RayWorld {
   public:
     /// Builds a world for level rays that start at `slice.height`; their z is ignored.
     static RayWorld ofSlice(const Slice& slice);
+    /// Builds the world of the environment's slice at this height.
+    /// \param before such a world of the same height: its tree is copied and updated if few
+    /// elements
+    ///        changed since it was built; may be null
+    static RayWorld ofLevel(const Environment& environment, double height, const RayWorld* before);
     /// Builds a world for rays of any direction, against these surfaces of all bodies and the
     /// floor. Opaque surfaces stop light, which passes clear glass.
     /// \param packet_width rays Embree traces together: 1, 4, 8, 16, or 0 for the processor's best;
@@ -87,7 +92,8 @@ class Worlds {
     };
 
     explicit Worlds(const Environment& environment);
-    void prepare(const Pose3& pose);
+    /// \param before worlds of another environment, which may share its data; see ofLevel()
+    void prepare(const Pose3& pose, const Worlds* before = nullptr);
     /// Builds the mesh for sensors that look in all directions: surfaces that stop light, or
     /// (Solid) sound.
     void prepareMesh(Surfaces surfaces = Surfaces::Opaque);
@@ -102,6 +108,8 @@ class Worlds {
     [[nodiscard]] Meshes meshes() const { return {mesh_.has_value(), solid_.has_value()}; }
 
   private:
+    /// Returns the slice of a height, or null.
+    [[nodiscard]] const RayWorld* sliceAt(double height) const;
     /// True if these surfaces stop more rays than the opaque ones.
     [[nodiscard]] bool hearsMore(Surfaces surfaces) const {
         return has_clear_ && surfaces == Surfaces::Solid;

@@ -64,4 +64,75 @@ bool RoundView::meet(const RayPacket& packet, std::array<float, kLanes>& multipl
     return meetAll(task, packet, multiples.data());
 }
 
+namespace {
+
+using RoundSurface = TriangleSet::RoundSurface;
+
+void boundsOfRound(const RTCBoundsFunctionArguments* args) {
+    const RoundBody& round =
+        static_cast<const RoundSurface*>(args->geometryUserPtr)[args->primID].body;
+    setBounds(round.curve.box(), round.bottom, round.top, *args->bounds_o);
+}
+
+/// Computes the multiple of one ray's direction at which it meets the body.
+float meetAlone(const RoundBody& round, const ExactRays& exact, RTCRayN* rays, unsigned count,
+                unsigned i) {
+    Ray ray = exact.packet != nullptr
+                  ? exact.packet->ray(RTCRayN_id(rays, count, i))
+                  : Ray{{RTCRayN_org_x(rays, count, i), RTCRayN_org_y(rays, count, i),
+                         RTCRayN_org_z(rays, count, i)},
+                        {RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i),
+                         RTCRayN_dir_z(rays, count, i)},
+                        kMaxRayReach};
+    const double least = static_cast<double>(RTCRayN_tnear(rays, count, i));
+    double multiple = meetRound(round, ray, exact.ray_epsilon).multiple;
+    if (multiple < least) {
+        ray.origin = ray.origin + least * ray.direction;
+        multiple = least + meetRound(round, ray, exact.ray_epsilon).multiple;
+    }
+    return static_cast<float>(multiple);
+}
+
+/// Calls met(ray, multiple) for each ray that the body stops.
+template <typename Arguments, typename Met>
+void meetRays(const Arguments& args, RTCRayN* rays, const RoundBody& round, Met met) {
+    constexpr unsigned kFew = 2;
+    const ExactRays& exact = reinterpret_cast<const EmbreeQuery*>(args.context)->rays;
+    unsigned asked = 0;
+    for (unsigned i = 0; i < args.N; ++i) asked += args.valid[i] != 0 ? 1 : 0;
+    alignas(64) std::array<float, kLanes> all;  // NOLINT: set by meet()
+    const bool has_all =
+        exact.have_one_origin && asked > kFew &&
+        RoundView(round, exact.packet->ray(0).origin, exact.ray_epsilon).meet(*exact.packet, all);
+    for (unsigned i = 0; i < args.N; ++i) {
+        if (args.valid[i] == 0) continue;
+        const float multiple =
+            has_all ? all[RTCRayN_id(rays, args.N, i)] : meetAlone(round, exact, rays, args.N, i);
+        if (multiple <= RTCRayN_tfar(rays, args.N, i)) met(i, multiple);
+    }
+}
+
+void intersectRounds(const RTCIntersectFunctionNArguments* args) {
+    const auto& [round, surface] =
+        static_cast<const RoundSurface*>(args->geometryUserPtr)[args->primID];
+    meetRays(*args, RTCRayHitN_RayN(args->rayhit, args->N), round,
+             [&, number = surface](unsigned ray, float multiple) {
+                 setHit(*args, ray, multiple, args->geomID - kRoundGeometries, number);
+             });
+}
+
+void occludeRounds(const RTCOccludedFunctionNArguments* args) {
+    const auto* const rounds = static_cast<const RoundSurface*>(args->geometryUserPtr);
+    meetRays(*args, args->ray, rounds[args->primID].body,
+             [&](unsigned ray, float /*multiple*/) { setOccluded(*args, ray); });
+}
+
+}  // namespace
+
+void attachRounds(RTCDevice device, RTCScene scene, std::span<const RoundSurface> rounds,
+                  unsigned geometry_id) {
+    attachBodies(device, scene, rounds, geometry_id + kRoundGeometries,
+                 {boundsOfRound, intersectRounds, occludeRounds});
+}
+
 }  // namespace ispace

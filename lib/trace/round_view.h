@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Intersects round bodies with packets of rays. Private to EmbreeScene.
+// // Intersects round bodies with packets of rays, for Embree. Private to lib/trace.
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "trace/embree_query.h"
 #include "trace/triangle_set.h"
 
 namespace ispace {
 
-/// A round body as seen from a point well outside of it. Computes TriangleSet::meet() for a packet
-/// of rays, with identical results to the last bit.
+/// A round body as seen from a point well outside of it. Computes meetRound() for a packet of rays,
+/// with identical results to the last bit.
 class RoundView {
   public:
     RoundView() = default;
-    /// \param ray_epsilon as in TriangleSet::meet()
+    /// \param ray_epsilon as in meetRound() \pre `body` outlives it
     RoundView(const RoundBody& body, Point3 origin, double ray_epsilon);
 
     [[nodiscard]] const RoundBody* body() const { return body_; }
@@ -27,5 +28,12 @@ class RoundView {
     const RoundBody* body_ = nullptr;
     bool is_far_ = false;
 };
+
+/// Adds round bodies to a scene; hits hold `geometry_id` and the number of the surface. Embree
+/// searches bounding boxes; ExactRays are met in doubles.
+/// \pre the bodies stay at the same address while the scene lives
+/// \throws as throwIfEmbreeFailed()
+void attachRounds(RTCDevice device, RTCScene scene,
+                  std::span<const TriangleSet::RoundSurface> rounds, unsigned geometry_id);
 
 }  // namespace ispace

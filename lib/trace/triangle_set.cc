@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "base/simd.h"
+#include "env/body.h"
+#include "env/mesh.h"
 #include "trace/flat_kernels.h"
 
 namespace ispace {
@@ -25,26 +27,77 @@ constexpr double kFloatError = 0x1p-21;
 constexpr std::size_t kLanes = TriangleLanes::kSize;
 
 /// Of the bounding box.
-double diagonalOf(const std::vector<Point3>& vertices) {
-    if (vertices.empty()) return 0;
-    Point3 low = vertices.front(), high = low;
-    for (const Point3& p : vertices) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+double diagonalOf(const TriangleSoup& soup) {
+    Box2 plan;
+    double low = kInfinity, high = -kInfinity;
+    for (const Point3& p : soup.vertices) {
+        plan.add(p.onFloor());
+        low = std::min(low, p.z);
+        high = std::max(high, p.z);
     }
-    return length(high - low);
+    for (const RoundBody& round : soup.rounds) {
+        const Box2 box = round.curve.box();
+        plan.add(box.low);
+        plan.add(box.high);
+        low = std::min(low, round.bottom);
+        high = std::max(high, round.top);
+    }
+    return plan.empty() ? 0 : length(Vec3{plan.width(), plan.depth(), high - low});
 }
 
 }  // namespace
 
-TriangleSet::TriangleSet(const TriangleSoup& soup)
-    : rounds_(soup.rounds), tolerance_(kFloatError * diagonalOf(soup.vertices)) {
+namespace {
+
+/// Number of triangles that closely enclose a body with this footprint.
+std::size_t trianglesAround(const Polygon& footprint) { return 4 * footprint.size() - 4; }
+
+/// Returns triangles that closely enclose a round body.
+TriangleSoup soupAround(const RoundBody& round, Polygon footprint) {
+    const Point2 center = round.curve.center;
+    // By a hair more, for rounding.
+    const double growth = growthAround(footprint.size()) * (1 + 1e-9);
+    for (Point2& p : footprint) p = center + growth * (p - center);
+    const Body body{{{std::move(footprint), round.bottom, round.top}}, {}, {}, {}};
+    Mesh mesh = std::move(meshesOf(body, Surfaces::Solid).front());
+    return {std::move(mesh.vertices), std::move(mesh.triangles)};
+}
+
+}  // namespace
+
+TriangleSet::TriangleSet(const TriangleSoup& soup) : tolerance_(kFloatError * diagonalOf(soup)) {
+    corners_.reserve(soup.triangles.size());
+    planes_.reserve(soup.triangles.size());
+    margins_.reserve(soup.triangles.size());
+    sources_.reserve(soup.triangles.size());
+    addTriangles(soup);
+    flats_ = size();
+    rounds_.reserve(soup.rounds.size());
+    std::vector<Polygon> footprints;
+    std::size_t count = 0;
+    for (const RoundBody& round : soup.rounds) {
+        rounds_.push_back({round});
+        if (count <= kMostOfRounds)
+            count += trianglesAround(footprints.emplace_back(inscribedIn(round.curve)));
+    }
+    for (std::size_t i = 0; i < rounds_.size(); ++i) {
+        const std::size_t first = size();
+        if (count <= kMostOfRounds) {
+            addTriangles(soupAround(rounds_[i].body, std::move(footprints[i])));
+        } else {
+            rounds_[i].surface = static_cast<std::uint32_t>(size());
+            planes_.emplace_back();
+        }
+        sources_.resize(first);
+        sources_.resize(size(), static_cast<std::uint32_t>(i));
+    }
+    margins_.resize(flats_);
+    margins_.resize(size(), kInfinity);
+}
+
+/// Adds the triangles of a soup.
+void TriangleSet::addTriangles(const TriangleSoup& soup) {
     const std::size_t count = soup.triangles.size();
-    corners_.reserve(count);
-    planes_.reserve(count);
-    margins_.reserve(count);
-    round_of_.reserve(count);
-    sources_.reserve(count);
     TriangleLanes lanes;
     TriangleLanePlanes found;
     for (std::size_t first = 0; first < count; first += kLanes) {
@@ -59,21 +112,18 @@ TriangleSet::TriangleSet(const TriangleSoup& soup)
             if (!(thin > kThinnest)) continue;
             const std::size_t i = first + lane;
             const auto& [a, b, c] = soup.triangles[i];
-            const std::uint32_t round =
-                i < soup.round_of.size() ? soup.round_of[i] : TriangleSoup::kFlat;
             corners_.push_back({soup.vertices[a], soup.vertices[b], soup.vertices[c]});
             planes_.push_back(
                 {{found.normals.x[lane], found.normals.y[lane], found.normals.z[lane]},
                  found.offsets[lane]});
-            margins_.push_back(round == TriangleSoup::kFlat ? 2.5 * tolerance_ / thin : kInfinity);
-            round_of_.push_back(round);
+            margins_.push_back(2.5 * tolerance_ / thin);
             sources_.push_back(static_cast<std::uint32_t>(i));
         }
     }
 }
 
 void TriangleSet::enlarge(std::span<FloatTriangle> out) const {
-    assert(out.size() == size());
+    assert(out.size() == triangles());
     TriangleLanes lanes;
     for (std::size_t first = 0; first < out.size(); first += kLanes) {
         const std::size_t count = std::min(kLanes, out.size() - first);
@@ -91,8 +141,9 @@ void TriangleSet::enlarge(std::span<FloatTriangle> out) const {
     }
 }
 
-RayHit TriangleSet::meet(std::size_t triangle, const Ray& ray, double ray_epsilon) const {
-    return isRound(triangle) ? meetRound(triangle, ray, ray_epsilon) : meetFlat(triangle, ray);
+RayHit TriangleSet::meet(std::size_t surface, const Ray& ray, double ray_epsilon) const {
+    const RoundBody* const round = roundOf(surface);
+    return round != nullptr ? meetRound(*round, ray, ray_epsilon) : meetFlat(surface, ray);
 }
 
 RayHit TriangleSet::meetFlat(std::size_t triangle, const Ray& ray) const {
@@ -112,8 +163,7 @@ RayHit TriangleSet::meetFlat(std::size_t triangle, const Ray& ray) const {
     return {multiple, std::fabs(slope)};
 }
 
-RayHit TriangleSet::meetRound(std::size_t triangle, const Ray& ray, double ray_epsilon) const {
-    const RoundBody& round = rounds_[round_of_[triangle]];
+RayHit meetRound(const RoundBody& round, const Ray& ray, double ray_epsilon) {
     const auto& [curve, bottom, top] = round;
     const Vec2 q = curve.toUnit(ray.origin.onFloor() - curve.center);
     const Vec2 d = curve.toUnit({ray.direction.x, ray.direction.y});
@@ -174,13 +224,21 @@ double TriangleSet::distance(std::size_t triangle, Point3 p) const {
     return is_over ? std::fabs(plane.heightOver(p)) : nearest;
 }
 
-Mesh meshAround(Prism round) {
-    // By a hair more, for rounding.
-    const double growth = growthAround(round.footprint.size()) * (1 + 1e-9);
-    for (Point2& p : round.footprint) p = round.curve->center + growth * (p - round.curve->center);
-    Body body;
-    body.prisms.push_back(std::move(round));
-    return std::move(meshesOf(body, Surfaces::Solid).front());
+void TriangleSet::addTouched(std::size_t surface, Point3 p, double distance,
+                             std::vector<Vec3>& normals) const {
+    const RoundBody* const round = roundOf(surface);
+    if (round == nullptr) {
+        if (this->distance(surface, p) <= distance) normals.push_back(planes_[surface].normal);
+        return;
+    }
+    const double height = round->curve.heightOf(p.onFloor());
+    const double under = round->top - p.z, over = p.z - round->bottom;
+    if (height > distance || std::min(under, over) < -distance) return;
+    if (std::min(under, over) <= distance) normals.push_back({0, 0, 1});
+    if (height >= -distance) {
+        const Vec2 side = round->curve.normalAt(p.onFloor());
+        normals.push_back(1 / length(side) * Vec3{side.x, side.y, 0});
+    }
 }
 
 namespace {

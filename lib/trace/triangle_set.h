@@ -8,8 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "env/body.h"
-#include "env/mesh.h"
 #include "geom/curve.h"
 #include "geom/point.h"
 
@@ -34,16 +32,11 @@ struct RoundBody {
     }
 };
 
-/// Triangles in any order, with or without shared vertices.
+/// Triangles in any order, with or without shared vertices, and round bodies.
 struct TriangleSoup {
-    static constexpr std::uint32_t kFlat = ~0U;
-
     std::vector<Point3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<RoundBody> rounds = {};
-    /// For each triangle, the round body it represents, or kFlat; triangles beyond the end of this
-    /// list are flat, too. The triangles of a round body enclose it.
-    std::vector<std::uint32_t> round_of = {};
 
     /// \return the vertex' index
     std::uint32_t add(Point3 corner) {
@@ -80,20 +73,41 @@ struct RayHit {
     }
 };
 
-/// Triangles in doubles. Embree finds the triangle of a ray in float32. It stores them enlarged by
-/// tolerance() on each side, which exceeds its error, so that a ray that touches a surface or
-/// passes between two touching ones has a hit. The distance is computed here, in doubles.
+/// Surfaces in doubles, numbered: flat triangles, then those of round bodies. Embree finds the
+/// triangle of a ray in float32. It stores them enlarged by tolerance() on each side, which exceeds
+/// its error, so that a ray that touches a surface or passes between two touching ones has a hit.
+/// The distance is computed here, in doubles.
+///
+/// A few round bodies are represented by triangles that closely enclose them, which Embree finds
+/// in the tree of the others. Many bodies would be most of that tree: then each is a surface of its
+/// own, in a tree of bodies.
 class TriangleSet {
   public:
+    /// A round body and its number among the surfaces, if it is one.
+    struct RoundSurface {
+        RoundBody body;
+        std::uint32_t surface = 0;
+    };
+    /// Maximum number of triangles that represent round bodies.
+    static constexpr std::size_t kMostOfRounds = 1 << 15;
+
     /// Skips triangles thinner than a nanometre.
     explicit TriangleSet(const TriangleSoup& soup);
 
-    [[nodiscard]] std::size_t size() const { return corners_.size(); }
+    /// Number of surfaces.
+    [[nodiscard]] std::size_t size() const { return planes_.size(); }
+    /// Number of surfaces that are triangles.
+    [[nodiscard]] std::size_t triangles() const { return corners_.size(); }
+    /// Returns the round bodies that are surfaces.
+    [[nodiscard]] std::span<const RoundSurface> rounds() const {
+        return triangles() < size() ? std::span(rounds_) : std::span<const RoundSurface>();
+    }
     [[nodiscard]] const std::array<Point3, 3>& corners(std::size_t triangle) const {
         return corners_[triangle];
     }
-    /// Returns the triangle's index in the soup.
-    [[nodiscard]] std::size_t source(std::size_t triangle) const { return sources_[triangle]; }
+    /// Returns the index in the soup of a flat triangle, or of the round body of a surface.
+    [[nodiscard]] std::size_t source(std::size_t surface) const { return sources_[surface]; }
+    /// Planes of all surfaces; those of round bodies are not used.
     [[nodiscard]] std::span<const Plane> planes() const { return planes_; }
     /// Upper bound of Embree's error, in metres: 2^-21 of the scene's diagonal.
     [[nodiscard]] double tolerance() const { return tolerance_; }
@@ -101,38 +115,37 @@ class TriangleSet {
     /// lies in the original triangle. Infinite for round bodies.
     [[nodiscard]] std::span<const double> margins() const { return margins_; }
     using FloatTriangle = std::array<std::array<float, 3>, 3>;
-    /// Computes the corners of the enlarged triangles, in float32. \pre out.size() == size()
+    /// Computes the corners of the enlarged triangles, in float32. \pre out.size() == triangles()
     void enlarge(std::span<FloatTriangle> out) const;
 
     /// Intersects a ray through the enlarged triangle with its plane, clamped to the triangle's
-    /// extent along the ray; or with the round body that the triangle represents. From inside a
-    /// round body, or going in from within `ray_epsilon` of its surface, returns the exit; going
-    /// out from there the ray misses.
-    [[nodiscard]] RayHit meet(std::size_t triangle, const Ray& ray, double ray_epsilon) const;
-    [[nodiscard]] bool isRound(std::size_t triangle) const {
-        return round_of_[triangle] != TriangleSoup::kFlat;
+    /// extent along the ray; or with a round body, see meetRound().
+    [[nodiscard]] RayHit meet(std::size_t surface, const Ray& ray, double ray_epsilon) const;
+    /// Returns the round body that the surface represents; null for a flat triangle.
+    [[nodiscard]] const RoundBody* roundOf(std::size_t surface) const {
+        return surface < flats_ ? nullptr : &rounds_[sources_[surface]].body;
     }
-    /// Returns the round body that the triangle represents; null for a flat triangle.
-    [[nodiscard]] const RoundBody* roundOf(std::size_t triangle) const {
-        return isRound(triangle) ? &rounds_[round_of_[triangle]] : nullptr;
-    }
-    /// Computes the distance from p to the closed triangle.
-    [[nodiscard]] double distance(std::size_t triangle, Point3 p) const;
+    /// Appends the unit normals of a surface where it is within `distance` of p.
+    void addTouched(std::size_t surface, Point3 p, double distance,
+                    std::vector<Vec3>& normals) const;
 
   private:
+    void addTriangles(const TriangleSoup& soup);
     [[nodiscard]] RayHit meetFlat(std::size_t triangle, const Ray& ray) const;
-    [[nodiscard]] RayHit meetRound(std::size_t triangle, const Ray& ray, double ray_epsilon) const;
+    [[nodiscard]] double distance(std::size_t triangle, Point3 p) const;
 
     std::vector<std::array<Point3, 3>> corners_;
     std::vector<Plane> planes_;
     std::vector<double> margins_;
-    std::vector<RoundBody> rounds_;
-    std::vector<std::uint32_t> round_of_, sources_;
+    std::vector<RoundSurface> rounds_;
+    std::vector<std::uint32_t> sources_;
     double tolerance_ = 0;
+    std::size_t flats_ = 0;  // number of flat triangles
 };
 
-/// Builds a mesh that closely encloses a round prism, see TriangleSoup::round_of.
-Mesh meshAround(Prism round);
+/// Intersects a ray with a round body. From inside, or going in from within `ray_epsilon` of its
+/// surface, returns the exit; going out from there the ray misses.
+RayHit meetRound(const RoundBody& round, const Ray& ray, double ray_epsilon);
 
 /// Eight triangles, one array per component for vector units.
 struct TriangleLanes {

@@ -21,7 +21,6 @@ void FinishedSoup::add(const Mesh& mesh, SurfaceFinish finish, Vec3 shift) {
     for (const Point3& vertex : mesh.vertices) triangles.add(vertex + shift);
     for (const auto& [a, b, c] : mesh.triangles)
         triangles.triangles.push_back({first + a, first + b, first + c});
-    triangles.round_of.resize(triangles.triangles.size(), TriangleSoup::kFlat);
     finishes.resize(triangles.triangles.size(), finish);
 }
 
@@ -29,9 +28,11 @@ SurfaceSet::SurfaceSet(RTCDeviceTy* device, const FinishedSoup& soup, unsigned g
     : triangles_(soup.triangles) {
     finishes_.reserve(triangles_.size());
     for (std::size_t i = 0; i < triangles_.size(); ++i)
-        finishes_.push_back(soup.finishes[triangles_.source(i)]);
+        finishes_.push_back((triangles_.roundOf(i) == nullptr
+                                 ? soup.finishes
+                                 : soup.round_finishes)[triangles_.source(i)]);
     addLabels();
-    scene_ = buildTriangles(device, triangles_, geometry_id);
+    scene_ = buildSurfaces(device, triangles_, geometry_id);
 }
 
 SurfaceSet::SurfaceSet(RTCDeviceTy* device, FinishedBodies bodies, unsigned geometry_id)
@@ -228,12 +229,10 @@ class StillBuilder {
         };
         for (const Prism& prism : element.body.prisms) {
             if (is_left_out(prism.footprint)) continue;
-            if (prism.curve) {
-                add(solid_, meshAround(prism));
-                makeRound(prism);
-            } else {
+            if (prism.curve)
+                addRound(prism, {label, paintFor(label, prism.material)});
+            else
                 add(solid_, boxMesh(prism));
-            }
         }
         for (const Sheet& sheet : element.body.sheets) {
             if (is_left_out(std::array{sheet.line.a, sheet.line.b})) continue;
@@ -271,17 +270,11 @@ class StillBuilder {
         return mesh;
     }
 
-    /// Assigns the triangles added last to a round body.
-    void makeRound(const Prism& prism) {
+    void addRound(const Prism& prism, SurfaceFinish finish) {
         RoundBody round{*prism.curve, prism.bottom, prism.top};
         round.curve.center = round.curve.center + Vec2{still_.shift.x, still_.shift.y};
-        TriangleSoup& soup = solid_.triangles;
-        const auto index = static_cast<std::uint32_t>(soup.rounds.size());
-        soup.rounds.push_back(round);
-        // Same number as of a prism with this footprint.
-        const std::size_t count = 4 * prism.footprint.size() - 4;
-        std::fill(soup.round_of.end() - static_cast<std::ptrdiff_t>(count), soup.round_of.end(),
-                  index);
+        solid_.triangles.rounds.push_back(round);
+        solid_.round_finishes.push_back(finish);
     }
 
     [[nodiscard]] bool isShown(const PlacedRecord& placed) const {

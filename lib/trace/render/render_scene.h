@@ -19,7 +19,7 @@
 
 namespace ispace {
 
-/// Record and appearance of a triangle.
+/// Record and appearance of a surface.
 struct SurfaceFinish {
     static constexpr std::uint32_t kNoFace = ~0U;
 
@@ -31,7 +31,7 @@ struct SurfaceFinish {
 /// Triangles with their finish, in coordinates relative to the middle of the plan.
 struct FinishedSoup {
     TriangleSoup triangles;
-    std::vector<SurfaceFinish> finishes;
+    std::vector<SurfaceFinish> finishes, round_finishes = {};
 
     void add(const Mesh& mesh, SurfaceFinish finish, Vec3 shift);
 };
@@ -42,7 +42,7 @@ struct FinishedBodies {
     std::vector<SurfaceFinish> finishes;
 };
 
-/// Triangles or bodies, ready to be traced. Its hits hold this geometry id. Bodies require a
+/// Surfaces or bodies, ready to be traced. Its hits hold this geometry id. Bodies require a
 /// BodyQuery.
 class SurfaceSet {
   public:
@@ -53,9 +53,9 @@ class SurfaceSet {
     [[nodiscard]] bool empty() const { return finishes_.empty(); }
     [[nodiscard]] const TriangleSet& triangles() const { return triangles_; }
     [[nodiscard]] const TracedBody& body(std::size_t index) const { return bodies_[index]; }
-    /// Returns the finish of a triangle or body.
+    /// Returns the finish of a surface or body.
     [[nodiscard]] const SurfaceFinish& finish(std::size_t index) const { return finishes_[index]; }
-    /// Labels of the triangles or bodies in the pictures' range: 65535 stands for all larger ones.
+    /// Labels of the surfaces or bodies in the pictures' range: 65535 stands for all larger ones.
     /// Stored separately, since label pictures read only these.
     [[nodiscard]] std::span<const std::uint16_t> labels() const { return labels_; }
     [[nodiscard]] RTCSceneTy* scene() const { return scene_.get(); }
@@ -65,7 +65,7 @@ class SurfaceSet {
 
     TriangleSet triangles_;
     std::vector<TracedBody> bodies_;
-    std::vector<SurfaceFinish> finishes_;  // of the triangles or bodies
+    std::vector<SurfaceFinish> finishes_;  // of the surfaces or bodies
     std::vector<std::uint16_t> labels_;
     EmbreeSceneHandle scene_;
 };

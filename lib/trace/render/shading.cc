@@ -76,7 +76,7 @@ SurfacePoint Shading::met(const RayTile& tile, std::size_t lane) const {
     const SurfaceFinish finish = scene_.finishAt(set.finish(tile.triangle[lane]), point.place);
     point.normal = normalAt(tile, lane, point.place);
     const bool is_person = tile.kind[lane] == SurfaceKind::Person;
-    if (!is_person && set.triangles().isRound(tile.triangle[lane])) point.lift = 3e-4;
+    if (!is_person && set.triangles().roundOf(tile.triangle[lane]) != nullptr) point.lift = 3e-4;
     const Paint& look = scene_.still->paints[finish.paint];
     point.color = look.color;
     if (finish.face != SurfaceFinish::kNoFace)
@@ -331,7 +331,7 @@ double TileTracer::resolve(const RayTile& tile, std::size_t lane) const {
         return met.multiple < kInfinity ? met.multiple : found;
     }
     const TriangleSet& set = scene_.set(tile.kind[lane]).triangles();
-    if (set.isRound(triangle)) {
+    if (set.roundOf(triangle) != nullptr) {
         const RayHit hit =
             set.meet(triangle, {tile.origin(lane), tile.direction(lane), kMaxRayReach}, 0);
         return hit.isNone() ? found : hit.multiple;
