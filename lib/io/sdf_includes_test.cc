@@ -262,6 +262,10 @@ TEST_F(SdfIncludes, CirclesEnd) {
               "-> b/model.sdf -> a/model.sdf");
     putModel("self", include("model://self"));
     EXPECT_NE(errorOf(include("model://self")).find("in a circle"), std::string::npos);
+    // Both are loaded before either is entered.
+    EXPECT_EQ(errorOf(include("model://b") + include("model://a")),
+              "a/model.sdf:2:1: error: files include each other in a circle: b/model.sdf "
+              "-> a/model.sdf -> b/model.sdf");
     // Each includes the next twice.
     for (int i = 0; i < 20; ++i) {
         const std::string next = "n" + std::to_string(i + 1);

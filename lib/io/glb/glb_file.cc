@@ -8,7 +8,7 @@
 #include <iterator>
 #include <span>
 
-#include "base/error.h"
+#include "io/importers.h"
 
 namespace ispace {
 
@@ -361,10 +361,6 @@ void appendWord(std::string& out, std::size_t value) {
         out += static_cast<char>(value & 255U);
         value >>= 8U;
     }
-}
-
-[[noreturn]] void failFile(const std::string& name, const std::string& message) {
-    throw FormatError(Diagnostic{displayName(name), 0, 0, message});
 }
 
 std::size_t padded(std::size_t size) { return (size + 3) / 4 * 4; }

@@ -16,7 +16,7 @@
 
 #include "base/json_writer.h"
 #include "env/mesh.h"
-#include "geom/pose.h"
+#include "geom/rotation.h"
 #include "io/glb/glb_write.h"
 #include "record/record.h"
 

@@ -202,11 +202,12 @@ std::vector<std::vector<Polygon>> partsOf(const BuildingSection& section) {
 }
 
 /// The curves of one wall.
-struct Piece {
+struct WallCurves {
     std::vector<Polygon> curves;
 };
 
-std::vector<Segment2> edgesOf(std::span<const Piece> pieces, std::vector<std::size_t>& owners) {
+std::vector<Segment2> edgesOf(std::span<const WallCurves> pieces,
+                              std::vector<std::size_t>& owners) {
     std::vector<Segment2> edges;
     for (std::size_t i = 0; i < pieces.size(); ++i)
         for (const Polygon& curve : pieces[i].curves)
@@ -219,10 +220,10 @@ std::vector<Segment2> edgesOf(std::span<const Piece> pieces, std::vector<std::si
 
 /// Removes pieces that an earlier one covers corner by corner: mapped shapes may repeat by the
 /// thousand, and each corner would find all copies.
-void dropCopies(std::vector<Piece>& pieces) {
+void dropCopies(std::vector<WallCurves>& pieces) {
     using Corners = std::vector<std::vector<std::pair<double, double>>>;
     std::set<Corners> known;
-    std::erase_if(pieces, [&](const Piece& piece) {
+    std::erase_if(pieces, [&](const WallCurves& piece) {
         Corners corners;
         for (const Polygon& curve : piece.curves)
             for (auto& list = corners.emplace_back(); const Point2 p : curve)
@@ -232,7 +233,7 @@ void dropCopies(std::vector<Piece>& pieces) {
 }
 
 /// Moves corners onto corners of earlier pieces, else onto edges of others, within kMeet.
-void letMeet(std::vector<Piece>& pieces) {
+void letMeet(std::vector<WallCurves>& pieces) {
     std::vector<std::size_t> owners;
     const std::vector<Segment2> edges = edgesOf(pieces, owners);
     const NearSegments search(edges);
@@ -320,7 +321,7 @@ std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey) {
 StoreyWalls wallsOf(const Building& building, std::size_t storey) {
     storey = storeyOfSections(building, storey);
     StoreyWalls walls;
-    std::vector<Piece> pieces;
+    std::vector<WallCurves> pieces;
     std::vector<std::pair<double, double>> tops, other_tops;
     for (const BuildingWall& wall : building.walls) {
         if (wall.storey != storey || wall.is_column) continue;
@@ -348,7 +349,7 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey) {
     letMeet(pieces);
     std::vector<Layer> layers;
     layers.reserve(pieces.size());
-    for (const Piece& piece : pieces) layers.push_back(layerOf(piece.curves));
+    for (const WallCurves& piece : pieces) layers.push_back(layerOf(piece.curves));
     walls.solids = united(layers);
     const std::vector<Polygon> simple = simplified(curvesOf(walls.solids), kStraight);
     auto next = simple.begin();

@@ -204,11 +204,11 @@ namespace {
 /// Pixels with a lower opacity show the background.
 constexpr std::uint8_t kOpaque = 128;
 /// Shade that map_server writes for unknown, of 255.
-constexpr int kUnknown = 205;
+constexpr int kUnknownGrey = 205;
 
 /// Returns the picture with its transparent pixels unknown.
 GreyPicture onUnknown(GreyPicture image) {
-    const auto unknown = static_cast<std::uint16_t>(image.max_value * kUnknown / 255);
+    const auto unknown = static_cast<std::uint16_t>(image.max_value * kUnknownGrey / 255);
     for (std::size_t i = 0; i < image.opacity.size(); ++i)
         if (image.opacity[i] < kOpaque) image.samples[i] = unknown;
     image.opacity.clear();

@@ -15,12 +15,11 @@
 
 #include "base/error.h"
 #include "base/message.h"
+#include "io/import_records.h"
 
 namespace ispace {
 
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r\n";
 
 /// Removes and returns the first line.
 std::string_view takeLine(std::string_view& bytes) {
@@ -35,11 +34,9 @@ bool isObj(std::string_view bytes) {
                                                            "vn",     "vt",     "vp", "f", "l"};
     const bool has_vertex = bytes.starts_with("v ") || bytes.find("\nv ") != std::string_view::npos;
     while (has_vertex && !bytes.empty()) {
-        const std::string_view line = takeLine(bytes);
-        const std::size_t begin = line.find_first_not_of(kBlanks);
-        if (begin == std::string_view::npos || line[begin] == '#') continue;
-        const std::string_view word =
-            line.substr(begin, line.find_first_of(kBlanks, begin) - begin);
+        const std::string_view line = trimmed(takeLine(bytes));
+        if (line.empty() || line.front() == '#') continue;
+        const std::string_view word = line.substr(0, line.find_first_of(" \t\r\n"));
         return std::find(kStatements.begin(), kStatements.end(), word) != kStatements.end();
     }
     return false;

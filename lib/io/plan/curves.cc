@@ -10,8 +10,6 @@ namespace ispace {
 
 namespace {
 
-constexpr double kFullTurn = 2 * std::numbers::pi;
-
 /// Least and largest number of pieces in a full circle; the latter for 10 km.
 constexpr double kMinPieces = 8, kMaxPieces = 7200;
 

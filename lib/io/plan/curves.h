@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "geom/polygon.h"
 
 namespace ispace {
+
+inline constexpr double kFullTurn = 2 * std::numbers::pi;
 
 /// An affine map between frames; circles may become ellipses.
 struct Affine {

@@ -20,7 +20,7 @@ namespace {
 constexpr double kLikelyPlan = 3, kUnlikelyPlan = 300;
 
 /// Metres; drawings outside have another unit than they say.
-constexpr double kMinPlan = 1, kMaxPlan = 2000;
+constexpr double kMinDrawing = 1, kMaxDrawing = 2000;
 
 /// Rooms with areas that differ by a smaller share count as the same.
 constexpr double kSameRoom = 0.01;
@@ -40,11 +40,6 @@ constexpr std::array<std::string_view, 20> kOtherWords{
     "patt",  "hatch", "hatching", "fill",    "schraffur", "iden",     "text",
     "texts", "tag",   "tags",     "dim",     "dims",      "note",     "notes",
     "door",  "doors", "window",   "windows", "glaz",      "furniture"};
-
-template <typename List>
-bool isOneOf(const List& words, std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
 
 /// Splits a name into words in lower case: letters of ASCII, and all characters beyond ASCII.
 std::vector<std::string> wordsOf(std::string_view name) {
@@ -126,9 +121,9 @@ std::string otherUnitHint(double extent, const DrawingSource& drawing,
 void checkScale(double extent, const DrawingSource& drawing, const std::string& name,
                 const ImportOptions& options) {
     if (!options.units.empty() || options.width_is) return;
-    if (extent >= kMinPlan && extent <= kMaxPlan) return;
+    if (extent >= kMinDrawing && extent <= kMaxDrawing) return;
     const std::string hint = otherUnitHint(extent, drawing, options);
-    const std::string metres = extent < kMaxPlan ? lengthText(extent) : formatFixed(extent, 0);
+    const std::string metres = extent < kMaxDrawing ? lengthText(extent) : formatFixed(extent, 0);
     failFile(name, "the plan is " + metres + " m wide: is its unit right?" +
                        (hint.empty() ? " Else " + std::string(kScaleHint)
                                      : hint + "; or say how wide it is, with --width-is 8.3m"));

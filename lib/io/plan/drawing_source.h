@@ -2,6 +2,7 @@
 // The scale of a drawing in DXF or SVG, and the layers, blocks and groups that hold its walls.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <string>
@@ -22,6 +23,12 @@ struct DrawingSource {
     /// messages. \throws FormatError as the import does
     std::function<double(const ImportOptions&)> area = {};
 };
+
+/// True if a list of words holds this one. O(words)
+template <typename List>
+bool isOneOf(const List& words, std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 /// Advice for a drawing without a scale.
 constexpr const char* kScaleHint =

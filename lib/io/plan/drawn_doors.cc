@@ -21,7 +21,7 @@ constexpr double kMinOpen = 5, kMostOpen = 110;  // degrees
 
 /// Limits of a curve: it turns one way, by less than this at each of its points, and has few.
 constexpr double kMaxTurn = 35;  // degrees
-constexpr std::size_t kMinPieces = 2, kMaxPieces = 200;
+constexpr std::size_t kMinChords = 2, kMaxChords = 200;
 /// Metres; no swing is shorter or longer.
 constexpr double kMinSwing = 0.05, kMaxSwing = 2 * kWideLeaf;
 
@@ -36,30 +36,24 @@ struct Run {
 
 class DoorFinder {
   public:
-    explicit DoorFinder(const std::vector<PlanPath>& paths)
-        : paths_(paths), pieces_(pathPieces(paths)), is_door_(pieces_.size()) {
+    explicit DoorFinder(std::vector<PlanPath> paths)
+        : paths_(std::move(paths)), pieces_(pathPieces(paths_)), is_door_(pieces_.size()) {
         std::size_t first = 0;
-        for (const PlanPath& path : paths) {
+        for (const PlanPath& path : paths_) {
             findRuns(path, first);
             first += path.pieceCount();
         }
     }
 
     DrawnDoors find() {
-        if (!runs_.empty()) {
-            const NearSegments search(pieces_);
-            std::vector<bool> is_curved(pieces_.size());
-            for (const Run& run : runs_)
-                std::fill_n(is_curved.begin() + static_cast<std::ptrdiff_t>(run.first), run.count,
-                            true);
-            for (const Run& run : runs_) takeDoor(run, search, is_curved);
-        }
-        if (doors_.swings.empty()) return {};
-        dropLeafOutlines();
+        if (!runs_.empty()) takeDoors();
+        if (!doors_.swings.empty()) dropLeafOutlines();
         is_door_.flip();
-        doors_.walls = withPieces(paths_, is_door_);
         // Without other lines these are the room, not its doors.
-        return doors_.walls.empty() ? DrawnDoors{} : std::move(doors_);
+        const bool any_wall = std::find(is_door_.begin(), is_door_.end(), true) != is_door_.end();
+        if (doors_.swings.empty() || !any_wall) return {{}, std::move(paths_)};
+        doors_.walls = withPieces(std::move(paths_), is_door_);
+        return std::move(doors_);
     }
 
   private:
@@ -76,7 +70,7 @@ class DoorFinder {
     /// Finds the runs of one path. \param first index of its first piece
     void findRuns(const PlanPath& path, std::size_t first) {
         const std::size_t count = path.pieceCount();
-        if (count < kMinPieces) return;
+        if (count < kMinChords) return;
         const auto turn_after = [&](std::size_t i) {
             const Segment2 here = pieces_[first + i], next = pieces_[first + (i + 1) % count];
             return degreesBetween(here.b - here.a, next.b - next.a);
@@ -98,7 +92,7 @@ class DoorFinder {
     }
 
     void keep(const Run& run) {
-        if (run.count < kMinPieces || run.count > kMaxPieces) return;
+        if (run.count < kMinChords || run.count > kMaxChords) return;
         double length = 0, longest = 0;
         for (std::size_t i = run.first; i < run.first + run.count; ++i) {
             const double piece = distance(pieces_[i].a, pieces_[i].b);
@@ -113,19 +107,35 @@ class DoorFinder {
         return std::span(pieces_).subspan(run.first, run.count);
     }
 
-    /// Finds all lines that may be the leaf of this swing.
-    [[nodiscard]] std::vector<Leaf> leavesOf(const Run& run, const NearSegments& search,
-                                             const std::vector<bool>& is_curved) const {
+    static bool isLeafWidth(double width) { return width >= kNarrowLeaf && width <= kWideLeaf; }
+
+    void takeDoors() {
+        std::vector<bool> is_curved(pieces_.size());
+        for (const Run& run : runs_)
+            std::fill_n(is_curved.begin() + static_cast<std::ptrdiff_t>(run.first), run.count,
+                        true);
+        std::vector<Segment2> lines;
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            if (is_curved[i] || !isLeafWidth(distance(pieces_[i].a, pieces_[i].b))) continue;
+            lines.push_back(pieces_[i]);
+            straight_.push_back(i);
+        }
+        const NearSegments search(lines);
+        for (const Run& run : runs_) takeDoor(run, search);
+    }
+
+    /// Finds all lines that may be the leaf of this swing. \param search of straight_
+    [[nodiscard]] std::vector<Leaf> leavesOf(const Run& run, const NearSegments& search) const {
         const std::span<const Segment2> swing = of(run);
         const Point2 from = swing.front().a, to = swing.back().b;
         const Segment2 half = swing[swing.size() / 2];
         const Point2 middle = swing.size() % 2 == 0 ? half.a : half.a + 0.5 * (half.b - half.a);
         const double reach = kOff * kWideLeaf;
         std::vector<Leaf> leaves;
-        for (const std::size_t i : search.near(boundsOf(swing), reach)) {
+        for (const std::size_t k : search.near(boundsOf(swing), reach)) {
+            const std::size_t i = straight_[k];
             const Segment2& line = pieces_[i];
             const double width = distance(line.a, line.b);
-            if (is_curved[i] || width < kNarrowLeaf || width > kWideLeaf) continue;
             const auto is_off = [width](double length) {
                 return std::abs(length - width) > kOff * width;
             };
@@ -145,9 +155,9 @@ class DoorFinder {
     }
 
     /// Returns true if another line than those of the door ends at the leaf's free end.
-    [[nodiscard]] bool isAttached(const Leaf& leaf, const Run& run,
-                                  const NearSegments& search) const {
-        const auto near = search.near(leaf.end, kMeets);
+    [[nodiscard]] bool isAttached(const Leaf& leaf, const Run& run) {
+        if (!all_) all_.emplace(pieces_);
+        const auto near = all_->near(leaf.end, kMeets);
         return std::any_of(near.begin(), near.end(), [&](std::size_t i) {
             if (i == leaf.piece || (i >= run.first && i < run.first + run.count)) return false;
             const auto& [a, b] = pieces_[i];
@@ -161,18 +171,18 @@ class DoorFinder {
 
     /// Of lines to both ends of a swing one is the leaf and one the threshold or a wall: the leaf
     /// has a free end.
-    void takeDoor(const Run& run, const NearSegments& search, const std::vector<bool>& is_curved) {
-        std::vector<Leaf> leaves = leavesOf(run, search, is_curved);
+    void takeDoor(const Run& run, const NearSegments& search) {
+        std::vector<Leaf> leaves = leavesOf(run, search);
         if (leaves.empty()) return;
         const Point2 latch = leaves.front().latch;
         const bool has_both = std::any_of(leaves.begin(), leaves.end(),
                                           [&](const Leaf& leaf) { return !(leaf.latch == latch); });
         if (has_both)
             std::stable_partition(leaves.begin(), leaves.end(),
-                                  [&](const Leaf& leaf) { return !isAttached(leaf, run, search); });
+                                  [&](const Leaf& leaf) { return !isAttached(leaf, run); });
         const Leaf door = leaves.front();
         for (const Leaf& leaf : leaves) {
-            if (has_both && isAttached(leaf, run, search)) continue;
+            if (has_both && isAttached(leaf, run)) continue;
             is_door_[leaf.piece] = true;
         }
         std::fill_n(is_door_.begin() + static_cast<std::ptrdiff_t>(run.first), run.count, true);
@@ -203,16 +213,20 @@ class DoorFinder {
         }
     }
 
-    const std::vector<PlanPath>& paths_;
+    std::vector<PlanPath> paths_;
     std::vector<Segment2> pieces_;
     std::vector<bool> is_door_;  // by piece
     std::vector<Run> runs_;
-    std::vector<Segment2> leaves_;  // from hinge to end
+    std::vector<std::size_t> straight_;  // pieces as wide as a leaf
+    std::optional<NearSegments> all_;    // pieces, once needed
+    std::vector<Segment2> leaves_;       // from hinge to end
     DrawnDoors doors_;
 };
 
 }  // namespace
 
-DrawnDoors takeDrawnDoors(const std::vector<PlanPath>& walls) { return DoorFinder(walls).find(); }
+DrawnDoors takeDrawnDoors(std::vector<PlanPath> walls) {
+    return DoorFinder(std::move(walls)).find();
+}
 
 }  // namespace ispace

@@ -22,15 +22,13 @@ namespace ispace {
 
 namespace {
 
-constexpr int kDeepest = 16;  // blocks in blocks
+constexpr int kMaxBlockDepth = 16;  // blocks in blocks
 
 /// Blocks that the file lacks (an unbound external reference), with their numbers of inserts.
 using MissingBlocks = std::map<std::string, std::size_t>;
 
 /// Beyond these a bulge is a straight line, or a full circle.
 constexpr double kMinBulge = 1e-9, kMaxBulge = 1e4;
-
-constexpr double kFullTurn = 2 * std::numbers::pi;
 
 constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
 
@@ -113,8 +111,8 @@ class Expander {
             ++missing_[insert.block];
             return;
         }
-        if (depth == kDeepest)
-            fail(entity, "blocks in each other more than " + std::to_string(kDeepest) +
+        if (depth == kMaxBlockDepth)
+            fail(entity, "blocks in each other more than " + std::to_string(kMaxBlockDepth) +
                              " deep: does " + excerpt(insert.block) + " contain itself?");
         const Vec2 along = unitVector(insert.turn), across = perpendicular(along);
         const Vec2 x = insert.scale_x * along, y = insert.scale_y * across;
@@ -304,9 +302,10 @@ class DxfImporter {
                                          source.metres_per_unit * size.bottom,
                                          source.metres_per_unit * size.height};
         }
+        const std::optional<std::map<int, DrawnSize>> sizes = shapes.sizes;
         const double area =
-            writeLinePlan(shapes, sorter, name_, own, is_ours ? nullptr : &source, out);
-        if (is_ours) addDrawnThings(drawing_, *shapes.sizes, source.metres_per_unit, out);
+            writeLinePlan(std::move(shapes), sorter, name_, own, is_ours ? nullptr : &source, out);
+        if (sizes) addDrawnThings(drawing_, *sizes, source.metres_per_unit, out);
         return {out.take(), area};
     }
 

@@ -59,7 +59,7 @@ class GroupReader {
 };
 
 constexpr std::size_t kMaxName = 255;
-constexpr double kMaxNumber = 1e12;  // of any number that counts: drawings end far below
+constexpr double kMaxDxfNumber = 1e12;  // of any number that counts: drawings end far below
 
 /// A normal this near to the z axis is upright.
 constexpr double kUpright = 1e-6;
@@ -261,7 +261,7 @@ class DxfReader {
 
     [[nodiscard]] double real(const Group& group) const {
         const auto value = parseDouble(group.value);
-        if (!value || std::abs(*value) > kMaxNumber)
+        if (!value || std::abs(*value) > kMaxDxfNumber)
             groups_.fail(group.line, "found " + excerpt(group.value) + ", wanted a number");
         return *value;
     }
@@ -300,7 +300,7 @@ class DxfReader {
     void addSize(const Group& group, bool is_path) {
         const bool is_circle = entity_.kind->name == "CIRCLE";
         const auto value = parseDouble(group.value);
-        if (!value || *value == 0 || std::abs(*value) > kMaxNumber) return;
+        if (!value || *value == 0 || std::abs(*value) > kMaxDxfNumber) return;
         if ((is_path || is_circle) && group.code == 39)
             drawing_.sizes[entity_.line].height = *value;
         else if (is_path && group.code == 43)

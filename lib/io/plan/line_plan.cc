@@ -25,16 +25,16 @@ constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
 /// The lines of a plan, and the kept ones among them.
 class LinePlan {
   public:
-    LinePlan(const LayerSorter::Sorted& shapes, const std::string& name,
-             const ImportOptions& options, const DrawingSource* drawing, ImportRecords& out)
-        : sizes_(shapes.sizes) {
-        DrawnDoors drawn = drawing == nullptr ? DrawnDoors{} : takeDrawnDoors(shapes.walls);
+    LinePlan(LayerSorter::Sorted shapes, const std::string& name, const ImportOptions& options,
+             const DrawingSource* drawing, ImportRecords& out)
+        : sizes_(std::move(shapes.sizes)) {
+        DrawnDoors drawn{{}, std::move(shapes.walls)};
+        if (drawing != nullptr) drawn = takeDrawnDoors(std::move(drawn.walls));
         drawn_doors_ = drawn.swings.size();
-        paths_ = normalisedLines(drawn_doors_ == 0 ? shapes.walls : drawn.walls,
-                                 options.snap.value_or(kDefaultSnap));
+        paths_ = normalisedLines(std::move(drawn.walls), options.snap.value_or(kDefaultSnap));
         pieces_ = pathPieces(paths_);
         check(name, options, drawing);
-        std::vector<PlanShape> doors = shapes.doors;
+        std::vector<PlanShape> doors = std::move(shapes.doors);
         doors.insert(doors.end(), drawn.swings.begin(), drawn.swings.end());
         PlanOpenings found = findOpenings(doors, shapes.windows, pieces_);
         if (options.simplify.value_or(0) > 0) {
@@ -54,7 +54,8 @@ class LinePlan {
             writeRooms(rooms_, options, out);
             return note(out);
         }
-        const std::vector<PlanPath> fences = sizes_ ? paths_ : joinedAtEnds(paths_);
+        const std::vector<PlanPath> fences =
+            sizes_ ? std::move(paths_) : joinedAtEnds(std::move(paths_));
         const std::vector<std::size_t> fence_of = fencesOfOpenings(fences);
         std::vector<std::string> ids(fences.size());
         for (const std::size_t fence : fence_of)
@@ -95,7 +96,7 @@ class LinePlan {
 
     /// Keeps pieces that openings lie on or touch.
     void simplify(double tolerance, const std::vector<PlanOpening>& openings) {
-        paths_ = joinedAtEnds(paths_);
+        paths_ = joinedAtEnds(std::move(paths_));
         pieces_ = pathPieces(paths_);
         const NearSegments search(pieces_);
         std::vector<std::size_t> fixed;
@@ -137,7 +138,7 @@ class LinePlan {
         const std::vector<bool> walls(keep.begin(),
                                       keep.begin() + static_cast<std::ptrdiff_t>(pieces_.size()));
         dropped_lines_ = static_cast<std::size_t>(std::count(walls.begin(), walls.end(), false));
-        paths_ = withPieces(paths_, walls);
+        paths_ = withPieces(std::move(paths_), walls);
     }
 
     /// Returns for each opening on a wall the index of the fence it is in.
@@ -290,15 +291,15 @@ std::map<std::string, std::size_t> LayerSorter::unusedWallNames() const {
     return names;
 }
 
-double writeLinePlan(const LayerSorter::Sorted& shapes, const LayerSorter& sorter,
-                     const std::string& name, const ImportOptions& options,
-                     const DrawingSource* drawing, ImportRecords& out) {
+double writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter, const std::string& name,
+                     const ImportOptions& options, const DrawingSource* drawing,
+                     ImportRecords& out) {
     if (shapes.walls.empty())
         failFile(name, (options.wall_layers.empty() ? "no line to make a wall of"
                                                     : "no line on the layers of walls") +
                            std::string("; layers with lines: ") + sorter.all());
     return withFileName(name, [&] {
-        LinePlan plan(shapes, name, options, drawing, out);
+        LinePlan plan(std::move(shapes), name, options, drawing, out);
         plan.write(out, options);
         if (drawing != nullptr)
             warnOfWallNames(sorter.unusedWallNames(), plan.area(), *drawing, options, out);
@@ -309,9 +310,9 @@ double writeLinePlan(const LayerSorter::Sorted& shapes, const LayerSorter& sorte
 double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,
                      const ImportOptions& options, ImportRecords& out) {
     LayerSorter sorter({}, options);
-    const LayerSorter::Sorted sorted = sorter.sort(std::move(shapes));
+    LayerSorter::Sorted sorted = sorter.sort(std::move(shapes));
     sorter.note(out);
-    return writeLinePlan(sorted, sorter, name, options, nullptr, out);
+    return writeLinePlan(std::move(sorted), sorter, name, options, nullptr, out);
 }
 
 std::string listText(const std::map<std::string, std::size_t>& counts) {

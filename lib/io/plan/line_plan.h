@@ -72,7 +72,7 @@ PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const Plan
 /// Doors that a drawing shows among its walls.
 struct DrawnDoors {
     std::vector<PlanShape> swings;  ///< one for each leaf
-    std::vector<PlanPath> walls;    ///< without leaves and swings; empty if there is no door
+    std::vector<PlanPath> walls;    ///< without leaves and swings
 };
 
 /// Finds doors drawn as a leaf and its swing: a curve that bends one way, and a straight line of
@@ -80,7 +80,7 @@ struct DrawnDoors {
 /// distance from the hinge (within 12 %), 5 to 110 degrees from the leaf; it need not be a circle
 /// about the hinge. A leaf drawn as a closed outline counts as one. If lines lead to both ends of
 /// the curve, the leaf is the one with a free end. O(n log n).
-DrawnDoors takeDrawnDoors(const std::vector<PlanPath>& walls);
+DrawnDoors takeDrawnDoors(std::vector<PlanPath> walls);
 
 /// Sorts the shapes of a drawing into walls, doors and windows by their layers.
 class LayerSorter {
@@ -131,9 +131,9 @@ class LayerSorter {
 /// \param drawing null for cuts through meshes
 /// \return the floor area kept, in square metres
 /// \throws FormatError: no line on the layers of walls
-double writeLinePlan(const LayerSorter::Sorted& shapes, const LayerSorter& sorter,
-                     const std::string& name, const ImportOptions& options,
-                     const DrawingSource* drawing, ImportRecords& out);
+double writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter, const std::string& name,
+                     const ImportOptions& options, const DrawingSource* drawing,
+                     ImportRecords& out);
 
 /// Sorts the shapes of a drawing without hidden layers, and writes them. \return as above
 double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,

@@ -5,17 +5,20 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <numeric>
-#include <unordered_map>
+#include <map>
 #include <utility>
 
+#include "base/error.h"
 #include "geom/planar_map.h"
+#include "geom/point_map.h"
 #include "geom/predicates.h"
 
 namespace ispace {
 
 namespace {
+
+/// Segments that all queries may find, per segment and in addition: plans need a few each.
+constexpr std::size_t kFoundPerSegment = 256, kFoundAnyway = 1U << 26;
 
 std::vector<Box2> boxesOf(std::span<const Segment2> segments) {
     std::vector<Box2> boxes;
@@ -26,7 +29,8 @@ std::vector<Box2> boxesOf(std::span<const Segment2> segments) {
 
 }  // namespace
 
-NearSegments::NearSegments(std::span<const Segment2> segments) : tree_(boxesOf(segments)) {}
+NearSegments::NearSegments(std::span<const Segment2> segments)
+    : tree_(boxesOf(segments)), left_(kFoundAnyway + kFoundPerSegment * segments.size()) {}
 
 std::vector<std::size_t> NearSegments::near(Point2 p, double reach) const {
     Box2 box;
@@ -39,6 +43,10 @@ std::vector<std::size_t> NearSegments::near(const Box2& box, double reach) const
     std::vector<std::size_t> found;
     tree_.search({box.low - margin, box.high + margin},
                  [&found](std::size_t i) { found.push_back(i); });
+    if (found.size() > left_)
+        throw FormatError(Diagnostic{
+            "", 0, 0, "too many lines lie close to each other; leave hatching and doubles out"});
+    left_ -= found.size();
     std::sort(found.begin(), found.end());
     return found;
 }
@@ -48,71 +56,59 @@ namespace {
 /// Points are whole micrometres: a smaller reach joins no points.
 constexpr double kMinSnap = 1e-6;
 
-struct PointHash {
-    std::size_t operator()(Point2 p) const { return mixed(std::hash<double>()(p.x), p.y); }
-    static std::size_t mixed(std::size_t seed, double value) {
-        constexpr std::size_t kOdd = 0x9E3779B97F4A7C15;  // spreads neighbours over all bits
-        return (seed * kOdd ^ std::hash<double>()(value)) * kOdd >> 7U;
-    }
-};
-template <typename T>
-using PointMap = std::unordered_map<Point2, T, PointHash>;
-
 /// Finds the representative of each point: the nearest earlier one within reach, else itself.
 class PointWelder {
   public:
-    PointWelder(double reach, std::size_t points) : reach_(reach) {
-        if (reach_ > 0) cells_.reserve(points);
-    }
+    explicit PointWelder(double reach) : reach_(reach) {}
 
     Point2 standing(Point2 p) {
         if (reach_ == 0) return p;
         best_ = kNone;
         nearest_ = reach_;
-        const Cell low = cellOf({p.x - reach_, p.y - reach_}, kWide * reach_);
-        const Cell high = cellOf({p.x + reach_, p.y + reach_}, kWide * reach_);
-        for (std::int64_t x = low.first; x <= high.first; ++x)
-            for (std::int64_t y = low.second; y <= high.second; ++y) look({x, y}, p);
+        const Vec2 margin{reach_, reach_};
+        const Point2 low = cellOf(p - margin, kWide * reach_);
+        const Point2 high = cellOf(p + margin, kWide * reach_);
+        for (double x = low.x; x <= high.x; ++x)
+            for (double y = low.y; y <= high.y; ++y) look({x, y}, p);
         if (best_ != kNone) return standing_[best_].at;
-        std::uint32_t& first = cells_.try_emplace(cellOf(p, kWide * reach_), kNone).first->second;
-        standing_.push_back({p, first});
-        first = static_cast<std::uint32_t>(standing_.size() - 1);
+        Cell& cell = cells_[cellOf(p, kWide * reach_)];
+        standing_.push_back({p, std::exchange(cell.latest, size())});
         return p;
     }
 
   private:
-    using Cell = std::pair<std::int64_t, std::int64_t>;
-    struct CellHash {
-        std::size_t operator()(const Cell& cell) const {
-            return PointHash::mixed(static_cast<std::size_t>(cell.first),
-                                    static_cast<double>(cell.second));
-        }
-    };
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     /// Representatives are apart, so a cell of a few reaches holds few of them.
-    struct PlacementFrame {
+    static constexpr double kWide = 8;
+
+    struct Cell {
+        std::uint32_t latest = kNone;
+    };
+    struct Standing {
         Point2 at;
         std::uint32_t next;  // in the same cell
     };
-    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-    static constexpr double kWide = 4;
 
-    /// Plans end at 1000 km, and the reach is a micrometre or more: far within the integers.
-    [[nodiscard]] static Cell cellOf(Point2 p, double size) {
-        return {static_cast<std::int64_t>(std::floor(p.x / size)),
-                static_cast<std::int64_t>(std::floor(p.y / size))};
+    [[nodiscard]] std::uint32_t size() const {
+        return static_cast<std::uint32_t>(standing_.size());
+    }
+
+    /// Plans end at 1000 km, and the reach is a micrometre or more: whole numbers are exact.
+    [[nodiscard]] static Point2 cellOf(Point2 p, double size) {
+        return {std::floor(p.x / size), std::floor(p.y / size)};
     }
 
     /// Of two that are equally near, the one farther left counts, then the lower, then the earlier
     /// one, in steps of the reach.
     [[nodiscard]] bool isBefore(std::uint32_t i, std::uint32_t k) const {
-        const Cell a = cellOf(standing_[i].at, reach_), b = cellOf(standing_[k].at, reach_);
-        return a == b ? i < k : a < b;
+        const Point2 a = cellOf(standing_[i].at, reach_), b = cellOf(standing_[k].at, reach_);
+        return a == b ? i < k : lexLess(a, b);
     }
 
-    void look(const Cell& cell, Point2 p) {
-        const auto found = cells_.find(cell);
-        if (found == cells_.end()) return;
-        for (std::uint32_t i = found->second; i != kNone; i = standing_[i].next) {
+    void look(Point2 cell, Point2 p) {
+        const Cell* found = cells_.find(cell);
+        if (found == nullptr) return;
+        for (std::uint32_t i = found->latest; i != kNone; i = standing_[i].next) {
             const double apart = distance(p, standing_[i].at);
             if (apart > nearest_ || (apart == nearest_ && best_ != kNone && !isBefore(i, best_)))
                 continue;
@@ -122,8 +118,8 @@ class PointWelder {
     }
 
     double reach_;
-    std::unordered_map<Cell, std::uint32_t, CellHash> cells_;  // the latest of each
-    std::vector<PlacementFrame> standing_;
+    PointMap<Cell> cells_;
+    std::vector<Standing> standing_;
     std::uint32_t best_ = kNone;
     double nearest_ = 0;
 };
@@ -144,13 +140,12 @@ class EndMover {
   public:
     EndMover(const std::vector<PlanPath>& paths, double reach)
         : pieces_(pathPieces(paths)), search_(pieces_), reach_(reach) {
-        uses_.reserve(pieces_.size());
         for (const PlanPath& path : paths)
             for (const Point2 p : path.points) ++uses_[p];
     }
 
     [[nodiscard]] Point2 moved(Point2 end) const {
-        if (uses_.at(end) > 1) return end;
+        if (*uses_.find(end) > 1) return end;
         Point2 best = end;
         double nearest = reach_;
         for (const std::size_t i : search_.near(end, reach_)) {
@@ -195,19 +190,19 @@ void append(PlanPath& path, const PlanPath& next) {
 /// Finds the ends of open paths by their positions.
 class Joiner {
   public:
-    explicit Joiner(const std::vector<PlanPath>& paths) : paths_(paths), used_(paths.size()) {
-        for (std::size_t i = 0; i < paths.size(); ++i) {
-            if (paths[i].closed) continue;
-            add(paths[i].points.front(), i);
-            add(paths[i].points.back(), i);
+    explicit Joiner(std::vector<PlanPath> paths) : paths_(std::move(paths)), used_(paths_.size()) {
+        for (std::size_t i = 0; i < paths_.size(); ++i) {
+            if (paths_[i].closed) continue;
+            add(paths_[i].points.front(), i);
+            add(paths_[i].points.back(), i);
         }
     }
 
     std::vector<PlanPath> join() {
         std::vector<PlanPath> all;
         for (std::size_t i = 0; i < paths_.size(); ++i) {
-            if (paths_[i].closed) all.push_back(paths_[i]);
-            if (!paths_[i].closed && !used_[i]) all.push_back(chainFrom(i));
+            if (used_[i]) continue;
+            all.push_back(paths_[i].closed ? std::move(paths_[i]) : chainFrom(i));
         }
         return all;
     }
@@ -215,7 +210,7 @@ class Joiner {
   private:
     PlanPath chainFrom(std::size_t first) {
         used_[first] = true;
-        PlanPath chain = paths_[first];
+        PlanPath chain = std::move(paths_[first]);
         Polygon& points = chain.points;
         extend(chain);
         if (points.front() != points.back()) {
@@ -232,7 +227,7 @@ class Joiner {
 
     void extend(PlanPath& chain) {
         while (chain.points.front() != chain.points.back()) {
-            const Ends& meeting = ends_.at(chain.points.back());
+            const Ends& meeting = *ends_.find(chain.points.back());
             if (meeting.count != 2) return;
             const std::size_t next = meeting.paths[used_[meeting.paths[0]] ? 1 : 0];
             if (used_[next]) return;
@@ -241,7 +236,7 @@ class Joiner {
         }
     }
 
-    const std::vector<PlanPath>& paths_;
+    std::vector<PlanPath> paths_;
     std::vector<bool> used_;
     /// The first two paths that end at a point, and the number of all.
     struct Ends {
@@ -273,20 +268,17 @@ Box2 boundsOf(std::span<const Segment2> lines) {
     return box;
 }
 
-std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap) {
-    std::vector<PlanPath> result(paths);
+std::vector<PlanPath> snapped(std::vector<PlanPath> paths, double snap) {
     if (snap < kMinSnap) snap = 0;
-    std::size_t points = 0;
-    for (const PlanPath& path : result) points += path.points.size();
-    PointWelder welder(snap, points);
-    for (PlanPath& path : result)
+    PointWelder welder(snap);
+    for (PlanPath& path : paths)
         for (Point2& p : path.points) p = welder.standing(wholeMicrometres(p));
-    dropRepeatedPoints(result);
-    if (snap > 0 && !result.empty()) {
-        moveEnds(result, snap);
-        dropRepeatedPoints(result);
+    dropRepeatedPoints(paths);
+    if (snap > 0 && !paths.empty()) {
+        moveEnds(paths, snap);
+        dropRepeatedPoints(paths);
     }
-    return result;
+    return paths;
 }
 
 std::vector<Segment2> pathPieces(const std::vector<PlanPath>& paths) {
@@ -297,17 +289,16 @@ std::vector<Segment2> pathPieces(const std::vector<PlanPath>& paths) {
     return pieces;
 }
 
-std::vector<PlanPath> withPieces(const std::vector<PlanPath>& paths,
-                                 const std::vector<bool>& keep) {
+std::vector<PlanPath> withPieces(std::vector<PlanPath> paths, const std::vector<bool>& keep) {
     std::vector<PlanPath> all;
     std::size_t first = 0;
-    for (const PlanPath& path : paths) {
+    for (PlanPath& path : paths) {
         const std::size_t count = path.pieceCount();
         const auto is_kept = [&](std::size_t i) { return keep[first + i % count]; };
         std::size_t begin = 0;
         while (begin < count && is_kept(begin)) ++begin;
         if (begin == count) {
-            all.push_back(path);
+            all.push_back(std::move(path));
         } else {
             // A closed path is walked from its first gap on, so that no run is cut in two.
             if (!path.closed) begin = 0;
@@ -326,24 +317,27 @@ std::vector<PlanPath> withPieces(const std::vector<PlanPath>& paths,
     return all;
 }
 
-std::vector<PlanPath> withoutRepeats(const std::vector<PlanPath>& paths) {
-    std::vector<Segment2> pieces = pathPieces(paths);
-    for (Segment2& piece : pieces)
-        if (lexLess(piece.b, piece.a)) std::swap(piece.a, piece.b);
-    std::vector<std::size_t> order(pieces.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
-        return pieces[i].a == pieces[k].a ? lexLess(pieces[i].b, pieces[k].b)
-                                          : lexLess(pieces[i].a, pieces[k].a);
+std::vector<PlanPath> withoutRepeats(std::vector<PlanPath> paths) {
+    struct Piece {
+        Segment2 line;  // from its lower end
+        std::size_t index;
+    };
+    std::vector<Piece> pieces;
+    for (const Segment2& line : pathPieces(paths))
+        pieces.push_back(
+            {lexLess(line.b, line.a) ? Segment2{line.b, line.a} : line, pieces.size()});
+    std::sort(pieces.begin(), pieces.end(), [](const Piece& p, const Piece& q) {
+        if (p.line.a != q.line.a) return lexLess(p.line.a, q.line.a);
+        return p.line.b == q.line.b ? p.index < q.index : lexLess(p.line.b, q.line.b);
     });
     std::vector<bool> keep(pieces.size(), true);
-    for (std::size_t i = 1; i < order.size(); ++i)
-        if (pieces[order[i]] == pieces[order[i - 1]]) keep[order[i]] = false;
-    return withPieces(paths, keep);
+    for (std::size_t i = 1; i < pieces.size(); ++i)
+        if (pieces[i].line == pieces[i - 1].line) keep[pieces[i].index] = false;
+    return withPieces(std::move(paths), keep);
 }
 
 std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach) {
-    PointMap<int> free;  // loose ends, with the line of the file
+    std::map<Point2, int, LexLess> free;  // loose ends, with the line of the file
     PointMap<int> uses;
     for (const PlanPath& path : paths)
         for (std::size_t i = 0; i < path.pieceCount(); ++i)
@@ -365,14 +359,14 @@ std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach) {
     return paths;
 }
 
-std::vector<PlanPath> normalisedLines(const std::vector<PlanPath>& paths, double snap) {
-    std::vector<PlanPath> lines = snapped(paths, std::min(snap, kDefaultSnap));
+std::vector<PlanPath> normalisedLines(std::vector<PlanPath> paths, double snap) {
+    std::vector<PlanPath> lines = snapped(std::move(paths), std::min(snap, kDefaultSnap));
     if (snap > kDefaultSnap && !lines.empty()) lines = bridged(std::move(lines), snap);
-    return withoutRepeats(lines);
+    return withoutRepeats(std::move(lines));
 }
 
-std::vector<PlanPath> joinedAtEnds(const std::vector<PlanPath>& paths) {
-    return Joiner(paths).join();
+std::vector<PlanPath> joinedAtEnds(std::vector<PlanPath> paths) {
+    return Joiner(std::move(paths)).join();
 }
 
 }  // namespace ispace

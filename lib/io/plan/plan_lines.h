@@ -11,18 +11,21 @@
 
 namespace ispace {
 
-/// Finds segments near a point, however unevenly they are spread. O(n log n) to build.
+/// Finds segments near a point, however unevenly they are spread. O(n log n) to build. Queries of
+/// crowded segments are bounded in sum, so that a small file cannot require hours.
 class NearSegments {
   public:
     explicit NearSegments(std::span<const Segment2> segments);
 
     /// Returns ascending indices of segments, among them all those within `reach` of p.
+    /// \throws FormatError (without a line number) if all queries found too many
     [[nodiscard]] std::vector<std::size_t> near(Point2 p, double reach) const;
     /// Returns the same for the segments within `reach` of the box.
     [[nodiscard]] std::vector<std::size_t> near(const Box2& box, double reach) const;
 
   private:
     BoxTree tree_;
+    mutable std::size_t left_;  // segments that queries may still find
 };
 
 /// A drawn line of straight pieces, in metres.
@@ -57,7 +60,7 @@ struct LexLess {
 /// move onto it, then ends of open paths within `snap` of another path onto that. Equal neighbours
 /// are merged, and paths without two different points dropped. Below a micrometre `snap` joins only
 /// equal points. O(n log n) unless most lines crowd around one point.
-std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap);
+std::vector<PlanPath> snapped(std::vector<PlanPath> paths, double snap);
 
 /// Returns the paths, followed by a short one from each loose end to the nearest point of another
 /// line within `reach`. Points do not move, and bridges cross no line. O(n log n).
@@ -65,21 +68,21 @@ std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach);
 
 /// Converts hand-drawn lines to walls: points within 5 mm (or `snap`, if less) become one, loose
 /// ends are bridged within `snap`, and repeated pieces dropped.
-std::vector<PlanPath> normalisedLines(const std::vector<PlanPath>& paths, double snap);
+std::vector<PlanPath> normalisedLines(std::vector<PlanPath> paths, double snap);
 
 /// Returns all pieces of all paths, in order.
 std::vector<Segment2> pathPieces(const std::vector<PlanPath>& paths);
 
 /// Returns the paths without the pieces whose `keep` is false (in the order of pathPieces()); one
 /// path may become several.
-std::vector<PlanPath> withPieces(const std::vector<PlanPath>& paths, const std::vector<bool>& keep);
+std::vector<PlanPath> withPieces(std::vector<PlanPath> paths, const std::vector<bool>& keep);
 
 /// Removes pieces that repeat an earlier one, in either direction.
-std::vector<PlanPath> withoutRepeats(const std::vector<PlanPath>& paths);
+std::vector<PlanPath> withoutRepeats(std::vector<PlanPath> paths);
 
 /// Joins open paths where exactly two ends meet, so that a room drawn line by line is one closed
 /// path, at the index and with the `line` of its first part. O(n log n).
-std::vector<PlanPath> joinedAtEnds(const std::vector<PlanPath>& paths);
+std::vector<PlanPath> joinedAtEnds(std::vector<PlanPath> paths);
 
 /// Simplifies paths by at most `tolerance` metres, between joints by Douglas and Peucker. Joints
 /// stay: ends of open paths, points that paths share, both ends of a piece that another one meets,

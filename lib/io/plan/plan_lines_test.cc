@@ -7,6 +7,7 @@
 
 #include "geom/predicates.h"
 #include "io/plan/plan_lines.h"
+#include "support/test_import.h"
 
 namespace ispace {
 
@@ -30,6 +31,17 @@ TEST(NearSegments, FindsWhatAllDistancesFind) {
     }
     EXPECT_EQ(search.near(Point2{50000, 5}, 1), std::vector<std::size_t>{});
     EXPECT_TRUE(NearSegments({}).near(Point2{0, 0}, 1).empty());
+}
+
+TEST(NearSegments, ACrowdIsNotSearchedForHours) {
+    const std::vector<Segment2> hatch(20'000, {{0, 0}, {9, 9}});
+    const NearSegments search(hatch);
+    const auto error = errorsOf([&] {
+        for (std::size_t i = 0; i < hatch.size(); ++i)
+            static_cast<void>(search.near(Point2{4, 4}, 1));
+    });
+    EXPECT_EQ(error,
+              "error: too many lines lie close to each other; leave hatching and doubles out\n");
 }
 
 using Paths = std::vector<PlanPath>;

@@ -319,8 +319,6 @@ PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const Plan
 
 namespace {
 
-constexpr double kOnLine = 3 * kWeldDistance;
-
 /// Number of chords to half a circle.
 constexpr int kChords = 16;
 

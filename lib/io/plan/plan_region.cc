@@ -22,12 +22,9 @@ namespace {
 /// Rooms beside a door are found at this distance: less than any wall is thick.
 constexpr double kBesideDoor = 0.005;
 
-/// Both the region and the line were welded, which moves each by that distance.
-constexpr double kOnLine = 3 * kWeldDistance;
-
 /// No disc of this diameter fits between the two lines of a wall, nor one of this share of the
 /// plan's extent, whatever its scale.
-constexpr double kMinRoom = 0.5, kWallShare = 12;
+constexpr double kMaxWall = 0.5, kWallShare = 12;
 
 /// An inside point closer than this to a free-standing line is replaced by the clearest of a grid.
 constexpr double kClear = 0.05;
@@ -46,12 +43,28 @@ bool contains(const Box2& box, Point2 p) {
 
 Point2 middleOf(const Segment2& s) { return s.a + 0.5 * (s.b - s.a); }
 
+/// The part of `line` that lies on `other`, if it is longer than a point.
+std::optional<Segment2> commonPart(const Segment2& line, const Segment2& other) {
+    const Vec2 along = line.b - line.a;
+    if (line.a == line.b) return std::nullopt;
+    const auto share = [&](Point2 p) {
+        return std::clamp(dot(p - line.a, along) / dot(along, along), 0.0, 1.0);
+    };
+    const auto [first, last] = std::minmax({share(other.a), share(other.b)});
+    const auto at = [&](double s) { return s == 1 ? line.b : line.a + s * along; };
+    const Segment2 part{at(first), at(last)};
+    if (distance(part.a, part.b) <= kOnLine || distance(part.a, other) > kOnLine ||
+        distance(part.b, other) > kOnLine)
+        return std::nullopt;
+    return part;
+}
+
 /// Finds for many points which of several disjoint regions holds them: the one above the nearest
 /// edge below. O(n) to build; the time for a point grows with its distance from that edge.
 class RegionLocator {
   public:
     explicit RegionLocator(const std::vector<Region>& regions)
-        : edges_(edgesOf(regions, owners_)), grid_(edges_, 0) {}
+        : edges_(edgesOf(regions, owners_)), grid_(edges_, kOnLine) {}
 
     /// The index of the region. \pre p is off the edges
     [[nodiscard]] std::optional<std::size_t> at(Point2 p) const {
@@ -65,6 +78,17 @@ class RegionLocator {
         // The region that an edge bounds lies to its left.
         if (!nearest || !nearest->heads_right) return std::nullopt;
         return owners_[nearest->index];
+    }
+
+    /// Returns true if a part of the line lies on an edge of a region.
+    [[nodiscard]] bool isOnEdge(const Segment2& line) const {
+        bool is_on = false;
+        grid_.searchAlong(line, [&](std::span<const std::uint32_t> cell) {
+            is_on = is_on || std::any_of(cell.begin(), cell.end(), [&](std::uint32_t i) {
+                        return commonPart(line, edges_[i]).has_value();
+                    });
+        });
+        return is_on;
     }
 
   private:
@@ -118,22 +142,6 @@ bool hasWithin(std::span<const Segment2> lines, const NearSegments& search, Poin
     const std::vector<std::size_t> near = search.near(p, reach);
     return std::any_of(near.begin(), near.end(),
                        [&](std::size_t i) { return distance(p, lines[i]) <= reach; });
-}
-
-/// The part of `line` that lies on `other`, if it is longer than a point.
-std::optional<Segment2> commonPart(const Segment2& line, const Segment2& other) {
-    const Vec2 along = line.b - line.a;
-    if (line.a == line.b) return std::nullopt;
-    const auto share = [&](Point2 p) {
-        return std::clamp(dot(p - line.a, along) / dot(along, along), 0.0, 1.0);
-    };
-    const auto [first, last] = std::minmax({share(other.a), share(other.b)});
-    const auto at = [&](double s) { return s == 1 ? line.b : line.a + s * along; };
-    const Segment2 part{at(first), at(last)};
-    if (distance(part.a, part.b) <= kOnLine || distance(part.a, other) > kOnLine ||
-        distance(part.b, other) > kOnLine)
-        return std::nullopt;
-    return part;
 }
 
 }  // namespace
@@ -213,7 +221,7 @@ void PlanFaces::takeFaces(std::span<const Segment2> doors) {
         all.add(boxes_.back().low);
         all.add(boxes_.back().high);
     }
-    thinnest_ = std::min(kMinRoom, std::max(all.width(), all.depth()) / kWallShare) / 2;
+    thinnest_ = std::min(kMaxWall, std::max(all.width(), all.depth()) / kWallShare) / 2;
     makeGroups(doors);
 }
 
@@ -312,22 +320,16 @@ std::vector<Segment2> PlanFaces::closedBy(const PlanRegion& region) const {
 }
 
 std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const Segment2> lines) {
-    std::vector<bool> belongs(lines.size());
-    // Lines on which an edge of a room lies.
-    const NearSegments search(lines);
     std::vector<Region> rooms;
     for (const PlanRegion& region : regions)
         rooms.insert(rooms.end(), region.rooms.begin(), region.rooms.end());
-    for (const Region& room : rooms)
-        room.forEachEdge([&](const Segment2& edge) {
-            for (const std::size_t i : search.near(bounds(edge), kOnLine))
-                if (!belongs[i] && commonPart(lines[i], edge)) belongs[i] = true;
-        });
     const RegionLocator locator(rooms);
-    for (std::size_t i = 0; i < lines.size(); ++i)
-        for (const double share : kSharesInside)
-            if (!belongs[i])
-                belongs[i] = locator.at(lines[i].a + share * (lines[i].b - lines[i].a)).has_value();
+    std::vector<bool> belongs;
+    for (const Segment2& line : lines)
+        belongs.push_back(locator.isOnEdge(line) ||
+                          std::any_of(kSharesInside.begin(), kSharesInside.end(), [&](double s) {
+                              return locator.at(line.a + s * (line.b - line.a)).has_value();
+                          }));
     return belongs;
 }
 

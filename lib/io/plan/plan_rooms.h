@@ -7,10 +7,14 @@
 #include <span>
 #include <vector>
 
+#include "geom/planar_map.h"
 #include "geom/polygon.h"
 #include "io/import_records.h"
 
 namespace ispace {
+
+/// A point of a region is on a line at this distance: both were welded, which moves each.
+constexpr double kOnLine = 3 * kWeldDistance;
 
 /// The imported part of a plan: one face of its lines, or several that doors join.
 struct PlanRegion {

@@ -35,7 +35,7 @@ struct SvgDrawing {
     std::map<std::string, std::size_t> left_out;  ///< elements, by type or reason
 };
 
-constexpr int kDeepest = 200;  // elements in elements, by `use` or not
+constexpr int kMaxElementDepth = 200;  // elements in elements, by `use` or not
 
 /// Radii that differ by less, as shares, are those of a circle.
 constexpr double kRound = 0.01;
@@ -44,11 +44,6 @@ constexpr std::array<std::string_view, 4> kGroups{"g", "a", "switch", "svg"};
 constexpr std::array<std::string_view, 7> kShapes{"path", "line",   "polyline", "polygon",
                                                   "rect", "circle", "ellipse"};
 constexpr std::array<std::string_view, 3> kOthers{"text", "image", "foreignObject"};
-
-template <typename List>
-bool isOneOf(const List& names, std::string_view name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 /// Share of the page; a larger rectangle is a drawing with a wrong page.
 constexpr double kMaxBackground = 1.1;
@@ -100,15 +95,24 @@ class SvgReader {
         }
     }
 
-    /// Collects ids and rules of style, without recursion for deep nesting.
+    /// Collects ids and rules of style.
     void listElements(pugi::xml_node root) {
+        std::vector<pugi::xml_node> styles;
+        forEachElement(root, [&](pugi::xml_node node) {
+            if (const pugi::xml_attribute id = node.attribute("id")) ids_.emplace(id.value(), node);
+            if (svgName(node) == "style") styles.push_back(node);
+        });
+        if (styles.empty()) return;
+        forEachElement(root, [this](pugi::xml_node node) { sheet_.announce(node); });
+        for (const pugi::xml_node style : styles)
+            for (const pugi::xml_node text : style.children()) sheet_.add(text.value());
+    }
+
+    /// Calls visit(node) for all elements, without recursion for deep nesting.
+    template <typename Visit>
+    static void forEachElement(pugi::xml_node root, Visit visit) {
         for (pugi::xml_node node = root; node;) {
-            if (node.type() == pugi::node_element) {
-                if (const pugi::xml_attribute id = node.attribute("id"))
-                    ids_.emplace(id.value(), node);
-                if (svgName(node) == "style")
-                    for (const pugi::xml_node text : node.children()) sheet_.add(text.value());
-            }
+            if (node.type() == pugi::node_element) visit(node);
             if (node.first_child()) {
                 node = node.first_child();
                 continue;
@@ -168,8 +172,8 @@ class SvgReader {
             ++drawing_.left_out["elements that are not displayed"];
             return;
         }
-        if (++around.depth > kDeepest)
-            throw SvgError("elements nested more than " + std::to_string(kDeepest) +
+        if (++around.depth > kMaxElementDepth)
+            throw SvgError("elements nested more than " + std::to_string(kMaxElementDepth) +
                            " deep: does one use itself?");
         around.frame = around.frame * element.transform;
         around.style = svgStyle(around.style, element.properties);
@@ -363,9 +367,9 @@ SvgImport importSvg(std::string_view bytes, const std::string& name, const Impor
             return importSvg(bytes, name, other, schemas, false).area;
         };
     LayerSorter sorter({}, options);
-    const LayerSorter::Sorted shapes = sorter.sort(std::move(drawing.shapes));
+    LayerSorter::Sorted shapes = sorter.sort(std::move(drawing.shapes));
     sorter.note(out);
-    const double area = writeLinePlan(shapes, sorter, name, options, &source, out);
+    const double area = writeLinePlan(std::move(shapes), sorter, name, options, &source, out);
     return {out.take(), area};
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <pugixml.hpp>
 #include <stdexcept>
@@ -106,15 +107,21 @@ struct SvgStyle {
 /// Rules of `style` elements with one plain selector: an element's name, .class or #id.
 class SvgSheet {
   public:
+    /// Announces an element: only rules for elements announced before add() are kept.
+    void announce(pugi::xml_node node);
     /// Adds the rules of a style element, ignoring other selectors. O(length)
     void add(std::string_view css);
     /// Sets the unset `properties` by these rules. Ids win over classes, these over names, later
-    /// rules over earlier ones.
+    /// rules over earlier ones. \pre the element was announced, or there are no rules
     void apply(pugi::xml_node node, SvgProperties& properties) const;
 
   private:
-    std::deque<std::string> texts_;                              // without comments
-    std::unordered_map<std::string_view, SvgProperties> rules_;  // by selector, views of the texts
+    struct Hash : std::hash<std::string_view> {
+        using is_transparent = void;  // NOLINT: as std::unordered_map looks for it
+    };
+    std::deque<std::string> texts_;  // without comments
+    // By selector, views of the texts.
+    std::unordered_map<std::string, SvgProperties, Hash, std::equal_to<>> rules_;
 };
 
 /// Returns the name without the prefix of a namespace.

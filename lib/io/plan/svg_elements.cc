@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 #include "base/budget.h"
 #include "base/message.h"
@@ -54,6 +55,15 @@ std::string_view takeUntil(std::string_view& rest, char mark) {
     return part;
 }
 
+/// Calls visit(std::string) for the selectors that match an element, the strongest first.
+template <typename Visit>
+void forEachSelector(pugi::xml_node node, Visit visit) {
+    visit('#' + std::string(node.attribute("id").value()));
+    for (std::string_view names = node.attribute("class").value(); !names.empty();)
+        visit('.' + std::string(takeUntil(names, ' ')));
+    visit(std::string(svgName(node)));
+}
+
 }  // namespace
 
 std::string_view svgName(pugi::xml_node node) {
@@ -85,30 +95,27 @@ void SvgProperties::addStronger(const SvgProperties& others) {
     *this = both;
 }
 
+void SvgSheet::announce(pugi::xml_node node) {
+    forEachSelector(node, [this](std::string name) { rules_.try_emplace(std::move(name)); });
+}
+
 void SvgSheet::add(std::string_view css) {
     std::string_view rest = texts_.emplace_back(withoutComments(css));
-    // Growing a table of millions of rules step by step costs more than filling it.
-    const auto more = static_cast<std::size_t>(std::ranges::count(rest, ',')) + 1;
-    if (more > rules_.size()) rules_.reserve(rules_.size() + more);
     while (!rest.empty()) {
         std::string_view selectors = takeUntil(rest, '{');
         SvgProperties declared;
         declared.declare(takeUntil(rest, '}'));
         if (declared.isEmpty()) continue;
-        while (!selectors.empty()) rules_[trimmed(takeUntil(selectors, ','))].addStronger(declared);
+        while (!selectors.empty())
+            if (const auto rule = rules_.find(trimmed(takeUntil(selectors, ',')));
+                rule != rules_.end())
+                rule->second.addStronger(declared);
     }
 }
 
 void SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) const {
     if (rules_.empty()) return;
-    const auto add = [&](const std::string& selector) {
-        if (const auto rule = rules_.find(selector); rule != rules_.end())
-            properties.addWeaker(rule->second);
-    };
-    add('#' + std::string(node.attribute("id").value()));
-    for (std::string_view names = node.attribute("class").value(); !names.empty();)
-        add('.' + std::string(takeUntil(names, ' ')));
-    add(std::string(svgName(node)));
+    forEachSelector(node, [&](const std::string& name) { properties.addWeaker(rules_.at(name)); });
 }
 
 SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet) {

@@ -15,7 +15,7 @@ namespace ispace {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kMaxNumber = 1e12;  // of any number: drawings end far below
+constexpr double kMaxSvgNumber = 1e12;  // of any number: drawings end far below
 constexpr double kPixel = 0.0254 / 96;
 
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
@@ -61,7 +61,7 @@ class Scanner {
         const char* const begin = rest_.data() + (plus ? 1 : 0);
         double value = 0;
         const auto [end, error] = std::from_chars(begin, rest_.data() + rest_.size(), value);
-        if (error != std::errc() || !(std::abs(value) <= kMaxNumber)) fail("a number");
+        if (error != std::errc() || !(std::abs(value) <= kMaxSvgNumber)) fail("a number");
         rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
         return value;
     }

@@ -27,6 +27,8 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 3> kIncludable{"model", "light", "actor"};
 /// Units of Budget for a file, however small: its nodes take 32 kB.
 constexpr std::size_t kFileWork = 100;
+std::size_t workOf(std::size_t bytes) { return kFileWork + Budget::unitsOf(bytes); }
+
 /// Maximum number of missing models in a message.
 constexpr std::size_t kMaxNamed = 8;
 
@@ -129,8 +131,8 @@ SdfFiles::SdfFiles(std::string_view bytes, std::string name,
             !ignored)
             roots_.push_back(std::move(root));
     std::string identity = fs::weakly_canonical(name, ignored).string();
-    files_.push_back(std::unique_ptr<File>(
-        new File{XmlFile(bytes, std::move(name)), "", std::move(identity), nullptr}));
+    files_.push_back(
+        std::unique_ptr<File>(new File{XmlFile(bytes, std::move(name)), "", std::move(identity)}));
     by_document_.emplace(root().root().hash_value(), files_.back().get());
 }
 
@@ -169,7 +171,7 @@ std::string SdfFiles::read(pugi::xml_node user, const std::string& path) {
         sources_.push_back(file);
         budget_.grant(size);
     }
-    spend(user, kFileWork + Budget::unitsOf(size));
+    spend(user, workOf(size));
     return readAll(file);
 }
 
@@ -192,40 +194,46 @@ std::optional<std::string> SdfFiles::modelFile(pugi::xml_node include, const std
     return isThere(file) ? std::optional(file) : std::nullopt;
 }
 
-std::optional<std::string> SdfFiles::includedFile(pugi::xml_node include) {
+const std::optional<std::string>& SdfFiles::includedFile(pugi::xml_node include) {
+    const auto [known, is_new] =
+        found_.try_emplace({fileOf(include).folder, std::string(uriOf(include))});
+    std::optional<std::string>& file = known->second;
+    if (!is_new) return file;
     for (const std::string& path : pathsOf(include, uriOf(include)))
-        if (std::optional<std::string> file = modelFile(include, path)) return file;
-    return std::nullopt;
+        if (file = modelFile(include, path); file) break;
+    return file;
 }
 
-void SdfFiles::checkCycle(pugi::xml_node include, const std::string& file,
-                          const std::string& identity) const {
-    std::vector<const File*> users;
-    for (const File* user = &fileOf(include); user != nullptr; user = user->includer) {
-        users.push_back(user);
-        if (user->identity != identity) continue;
-        std::string cycle;
-        for (auto name = users.rbegin(); name != users.rend(); ++name)
-            cycle.append(displayName((*name)->xml.name())).append(" -> ");
-        fail(include, "files include each other in a circle: " + cycle.append(file));
-    }
-}
-
-void SdfFiles::load(pugi::xml_node include, const std::string& path) {
+pugi::xml_node SdfFiles::load(pugi::xml_node include, const std::string& path) {
+    pugi::xml_node& thing = loaded_[path];
+    if (thing) return thing;
     std::error_code ignored;
     const std::string file = sideFilePath(name(), path);
-    std::string identity = fs::weakly_canonical(file, ignored).string();
-    checkCycle(include, file, identity);
     const std::string bytes = read(include, path);
-    files_.push_back(
-        std::unique_ptr<File>(new File{XmlFile(bytes, file), fs::path(path).parent_path().string(),
-                                       std::move(identity), &fileOf(include)}));
+    files_.push_back(std::unique_ptr<File>(
+        new File{XmlFile(bytes, file), fs::path(path).parent_path().string(),
+                 fs::weakly_canonical(file, ignored).string(), workOf(bytes.size())}));
     const XmlFile& xml = files_.back()->xml;
     by_document_.emplace(xml.root().root().hash_value(), files_.back().get());
-    pugi::xml_node& thing = included_[include.hash_value()];
     for (const char* kind : kIncludable)
         if (!thing) thing = xml.root().child(kind);
     if (!thing) xml.fail(xml.root(), "no `model` in it, but a world includes it");
+    return thing;
+}
+
+void SdfFiles::enter(pugi::xml_node include, std::span<const pugi::xml_node> around) {
+    const File& file = fileOf(included(include));
+    spend(include, file.work);
+    std::vector<const File*> users = {files_.front().get()};
+    for (const pugi::xml_node other : around) users.push_back(&fileOf(included(other)));
+    const auto same = std::find_if(users.begin(), users.end(), [&file](const File* user) {
+        return user->identity == file.identity;
+    });
+    if (same == users.end()) return;
+    std::string cycle;
+    for (auto user = same; user != users.end(); ++user)
+        cycle.append(displayName((*user)->xml.name())).append(" -> ");
+    fail(include, "files include each other in a circle: " + cycle + file.xml.name());
 }
 
 void SdfFiles::loadIncludes(pugi::xml_node parent) {
@@ -233,8 +241,8 @@ void SdfFiles::loadIncludes(pugi::xml_node parent) {
     pugi::xml_node first;
     for (const pugi::xml_node include : parent.children("include")) {
         if (included_.contains(include.hash_value())) continue;
-        if (const std::optional<std::string> file = includedFile(include)) {
-            load(include, *file);
+        if (const std::optional<std::string>& file = includedFile(include)) {
+            included_[include.hash_value()] = load(include, *file);
             continue;
         }
         included_[include.hash_value()] = {};

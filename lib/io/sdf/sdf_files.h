@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <pugixml.hpp>
@@ -10,10 +11,11 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "base/budget.h"
-#include "geom/pose.h"
+#include "geom/rotation.h"
 
 namespace ispace {
 
@@ -60,13 +62,18 @@ class SdfFiles {
 
     [[nodiscard]] pugi::xml_node root() const { return files_.front()->xml.root(); }
 
-    /// Reads the files that a world or model includes.
+    /// Reads the files that a world or model includes, each once.
     /// \throws FormatError with the line: missing files, which one error lists together, files
-    /// without a model, light or actor, files that include themselves, and as spend()
+    /// without a model, light or actor, and as spend()
     void loadIncludes(pugi::xml_node parent);
-    /// Returns the included model, light or actor. Null for Gazebo's sun and ground plane if they
-    /// are missing: neither is part of a room. \pre loadIncludes(its parent)
+    /// Returns the included model, light or actor; all includes of a file share its nodes. Null for
+    /// Gazebo's sun and ground plane if they are missing: neither is part of a room.
+    /// \pre loadIncludes(its parent)
     [[nodiscard]] pugi::xml_node included(pugi::xml_node include) const;
+    /// Takes the work of visiting the nodes of an included file.
+    /// \param around includes that led to this one, the outermost first
+    /// \throws FormatError if one of them, or the world, is the same file; and as spend()
+    void enter(pugi::xml_node include, std::span<const pugi::xml_node> around);
 
     /// Files read besides the world, each once, as opened.
     [[nodiscard]] const std::vector<std::string>& sources() const { return sources_; }
@@ -75,8 +82,8 @@ class SdfFiles {
     [[nodiscard]] std::optional<std::string> fileNamed(pugi::xml_node node,
                                                        std::string_view uri) const;
     [[nodiscard]] int lineOf(pugi::xml_node node) const { return fileOf(node).xml.lineOf(node); }
-    /// Takes units of work for a node, see Budget. Each file is parsed anew for each include, and
-    /// costs by its size. \throws FormatError at the node if fewer units are left
+    /// Takes units of work for a node, see Budget. \throws FormatError at the node if fewer units
+    /// are left
     void spend(pugi::xml_node node, std::size_t units);
     /// \throws FormatError at the node's line of its file
     [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const {
@@ -97,7 +104,7 @@ class SdfFiles {
         XmlFile xml;
         std::string folder;    // relative to that of the world
         std::string identity;  // its path without links and detours
-        const File* includer = nullptr;
+        std::size_t work = 0;  // of visiting it
     };
     [[nodiscard]] const File& fileOf(pugi::xml_node node) const;
     /// Returns the paths that a URI may mean, relative to the folder of the world, the likeliest
@@ -105,18 +112,20 @@ class SdfFiles {
     [[nodiscard]] std::vector<std::string> pathsOf(pugi::xml_node node, std::string_view uri) const;
     [[nodiscard]] bool isThere(const std::string& path) const;
     std::optional<std::string> modelFile(pugi::xml_node include, const std::string& path);
-    std::optional<std::string> includedFile(pugi::xml_node include);
+    const std::optional<std::string>& includedFile(pugi::xml_node include);
     /// \throws FormatError as spend()
     std::string read(pugi::xml_node user, const std::string& path);
-    void load(pugi::xml_node include, const std::string& path);
-    void checkCycle(pugi::xml_node include, const std::string& file,
-                    const std::string& identity) const;
+    /// Returns the model, light or actor of a file.
+    pugi::xml_node load(pugi::xml_node include, const std::string& path);
     [[nodiscard]] const std::string& name() const { return files_.front()->xml.name(); }
 
     std::vector<std::string> roots_;            // folders of models, relative to the world's
     std::vector<std::unique_ptr<File>> files_;  // the world first
     std::unordered_map<std::size_t, const File*> by_document_;
     std::unordered_map<std::size_t, pugi::xml_node> included_;  // by the include
+    std::unordered_map<std::string, pugi::xml_node> loaded_;    // by path
+    // The file that a URI means in a folder.
+    std::map<std::pair<std::string, std::string>, std::optional<std::string>> found_;
     std::vector<std::string> sources_;
     Budget budget_;
 };

@@ -352,8 +352,10 @@ class SensorWriter {
         return true;
     }
 
-    [[nodiscard]] bool operator()(const Receiver& /*receiver*/) const { return false; }
-    [[nodiscard]] bool operator()(const Tag& /*tag*/) const { return false; }
+    template <typename Model>
+    [[nodiscard]] bool operator()(const Model& /*model*/) const {
+        return false;
+    }
 
   private:
     [[nodiscard]] pugi::xml_node begin(const char* type, double rate) const {

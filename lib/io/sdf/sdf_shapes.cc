@@ -63,6 +63,10 @@ class SdfReader {
 
     void addModel(pugi::xml_node node, const SdfScope& scope, const Transform& world_from_scope,
                   Around around, bool is_include) {
+        if (is_include) {
+            files_.enter(node, includes_);
+            includes_.push_back(node);
+        }
         const SdfScope& inner = frames_.scopeOf(node);
         const Transform frame = world_from_scope * frames_.frameOf(node, scope);
         if (around.model.empty()) around.model = frames_.nameOf(node);
@@ -71,6 +75,7 @@ class SdfReader {
         for (const pugi::xml_node link : inner.node.children("link"))
             addLink(link, frame, inner, around);
         addModels(inner, frame, around);
+        if (is_include) includes_.pop_back();
     }
 
     void addLink(pugi::xml_node link, const Transform& world_from_model, const SdfScope& model,
@@ -139,6 +144,7 @@ class SdfReader {
 
     SdfFiles files_;
     SdfFrames frames_{files_};
+    std::vector<pugi::xml_node> includes_;  // that led to the model being read
     SdfWorld found_;
 };
 

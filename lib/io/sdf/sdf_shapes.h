@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "geom/polygon.h"
-#include "geom/pose.h"
+#include "geom/rotation.h"
 
 namespace ispace {
 
