@@ -81,7 +81,7 @@ using std::chrono::steady_clock;
 constexpr std::size_t kBlock = 4096;
 /// Requests of one client, and their time, before the next client's turn.
 constexpr int kRequestsInTurn = 64;
-constexpr auto kTurn = std::chrono::microseconds(200);
+constexpr auto kTimeInTurn = std::chrono::microseconds(200);
 /// Time limit for closing after the last message; input is discarded.
 constexpr auto kLinger = std::chrono::seconds(1);
 
@@ -138,7 +138,7 @@ void ClientConnection::pumpLater() {
 }
 
 void ClientConnection::answer() {
-    const auto end = steady_clock::now() + kTurn;
+    const auto end = steady_clock::now() + kTimeInTurn;
     for (int i = 0; i < kRequestsInTurn && mayAnswer() && steady_clock::now() < end; ++i) {
         if (lines_.tooLong())
             session_->tooLong(limits_.line);

@@ -7,14 +7,15 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
 #include <utility>
 
 #include "base/message.h"
 #include "base/number.h"
 #include "raster/codec.h"
 #include "sense/formats/point_cloud.h"
+#include "sense/formats/reading_fields.h"
 #include "sense/formats/reading_picture.h"
+#include "server/session.h"
 
 namespace ispace {
 
@@ -22,25 +23,14 @@ namespace {
 
 constexpr double kMillimetres = 1000;
 
-std::string measured(double value) { return formatFixed(value, 3); }
-
 void add(std::string& out, std::string_view key, std::string_view value) {
     out.append(" ").append(key).append("=").append(value);
-}
-void add(std::string& out, std::string_view key, double value) {
-    add(out, key, formatDouble(value));
 }
 void add(std::string& out, std::string_view key, std::int64_t value) {
     add(out, key, std::to_string(value));
 }
-void add(std::string& out, std::string_view key, std::initializer_list<double> values) {
-    std::string text;
-    for (const double value : values)
-        text.append(text.empty() ? "" : ",").append(formatDouble(value));
-    add(out, key, text);
-}
 
-void addFormats(std::string& out, const RunSensor& sensor) {
+void addFormats(std::string& out, const Sensor& sensor) {
     std::string all;
     for (const FrameFormat format : formatsOf(sensor))
         all.append(all.empty() ? "" : ",").append(nameOf(format));
@@ -51,12 +41,12 @@ void addFormats(std::string& out, const RunSensor& sensor) {
 
 // Descriptions of sensors.
 
-std::span<const FrameFormat> formatsOf(const RunSensor& sensor) {
+std::span<const FrameFormat> formatsOf(const Sensor& sensor) {
     using F = FrameFormat;
     static constexpr std::array kCamera{F::Png, F::Jpeg, F::Rgb};
     static constexpr std::array kRanger{F::Depth32, F::Depth16, F::Cloud, F::Png};
-    if (sensor.model<Camera>() != nullptr) return kCamera;
-    if (sensor.model<Ranger>() != nullptr) return kRanger;
+    if (sensor.tryAs<Camera>() != nullptr) return kCamera;
+    if (sensor.tryAs<Ranger>() != nullptr) return kRanger;
     return {};
 }
 
@@ -80,113 +70,54 @@ std::string_view nameOf(FrameFormat format) {
     return "cloud";
 }
 
-bool hasBytes(const RunSensor& sensor) {
-    return sensor.model<Laser>() != nullptr || !formatsOf(sensor).empty();
-}
-
-std::string laserFigures(const Laser& laser) {
-    std::string out;
-    add(out, "angle_min", laser.first.degrees());
-    add(out, "angle_max", laser.last().degrees());
-    add(out, "step", laser.step.degrees());
-    add(out, "n", std::int64_t{laser.beams});
-    add(out, "range_min", laser.min_range);
-    add(out, "range_max", laser.max_range);
-    add(out, "rate", laser.rate);
-    if (laser.spin != 0) add(out, "spin", laser.spin);
-    return out;
+bool hasBytes(const Sensor& sensor) {
+    return sensor.tryAs<Laser>() != nullptr || !formatsOf(sensor).empty();
 }
 
 namespace {
 
-std::string figuresOf(const Laser& laser) { return laserFigures(laser); }
+/// Adds the fields of a kind that the protocol writes in one line, angles in degrees.
+struct LineFields {
+    std::string& out;
+    std::span<const float> floats = {};  ///< of the last field with floats
 
-std::string figuresOf(const Ranger& ranger) {
-    std::string out;
-    add(out, "width", std::int64_t{ranger.columns});
-    add(out, "height", std::int64_t{ranger.rows});
-    if (ranger.projection == Projection::Pinhole) {
-        add(out, "projection", "pinhole");
-        add(out, "fx", ranger.fx());
-        add(out, "fy", ranger.fy());
-        add(out, "cx", ranger.cx());
-        add(out, "cy", ranger.cy());
-    } else {
-        add(out, "projection", "spherical");
-        add(out, "fov", {ranger.fov_x.degrees(), ranger.fov_y.degrees()});
+    void addAll(const ReadingView& view, unsigned use) {
+        for (const ReadingField& field : readingKind(view.sensor.model).fields) {
+            if ((field.uses & use) == 0) continue;
+            const FieldValue value = field.value(view);
+            std::visit([&](const auto& one) { addField(field.name, one); }, value);
+        }
     }
-    add(out, "measures", ranger.measures_depth ? "depth" : "distance");
-    add(out, "range_min", ranger.min_range);
-    add(out, "range_max", ranger.max_range);
-    add(out, "rate", ranger.rate);
-    return out;
-}
 
-std::string figuresOf(const Camera& camera) {
-    std::string out;
-    add(out, "width", std::int64_t{camera.columns});
-    add(out, "height", std::int64_t{camera.rows});
-    add(out, "projection",
-        camera.lens == Lens::Pinhole   ? "pinhole"
-        : camera.lens == Lens::Fisheye ? "fisheye"
-                                       : "omni");
-    add(out, "fx", camera.fx);
-    add(out, "fy", camera.fy);
-    add(out, "cx", camera.cx);
-    add(out, "cy", camera.cy);
-    if (camera.lens == Lens::Mirror) add(out, "mirror", camera.mirror);
-    if (camera.isDistorted()) {
-        const auto& k = camera.distortion;
-        if (camera.lens == Lens::Fisheye)
-            add(out, "coefficients", {k[0], k[1], k[2], k[3]});
-        else
-            add(out, "coefficients", {k[0], k[1], k[2], k[3], k[4]});
+  private:
+    static std::string text(bool value) { return value ? "1" : "0"; }
+    static std::string text(std::int64_t value) { return std::to_string(value); }
+    static std::string text(double value) { return formatDouble(value); }
+    static std::string text(Angle angle) { return formatDouble(angle.degrees()); }
+    static std::string text(const Measured& one) { return one.value ? measured(*one.value) : "-"; }
+    static std::string text(const Computed& computed) { return formatDouble(computed.value); }
+    static std::string text(const FieldText& one) { return one.value_or("-"); }
+    static std::string text(const std::string& one) { return one; }
+    static std::string text(const FieldRecord& /*record*/) { return ""; }
+    template <typename Value>
+    static std::string text(const std::vector<Value>& values) {
+        std::string all;
+        for (const Value& value : values) all.append(all.empty() ? "" : ",").append(text(value));
+        return all;
     }
-    add(out, "rate", camera.rate);
-    return out;
-}
 
-std::string figuresOf(const Receiver& receiver) {
-    std::string out;
-    add(out, "range_min", receiver.min_range);
-    add(out, "range_max", receiver.max_range);
-    add(out, "fov", receiver.fov.degrees());
-    add(out, "rate", receiver.rate);
-    return out;
-}
-
-std::string figuresOf(const Tag& tag) {
-    std::string out;
-    add(out, "fov", tag.fov.degrees());
-    add(out, "rate", tag.rate);
-    return out;
-}
-
-std::string placeOf(const Pose2& pose) {
-    std::string out;
-    add(out, "x", measured(pose.position.x));
-    add(out, "y", measured(pose.position.y));
-    add(out, "heading", measured(wrapped(pose.heading).degrees()));
-    return out;
-}
+    void addField(std::string_view /*name*/, std::span<const float> values) { floats = values; }
+    template <typename Value>
+    void addField(std::string_view name, const Value& value) {
+        if constexpr (requires { text(value); }) add(out, name, text(value));
+    }
+};
 
 }  // namespace
 
-std::string sensorFigures(const RunSensor& sensor) {
+std::string figuresOf(const Sensor& sensor) {
     std::string out;
-    add(out, "kind", sensor.keyword());
-    if (const Sensor* placed = sensor.sensor())
-        out += std::visit([](const auto& model) { return figuresOf(model); }, placed->model);
-    if (const auto* mat = std::get_if<Mat>(&sensor.what)) {
-        out += placeOf(mat->pose);
-        add(out, "size", {2 * mat->half_length, 2 * mat->half_width});
-        add(out, "rate", mat->rate);
-    } else if (const auto* gate = std::get_if<Gate>(&sensor.what)) {
-        out += placeOf(gate->pose);
-        add(out, "width", 2 * gate->half_width);
-        add(out, "height", gate->height);
-        add(out, "rate", gate->rate);
-    }
+    LineFields{out}.addAll({.sensor = sensor}, kInInfo);
     if (!formatsOf(sensor).empty()) addFormats(out, sensor);
     return out;
 }
@@ -248,7 +179,7 @@ std::string millimetres(std::span<const float> depths) {
 /// Formats readings as lines.
 class ScanText {
   public:
-    ScanText(const RunSensor& sensor, const SensorReading& reading, const ReplyForm& form)
+    ScanText(const Sensor& sensor, const SensorReading& reading, const ReplyForm& form)
         : sensor_(sensor), reading_(reading), form_(form) {
         constexpr std::size_t kHead = 192;
         out_.reserve(kHead);
@@ -258,7 +189,12 @@ class ScanText {
     }
 
     std::string take() {
-        std::visit([this](const auto& value) { write(value); }, reading_.value);
+        if (const auto* const photo = std::get_if<Photo>(&reading_.value))
+            write(*photo);
+        else if (const auto* const frame = std::get_if<DepthFrame>(&reading_.value))
+            write(*frame);
+        else
+            writeFields();
         return std::move(out_);
     }
 
@@ -271,14 +207,14 @@ class ScanText {
         out_.append("\n").append(bytes);
     }
 
-    void write(const Scan& scan) {
-        const Laser& laser = *sensor_.model<Laser>();
-        const auto& ranges = scan.ranges;
-        add(out_, "angle_min", laser.first.degrees());
-        add(out_, "angle_max", laser.last().degrees());
-        add(out_, "step", laser.step.degrees());
-        add(out_, "n", std::to_string(ranges.size()));
+    void writeFields() {
+        LineFields fields{out_};
+        fields.addAll(viewOf(sensor_, reading_), kInLine);
         markStream();
+        if (sensor_.is<Laser>()) return writeRanges(fields.floats);
+        out_ += '\n';
+    }
+    void writeRanges(std::span<const float> ranges) {
         constexpr std::size_t kRange = sizeof "12.345,";
         if (form_.binary) return writeBytes(littleEndian(ranges));
         out_.reserve(out_.size() + ranges.size() * kRange);
@@ -307,7 +243,7 @@ class ScanText {
         out_ += '\n';
     }
     void write(const Photo& photo) {
-        const Camera& camera = *sensor_.model<Camera>();
+        const Camera& camera = sensor_.as<Camera>();
         const int columns = camera.columns, rows = camera.rows;
         if (form_.format == FrameFormat::Png)
             return writeFrame(columns, rows, pngOfRgb(columns, rows, photo.rgb));
@@ -317,7 +253,7 @@ class ScanText {
                    {reinterpret_cast<const char*>(photo.rgb.data()), photo.rgb.size()});
     }
     void write(const DepthFrame& frame) {
-        const Ranger& ranger = *sensor_.model<Ranger>();
+        const Ranger& ranger = sensor_.as<Ranger>();
         const auto bytes = [&]() -> std::string {
             switch (form_.format) {
                 case FrameFormat::Depth16:
@@ -333,59 +269,7 @@ class ScanText {
         writeFrame(ranger.columns, ranger.rows, bytes());
     }
 
-    void write(const Hearings& hearings) {
-        std::string tags, times;
-        for (const HeardTag& heard : hearings.tags) {
-            tags.append(tags.empty() ? "" : ",").append(heard.tag);
-            times.append(times.empty() ? "" : ",");
-            times += heard.time_of_flight ? formatFixed(*heard.time_of_flight, 6) : "-";
-        }
-        add(out_, "tags", tags);
-        add(out_, "tof", times);
-        markStream();
-        out_ += '\n';
-    }
-    void write(const Burst& burst) {
-        add(out_, "heard", std::to_string(burst.heard.size()));
-        const auto place = [&](std::optional<double> value) {
-            return value ? measured(*value) : "-";
-        };
-        std::optional<double> x, y, z, residual;
-        if (burst.fix) {
-            x = burst.fix->position.x;
-            y = burst.fix->position.y;
-            z = burst.fix->position.z;
-            residual = burst.fix->residual;
-        } else if (burst.simple) {
-            x = burst.simple->x;
-            y = burst.simple->y;
-        }
-        add(out_, "x", place(x));
-        add(out_, "y", place(y));
-        add(out_, "z", place(z));
-        add(out_, "residual", place(residual));
-        markStream();
-        out_ += '\n';
-    }
-    void write(const MatState& mat) {
-        add(out_, "n", std::to_string(mat.on.size()));
-        std::string ids;
-        for (const std::string& id : mat.on) ids.append(ids.empty() ? "" : ",").append(id);
-        add(out_, "on", ids);
-        markStream();
-        out_ += '\n';
-    }
-    void write(const GateState& gate) {
-        add(out_, "in", gate.in);
-        add(out_, "out", gate.out);
-        add(out_, "last", gate.last.empty() ? "-" : gate.last);
-        add(out_, "way", gate.last.empty() ? "-" : gate.last_in ? "in" : "out");
-        add(out_, "broken", gate.broken ? "1" : "0");
-        markStream();
-        out_ += '\n';
-    }
-
-    const RunSensor& sensor_;
+    const Sensor& sensor_;
     const SensorReading& reading_;
     const ReplyForm& form_;
     std::string out_;
@@ -393,7 +277,7 @@ class ScanText {
 
 }  // namespace
 
-std::string scanText(const RunSensor& sensor, const SensorReading& reading, const ReplyForm& form) {
+std::string scanText(const Sensor& sensor, const SensorReading& reading, const ReplyForm& form) {
     return ScanText(sensor, reading, form).take();
 }
 

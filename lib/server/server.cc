@@ -172,8 +172,7 @@ std::chrono::nanoseconds Server::Data::turn() const {
                           simulation.paused();
     if (!may_hold || (serving == 0 && !web && devices.empty())) return kTurn;
     const auto sensors = simulation.world().sensors();
-    const bool has_heavy = std::any_of(sensors.begin(), sensors.end(),
-                                       [](const RunSensor& sensor) { return sensor.isHeavy(); });
+    const bool has_heavy = std::any_of(sensors.begin(), sensors.end(), isHeavy);
     return has_heavy ? std::chrono::nanoseconds(0) : kTurn;
 }
 

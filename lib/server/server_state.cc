@@ -254,7 +254,7 @@ void ServerState::adopt(WorldChange change, std::exception_ptr failure, WallTime
 std::shared_ptr<const ServerState::Asked> ServerState::ask(std::size_t sensor,
                                                            const ReplyForm& form) {
     World& world = simulation_->world();
-    const bool may_wait = workshop_ && world.sensors()[sensor].isHeavy();
+    const bool may_wait = workshop_ && isHeavy(world.sensors()[sensor]);
     const std::int64_t seq = world.period(sensor);
     const bool is_taken = world.isTaken(sensor);
     const Text& text = textOf(sensor, form);

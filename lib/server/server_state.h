@@ -35,8 +35,8 @@ std::vector<std::string> idsOf(const Things& things) {
 /// Ids of the lasers, in order.
 inline std::vector<std::string> laserIdsOf(const World& world) {
     std::vector<std::string> ids;
-    for (const RunSensor& sensor : world.sensors())
-        if (sensor.model<Laser>() != nullptr) ids.push_back(sensor.id);
+    for (const Sensor& sensor : world.sensors())
+        if (sensor.tryAs<Laser>() != nullptr) ids.push_back(sensor.id);
     return ids;
 }
 

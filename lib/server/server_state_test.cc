@@ -104,12 +104,12 @@ TEST(AppendRange, RoundsAsFormatFixed) {
     }
 }
 
-RunSensor sensor() {
+Sensor sensor() {
     Laser laser;
     laser.first = Angle::degrees(-0.5);
     laser.step = Angle::degrees(0.25);
     laser.beams = 3;
-    return {"l1", Sensor{"l1", laser, {}}};
+    return {"l1", laser, {}};
 }
 
 SensorReading reading() {

@@ -367,8 +367,9 @@ void Session::sync() {
     const auto found = [this]() -> std::optional<std::size_t> {
         if (role_ == Role::Laser || role_ == Role::Sensor) {
             const auto sensor = world().sensorNamed(id_);
-            return sensor && world().sensors()[*sensor].keyword() == keyword_ ? sensor
-                                                                              : std::nullopt;
+            const bool is_same =
+                sensor && kindOf(world().sensors()[*sensor].model).keyword == keyword_;
+            return is_same ? sensor : std::nullopt;
         }
         return state_->holds(id_, hold_) ? world().moverNamed(id_) : std::nullopt;
     };

@@ -98,6 +98,7 @@ std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_v
 /// The findings about the movers of a change, in one line.
 std::string warningOf(const World& world, const std::vector<std::string>& movers) {
     constexpr std::size_t kMost = 3;
+    if (movers.empty()) return "";
     std::vector<std::string> warnings;
     const auto is_moved = [&movers](const std::string& id) {
         return std::find(movers.begin(), movers.end(), id) != movers.end();
@@ -163,7 +164,7 @@ WorldChange Changing::change() const {
 std::string Changing::done() const {
     const std::string added =
         is("ADD") && !world().scene().ids.empty() ? world().scene().ids.back() : "";
-    state_->simulation().tellChange(printable(line_), news_->needs_scene);
+    state_->simulation().tellChange(printable(line_), news_->scene_text);
     std::string out = "OK ";
     out += words_[0];
     if (!added.empty()) out.append(" id=").append(added);

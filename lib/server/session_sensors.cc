@@ -16,7 +16,7 @@ namespace ispace {
 namespace {
 
 /// Reply form for clients that have not chosen one.
-ReplyForm defaultForm(const RunSensor& sensor) {
+ReplyForm defaultForm(const Sensor& sensor) {
     const auto formats = formatsOf(sensor);
     if (formats.empty()) return {};
     return {.stream = false, .binary = true, .format = formats.front()};
@@ -26,23 +26,26 @@ ReplyForm defaultForm(const RunSensor& sensor) {
 
 std::string Session::unknownSensor(std::string_view kind, std::string_view id) const {
     std::vector<std::string> known;
-    for (const RunSensor& sensor : world().sensors()) {
+    for (const Sensor& sensor : world().sensors()) {
         if (role_ == Role::Robot && !sensor.isOn(subject_)) continue;
-        if (kind != "laser" || sensor.model<Laser>() != nullptr) known.push_back(sensor.id);
+        if (kind != "laser" || sensor.tryAs<Laser>() != nullptr) known.push_back(sensor.id);
     }
     return unknownThing(kind, id, known, role_ == Role::Robot ? " on this robot" : "");
 }
 
 void Session::takeLaser(Words words) {
     const auto found = world().sensorNamed(words[1]);
-    const Laser* const laser = found ? world().sensors()[*found].model<Laser>() : nullptr;
-    if (laser == nullptr) return error(404, {unknownSensor("laser", words[1])});
+    if (!found || !world().sensors()[*found].is<Laser>())
+        return error(404, {unknownSensor("laser", words[1])});
     role_ = Role::Laser;
     id_ = words[1];
     keyword_ = "laser";
     subject_ = *found;
     form_ = {};
-    out_.append("OK LASER ").append(words[1]).append(laserFigures(*laser)).append("\n");
+    out_.append("OK LASER ")
+        .append(words[1])
+        .append(figuresOf(world().sensors()[*found]))
+        .append("\n");
 }
 
 void Session::takeSensor(Words words) {
@@ -51,20 +54,21 @@ void Session::takeSensor(Words words) {
     role_ = Role::Sensor;
     id_ = words[1];
     subject_ = *found;
-    const RunSensor& sensor = world().sensors()[subject_];
-    keyword_ = sensor.keyword();
+    const Sensor& sensor = world().sensors()[subject_];
+    keyword_ = kindOf(sensor.model).keyword;
     form_ = defaultForm(sensor);
-    out_.append("OK SENSOR ").append(words[1]).append(sensorFigures(sensor)).append("\n");
+    out_.append("OK SENSOR ").append(words[1]).append(" kind=").append(keyword_);
+    out_.append(figuresOf(sensor)).append("\n");
 }
 
 void Session::scanOfRobot(Words words) {
     const auto found = world().sensorNamed(words[1]);
     if (!found) return error(404, {unknownSensor("sensor", words[1])});
-    const RunSensor& sensor = world().sensors()[*found];
+    const Sensor& sensor = world().sensors()[*found];
     if (!sensor.isOn(subject_))
-        return error(404, {sensor.keyword(), " ", words[1],
+        return error(404, {kindOf(sensor.model).keyword, " ", words[1],
                            " is not on this robot: open another connection and take the role ",
-                           sensor.model<Laser>() != nullptr ? "LASER " : "SENSOR ", words[1]});
+                           sensor.tryAs<Laser>() != nullptr ? "LASER " : "SENSOR ", words[1]});
     ReplyForm form = defaultForm(sensor);
     form.binary = false;
     sendReading(*found, form);
@@ -147,7 +151,7 @@ void Session::streamSensor() {
     if (seq != seq_ && seq % every_ == 0 && held_.empty()) {
         ReplyForm form = form_;
         form.stream = true;
-        if (scan_ && world().sensors()[subject_].isHeavy())
+        if (scan_ && isHeavy(world().sensors()[subject_]))
             is_stale_ = true;
         else if (!coming_)
             coming_ = state_->ask(subject_, form);
@@ -186,7 +190,7 @@ void Session::stopStream(Words words) {
 void Session::binary(Words words) {
     if (words[1] != "on" && words[1] != "off")
         return error(400, {"BINARY is on or off, found ", excerpt(words[1])});
-    const RunSensor& sensor = world().sensors()[subject_];
+    const Sensor& sensor = world().sensors()[subject_];
     if (words[1] == "on" && !hasBytes(sensor))
         return error(400, {"readings of ", sensor.id, " are lines of text alone"});
     if (!sendsPendingScan(words)) return;
@@ -195,7 +199,7 @@ void Session::binary(Words words) {
 }
 
 void Session::format(Words words) {
-    const RunSensor& sensor = world().sensors()[subject_];
+    const Sensor& sensor = world().sensors()[subject_];
     const auto formats = formatsOf(sensor);
     if (formats.empty()) return error(400, {"readings of ", sensor.id, " have one format alone"});
     const auto found = std::find_if(formats.begin(), formats.end(),
@@ -205,7 +209,7 @@ void Session::format(Words words) {
         for (const FrameFormat format : formats) names.emplace_back(nameOf(format));
         const std::string hint = didYouMean(words[1], names);
         return error(400,
-                     {"a ", sensor.keyword(), " has no format ", excerpt(words[1]),
+                     {"a ", kindOf(sensor.model).keyword, " has no format ", excerpt(words[1]),
                       hint.empty() ? ", it has " : hint, hint.empty() ? joined(names, ", ") : ""});
     }
     if (*found == FrameFormat::Jpeg) {

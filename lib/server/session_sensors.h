@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Formats readings for the protocol, see ispace-protocol(7). Private to lib/server.
+// Formats readings for the protocol, see ispace-protocol(7). Private to lib/server.
 #pragma once
 
 #include <span>
@@ -30,14 +30,12 @@ struct ReplyForm {
 };
 
 /// Encodings that a sensor supports, the default first; empty if there is no choice.
-std::span<const FrameFormat> formatsOf(const RunSensor& sensor);
+std::span<const FrameFormat> formatsOf(const Sensor& sensor);
 std::string_view nameOf(FrameFormat format);
 /// True if the sensor's readings can be sent as bytes after a line.
-bool hasBytes(const RunSensor& sensor);
-/// Describes a laser to clients: " angle_min=… rate=10".
-std::string laserFigures(const Laser& laser);
-/// Describes any sensor: " kind=camera width=… rate=30".
-std::string sensorFigures(const RunSensor& sensor);
+bool hasBytes(const Sensor& sensor);
+/// Describes a sensor to clients, without its kind: " angle_min=… rate=10".
+std::string figuresOf(const Sensor& sensor);
 
 /// Appends a range: three decimals as formatFixed writes them, `-` for no return.
 void appendRange(std::string& out, float range);
@@ -46,6 +44,6 @@ void appendRange(std::string& out, float range);
 /// has bytes=N instead of r=, and N bytes of little-endian float32 follow, +inf for no return; a
 /// frame that is not binary has base64= instead of bytes=. \throws FormatError for a JPEG if
 /// OpenCV's imgcodecs cannot be loaded
-std::string scanText(const RunSensor& sensor, const SensorReading& reading, const ReplyForm& form);
+std::string scanText(const Sensor& sensor, const SensorReading& reading, const ReplyForm& form);
 
 }  // namespace ispace

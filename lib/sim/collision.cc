@@ -18,6 +18,13 @@ namespace ispace {
 
 namespace {
 
+std::vector<Box2> boxesOf(std::span<const Polygon> polygons) {
+    std::vector<Box2> boxes;
+    boxes.reserve(polygons.size());
+    for (const Polygon& polygon : polygons) boxes.push_back(bounds(polygon));
+    return boxes;
+}
+
 std::vector<Segment2> linesOf(const Slice& band) {
     std::vector<Segment2> lines;
     band.forEachLine([&](const Segment2& line) { lines.push_back(line); });
@@ -45,78 +52,128 @@ double distance(const Segment2& s, const Segment2& t) {
     return std::min({distance(s.a, t), distance(s.b, t), distance(t.a, s), distance(t.b, s)});
 }
 
-Obstacles::Obstacles(const Slice& band)
-    : solids_(band.solids),
-      index_(solids_),
-      lines_(linesOf(band)),
-      solid_owners_(band.solid_owners),
-      grid_(lines_, 0) {
+Obstacles::Part::Part(const Slice& band)
+    : solids(band.solids),
+      boxes(boxesOf(band.solids)),
+      lines(linesOf(band)),
+      solid_owners(band.solid_owners),
+      line_owners(band.sheet_owners),
+      grid(lines, 0) {
     // In the order of Slice::forEachLine.
-    line_owners_ = band.sheet_owners;
-    for (std::size_t i = 0; i < solids_.size(); ++i)
-        line_owners_.insert(line_owners_.end(), solids_[i].size(), solid_owners_[i]);
-    assert(line_owners_.size() == lines_.size());
+    for (std::size_t i = 0; i < solids.size(); ++i)
+        line_owners.insert(line_owners.end(), solids[i].size(), solid_owners[i]);
+    assert(line_owners.size() == lines.size());
 }
 
-/// Finds the owner of a line that comes nearer than `reach` to p and passes the test.
+Obstacles::Obstacles(const Slice& band) : base_(std::make_shared<const Part>(band)) {}
+
+Obstacles::Obstacles(const Environment& environment, double height, const Obstacles* before) {
+    std::optional<ElementChanges> changes;
+    if (before != nullptr && before->base_of_)
+        changes = environment.changesSince(*before->base_of_);
+    if (!changes) {
+        base_ = std::make_shared<const Part>(environment.band(0, height));
+        base_of_ = environment;
+        return;
+    }
+    base_ = before->base_;
+    base_of_ = before->base_of_;
+    if (!changes->added.empty())
+        added_ = std::make_shared<const Part>(environment.band(0, height, changes->added));
+    elements_.assign(base_of_->elements().size(), kGone);
+    auto removed = changes->removed.begin();
+    auto added = changes->added.begin();
+    for (std::size_t i = 0, now = 0; i < elements_.size(); ++i) {
+        if (removed != changes->removed.end() && *removed == i) {
+            ++removed;
+            continue;
+        }
+        for (; added != changes->added.end() && *added == now; ++added) ++now;
+        elements_[i] = now++;
+    }
+}
+
+template <typename Visit>
+void Obstacles::forEachPart(Visit visit) const {
+    visit(*base_);
+    if (added_) visit(*added_);
+}
+
+/// Calls visit(line, its element) for the lines around p, see SegmentGrid::searchFrom.
+template <typename Visit, typename Done>
+void Obstacles::search(Point2 p, Visit visit, Done done) const {
+    forEachPart([&](const Part& part) {
+        const auto visit_cell = [&](std::span<const std::uint32_t> cell) {
+            for (const std::uint32_t i : cell)
+                if (const std::size_t element = elementOf(part, part.line_owners[i]);
+                    element != kGone)
+                    visit(part.lines[i], element);
+        };
+        part.grid.searchFrom(p, visit_cell, done);
+    });
+}
+
+/// Finds the first element with a line that comes nearer than `reach` to p and passes the test.
 template <typename Test>
 std::optional<std::size_t> Obstacles::find(Point2 p, double reach, Test test) const {
-    std::optional<std::size_t> owner;
-    const auto visit = [&](std::span<const std::uint32_t> cell) {
-        for (const std::uint32_t i : cell) {
-            if (owner) return;
-            if (test(lines_[i])) owner = line_owners_[i];
-        }
+    std::size_t first = kGone;
+    const auto visit = [&](const Segment2& line, std::size_t element) {
+        if (element < first && test(line)) first = element;
     };
-    grid_.searchFrom(p, visit, [&](double seen) { return owner || seen >= reach; });
-    return owner;
+    search(p, visit, [reach](double seen) { return seen >= reach; });
+    return first == kGone ? std::nullopt : std::optional(first);
 }
 
 std::optional<std::size_t> Obstacles::overlap(Point2 center, double radius) const {
     const double allowed = radius - kTouch;
-    const auto owner = find(center, allowed,
-                            [&](const Segment2& line) { return distance(center, line) < allowed; });
-    if (owner) return owner;
-    const auto solid = index_.holder(center);
-    return solid ? std::optional(solid_owners_[*solid]) : std::nullopt;
+    if (const auto owner = find(center, allowed, [&](const Segment2& line) {
+            return distance(center, line) < allowed;
+        }))
+        return owner;
+    std::size_t first = kGone;
+    forEachPart([&](const Part& part) {
+        part.boxes.search({center, center}, [&](std::size_t i) {
+            const std::size_t element = elementOf(part, part.solid_owners[i]);
+            if (element < first && locate(part.solids[i], center) != Side::Outside) first = element;
+        });
+    });
+    return first == kGone ? std::nullopt : std::optional(first);
 }
 
 double Obstacles::nearest(Point2 p, double farthest) const {
     double nearest = farthest;
-    const auto visit = [&](std::span<const std::uint32_t> cell) {
-        for (const std::uint32_t i : cell) nearest = std::min(nearest, distance(p, lines_[i]));
+    const auto visit = [&](const Segment2& line, std::size_t) {
+        nearest = std::min(nearest, distance(p, line));
     };
-    grid_.searchFrom(p, visit, [&](double seen) { return seen >= nearest; });
+    search(p, visit, [&](double seen) { return seen >= nearest; });
     return nearest;
 }
 
 void Obstacles::findAbout(Point2 p, double reach, std::vector<Segment2>& lines) const {
-    std::vector<std::uint32_t> indices;
-    const auto visit = [&](std::span<const std::uint32_t> cell) {
-        indices.insert(indices.end(), cell.begin(), cell.end());
-    };
-    grid_.searchBox({p - Vec2{reach, reach}, p + Vec2{reach, reach}}, visit);
-    std::sort(indices.begin(), indices.end());
-    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-    for (const std::uint32_t i : indices)
-        if (squaredDistance(p, lines_[i]) <= reach * reach) lines.push_back(lines_[i]);
-}
-
-void Vicinity::find(const Obstacles& obstacles, Point2 p, double reach) {
-    constexpr double kMore = 0.4;  // metres
-    constexpr double kSlack = 1e-6;
-    middle_ = p;
-    reach_ = reach + kMore;
-    lines_.clear();
-    obstacles.findAbout(p, reach_ + kSlack, lines_);
+    forEachPart([&](const Part& part) {
+        std::vector<std::uint32_t> indices;
+        const auto visit = [&](std::span<const std::uint32_t> cell) {
+            indices.insert(indices.end(), cell.begin(), cell.end());
+        };
+        part.grid.searchBox({p - Vec2{reach, reach}, p + Vec2{reach, reach}}, visit);
+        std::sort(indices.begin(), indices.end());
+        indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+        for (const std::uint32_t i : indices)
+            if (squaredDistance(p, part.lines[i]) <= reach * reach &&
+                elementOf(part, part.line_owners[i]) != kGone)
+                lines.push_back(part.lines[i]);
+    });
 }
 
 bool Obstacles::near(const Segment2& way, double distance) const {
     const double reach = distance + ispace::distance(way.a, way.b);
-    const auto owner = find(way.a, reach, [&](const Segment2& line) {
-        return ispace::distance(way.a, line) < reach && ispace::distance(way, line) < distance;
-    });
-    return owner.has_value();
+    bool is_near = false;
+    const auto visit = [&](const Segment2& line, std::size_t) {
+        is_near = is_near ||
+                  (ispace::distance(way.a, line) < reach && ispace::distance(way, line) < distance);
+    };
+    search(way.a, visit, [&](double seen) { return is_near || seen >= reach; });
+    return is_near;
 }
 
 std::optional<std::size_t> Obstacles::stop(const Segment2& way, double radius) const {
@@ -128,6 +185,15 @@ std::optional<std::size_t> Obstacles::stop(const Segment2& way, double radius) c
         const double least = distance(way, line);
         return least < allowed && least < start;
     });
+}
+
+void Vicinity::find(const Obstacles& obstacles, Point2 p, double reach) {
+    constexpr double kMore = 0.4;  // metres
+    constexpr double kSlack = 1e-6;
+    middle_ = p;
+    reach_ = reach + kMore;
+    lines_.clear();
+    obstacles.findAbout(p, reach_ + kSlack, lines_);
 }
 
 Point2 Move::place(int part) const {
@@ -254,11 +320,17 @@ class Neighbours {
 
 }  // namespace
 
-ObstacleSets obstaclesOf(const Environment& environment, std::span<const Mover> movers) {
+ObstacleSets obstaclesOf(const Environment& environment, std::span<const Mover> movers,
+                         const ObstacleSets* before) {
     ObstacleSets sets;
     for (const Mover& mover : movers) {
         const double height = mover.model.height;
-        if (!sets.contains(height)) sets.emplace(height, Obstacles(environment.band(0, height)));
+        if (sets.contains(height)) continue;
+        const Obstacles* known = nullptr;
+        if (before != nullptr)
+            if (const auto found = before->find(height); found != before->end())
+                known = &found->second;
+        sets.emplace(height, Obstacles(environment, height, known));
     }
     return sets;
 }

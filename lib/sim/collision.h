@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "env/environment.h"
-#include "env/point_location.h"
 #include "env/slice.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
@@ -38,16 +39,20 @@ inline double squaredDistance(Point2 p, const Segment2& s) {
     return dot(apart, apart);
 }
 
-/// Stores the lines of a band in a grid and finds those that block a circle.
+/// Finds the lines of a band that block a circle, by a grid.
 /// Thread-safe.
 class Obstacles {
   public:
     /// \pre the band's pieces have owners
     explicit Obstacles(const Slice& band);
-    Obstacles(Obstacles&&) = default;  // the solids keep their addresses
+    /// Takes the band from the floor to this height.
+    /// \param before obstacles of the same height: their grid is shared if few elements changed
+    /// since
+    ///        it was built, and those stand in a second grid; may be null
+    Obstacles(const Environment& environment, double height, const Obstacles* before);
 
-    /// Returns an element of Environment::elements() with a line that a circle overlaps or a solid
-    /// that contains it.
+    /// Returns the first element of Environment::elements() with a line that a circle overlaps; if
+    /// there is none, the first with a solid that contains it.
     [[nodiscard]] std::optional<std::size_t> overlap(Point2 center, double radius) const;
     /// Returns the distance to the nearest line, at most `farthest`. Near lines cost least.
     [[nodiscard]] double nearest(Point2 p, double farthest) const;
@@ -55,20 +60,38 @@ class Obstacles {
     void findAbout(Point2 p, double reach, std::vector<Segment2>& lines) const;
     /// Returns true if the path comes nearer than `distance` to a line.
     [[nodiscard]] bool near(const Segment2& way, double distance) const;
-    /// Finds an element that stops a circle with its centre moving along the path: one that it
-    /// enters deeper than at its start, so that a circle that overlaps a line by rounding can leave
-    /// it.
+    /// Finds the first element that stops a circle with its centre moving along the path: one that
+    /// it enters deeper than at its start, so that a circle that overlaps a line by rounding can
+    /// leave it.
     [[nodiscard]] std::optional<std::size_t> stop(const Segment2& way, double radius) const;
 
   private:
+    /// A band with its indices.
+    struct Part {
+        explicit Part(const Slice& band);
+
+        std::vector<Polygon> solids;
+        BoxTree boxes;  // of the solids
+        std::vector<Segment2> lines;
+        std::vector<std::size_t> solid_owners, line_owners;
+        SegmentGrid grid;
+    };
+    static constexpr std::size_t kGone = std::numeric_limits<std::size_t>::max();
+
+    /// Returns the element that owns a piece; kGone if that has changed or was removed.
+    [[nodiscard]] std::size_t elementOf(const Part& part, std::size_t owner) const {
+        return &part == base_.get() && !elements_.empty() ? elements_[owner] : owner;
+    }
+    template <typename Visit>
+    void forEachPart(Visit visit) const;
+    template <typename Visit, typename Done>
+    void search(Point2 p, Visit visit, Done done) const;
     template <typename Test>
     [[nodiscard]] std::optional<std::size_t> find(Point2 p, double reach, Test test) const;
 
-    std::vector<Polygon> solids_;
-    PolygonIndex index_;  // of the lines
-    std::vector<Segment2> lines_;
-    std::vector<std::size_t> solid_owners_, line_owners_;
-    SegmentGrid grid_;
+    std::shared_ptr<const Part> base_, added_;  // added_ may be null
+    std::optional<Environment> base_of_;        // the environment that base_ was built of
+    std::vector<std::size_t> elements_;         // by element of that one; empty: all the same
 };
 
 /// Caches the lines around a mover: a lookup finds more lines than required and is repeated only
@@ -166,7 +189,9 @@ class Traffic {
 
 /// Maps the height of movers to their obstacles.
 using ObstacleSets = std::map<double, Obstacles>;
-ObstacleSets obstaclesOf(const Environment& environment, std::span<const Mover> movers);
+/// \param before of another environment, see Obstacles; may be null
+ObstacleSets obstaclesOf(const Environment& environment, std::span<const Mover> movers,
+                         const ObstacleSets* before = nullptr);
 
 /// \throws FormatError with all findings if a robot overlaps a body, a robot or a person. People
 /// may overlap bodies, as one on a chair does: they can only get out.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/events.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -30,7 +28,7 @@ constexpr std::size_t kKept = 16384;
 /// Sight is computed at the first step of each such interval.
 constexpr SimTime kLookEvery = std::chrono::milliseconds(100);
 
-constexpr std::array<std::string_view, kEventKinds> kNames = {
+constexpr std::array<std::string_view, kEventKinds> kEventNames = {
     "collision", "stall", "enter", "leave", "mat", "gate", "seen", "lost", "mark", "change"};
 
 bool isIn(const Box2& box, Point2 p) {
@@ -39,12 +37,12 @@ bool isIn(const Box2& box, Point2 p) {
 
 }  // namespace
 
-std::string_view nameOf(EventKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+std::string_view nameOf(EventKind kind) { return kEventNames[static_cast<std::size_t>(kind)]; }
 
 std::optional<EventKind> eventKindNamed(std::string_view name) {
-    const auto found = std::find(kNames.begin(), kNames.end(), name);
-    if (found == kNames.end()) return std::nullopt;
-    return static_cast<EventKind>(found - kNames.begin());
+    const auto found = std::find(kEventNames.begin(), kEventNames.end(), name);
+    if (found == kEventNames.end()) return std::nullopt;
+    return static_cast<EventKind>(found - kEventNames.begin());
 }
 
 EventKinds allEventKinds() {
@@ -235,11 +233,11 @@ void EventLog::Data::tellSight() {
     const std::span<const Pose2> all(poses);
     const std::size_t robots = world->robots().size();
     const WatchMoment moment{.robots = all.first(robots), .people = all.subspan(robots)};
-    std::vector<std::size_t> counts(walkers.size());
-    tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t i) {
-        const auto owner = static_cast<std::uint32_t>(i < robots ? i : kFirstPerson + (i - robots));
-        counts[i] = watch->seenBy({poses[i].position, owner}, moment);
-    });
+    std::vector<DetectionMonitor::Target> targets(walkers.size());
+    for (std::size_t i = 0; i < targets.size(); ++i)
+        targets[i] = {poses[i].position,
+                      static_cast<std::uint32_t>(i < robots ? i : kFirstPerson + (i - robots))};
+    const std::vector<std::size_t> counts = watch->seenBy(targets, moment);
     for (const EventKind kind : {EventKind::Seen, EventKind::Lost})
         for (std::size_t i = 0; i < walkers.size(); ++i) {
             const bool comes = kind == EventKind::Seen;

@@ -58,15 +58,15 @@ void add(AllReadings& all, const std::string& id, const Hearings& hearings) {
 }
 void add(AllReadings&, const std::string&, const MatState&) {}
 void add(AllReadings&, const std::string&, const GateState&) {}
+void add(AllReadings&, const std::string&, const RadarFrame&) {}
 
 AllReadings readByRun(const Scene& scene, bool noise, SimTime duration) {
     AllReadings all;
     World world(scene, std::chrono::milliseconds(100), {.seed = 7, .sensor_noise = noise});
     for (;; world.step()) {
         for (std::size_t i = 0; i < world.sensors().size(); ++i) {
-            const bool is_new = world.sensors()[i].isHeavy()
-                                    ? world.take(i).time == world.time()
-                                    : world.reading(i).time == world.time();
+            const bool is_new = isHeavy(world.sensors()[i]) ? world.take(i).time == world.time()
+                                                            : world.reading(i).time == world.time();
             if (!is_new) continue;
             std::visit([&](const auto& value) { add(all, world.sensors()[i].id, value); },
                        world.reading(i).value);

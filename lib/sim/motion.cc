@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace ispace {
 
@@ -37,7 +36,6 @@ double FrictionMap::at(Point2 p) const {
 
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
 /// Seconds: moments closer than this count as one.
 constexpr double kInstant = 1e-13;
 /// A braking distance that misses its goal by this share is exact up to rounding.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "sim/command.h"
 
 namespace ispace {
+
+/// Seconds: a time without end.
+inline constexpr double kForever = std::numeric_limits<double>::infinity();
 
 /// Maps points of the floor to friction.
 class FrictionMap {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/random.h"
 
@@ -11,7 +10,6 @@ namespace ispace {
 
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr SimTime kNever{-1};
 
 SimTime simSeconds(double seconds) {

@@ -31,7 +31,7 @@ ISPACE_INLINE double cosine(double square) {
 }
 
 /// An arc from its beginning on.
-struct MotionPlan {
+struct ArcShape {
     double half, whole;
     double chord_x, chord_y;
 };
@@ -41,7 +41,7 @@ struct Part {
     double x, y, cos, sin;
 };
 
-ISPACE_INLINE Part partOf(MotionPlan course, double share) {
+ISPACE_INLINE Part partOf(ArcShape course, double share) {
     const double angle = share * course.half, square = angle * angle;
     const double over = sineOver(square), c = cosine(square), s = angle * over;
     // The chord of an arc of this angle points half of it to the side.
@@ -60,7 +60,7 @@ struct Begin {
 // Structures are passed by value, so that the compiler knows that stores to the arrays leave them
 // unchanged.
 ISPACE_SIMD_CLONES
-void carryAlong(MotionPlan course, Begin begin, double first, double step, int count, double* x,
+void carryAlong(ArcShape course, Begin begin, double first, double step, int count, double* x,
                 double* y, double* cos, double* sin) {
     for (int k = 0; k < count; ++k) {
         const Part part = partOf(course, first + k * step);

@@ -6,17 +6,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
-#include <initializer_list>
 #include <span>
 #include <system_error>
 #include <thread>
 #include <utility>
 
 #include "base/error.h"
-#include "base/json_writer.h"
 #include "base/number.h"
 #include "raster/codec.h"
 #include "sense/formats/reading_picture.h"
@@ -208,48 +207,48 @@ void FrameFiles::cutBehind(std::int64_t step) {
 
 namespace {
 
-void appendRow(std::string& out, const std::string& t, const std::string& id,
-               std::initializer_list<double> values) {
-    out.append(t).append(",").append(id);  // a word that requires no quotes
-    for (const double value : values) {
-        out += ',';
-        appendDouble(out, value);
+/// Appends a row for each mover: time, id and numbers(its index).
+template <typename Numbers>
+void appendRows(std::string& out, SimTime time, const auto& movers, Numbers numbers) {
+    if (movers.empty()) return;
+    const std::string t = formatSimTime(time);
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+        out.append(t).append(",").append(movers[i].id);  // a word that requires no quotes
+        for (const double value : numbers(i)) {
+            out += ',';
+            appendDouble(out, value);
+        }
+        out += '\n';
     }
 }
 
 }  // namespace
 
 void appendRobotRows(std::string& out, const World& world) {
-    const std::string t = formatSimTime(world.time());
-    for (std::size_t i = 0; i < world.robots().size(); ++i) {
-        const RobotStatus status = world.status(i);
-        appendRow(
-            out, t, world.robots()[i].id,
-            {status.pose.position.x, status.pose.position.y, status.pose.heading.degrees(),
-             status.speed, status.rotspeed.degrees(), status.accel, status.rotaccel.degrees()});
-        out += status.stall ? ",1\n" : ",0\n";
-    }
+    appendRows(out, world.time(), world.robots(), [&world](std::size_t i) {
+        const RobotStatus is = world.status(i);
+        return std::array{is.pose.position.x,        is.pose.position.y,
+                          is.pose.heading.degrees(), is.speed,
+                          is.rotspeed.degrees(),     is.accel,
+                          is.rotaccel.degrees(),     is.stall ? 1.0 : 0.0};
+    });
 }
 
 void appendOdometryRows(std::string& out, const World& world) {
-    const std::string t = formatSimTime(world.time());
-    for (std::size_t i = 0; i < world.robots().size(); ++i) {
+    appendRows(out, world.time(), world.robots(), [&world](std::size_t i) {
         const Pose2 pose = world.odometry(i).pose;
-        appendRow(out, t, world.robots()[i].id,
-                  {pose.position.x, pose.position.y, pose.heading.degrees()});
-        out += '\n';
-    }
+        return std::array{pose.position.x, pose.position.y, pose.heading.degrees()};
+    });
 }
 
 void appendPeopleRows(std::string& out, const World& world) {
-    const std::string t = formatSimTime(world.time());
-    for (std::size_t i = 0; i < world.people().size(); ++i) {
-        const RobotStatus status = world.status(world.robots().size() + i);
-        appendRow(out, t, world.people()[i].id,
-                  {status.pose.position.x, status.pose.position.y, status.pose.heading.degrees(),
-                   status.speed, status.rotspeed.degrees(), status.phase, status.sidespeed});
-        out += status.stall ? ",1\n" : ",0\n";
-    }
+    const std::size_t robots = world.robots().size();
+    appendRows(out, world.time(), world.people(), [&world, robots](std::size_t i) {
+        const RobotStatus is = world.status(robots + i);
+        return std::array{is.pose.position.x, is.pose.position.y,    is.pose.heading.degrees(),
+                          is.speed,           is.rotspeed.degrees(), is.phase,
+                          is.sidespeed,       is.stall ? 1.0 : 0.0};
+    });
 }
 
 void appendSonarRows(std::string& out, World& world) {
@@ -271,6 +270,9 @@ void appendBumperRows(std::string& out, const World& world, std::vector<std::vec
     felt.resize(world.robots().size());
     for (std::size_t i = 0; i < felt.size(); ++i) {
         if (world.robots()[i].model.bumpers.empty()) continue;
+        // All are released while the robot is free: most robots in most steps.
+        const bool was_hit = std::find(felt[i].begin(), felt[i].end(), true) != felt[i].end();
+        if (!felt[i].empty() && !was_hit && !world.isStalled(i)) continue;
         std::vector<bool> now = world.bumper(i);
         if (now == felt[i]) continue;
         out.append(formatSimTime(world.time())).append(",").append(world.robots()[i].id);
@@ -284,67 +286,9 @@ void appendBumperRows(std::string& out, const World& world, std::vector<std::vec
     }
 }
 
-namespace {
-
-/// Writes lines by kind.
-struct LineWriter {
-    std::string& out;
-    const RunSensor& sensor;
-    const SensorReading& reading;
-    std::span<const Sensor> receivers;
-    const std::string& file;
-
-    void operator()(const Hearings& hearings) const {
-        JsonWriter json = begin();
-        json.key("tags").beginArray();
-        for (const HeardTag& heard : hearings.tags) {
-            json.beginObject().key("tag").value(heard.tag);
-            json.key("time_of_flight")
-                .value(heard.time_of_flight ? std::optional(roundSignificant(*heard.time_of_flight))
-                                            : std::nullopt);
-            json.endObject();
-        }
-        json.endArray();
-        end(json);
-    }
-    void operator()(const MatState& mat) const {
-        JsonWriter json = begin();
-        json.key("on").beginArray();
-        for (const std::string& id : mat.on) json.value(id);
-        json.endArray();
-        end(json);
-    }
-    void operator()(const GateState& gate) const {
-        JsonWriter json = begin();
-        json.key("in").value(gate.in).key("out").value(gate.out);
-        json.key("last");
-        gate.last.empty() ? json.null() : json.value(gate.last);
-        json.key("way");
-        gate.last.empty() ? json.null() : json.value(gate.last_in ? "in" : "out");
-        json.key("broken").value(gate.broken);
-        end(json);
-    }
-    template <typename One>
-    void operator()(const One& one) const {
-        appendLine(out, viewOf(*sensor.sensor(), one, receivers), file);
-    }
-
-  private:
-    [[nodiscard]] JsonWriter begin() const {
-        JsonWriter json;
-        json.beginObject().key("sensor").value(sensor.id);
-        json.key("t").value(seconds(reading.time)).key("frame").value(reading.seq);
-        addPose(json, reading.pose);
-        return json;
-    }
-    void end(JsonWriter& json) const { out.append(json.endObject().text()).append("\n"); }
-};
-
-}  // namespace
-
-void appendReadingLine(std::string& out, const RunSensor& sensor, const SensorReading& reading,
+void appendReadingLine(std::string& out, const Sensor& sensor, const SensorReading& reading,
                        std::span<const Sensor> receivers, const std::string& file) {
-    std::visit(LineWriter{out, sensor, reading, receivers, file}, reading.value);
+    appendLine(out, viewOf(sensor, reading, receivers), file);
 }
 
 std::string frameName(const std::string& id, std::int64_t seq, std::string_view ending) {
@@ -362,13 +306,13 @@ std::string frameName(const std::string& id, std::int64_t seq, std::string_view 
     return name.append(number).append(ending);
 }
 
-std::string frameBytes(const RunSensor& sensor, const SensorReading& reading) {
+std::string frameBytes(const Sensor& sensor, const SensorReading& reading) {
     constexpr double kMillimetres = 1000;
     if (const auto* photo = std::get_if<Photo>(&reading.value)) {
-        const Camera& camera = *sensor.model<Camera>();
+        const Camera& camera = *sensor.tryAs<Camera>();
         return pngOfRgb(camera.columns, camera.rows, photo->rgb);
     }
-    const Ranger& ranger = *sensor.model<Ranger>();
+    const Ranger& ranger = *sensor.tryAs<Ranger>();
     return depthPng(ranger.columns, ranger.rows, std::get<DepthFrame>(reading.value).depths,
                     kMillimetres);
 }

@@ -43,6 +43,10 @@ class LineFile {
     /// After an error the file is not written any more and each call throws that error again: lines
     /// after a gap would pass for the whole. \throws std::system_error
     void flush();
+    /// Likewise, if more than `size` bytes are pending.
+    void flushBlock(std::size_t size) {
+        if (pending.size() > size) flush();
+    }
 
     [[nodiscard]] std::uint64_t size() const { return static_cast<std::uint64_t>(size_); }
 
@@ -131,13 +135,13 @@ void appendBumperRows(std::string& out, const World& world, std::vector<std::vec
 
 /// Writes a reading as a line of JSON, as `scan` does. A frame with its own file has "file" instead
 /// of its pixels.
-void appendReadingLine(std::string& out, const RunSensor& sensor, const SensorReading& reading,
+void appendReadingLine(std::string& out, const Sensor& sensor, const SensorReading& reading,
                        std::span<const Sensor> receivers, const std::string& file = "");
 
 /// Returns the name of a frame's file: the sensor's id and the number of the period.
 std::string frameName(const std::string& id, std::int64_t seq, std::string_view ending = ".png");
 /// Converts a frame to PNG: of a ranger 16-bit grey in millimetres, 0 for no return. \pre the
 /// reading is heavy
-std::string frameBytes(const RunSensor& sensor, const SensorReading& reading);
+std::string frameBytes(const Sensor& sensor, const SensorReading& reading);
 
 }  // namespace ispace

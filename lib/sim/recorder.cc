@@ -24,7 +24,9 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr auto kFlushEvery = std::chrono::milliseconds(100);
-constexpr std::size_t kMaxPending = std::size_t{1} << 20;  // bytes of a file
+/// Bytes of a file written at once, while they are in the processor's cache, and of all files until
+/// the next flush.
+constexpr std::size_t kWriteBlock = std::size_t{1} << 17, kMaxUnflushed = std::size_t{1} << 20;
 
 /// Growing files in the order of Recorder::growingFilesIn, then the others.
 enum File {
@@ -40,7 +42,7 @@ enum File {
     kScene,
     kFiles
 };
-constexpr std::array<const char*, kFiles> kNames = {
+constexpr std::array<const char*, kFiles> kFileNames = {
     "robots.csv",  "odometry.csv", "people.csv", "scans.jsonl", "sonars.csv",
     "bumpers.csv", "events.csv",   "timing.csv", "info.csv",    "scene.env"};
 constexpr const char *kPictures = "pictures", *kDepths = "depths", *kScenes = "scenes";
@@ -57,8 +59,8 @@ std::int64_t strideOf(double rate, double most) {
 
 /// A frame of the step, written once all before it are made.
 struct Frame {
-    explicit Frame(const RunSensor& the_sensor)
-        : sensor(the_sensor), is_picture(the_sensor.model<Camera>() != nullptr) {}
+    explicit Frame(const Sensor& the_sensor)
+        : sensor(the_sensor), is_picture(the_sensor.tryAs<Camera>() != nullptr) {}
 
     /// Builds file and line of a reading. Call it in any thread.
     void make(const SensorReading& reading) {
@@ -78,7 +80,7 @@ struct Frame {
         }
     }
 
-    RunSensor sensor;
+    Sensor sensor;
     bool is_picture, is_made = false;
     std::string name, bytes, line;  // "": it is skipped
 };
@@ -91,16 +93,16 @@ struct Recorder::Data {
           events_log(log),
           folder(name),
           lock(madeFolder(folder)),
-          robots(pathIn(folder, kNames[kRobots])),
-          odometry(pathIn(folder, kNames[kOdometry])),
-          people(pathIn(folder, kNames[kPeople])),
-          scans(pathIn(folder, kNames[kScans])),
-          sonars(pathIn(folder, kNames[kSonars])),
-          bumpers(pathIn(folder, kNames[kBumpers])),
-          events(pathIn(folder, kNames[kEvents])),
-          timing(pathIn(folder, kNames[kTiming])),
-          info(pathIn(folder, kNames[kInfo])),
-          scene(pathIn(folder, kNames[kScene])),
+          robots(pathIn(folder, kFileNames[kRobots])),
+          odometry(pathIn(folder, kFileNames[kOdometry])),
+          people(pathIn(folder, kFileNames[kPeople])),
+          scans(pathIn(folder, kFileNames[kScans])),
+          sonars(pathIn(folder, kFileNames[kSonars])),
+          bumpers(pathIn(folder, kFileNames[kBumpers])),
+          events(pathIn(folder, kFileNames[kEvents])),
+          timing(pathIn(folder, kFileNames[kTiming])),
+          info(pathIn(folder, kFileNames[kInfo])),
+          scene(pathIn(folder, kFileNames[kScene])),
           pictures(pathIn(folder, kPictures)),
           depths(pathIn(folder, kDepths)),
           scenes(pathIn(folder, kScenes), ".env") {
@@ -119,6 +121,7 @@ struct Recorder::Data {
     SimTime time{}, step_length{}, control_interval{};
     std::int64_t steps = 0;
     bool flushed_all = false;  // no record() call since the last flush
+    std::uint64_t flushed_size = 0;
     std::exception_ptr ended;  // the error that ended the record early
     std::int64_t next_event = 0;
     // Of the world's sensors, rebuilt after a change.
@@ -186,9 +189,9 @@ void Recorder::Data::lookAtSensors(const World& world) {
     if (std::exchange(changes, world.changes()) == world.changes()) return;
     receivers.clear();
     strides.clear();
-    for (const RunSensor& sensor : world.sensors()) {
-        if (sensor.model<Receiver>() != nullptr) receivers.push_back(*sensor.sensor());
-        strides.push_back(sensor.isHeavy() ? strideOf(sensor.rate(), options.frame_rate) : 0);
+    for (const Sensor& sensor : world.sensors()) {
+        if (sensor.tryAs<Receiver>() != nullptr) receivers.push_back(sensor);
+        strides.push_back(isHeavy(sensor) ? strideOf(periodRate(sensor), options.frame_rate) : 0);
     }
     periods.assign(strides.size(), -1);
     has_sonars = false;
@@ -229,11 +232,11 @@ bool Recorder::Data::appendScans(World& world, steady_clock::time_point until) {
     if (!world.readSome(until)) return false;
     while (next_reading < world.read().size()) {
         const std::size_t i = world.read()[next_reading++];
-        const RunSensor& sensor = world.sensors()[i];
-        if (sensor.isHeavy()) continue;
+        const Sensor& sensor = world.sensors()[i];
+        if (isHeavy(sensor)) continue;
         appendReadingLine(scans.pending, sensor, world.reading(i), receivers);
         // Bounds the memory for one step of many lasers.
-        if (scans.pending.size() > kMaxPending) scans.flush();
+        scans.flushBlock(kWriteBlock);
         if (steady_clock::now() >= until) break;
     }
     return next_reading >= world.read().size();
@@ -302,7 +305,7 @@ void Recorder::Data::writeInfo() {
 
 std::uint64_t Recorder::Data::size() const {
     return robots.size() + odometry.size() + people.size() + scans.size() + sonars.size() +
-           bumpers.size() + events.size() + pictures.size() + depths.size();
+           bumpers.size() + events.size() + pictures.size() + depths.size() + scenes.size();
 }
 
 void Recorder::Data::writeLines() {
@@ -320,7 +323,8 @@ void Recorder::Data::writeLines() {
     timing.pending.append(",").append(std::to_string(steps)).append("\n");
     timing.flush();
     flushed_all = true;
-    if (const std::uint64_t bytes = size(); bytes > options.max_bytes)
+    flushed_size = size();
+    if (const std::uint64_t bytes = flushed_size; bytes > options.max_bytes)
         throw FormatError({folder, 0, 0,
                            "the record has " + std::to_string(bytes) +
                                " bytes at t=" + formatSimTime(time) + ", wanted at most " +
@@ -359,13 +363,14 @@ void Recorder::Data::flush() {
 std::vector<std::string> Recorder::growingFilesIn(const std::string& folder) {
     std::vector<std::string> files;
     files.reserve(kInfo);
-    for (int i = 0; i < kInfo; ++i) files.push_back(pathIn(folder, kNames[static_cast<File>(i)]));
+    for (int i = 0; i < kInfo; ++i)
+        files.push_back(pathIn(folder, kFileNames[static_cast<File>(i)]));
     return files;
 }
 
 std::vector<std::string> Recorder::filesIn(const std::string& folder) {
     std::vector<std::string> files = growingFilesIn(folder);
-    for (const File file : {kInfo, kScene}) files.push_back(pathIn(folder, kNames[file]));
+    for (const File file : {kInfo, kScene}) files.push_back(pathIn(folder, kFileNames[file]));
     return files;
 }
 
@@ -394,12 +399,12 @@ void Recorder::record(World& world) {
     try {
         data.append(world);
         if (!data.options.frame_taker) data.finishStep(world, steady_clock::time_point::max());
+        for (LineFile* file : data.stepFiles()) file->flushBlock(kWriteBlock);
     } catch (const std::system_error&) {
         data.endEarly();
         throw;
     }
-    const bool much =
-        std::max(data.robots.pending.size(), data.people.pending.size()) > kMaxPending;
+    const bool much = data.size() > data.flushed_size + kMaxUnflushed;
     if (much || steady_clock::now() - data.flushed >= kFlushEvery) data.flush();
 }
 
@@ -424,12 +429,12 @@ void Recorder::end(World& world) {
     flush(world);
 }
 
-std::string Recorder::recordScene(const Scene& scene) {
+std::string Recorder::recordScene(std::string_view text) {
     Data& data = *data_;
-    if (data.ended || !data.options.scene_text) return "";
+    if (data.ended) return "";
     const std::string name = frameName("scene", ++data.scene_count, ".env");
     try {
-        data.scenes.write(name, data.options.scene_text(scene), data.steps);
+        data.scenes.write(name, text, data.steps);
     } catch (const std::system_error&) {
         data.endEarly();
         return "";

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/message.h"
@@ -32,7 +33,8 @@ struct RecordOptions {
     History history = {};
     std::uint64_t seed = 0;
     std::string scene = {};  ///< the content of scene.env
-    /// Writes a scene to a file in the folder `scenes` of the record; null: see recordScene().
+    /// Formats a scene for a file in the folder `scenes` of the record, in any thread; null: the
+    /// record has no such files.
     std::function<std::string(const Scene&)> scene_text = {};
     bool odometry = false;  ///< write odometry.csv: it differs from the true poses
     bool noise = false;     ///< of the sensors, from the seed; for info.csv
@@ -98,9 +100,9 @@ class Recorder {
     /// Ends the record: skips frames that are still being taken, with their lines.
     /// \throws as flush()
     void end(World& world);
-    /// Writes a scene after a change whose request names files. \returns its file within the
-    /// folder; "" without scene_text, or if it cannot be written: record() then throws
-    std::string recordScene(const Scene& scene);
+    /// Writes the scene_text after a change whose request names files. \returns its file within the
+    /// folder; "" if it cannot be written: record() then throws
+    std::string recordScene(std::string_view text);
     /// Writes pending lines. \throws std::system_error, also for a full disk
     void flush(const World& world);
     /// Returns the descriptor that holds the lock, or -1 on a file system without locks: a process

@@ -105,8 +105,7 @@ TEST_F(RecorderTest, WritesScansAsScanDoes) {
     std::string expected = scanHeaderLine({"simrun \"room\".env"}, 7);
     const auto append = [&] {
         for (const std::size_t laser : world.read())
-            appendLine(expected,
-                       viewOf(*world.sensors()[laser].sensor(), world.reading(laser).scan()));
+            appendLine(expected, viewOf(world.sensors()[laser], world.reading(laser).scan()));
     };
     append();
     EXPECT_EQ(text("run/scans.jsonl"), expected) << "time 0 is there from the start";
@@ -315,6 +314,16 @@ TEST_F(RecorderTest, EndsTheRunAtItsLimit) {
     EXPECT_LT(lines.size(), 3'000'000U) << "a flush beyond";
     EXPECT_TRUE(lines.ends_with('\n'));
     EXPECT_EQ(linesOf(lines), 1 + 2 * (world.steps() + 1)) << "those of the last step, too";
+}
+
+TEST_F(RecorderTest, ScenesCountForTheLimit) {
+    const Scene scene = testing::scene(kRoom, kRobots);
+    World world(scene, milliseconds(5));
+    Recorder recorder(path("run"), world, {.max_bytes = 100'000});
+    EXPECT_EQ(recorder.recordScene(std::string(60'000, ' ')), "scenes/scene-000001.env");
+    EXPECT_NO_THROW(recorder.flush(world));
+    EXPECT_EQ(recorder.recordScene(std::string(60'000, ' ')), "scenes/scene-000002.env");
+    EXPECT_THROW(recorder.flush(world), FormatError);
 }
 
 }  // namespace

@@ -217,10 +217,10 @@ bool Replay::seekSome(World& world, SimTime time, std::chrono::steady_clock::tim
     // Every sensor is read once in its turn before that time; the first scan of a spinning laser
     // after it may lack its beginning, and the next one is late.
     double settle = 0;
-    for (const RunSensor& sensor : world.sensors()) {
-        const auto* laser = sensor.model<Laser>();
+    for (const Sensor& sensor : world.sensors()) {
+        const auto* laser = sensor.tryAs<Laser>();
         const int periods = laser != nullptr && laser->duration() > 0 ? 4 : 1;
-        settle = std::max(settle, periods * (1 / sensor.rate() + 2 * seconds(step_)));
+        settle = std::max(settle, periods * (1 / periodRate(sensor) + 2 * seconds(step_)));
     }
     if (time < world.time()) return false;
     while (world.time() + step_ <= time) {

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "geom/predicates.h"
 #include "scene/bodies.h"
 #include "sense/selection.h"
 #include "sim/collision.h"
+#include "sim/sonar_vicinity.h"
 
 namespace ispace {
 
@@ -23,42 +23,137 @@ constexpr double kSonarHeight = 0.75;
 /// Lower surfaces are the floor.
 constexpr double kFloor = 1e-3;
 
-/// Returns unit vectors within a cone about the heading.
-Directions coneOf(Angle heading, Angle fov) {
-    const Frame3 frame(Pose3{{}, heading, {}, {}});
-    Directions rays;
-    rays.resize(kSonarRays);
-    rays.set(0, frame.forward);
+using Cone = std::array<Vec3, kSonarRays>;
+
+/// Computes unit vectors within a cone about x.
+Cone coneOf(Angle fov) {
+    // Of all cones: the direction off the axis, in the plane across it.
+    static const Cone kAround = [] {
+        Cone rays{};
+        std::size_t next = 1;
+        for (int circle = 1; circle <= kCircles; ++circle)
+            for (int k = 0; k < kInFirst * circle; ++k) {
+                const double around = 2 * std::numbers::pi * k / (kInFirst * circle);
+                rays[next++] = {0, std::cos(around), std::sin(around)};
+            }
+        return rays;
+    }();
+    Cone rays;
+    rays[0] = {1, 0, 0};
     std::size_t next = 1;
     for (int circle = 1; circle <= kCircles; ++circle) {
-        const Angle off = (0.5 * circle / kCircles) * fov;
-        const int count = kInFirst * circle;
-        for (int k = 0; k < count; ++k) {
-            const double around = 2 * std::numbers::pi * k / count;
-            rays.set(next++, frame * Vec3{cos(off), sin(off) * std::cos(around),
-                                          sin(off) * std::sin(around)});
-        }
+        const auto [c, s] = cosSin((0.5 * circle / kCircles) * fov);
+        for (int k = 0; k < kInFirst * circle; ++k, ++next)
+            rays[next] = {c, s * kAround[next].y, s * kAround[next].z};
     }
     return rays;
 }
 
+/// A sonar's cone as seen from above, in a triangle.
+struct Sector {
+    Point2 origin;
+    CosSin axis, half;
+    double range = 0;
+
+    /// Returns true if the ends lie beyond the same edge, or the triangle on one side of the line,
+    /// by more than the margin.
+    [[nodiscard]] bool misses(const Segment2& line, double margin = kEchoSlack) const {
+        const Vec2 a = local(line.a), b = local(line.b), along = b - a;
+        const Vec2 corner{range, range * half.sin / half.cos};
+        const double apart = margin * length(along);
+        const double apex = cross(along, Vec2{} - a), left = cross(along, corner - a),
+                     right = cross(along, Vec2{corner.x, -corner.y} - a);
+        return (misses(a, margin) & misses(b, margin)) != 0 ||
+               std::min({apex, left, right}) > apart || std::max({apex, left, right}) < -apart;
+    }
+    [[nodiscard]] bool misses(Point2 middle, double radius) const {
+        return misses(local(middle), radius + kEchoSlack) != 0;
+    }
+
+  private:
+    [[nodiscard]] Vec2 local(Point2 p) const {
+        const Vec2 way = p - origin;
+        return {way.x * axis.cos + way.y * axis.sin, way.y * axis.cos - way.x * axis.sin};
+    }
+    /// Returns a bit for each edge that the point lies beyond.
+    [[nodiscard]] unsigned misses(Vec2 p, double apart) const {
+        const double up = p.y * half.cos, ahead = p.x * half.sin;
+        return (p.x < -apart ? 1U : 0U) | (p.x > range + apart ? 2U : 0U) |
+               (up - ahead > apart ? 4U : 0U) | (-up - ahead > apart ? 8U : 0U);
+    }
+};
+
 }  // namespace
+
+double sonarTop(const RobotModel& model) {
+    const Angle half = std::min(0.5 * model.sonar.fov, Angle::degrees(90));
+    return kSonarHeight * model.height + model.sonar.max_range * sin(half) + kEchoSlack;
+}
+
+Slice echoBand(const Environment& environment, double top) {
+    Slice band = environment.band(0, top);
+    for (std::size_t i = 0; i < environment.elements().size(); ++i)
+        for (const Plate& plate : environment.elements()[i].body.plates) {
+            if (plate.visual_only || plate.z <= 0 || plate.z > top) continue;
+            band.solids.push_back(plate.outline);
+            band.solid_owners.push_back(i);
+        }
+    return band;
+}
+
+double sonarReach(const RobotModel& model) {
+    double offset = 0;
+    for (const Pose2& place : model.sonar.places)
+        offset = std::max(offset, distance(place.position, Point2()));
+    return model.sonar.max_range + offset;
+}
 
 std::vector<float> sonarRanges(const RobotModel& model, const Pose2& pose,
                                const RayWorld& environment, const MovingBodies& bodies,
                                std::uint32_t own) {
+    return sonarRangesNear(nullptr, model, pose, environment, bodies, own);
+}
+
+std::vector<float> sonarRangesNear(const SonarVicinity* vicinity, const RobotModel& model,
+                                   const Pose2& pose, const RayWorld& environment,
+                                   const MovingBodies& bodies, std::uint32_t own) {
     const SonarRing& ring = model.sonar;
     std::vector<float> ranges;
+    if (ring.places.empty()) return ranges;
+    const Cone local = coneOf(ring.fov);
+    // The triangles of wider cones are too large.
+    if (ring.fov > Angle::degrees(150)) vicinity = nullptr;
+    const CosSin half = cosSin(0.5 * ring.fov);
     std::vector<float> cone(kSonarRays);
+    Directions rays;
+    rays.resize(kSonarRays);
     for (const Pose2& place : ring.places) {
         const Point2 at = pose * place.position;
         const Point3 origin{at.x, at.y, kSonarHeight * model.height};
-        const Directions rays = coneOf(pose.heading + place.heading, ring.fov);
-        environment.cast(origin, rays, ring.max_range, cone);
+        const Angle heading = pose.heading + place.heading;
+        bool has_lines = true, has_bodies = true;
+        if (vicinity != nullptr) {
+            const Sector sector{at, cosSin(heading), half, ring.max_range};
+            has_lines = vicinity->is_within_solid ||
+                        std::any_of(vicinity->lines.begin(), vicinity->lines.end(),
+                                    [&](const Segment2& line) { return !sector.misses(line); });
+            has_bodies = std::any_of(
+                vicinity->bodies.begin(), vicinity->bodies.end(),
+                [&](const auto& body) { return !sector.misses(body.first, body.second); });
+        }
+        if (!has_lines && !has_bodies) {
+            ranges.push_back(kNoReturn);
+            continue;
+        }
+        const Frame3 frame(Pose3{{}, heading, {}, {}});
+        for (std::size_t i = 0; i < kSonarRays; ++i) rays.set(i, frame * local[i]);
+        if (has_lines)
+            environment.cast(origin, rays, ring.max_range, cone);
+        else
+            std::fill(cone.begin(), cone.end(), kNoReturn);
         for (std::size_t i = 0; i < kSonarRays; ++i)
-            if (origin.z + static_cast<double>(cone[i]) * rays.z[i] < kFloor)
-                cone[i] = std::numeric_limits<float>::infinity();
-        bodies.shorten(origin, rays, ring.max_range, own, cone);
+            if (origin.z + static_cast<double>(cone[i]) * rays.z[i] < kFloor) cone[i] = kNoReturn;
+        if (has_bodies) bodies.shorten(origin, rays, ring.max_range, own, cone);
         const float nearest = *std::min_element(cone.begin(), cone.end());
         ranges.push_back(std::max(nearest, static_cast<float>(ring.min_range)));
     }
@@ -142,10 +237,6 @@ bool standsIn(const MovingBody& body, const Gate& gate) {
 
 }  // namespace
 
-Segment2 Gate::beam() const {
-    return {pose * Point2{0, half_width}, pose * Point2{0, -half_width}};
-}
-
 std::vector<MoverShape> moverShapes(const Scene& scene) {
     std::vector<MoverShape> shapes;
     for (const PlacedRobot& robot : scene.robots) {
@@ -168,12 +259,12 @@ FloorSensors::FloorSensors(const Scene& scene) : movers_(moverShapes(scene)) {
         const Record& record = scene.records[placed.record];
         const Pose2 pose{placed.pose.position.onFloor(), placed.pose.heading};
         if (record.keyword() == "mat") {
-            const Tuple& size = record.tuple("size");
-            mats_.push_back({pose, size[0] / 2, size[1] / 2, record.number("rate")});
+            mats_.push_back(matOf(record));
+            mats_.back().pose = pose;
             mat_ids_.push_back(scene.ids[placed.record]);
         } else if (record.keyword() == "gate") {
-            gates_.push_back(
-                {pose, record.number("width") / 2, record.number("height"), record.number("rate")});
+            gates_.push_back(gateOf(record));
+            gates_.back().pose = pose;
             gate_ids_.push_back(scene.ids[placed.record]);
         }
     }

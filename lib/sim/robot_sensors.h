@@ -14,6 +14,7 @@
 #include "geom/pose.h"
 #include "scene/robot.h"
 #include "scene/scene.h"
+#include "sense/reading.h"
 #include "sim/motion.h"
 #include "trace/moving_bodies.h"
 #include "trace/ray_world.h"
@@ -42,38 +43,6 @@ std::vector<bool> pressedBumpers(
 struct Movers {
     std::span<const Motion> robots, people;
     std::span<const Angle> swings;  ///< of the people's limbs, see humanParts
-};
-
-/// A pressure mat on the floor.
-struct Mat {
-    Pose2 pose;
-    double half_length = 0, half_width = 0;
-    double rate = 10;  ///< readings per second
-};
-
-/// A light gate: a level beam between two posts.
-struct Gate {
-    Pose2 pose;  ///< of the middle; `in` is the direction of the heading
-    double half_width = 0;
-    double height = 0;  ///< of the beam: lower movers pass below it
-    double rate = 10;
-
-    /// Returns the posts, the left one first.
-    [[nodiscard]] Segment2 beam() const;
-};
-
-/// Movers on a mat: people with a leg on it, robots with the body over it; edges count.
-struct MatState {
-    std::vector<std::string> on;  ///< robots first, in the order of the scene
-};
-
-/// Passages of a gate since the start. A mover passes when its centre crosses the line between the
-/// posts.
-struct GateState {
-    std::int64_t in = 0, out = 0;
-    std::string last;  ///< mover that passed last; "" before the first
-    bool last_in = false;
-    bool broken = false;  ///< a mover interrupts the beam
 };
 
 /// A passage of a gate by a robot or person in the last step.

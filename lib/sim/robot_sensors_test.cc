@@ -67,6 +67,38 @@ TEST(Sonar, HearsGlass) {
     }
 }
 
+/// Rays are cast only for sonars that point at a surface or a body.
+TEST(Sonar, AllAtOnceReadAsOneByOne) {
+    std::string lines =
+        "cube at=3,2 size=0.5,0.8,0.1\ncube at=-3,-2 heading=30 size=1,0.1,2\n"
+        "table at=-1,2\ndesk at=2,-3 heading=20\npillar at=5,5 kind=round size=0.4,0.4,3\n"
+        "wall from=-6,3 to=-4,5 height=0.3\nchair at=0,-4 heading=70\n";
+    const std::string ring =
+        " sonar=0.1,0.1,90;0.2,0.1,50;0.2,0,10;0.2,0,-10;0.2,-0.1,-50;-0.1,-0.1,-90;-0.2,0,-150;"
+        "-0.2,0,180";
+    for (int i = 0; i < 12; ++i) {
+        const std::string at = std::to_string(i % 4 * 3 - 5) + "," + std::to_string(i / 4 * 4 - 5);
+        lines += "robot id=r" + std::to_string(i) + " at=" + at +
+                 ".4 walk=wander heading=" + std::to_string(i * 77) + ring +
+                 (i % 3 == 0 ? " sonar_fov=60" : "") +
+                 (i % 5 == 0 ? " height=0.6 sonar_range=0.2,9\n" : "\n");
+    }
+    lines += "human id=h1 at=0.5,0.2 walk=wander\nhuman id=h2 at=-5,-3 walk=wander\n";
+    const Scene room = scene("ispace size=16,16\n" + lines);
+    World world(room, milliseconds(100));
+    std::size_t echoes = 0, silent = 0;
+    for (int step = 0; step < 300; ++step) {
+        const std::vector<std::vector<float>> all = world.sonars();
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            ASSERT_EQ(all[i], world.sonar(i)) << world.robots()[i].id << " in step " << step;
+            for (const float range : all[i]) ++(std::isinf(range) ? silent : echoes);
+        }
+        world.step();
+    }
+    EXPECT_GT(echoes, 1000U);
+    EXPECT_GT(silent, 1000U);
+}
+
 /// Front, left, back and right, a quarter each.
 constexpr const char* kBumpers = " bumpers=-45,45;45,135;135,225;225,315\n";
 
@@ -104,6 +136,22 @@ TEST(Bumper, IsReleasedByTheNextMotion) {
     EXPECT_TRUE(world.bumper(0)[0]);
     world.command(0, {Verb::Backward, 0.5});
     EXPECT_FALSE(world.bumper(0)[0]);
+}
+
+TEST(Bumper, IsReleasedWhenTheOtherGoes) {
+    const Scene room =
+        scene(kRoom, std::string("robot id=r1 at=-2,0") + kBumpers + "robot id=r2 at=0,0\n");
+    World world(room, milliseconds(10));
+    world.command(0, {Verb::Forward, 5});
+    for (int i = 0; i < 1000 && !world.isStalled(0); ++i) world.step();
+    const std::vector<bool> front{true, false, false, false};
+    EXPECT_EQ(world.bumper(0), front);
+    world.step();
+    EXPECT_EQ(world.bumper(0), front) << "as before";
+    world.command(1, {Verb::Forward, 1});
+    for (int i = 0; i < 200; ++i) world.step();
+    EXPECT_EQ(world.bumper(0), std::vector<bool>(4));
+    EXPECT_TRUE(world.isStalled(0));
 }
 
 TEST(RobotRecord, PartsOfTheRimAndRangesAreChecked) {

@@ -35,20 +35,23 @@ RunLoad loadOf(const Scene& scene, SimTime step, const RecordOptions* record) {
     load.records = static_cast<double>(scene.records.size());
     double recorded_pixels = 0, tags = 0, receivers = 0, sound_rate = 0;
     for (const Sensor& sensor : scene.sensors) {
-        const RunSensor run{sensor.id, sensor};
+        const double rate = periodRate(sensor);
         if (const auto* const laser = std::get_if<Laser>(&sensor.model)) {
             const auto beams = static_cast<double>(laser->beams);
             load.beams += beams;
-            load.beam_rate += beams * run.rate();
+            load.beam_rate += beams * rate;
         } else if (sensor.is<Tag>() || sensor.is<Receiver>()) {
             ++(sensor.is<Tag>() ? tags : receivers);
-            sound_rate = std::max(sound_rate, run.rate());
-        } else if (run.isHeavy()) {
-            const double pixels = pixelsOf(run);
+            sound_rate = std::max(sound_rate, rate);
+        } else if (isHeavy(sensor)) {
+            const double pixels = pixelsOf(sensor);
             load.pixels += pixels;
-            load.pixel_rate += pixels * run.rate();
-            if (record != nullptr)
-                recorded_pixels += pixels * std::min(run.rate(), record->frame_rate);
+            load.pixel_rate += pixels * rate;
+            if (record != nullptr) recorded_pixels += pixels * std::min(rate, record->frame_rate);
+        } else {
+            const auto rays = static_cast<double>(rayCount(sensor.model));
+            load.beams += rays;
+            load.beam_rate += rays * rate;
         }
     }
     double echoes = 0;
@@ -65,12 +68,12 @@ RunLoad loadOf(const Scene& scene, SimTime step, const RecordOptions* record) {
     return load;
 }
 
-double pixelsOf(const RunSensor& sensor) {
+double pixelsOf(const Sensor& sensor) {
     const auto size = [](const auto& model) {
         return static_cast<double>(model.columns) * static_cast<double>(model.rows);
     };
-    if (const auto* const camera = sensor.model<Camera>()) return size(*camera);
-    const auto* const ranger = sensor.model<Ranger>();
+    if (const auto* const camera = sensor.tryAs<Camera>()) return size(*camera);
+    const auto* const ranger = sensor.tryAs<Ranger>();
     return ranger == nullptr ? 0 : size(*ranger);
 }
 

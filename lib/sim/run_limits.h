@@ -36,7 +36,7 @@ class OverLimit : public FormatError {
 void checkLoad(const RunLoad& before, const RunLoad& after);
 
 /// Returns the pixels of one frame of a camera or a ranger; 0 for other sensors.
-double pixelsOf(const RunSensor& sensor);
+double pixelsOf(const Sensor& sensor);
 
 /// Limit of pixels of pictures and depth frames that all clients together may have pending.
 constexpr double kMaxWaitingPixels = 64e6;

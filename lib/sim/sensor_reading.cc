@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/sensor/sensor.h"
+#include "sense/formats/reading_fields.h"
 
 namespace ispace {
 
 namespace {
 
-constexpr __int128 kSecond = 1'000'000'000;
+constexpr __int128 kUnitsPerSecond = 1'000'000'000;
 
 }  // namespace
 
@@ -22,14 +22,14 @@ Periods::Periods(double rate) {
     const auto decimal = static_cast<std::int64_t>(std::llround(rate * kDecimals));
     if (static_cast<double>(decimal) / kDecimals == rate) {
         numerator_ = decimal;
-        denominator_ = kSecond * kSecond;
+        denominator_ = kUnitsPerSecond * kUnitsPerSecond;
         return;
     }
     int exponent = 0;
     const double mantissa = std::frexp(rate, &exponent);
     constexpr int kBits = std::numeric_limits<double>::digits;
     numerator_ = static_cast<std::int64_t>(std::ldexp(mantissa, kBits));
-    denominator_ = kSecond;
+    denominator_ = kUnitsPerSecond;
     // Every binary fraction up to 2^53 becomes whole by a shift.
     denominator_ <<= std::max(0, kBits - exponent);
     numerator_ <<= std::max(0, exponent - kBits);
@@ -46,28 +46,24 @@ SimTime Periods::begin(std::int64_t k) const {
     return SimTime(static_cast<SimTime::rep>(std::min(begin, kMax)));
 }
 
-std::string_view RunSensor::keyword() const {
-    if (const Sensor* placed = sensor()) return kindOf(placed->model).keyword;
-    return std::holds_alternative<Mat>(what) ? "mat" : "gate";
+double periodRate(const Sensor& sensor) {
+    const auto* const laser = sensor.tryAs<Laser>();
+    return laser != nullptr ? laser->rate : readingRate(sensor.model);
 }
 
-double RunSensor::rate() const {
-    if (const auto* laser = model<Laser>()) return laser->rate;
-    if (const Sensor* placed = sensor()) return readingRate(placed->model);
-    if (const auto* mat = std::get_if<Mat>(&what)) return mat->rate;
-    return std::get<Gate>(what).rate;
-}
+bool isHeavy(const Sensor& sensor) { return sensor.is<Ranger>() || sensor.is<Camera>(); }
 
-bool RunSensor::isHeavy() const { return model<Ranger>() != nullptr || model<Camera>() != nullptr; }
-
-Pose3 RunSensor::floorPose() const {
-    const auto* mat = std::get_if<Mat>(&what);
-    const Pose2& pose = mat != nullptr ? mat->pose : std::get<Gate>(what).pose;
-    return {{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
-}
-
-bool RunSensor::isOn(std::size_t robot) const {
-    return sensor() != nullptr && sensor()->mount && sensor()->mount->robot == robot;
+ReadingView viewOf(const Sensor& sensor, const SensorReading& reading,
+                   std::span<const Sensor> receivers) {
+    return std::visit(
+        [&](const auto& one) -> ReadingView {
+            // Scans, frames and bursts hold their time and number.
+            if constexpr (requires { one.frame; })
+                return viewOf(sensor, one, receivers);
+            else
+                return {sensor, &one, receivers, seconds(reading.time), reading.seq, reading.pose};
+        },
+        reading.value);
 }
 
 }  // namespace ispace

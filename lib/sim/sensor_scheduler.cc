@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/per_thread.h"
 #include "scene/sensor/sensor.h"
 #include "sense/selection.h"
 #include "sim/world_state.h"
@@ -31,6 +32,10 @@ Pose3 localPose(const Pose2& carrier, const Pose3& pose) {
             pose.roll};
 }
 
+Pose3 onFloor(const Pose2& pose) {
+    return {{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
+}
+
 /// The same seeds as in `scan`.
 std::optional<std::uint64_t> noiseSeedOf(const SensorReader::Options& options) {
     return options.noise ? std::optional(options.seed) : std::nullopt;
@@ -46,7 +51,7 @@ int SensorReader::frameOf(std::int64_t number) {
 SensorReader::SensorReader(SceneResources& setting, const Options& options)
     : scene_(setting.scene.get()),
       options_{.noise_seed = noiseSeedOf(options)},
-      sound_{.noise_seed = noiseSeedOf(options)},
+      taking_{.noise_seed = noiseSeedOf(options)},
       step_(options.step),
       floor_(*scene_),
       worlds_(&setting.worlds),
@@ -61,22 +66,18 @@ SensorReader::SensorReader(SceneResources& setting, const Options& options)
     latest_.reserve(count);
     LocalBeams beams;
     for (std::size_t i = 0; i < count; ++i) {
-        periods_.emplace_back(sensors_[i].rate());
-        is_heavy_.push_back(sensors_[i].isHeavy() ? 1 : 0);
-        const Sensor* const sensor = sensors_[i].sensor();
-        if (sensor == nullptr) {
-            readings_[i].pose = sensors_[i].floorPose();
-            continue;
-        }
-        readings_[i].pose = sensor->pose;
-        if (sensor->is<Ranger>()) readings_[i].value = DepthFrame();
-        if (sensor->is<Camera>()) readings_[i].value = Photo();
-        const auto* laser = sensors_[i].model<Laser>();
+        const Sensor& sensor = sensors_[i];
+        periods_.emplace_back(periodRate(sensor));
+        is_heavy_.push_back(isHeavy(sensor) ? 1 : 0);
+        readings_[i].pose = sensor.pose;
+        if (sensor.is<Ranger>()) readings_[i].value = DepthFrame();
+        if (sensor.is<Camera>()) readings_[i].value = Photo();
+        const auto* laser = sensor.tryAs<Laser>();
         if (laser == nullptr) continue;
         durations_[i] = durationOf(*laser, step_);
         // Allocates now, so that a lack of memory is reported before a step.
         std::get<Scan>(readings_[i].value).ranges.reserve(static_cast<std::size_t>(laser->beams));
-        casters_[i].emplace(*worlds_, bodies_, *sensor, sensor->mount.has_value(), options_,
+        casters_[i].emplace(*worlds_, bodies_, sensor, sensor.mount.has_value(), options_,
                             beams.of(*laser));
     }
     if (count > 0) trail_ = PoseHistory(*std::max_element(durations_.begin(), durations_.end()));
@@ -90,14 +91,15 @@ SensorReader::SensorReader(SceneResources& setting, const Options& options)
 void SensorReader::addSensors() {
     for (const Sensor& sensor : scene_->sensors) {
         if (!kindOf(sensor.model).is_read) continue;
-        sensors_.push_back({sensor.id, sensor});
+        sensors_.push_back(sensor);
         if (sensor.is<Receiver>()) receivers_.push_back(sensor);
         if (sensor.is<Tag>()) tags_.push_back(sensor);
     }
     for (std::size_t i = 0; i < floor_.mats().size(); ++i)
-        sensors_.push_back({floor_.matIds()[i], floor_.mats()[i]});
+        sensors_.push_back({floor_.matIds()[i], floor_.mats()[i], onFloor(floor_.mats()[i].pose)});
     for (std::size_t i = 0; i < floor_.gates().size(); ++i)
-        sensors_.push_back({floor_.gateIds()[i], floor_.gates()[i]});
+        sensors_.push_back(
+            {floor_.gateIds()[i], floor_.gates()[i], onFloor(floor_.gates()[i].pose)});
 }
 
 void SensorReader::follow(const SensorReader& before,
@@ -110,15 +112,13 @@ void SensorReader::follow(const SensorReader& before,
         const auto found = old.find(sensors_[i].id);
         if (found == old.end()) continue;
         if (!stayers.contains(found->first)) continue;
-        const Sensor* const sensor = sensors_[i].sensor();
-        const Sensor* const was = before.sensors_[found->second].sensor();
-        if (sensor != nullptr && was != nullptr && !sensor->mount && !sensor->person &&
-            sensor->pose != was->pose)
+        const Sensor& sensor = sensors_[i];
+        if (!sensor.mount && !sensor.person && sensor.pose != before.sensors_[found->second].pose)
             continue;
         readings_[i] = before.readings_[found->second];
         due_[i] = before.due_[found->second];
         // Read in every step, although the reading is of a period.
-        if (std::holds_alternative<Gate>(sensors_[i].what))
+        if (sensor.is<Gate>())
             floor_.goOn(gateOf(i), before.floor_.gate(before.gateOf(found->second)));
     }
 }
@@ -151,7 +151,7 @@ void SensorReader::makeBlocks() {
     block_ends_.clear();
     std::size_t count = 0, beams = 0;
     for (std::size_t k = 0; k < unread_.size(); ++k) {
-        const auto* const laser = sensors_[unread_[k]].model<Laser>();
+        const auto* const laser = sensors_[unread_[k]].tryAs<Laser>();
         ++count;
         beams += laser == nullptr ? 0 : static_cast<std::size_t>(laser->beams);
         if (count < kBlock && beams < kBlockBeams && k + 1 < unread_.size()) continue;
@@ -212,39 +212,51 @@ Pose3 SensorReader::poseOf(const Sensor& sensor, const Movers& movers) const {
 
 /// Updates all values that do not depend on rays: times, poses, bodies.
 void SensorReader::update(std::span<const std::size_t> due, SimTime time, const Movers& movers) {
-    bool hears = false;
+    bool has_others = false;  // than lasers
     for (const std::size_t i : due) {
         SensorReading& reading = readings_[i];
         reading.time = beginOf(i, time);
         reading.seq = periods_[i].newest(reading.time);
         const SimTime next = periods_[i].begin(reading.seq + 1);
         due_[i] = std::min(next, SimTime::max() - durations_[i]) + durations_[i];
-        const Sensor* const sensor = sensors_[i].sensor();
-        if (sensor == nullptr) continue;
-        const auto* laser = std::get_if<Laser>(&sensor->model);
+        const Sensor& sensor = sensors_[i];
+        const auto* laser = sensor.tryAs<Laser>();
         const bool sweeps = laser != nullptr && laser->sweep != SweepAxis::None;
-        if (sensor->mount || sensor->person || sweeps)
+        if (sensor.mount || sensor.person || sweeps)
             reading.pose = durations_[i] > SimTime(0)
-                               ? poseOf(*sensor, PoseHistory::Walk(trail_, reading.time), 0)
-                               : poseOf(*sensor, movers);
-        if (laser != nullptr) {
-            if (sweeps)
-                reading.pose = sweptPose(*laser, reading.pose,
-                                         static_cast<double>(reading.seq % laser->scans()));
-        } else {
-            hears = true;
-        }
+                               ? poseOf(sensor, PoseHistory::Walk(trail_, reading.time), 0)
+                               : poseOf(sensor, movers);
+        if (sweeps)
+            reading.pose =
+                sweptPose(*laser, reading.pose, static_cast<double>(reading.seq % laser->scans()));
+        if (laser != nullptr || rayCount(sensor.model) == 0) continue;
+        has_others = true;
+        worlds_->prepareMesh(kindOf(sensor.model).stopped_by);
     }
     updateBodies(movers);
     makeTrailBodies(due);
-    if (!hears) return;
-    worlds_->prepareMesh(Surfaces::Solid);
+    if (!has_others) return;
+    updateVelocities(movers);
     std::size_t receiver = 0, tag = 0;
-    for (const RunSensor& sensor : sensors_) {
-        if (sensor.model<Receiver>() != nullptr)
-            receivers_[receiver++].pose = poseOf(*sensor.sensor(), movers);
-        if (sensor.model<Tag>() != nullptr) tags_[tag++].pose = poseOf(*sensor.sensor(), movers);
+    for (const Sensor& sensor : sensors_) {
+        if (sensor.is<Receiver>()) receivers_[receiver++].pose = poseOf(sensor, movers);
+        if (sensor.is<Tag>()) tags_[tag++].pose = poseOf(sensor, movers);
     }
+}
+
+void SensorReader::updateVelocities(const Movers& movers) {
+    const auto set = [](std::vector<MoverVelocity>& velocities, std::span<const Motion> motions) {
+        velocities.clear();
+        for (const Motion& motion : motions) {
+            const Vec2 ahead = motion.forward();
+            velocities.push_back(
+                {motion.pose.position,
+                 motion.drive.speed * ahead + motion.side.speed * Vec2{-ahead.y, ahead.x},
+                 Angle::degrees(motion.turn.speed).radians()});
+        }
+    };
+    set(taking_.velocities.robots, movers.robots);
+    set(taking_.velocities.people, movers.people);
 }
 
 void SensorReader::updateBodies(const Movers& movers) {
@@ -256,7 +268,7 @@ void SensorReader::updateBodies(const Movers& movers) {
 void SensorReader::setBodies(const MoverPoses& places, std::span<const double> heights,
                              MovingBodies& bodies) const {
     // Kept for its memory.
-    thread_local std::vector<MovingBody> list;
+    auto& list = perThread<std::vector<MovingBody>, struct BodiesOfReader>();
     list.clear();
     for (std::size_t i = 0; i < places.robots.size(); ++i) {
         const MovingBody robot =
@@ -271,16 +283,27 @@ void SensorReader::setBodies(const MoverPoses& places, std::span<const double> h
 }
 
 void SensorReader::measure(std::size_t sensor, SimTime time) {
-    const RunSensor& placed = sensors_[sensor];
-    if (placed.sensor() != nullptr) {
-        std::visit([&](const auto& model) { measure(model, sensor, time); },
-                   placed.sensor()->model);
-        return;
-    }
-    if (std::holds_alternative<Gate>(placed.what))
-        readings_[sensor].value = floor_.gate(gateOf(sensor));
-    else
-        readings_[sensor].value = floor_.mat(matOf(sensor));
+    const Sensor& placed = sensors_[sensor];
+    SensorReading& reading = readings_[sensor];
+    if (const auto* const laser = placed.tryAs<Laser>())
+        measure(*laser, sensor, time);
+    else if (placed.is<Receiver>())
+        hear(sensor, time);
+    else if (placed.is<Gate>())
+        reading.value = floor_.gate(gateOf(sensor));
+    else if (placed.is<Mat>())
+        reading.value = floor_.mat(matOf(sensor));
+    else if (!isHeavy(placed))
+        readNow(placed, bodies_, reading);
+}
+
+/// Reads a sensor with rays, all at once. Depths may be read while the world moves on: they require
+/// neither velocities nor receivers.
+void SensorReader::readNow(const Sensor& sensor, const MovingBodies& bodies,
+                           SensorReading& reading) const {
+    reading.value = valueOf(
+        readAtOnce(sensor, reading.pose, frameOf(reading.seq), seconds(reading.time),
+                   worlds_->mesh(kindOf(sensor.model).stopped_by), bodies, receivers_, taking_));
 }
 
 void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime /*time*/) {
@@ -295,23 +318,15 @@ void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime /*tim
     sweep(laser, sensor);
 }
 
-void SensorReader::measure(const Tag& /*tag*/, std::size_t sensor, SimTime time) {
+void SensorReader::hear(std::size_t sensor, SimTime time) {
     SensorReading& reading = readings_[sensor];
-    Sensor tag = *sensors_[sensor].sensor();
-    tag.pose = reading.pose;
-    reading.value = castBurst(worlds_->mesh(Surfaces::Solid), bodies_, tag, receivers_,
-                              frameOf(reading.seq), seconds(time), sound_);
-}
-
-void SensorReader::measure(const Receiver& /*receiver*/, std::size_t sensor, SimTime time) {
-    SensorReading& reading = readings_[sensor];
-    Sensor receiver = *sensors_[sensor].sensor();
+    Sensor receiver = sensors_[sensor];
     receiver.pose = reading.pose;
     Hearings hearings;
     for (const Sensor& tag : tags_) {
         const Burst burst =
             castBurst(worlds_->mesh(Surfaces::Solid), bodies_, tag, std::span(&receiver, 1),
-                      frameOf(reading.seq), seconds(time), sound_);
+                      frameOf(reading.seq), seconds(time), {.noise_seed = taking_.noise_seed});
         hearings.tags.push_back(
             {tag.id, burst.heard.empty() ? std::nullopt : std::optional(burst.heard.front().time)});
     }
@@ -371,7 +386,7 @@ SensorReading SensorReader::begun(std::size_t sensor, SimTime time, const Movers
     SensorReading reading;
     reading.time = time;
     reading.seq = periods_[sensor].newest(time);
-    reading.pose = poseOf(*sensors_[sensor].sensor(), movers);
+    reading.pose = poseOf(sensors_[sensor], movers);
     return reading;
 }
 
@@ -386,24 +401,16 @@ void SensorReader::photograph(const Sensor& camera, const std::shared_ptr<const 
     reading.value = std::move(photo);
 }
 
-void SensorReader::senseDepth(const Sensor& ranger, const MovingBodies& bodies,
-                              SensorReading& reading) const {
-    DepthFrame frame =
-        castDepth(worlds_->mesh(), bodies, ranger, reading.pose, frameOf(reading.seq), options_);
-    frame.time = seconds(reading.time);
-    reading.value = std::move(frame);
-}
-
 void SensorReader::take(std::size_t sensor, SimTime time, const Movers& movers) {
     if (isTaken(sensor, time)) return;
-    const Sensor& taken = *sensors_[sensor].sensor();
+    const Sensor& taken = sensors_[sensor];
     SensorReading reading = begun(sensor, time, movers);
     if (taken.is<Camera>()) {
         photograph(taken, stage(movers), reading);
     } else {
         worlds_->prepareMesh();
         updateBodies(movers);
-        senseDepth(taken, bodies_, reading);
+        readNow(taken, bodies_, reading);
     }
     put(sensor, std::move(reading));
     // Read in this step like the others.
@@ -412,7 +419,7 @@ void SensorReader::take(std::size_t sensor, SimTime time, const Movers& movers) 
 
 std::function<SensorReading()> SensorReader::captureLater(std::size_t sensor, SimTime time,
                                                           const Movers& movers) {
-    const Sensor& taken = *sensors_[sensor].sensor();
+    const Sensor& taken = sensors_[sensor];
     const SensorReading begun = this->begun(sensor, time, movers);
     if (taken.is<Camera>())
         return [this, &taken, begun, stage = stage(movers)] {
@@ -425,7 +432,7 @@ std::function<SensorReading()> SensorReader::captureLater(std::size_t sensor, Si
     if (!kept_bodies_) kept_bodies_ = std::make_shared<const MovingBodies>(bodies_);
     return [this, &taken, begun, bodies = kept_bodies_] {
         SensorReading reading = begun;
-        senseDepth(taken, *bodies, reading);
+        readNow(taken, *bodies, reading);
         return reading;
     };
 }

@@ -71,7 +71,7 @@ class SensorReader {
     void jumped();
 
     /// Returns sensors in the order of the scene, at their starts; then mats, then gates.
-    [[nodiscard]] const std::vector<RunSensor>& sensors() const { return sensors_; }
+    [[nodiscard]] const std::vector<Sensor>& sensors() const { return sensors_; }
     [[nodiscard]] const SensorReading& reading(std::size_t sensor) {
         if (unread_blocks_ > 0) complete(sensor);
         return readings_[sensor];
@@ -121,11 +121,12 @@ class SensorReader {
     [[nodiscard]] SensorReading begun(std::size_t sensor, SimTime time, const Movers& movers) const;
     void photograph(const Sensor& camera, const std::shared_ptr<const Stage>& stage,
                     SensorReading& reading);
-    void senseDepth(const Sensor& ranger, const MovingBodies& bodies, SensorReading& reading) const;
+    void readNow(const Sensor& sensor, const MovingBodies& bodies, SensorReading& reading) const;
     static int frameOf(std::int64_t number);
     [[nodiscard]] std::vector<double> spinHeights() const;
     void makeTrailBodies(std::span<const std::size_t> due);
     /// \param heights of all level rays that will meet the bodies; empty: rays in any direction
+    void updateVelocities(const Movers& movers);
     void setBodies(const MoverPoses& places, std::span<const double> heights,
                    MovingBodies& bodies) const;
     void followTrail(const SensorReader& before,
@@ -146,18 +147,14 @@ class SensorReader {
     bool sweepLevel(const Laser& laser, std::size_t sensor, BeamFrames& frames);
     void measure(std::size_t sensor, SimTime time);
     void measure(const Laser& laser, std::size_t sensor, SimTime time);
-    // Heavy sensors are read by take().
-    void measure(const Ranger& /*ranger*/, std::size_t /*sensor*/, SimTime /*time*/) {}
-    void measure(const Camera& /*camera*/, std::size_t /*sensor*/, SimTime /*time*/) {}
-    void measure(const Tag& tag, std::size_t sensor, SimTime time);
-    void measure(const Receiver& receiver, std::size_t sensor, SimTime time);
+    void hear(std::size_t sensor, SimTime time);
 
     const Scene* scene_;
     ReadingOptions options_;
-    UltrasoundOptions sound_;
+    TakerOptions taking_;
     SimTime step_;
     FloorSensors floor_;
-    std::vector<RunSensor> sensors_;  // at their starts
+    std::vector<Sensor> sensors_;  // at their starts
     Worlds* worlds_;
     std::vector<Periods> periods_;
     std::vector<SimTime> due_;
@@ -173,7 +170,7 @@ class SensorReader {
     std::vector<char> is_read_;  // of blocks
     std::size_t unread_blocks_ = 0, next_block_ = 0;
     SimTime unread_time_{};
-    // Receivers and tags at their poses; built when one of them is read.
+    // Receivers and tags at their poses when a sensor other than a laser was read last.
     std::vector<Sensor> receivers_, tags_;
     std::vector<Pose2> people_starts_;
     Photographer* photographer_;                       // if there are cameras

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "base/per_thread.h"
 #include "sim/odometry.h"
 #include "sim/sensor_scheduler.h"
 
@@ -82,7 +83,7 @@ std::vector<double> SensorReader::spinHeights() const {
     std::vector<double> heights;
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
         if (durations_[i] == SimTime(0)) continue;
-        const Sensor& sensor = *sensors_[i].sensor();
+        const Sensor& sensor = sensors_[i];
         if (sensor.as<Laser>().sweep != SweepAxis::None || !sensor.pose.isLevel()) return {};
         heights.push_back(sensor.pose.position.z);
     }
@@ -139,7 +140,7 @@ void SensorReader::sweep(const Laser& laser, std::size_t sensor) {
         return caster.cast(scan, parts);
     }
     // Kept for its memory: threads read many scans.
-    thread_local BeamFrames frames;
+    auto& frames = perThread<BeamFrames, struct FramesOfSpin>();
     if (sweepLevel(laser, sensor, frames))
         caster.cast(scan, frames, parts);
     else
@@ -176,23 +177,23 @@ void SensorReader::sweepInSpace(const Laser& laser, std::size_t sensor) {
     const BeamOrder order(laser);
     scan.beam_poses.resize(order.count());
     bool moves = false;
-    forEachLeg(
-        order, sensor, [&](const PoseHistory::Walk& walk, std::size_t begin, std::size_t end) {
-            for (std::size_t n = begin; n < end; ++n) {
-                const double later = order.timeOf(n);
-                const Pose3 pose = sweptPose(laser, poseOf(*sensors_[sensor].sensor(), walk, later),
-                                             scan.number + later * laser.rate);
-                moves = moves || pose != scan.pose;
-                scan.beam_poses[order.beam(n)] = pose;
-            }
-        });
+    forEachLeg(order, sensor,
+               [&](const PoseHistory::Walk& walk, std::size_t begin, std::size_t end) {
+                   for (std::size_t n = begin; n < end; ++n) {
+                       const double later = order.timeOf(n);
+                       const Pose3 pose = sweptPose(laser, poseOf(sensors_[sensor], walk, later),
+                                                    scan.number + later * laser.rate);
+                       moves = moves || pose != scan.pose;
+                       scan.beam_poses[order.beam(n)] = pose;
+                   }
+               });
     if (!moves) scan.beam_poses.clear();
 }
 
 /// Computes the origins of level beams; returns false if they have a common origin, and leaves
 /// `frames` unset.
 bool SensorReader::sweepLevel(const Laser& laser, std::size_t sensor, BeamFrames& frames) {
-    const Sensor& placed = *sensors_[sensor].sensor();
+    const Sensor& placed = sensors_[sensor];
     const bool is_carried = placed.mount || placed.person;
     const BeamOrder order(laser);
     if (is_carried) frames.resize(order.count());

@@ -28,6 +28,7 @@ TEST(SceneResources, HasTheMeshThatItsSensorsNeed) {
     EXPECT_TRUE(has_mesh("ranger at=1,1 pixels=4,4\n"));
     EXPECT_TRUE(has_mesh("tag at=1,1\n")) << "its echoes";
     EXPECT_TRUE(has_mesh("robot id=r1 model=pioneer-2dx at=0,0\n")) << "it has sonars";
+    EXPECT_TRUE(has_mesh("radar at=1,1\n"));
 }
 
 TEST(SensorReader, ReadsAtTheFirstStepOfAPeriod) {
@@ -93,7 +94,7 @@ TEST(SensorReader, GoesWithItsRobotAndDoesNotSeeIt) {
     EXPECT_EQ(world.reading(0).pose.heading, Angle::degrees(90));
     EXPECT_NEAR(ahead(0), 2.9, 1e-6);
     // Scene and sensors() keep the start.
-    EXPECT_NEAR(world.sensors()[0].sensor()->pose.position.x, -0.9, 1e-12);
+    EXPECT_NEAR(world.sensors()[0].pose.position.x, -0.9, 1e-12);
 }
 
 TEST(SensorReader, ATiltedOneOnARobotSeesThroughClearGlass) {

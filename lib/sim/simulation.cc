@@ -109,9 +109,9 @@ void Simulation::giveScripted() {
     }
 }
 
-void Simulation::tellChange(std::string request, bool with_scene) {
+void Simulation::tellChange(std::string request, const std::string& scene_text) {
     std::string scene;
-    if (with_scene && recorder_ != nullptr) scene = recorder_->recordScene(world_->scene());
+    if (!scene_text.empty() && recorder_ != nullptr) scene = recorder_->recordScene(scene_text);
     events_.add(EventKind::Change, std::move(request), std::move(scene));
 }
 

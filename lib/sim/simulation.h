@@ -51,8 +51,9 @@ class Simulation {
     [[nodiscard]] const EventLog& events() const { return events_; }
 
     /// Reports that this request changed the world; a record stores it.
-    /// \param with_scene the request names files: the record stores the scene, too
-    void tellChange(std::string request, bool with_scene);
+    /// \param scene_text of the changed scene, which the record stores, too; "" if the request is
+    /// sufficient
+    void tellChange(std::string request, const std::string& scene_text);
 
     /// Adds an observer, called after every step once it is recorded and the script's commands for
     /// the next one are given. It must stay valid until the last step.

@@ -48,7 +48,7 @@ TEST(Spin, OfATurningRobotEachBeamIsOfItsTime) {
         for (int i = 0; i < 400; ++i) world.step();
         const double now = seconds(world.time()), heading = world.status(0).pose.heading.degrees();
         const Scan& scan = scanFrom(world, 0, world.time());
-        const Laser& laser = std::get<Laser>(world.sensors()[0].sensor()->model);
+        const Laser& laser = std::get<Laser>(world.sensors()[0].model);
         double moved = 0;
         for (int k = 0; k < laser.beams; ++k) {
             const double later = laser.timeOf(k);
@@ -141,7 +141,7 @@ TEST(Spin, AWallLaserSeesAPersonWhereSheIsThen) {
         for (std::size_t k = 1; k < scan.ranges.size(); ++k) {
             // The first beam that meets the cylinder, on its right side.
             if (scan.ranges[k] > 2.2F || scan.ranges[k - 1] < 2.2F) continue;
-            const auto& laser = std::get<Laser>(world.sensors()[0].sensor()->model);
+            const auto& laser = std::get<Laser>(world.sensors()[0].model);
             const double t = scan.time + laser.timeOf(static_cast<int>(k));
             // The status is that of now; its speed has been constant for long.
             const double y = world.status(0).pose.position.y -

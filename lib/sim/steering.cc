@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace ispace {
 
@@ -17,7 +16,6 @@ constexpr double kSight = 4;
 /// Usual number of neighbours.
 constexpr std::size_t kUsual = 32;
 constexpr double kHair = 1e-6;
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 Vec2 velocityOf(const Motion& motion) {
     if (motion.drive.speed == 0 && motion.side.speed == 0) return {};
@@ -77,7 +75,7 @@ void Steering::findLines(const SteeringState& helm) {
 }
 
 double Steering::untilNeighbour(Vec2 velocity) const {
-    double least = kNever;
+    double least = kForever;
     for (const auto& [offset, others, reach] : neighbours_) {
         const Vec2 closing = velocity - others;
         const double b = dot(offset, closing);
@@ -94,13 +92,13 @@ double Steering::untilNeighbour(Vec2 velocity) const {
 /// Tests the first `most` of the horizon.
 double Steering::untilLine(Vec2 velocity, double most) const {
     constexpr double kMinValue = 1.0 / 8;
-    if (lines_.empty()) return kNever;
+    if (lines_.empty()) return kForever;
     for (double share = most; share >= kMinValue; share /= 2) {
         const Segment2 way{place_, place_ + share * horizon_ * velocity};
         const bool is_free = std::none_of(lines_.begin(), lines_.end(), [&](const Line& line) {
             return comesNear(way, line.line, line.reach);
         });
-        if (is_free) return share == most ? kNever : share * horizon_;
+        if (is_free) return share == most ? kForever : share * horizon_;
     }
     return 0;
 }
@@ -116,7 +114,7 @@ FreeHeading Steering::choose(Angle desired, double needed) const {
     // Degrees of turning that a second of free way is worth.
     constexpr double kWorth = 120, kAside = 0.25;
     FreeHeading best{desired, 0};
-    double best_worth = -kNever;
+    double best_worth = -kForever;
     for (const double turn : kTurns) {
         const Angle direction = desired + Angle::degrees(turn);
         const double time = freeTime(direction, turn == 0 ? 1 : kAside);

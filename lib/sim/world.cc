@@ -48,7 +48,7 @@ std::int64_t World::steps() const { return data_->steps; }
 std::span<const Mover> World::movers() const { return data_->movers; }
 std::span<const PlacedRobot> World::robots() const { return data_->scene->robots; }
 std::span<const PlacedPerson> World::people() const { return data_->scene->people; }
-std::span<const RunSensor> World::sensors() const { return data_->sensors.sensors(); }
+std::span<const Sensor> World::sensors() const { return data_->sensors.sensors(); }
 std::span<const CommandEnd> World::ends() const { return data_->ends; }
 std::span<const Collision> World::collisions() const { return data_->collisions; }
 std::span<const std::size_t> World::keptStarts() const { return data_->kept_starts; }
@@ -135,9 +135,20 @@ std::vector<std::vector<float>> World::sonars() {
     std::vector<std::vector<float>> all(data.scene->robots.size());
     const MovingBodies& bodies = data.sensors.bodies(data.where());
     const RayWorld& mesh = data.sensors.mesh(Surfaces::Solid);
+    std::vector<Point2> places;
+    double reach = 0;
+    for (const MovingBody& body : bodies.bodies()) {
+        places.push_back(body.pose.position);
+        reach = std::max(reach, body.reach() + body.sway());
+    }
+    FloorGrid grid;
+    grid.rebuild(places, reach);
+    data.prepareEchoes();
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
-        all[i] = sonarRanges(data.movers[i].model, data.motions[i].pose, mesh, bodies,
-                             static_cast<std::uint32_t>(i));
+        const RobotModel& model = data.movers[i].model;
+        const auto own = static_cast<std::uint32_t>(i);
+        const SonarVicinity vicinity = data.sonarVicinity(i, grid, bodies.bodies());
+        all[i] = sonarRangesNear(&vicinity, model, data.motions[i].pose, mesh, bodies, own);
     });
     return all;
 }
@@ -146,30 +157,35 @@ void World::feel(std::size_t robot, std::vector<bool> bumpers) {
     data_->states[robot].recorded_bumpers = std::move(bumpers);
 }
 
+bool World::isStalled(std::size_t mover) const { return data_->states[mover].stall; }
+
 std::vector<bool> World::bumper(std::size_t robot) const {
-    const Data& data = *data_;
-    const MoverState& state = data.states[robot];
+    Data& data = *data_;
+    MoverState& state = data.states[robot];
     const RobotModel& model = data.movers[robot].model;
-    if (!state.stall) return pressedBumpers(model, data.motions[robot].pose, {}, {});
+    if (!state.stall) return std::vector<bool>(model.bumpers.size());
     if (!state.recorded_bumpers.empty() && state.recorded_bumpers.size() == model.bumpers.size())
         return state.recorded_bumpers;
     // Of thousands only those that touch it matter.
-    const Point2 middle = data.motions[robot].pose.position;
+    const Pose2& pose = data.motions[robot].pose;
     const double touch = 1.1 * model.radius + length(state.bump) + 0.01;
-    std::vector<std::size_t> others;
-    for (std::size_t i = 0; i < data.movers.size(); ++i)
-        if (i != robot &&
-            distance(data.motions[i].pose.position, middle) < touch + data.movers[i].model.radius)
-            others.push_back(i);
+    Contact contact{pose, state.bump, {}, {}};
+    for (std::size_t i = 0; i < data.movers.size(); ++i) {
+        const Point2 place = data.motions[i].pose.position;
+        const double radius = data.movers[i].model.radius;
+        if (i != robot && distance(place, pose.position) < touch + radius)
+            contact.others.emplace_back(place, radius);
+    }
+    if (contact.sameAs(state.contact)) return state.contact.pressed;
     const auto nearest = [&](Point2 place, double farthest) {
         double least = state.obstacles->nearest(place, farthest);
-        for (const std::size_t i : others) {
-            const double apart = distance(data.motions[i].pose.position, place);
-            least = std::min(least, apart - data.movers[i].model.radius);
-        }
+        for (const auto& [other, radius] : contact.others)
+            least = std::min(least, distance(other, place) - radius);
         return least;
     };
-    return pressedBumpers(model, data.motions[robot].pose, state.bump, nearest);
+    contact.pressed = pressedBumpers(model, pose, state.bump, nearest);
+    state.contact = std::move(contact);
+    return state.contact.pressed;
 }
 
 SimTime World::controlInterval() const {
@@ -239,9 +255,10 @@ void World::steer(std::size_t robot, const WheelOrder& order) {
 Scan World::look(const Sensor& laser) { return data_->sensors.look(laser, data_->where()); }
 
 std::function<NextScene(Scene scene)> World::preparer() const {
-    return [options = data_->options, meshes = data_->setting->worlds.meshes()](Scene scene) {
+    return [options = data_->options, before = data_->setting,
+            meshes = data_->setting->worlds.meshes()](Scene scene) {
         NextScene next{std::make_shared<Scene>(std::move(scene)), nullptr};
-        next.setting = std::make_shared<SceneResources>(next.scene, options, meshes);
+        next.setting = std::make_shared<SceneResources>(next.scene, options, meshes, before.get());
         return next;
     };
 }

@@ -128,7 +128,7 @@ class World {
     [[nodiscard]] std::optional<std::size_t> personNamed(std::string_view id) const;
     /// Returns the sensors of the run at their start: those of the scene in its order, then mats,
     /// then gates.
-    [[nodiscard]] std::span<const RunSensor> sensors() const;
+    [[nodiscard]] std::span<const Sensor> sensors() const;
     [[nodiscard]] std::optional<std::size_t> sensorNamed(std::string_view id) const;
 
     /// Returns the robots for which start_noise found no free start, and which start as their
@@ -143,7 +143,7 @@ class World {
     /// its wheels, with the errors of its record's odometry_noise. Without noise it is the true
     /// pose relative to the start.
     [[nodiscard]] Odometry odometry(std::size_t robot) const;
-    /// Returns the newest reading; of a heavy sensor (see RunSensor) the last one taken, if any.
+    /// Returns the newest reading; of a heavy sensor (see Sensor) the last one taken, if any.
     [[nodiscard]] const SensorReading& reading(std::size_t sensor) const;
     /// Returns the number of a sensor's newest period: that of its reading, unless it is heavy.
     [[nodiscard]] std::int64_t period(std::size_t sensor) const;
@@ -162,8 +162,10 @@ class World {
     [[nodiscard]] std::vector<float> sonar(std::size_t robot);
     /// Computes those of all robots, on all cores.
     [[nodiscard]] std::vector<std::vector<float>> sonars();
+    /// Returns true from a collision until the next motion command, as in RobotStatus.
+    [[nodiscard]] bool isStalled(std::size_t mover) const;
     /// Returns the bumpers of a robot that touch the body it ran into; all false unless it has
-    /// stalled.
+    /// stalled. Repeated calls are cheap while its surroundings stay as they are.
     [[nodiscard]] std::vector<bool> bumper(std::size_t robot) const;
     /// Returns mats and gates after the last step, whatever their rates.
     [[nodiscard]] const FloorSensors& floorSensors() const;

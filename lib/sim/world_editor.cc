@@ -16,6 +16,7 @@ namespace {
 
 using Preparer = std::function<NextScene(Scene scene)>;
 using Check = std::function<void(const Scene& scene)>;
+using SceneWriter = std::function<std::string(const Scene& scene)>;
 
 /// Above this number each one would be looked up among all.
 constexpr std::size_t kFewMovers = 100;
@@ -31,13 +32,14 @@ class Editing {
   public:
     /// Fast: names are looked up in prepare().
     Editing(World& world, std::shared_ptr<const SceneSource> source, std::vector<Edit> edits,
-            Check check)
+            Check check, SceneWriter write)
         : world_(&world),
           source_(std::move(source)),
           edits_(std::move(edits)),
           before_(world.sharedScene()),
           prepare_(world.preparer()),
-          check_(std::move(check)) {
+          check_(std::move(check)),
+          write_(std::move(write)) {
         for (std::size_t i = 0; i < world.movers().size(); ++i)
             poses_.push_back(world.status(i).pose);
     }
@@ -46,13 +48,11 @@ class Editing {
         findAll();
         Scene scene = makeScene(goodRecords(), *before_, source_->devices());
         check_(scene);
-        // A new position of a mover is validated against the room.
-        const bool places = std::any_of(edits_.begin(), edits_.end(), [](const Edit& edit) {
-            return edit.kind != Edit::Kind::Delete;
-        });
-        if (places) static_cast<void>(scene.environment.indoorIndex());
+        // Built here, for the checks of new positions; edits of things share it.
+        static_cast<void>(scene.environment.indoorIndex());
         next_ = prepare_(std::move(scene));
-        news_->needs_scene = touchFiles(edits_, *next_.scene);
+        if (!write_ || !touchFiles(edits_, *next_.scene)) write_ = nullptr;
+        if (write_) news_->scene_text = write_(*next_.scene);
         if (edits_.front().kind == Edit::Kind::Set) news_->movers = moversOf(edits_.front());
     }
 
@@ -75,6 +75,7 @@ class Editing {
     std::shared_ptr<const Scene> before_;
     Preparer prepare_;
     Check check_;
+    SceneWriter write_;         // null if the change needs no text of its scene
     std::vector<Pose2> poses_;  // of robots and people before, in the order of the scene
     std::vector<std::string> placed_;
     std::unordered_map<std::string, Pose2> places_;  // of movers among them
@@ -113,14 +114,16 @@ std::vector<std::string> Editing::moversOf(const Edit& edit) const {
 }
 
 std::vector<Record> Editing::records() const {
-    std::unordered_map<std::string, Record> with_files;
-    for (std::size_t i = 0; i < before_->records.size(); ++i)
-        if (fileKeyOf(before_->records[i]) != nullptr)
-            with_files.emplace(before_->ids[i], before_->records[i]);
     std::vector<Record> records = editedRecords(*before_, edits_, [this](const std::string& id) {
         const auto place = places_.find(id);
         return place == places_.end() ? std::nullopt : std::optional(place->second);
     });
+    const auto has_file = [](const Record& record) { return fileKeyOf(record) != nullptr; };
+    if (std::none_of(records.begin(), records.end(), has_file)) return records;
+    std::unordered_map<std::string, Record> with_files;
+    for (std::size_t i = 0; i < before_->records.size(); ++i)
+        if (fileKeyOf(before_->records[i]) != nullptr)
+            with_files.emplace(before_->ids[i], before_->records[i]);
     const std::vector<std::string> ids = assignIds(records);
     for (std::size_t i = 0; i < records.size(); ++i) {
         if (fileKeyOf(records[i]) == nullptr) continue;
@@ -150,6 +153,7 @@ void Editing::follow() {
     placeAgain(records, scene.ids, edits_,
                [this](const std::string& id) { return placeIn(*world_, id); });
     scene = makeScene(std::move(records), scene, source_->devices());
+    if (write_) news_->scene_text = write_(scene);
 }
 
 }  // namespace
@@ -169,25 +173,31 @@ WorldEditor::Check WorldEditor::loadCheck() const {
     };
 }
 
+SceneWriter WorldEditor::sceneWriter() const {
+    const Recorder* const recorder = simulation_->recorder();
+    return recorder == nullptr ? nullptr : recorder->options().scene_text;
+}
+
 WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
-    const auto editing =
-        std::make_shared<Editing>(simulation_->world(), source_, std::move(edits), loadCheck());
+    const auto editing = std::make_shared<Editing>(simulation_->world(), source_, std::move(edits),
+                                                   loadCheck(), sceneWriter());
     return {[editing] { editing->prepare(); }, [editing] { return editing->adopt(); },
             editing->news()};
 }
 
 WorldChange WorldEditor::load(std::string environment, std::string layout) const {
     const auto next = std::make_shared<NextScene>();
-    return {
-        [next, source = source_, prepare = simulation_->world().preparer(),
-         environment = std::move(environment), layout = std::move(layout), check = loadCheck()] {
-            Scene scene = source->load(environment, layout);
-            check(scene);
-            static_cast<void>(scene.environment.indoorIndex());
-            *next = prepare(std::move(scene));
-        },
-        [this, next] { return simulation_->world().restart(*next); },
-        std::make_shared<const ChangeNews>(ChangeNews{{""}, true})};
+    const auto news = std::make_shared<ChangeNews>(ChangeNews{{""}, ""});
+    return {[next, news, source = source_, prepare = simulation_->world().preparer(),
+             environment = std::move(environment), layout = std::move(layout), check = loadCheck(),
+             write = sceneWriter()] {
+                Scene scene = source->load(environment, layout);
+                check(scene);
+                static_cast<void>(scene.environment.indoorIndex());
+                *next = prepare(std::move(scene));
+                if (write) news->scene_text = write(*next->scene);
+            },
+            [this, next] { return simulation_->world().restart(*next); }, news};
 }
 
 WorldChange WorldEditor::reset() const {

@@ -46,8 +46,9 @@ class UnknownRecord : public FormatError {
 struct ChangeNews {
     /// Ids of the robots and people that a Set changes; one "" for all, if there are many.
     std::vector<std::string> movers = {};
-    /// Its request names files, so clients require the scene as well.
-    bool needs_scene = false;
+    /// Scene after the change, for a record: its request names files. Else, or without a record,
+    /// "".
+    std::string scene_text = {};
 };
 
 /// A change of a world in two parts, so that a server can answer clients in between. A part that
@@ -84,6 +85,8 @@ class WorldEditor {
   private:
     using Check = std::function<void(const Scene& scene)>;
     [[nodiscard]] Check loadCheck() const;
+    /// Returns RecordOptions::scene_text; null without a record.
+    [[nodiscard]] std::function<std::string(const Scene& scene)> sceneWriter() const;
 
     Simulation* simulation_;
     std::shared_ptr<const SceneSource> source_;

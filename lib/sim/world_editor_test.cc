@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/file.h"
+#include "support/test_folder.h"
 #include "support/test_source.h"
 
 namespace ispace {
@@ -103,6 +105,31 @@ TEST(WorldEditor, TheWorldGoesOnWhileAChangeIsPrepared) {
         EXPECT_EQ(early.world.status(0).pose, late.world.status(0).pose) << request;
         EXPECT_EQ(early.world.reading(0).scan().ranges, late.world.reading(0).scan().ranges);
     }
+}
+
+TEST(WorldEditor, TheTextOfALoadedSceneIsPrepared) {
+    const testing::TestFolder folder;
+    Edited it;
+    int texts = 0;
+    RecordOptions options;
+    options.scene_text = [&texts](const Scene& scene) {
+        ++texts;
+        return std::to_string(scene.robots.size()) + " robots";
+    };
+    Recorder recorder(folder / "run", it.world, options);
+    it.simulation.recordWith(recorder);
+    const WorldChange change = it.editor.load("hall.env", "hall.3dm");
+    change.prepare();
+    EXPECT_EQ(texts, 1);
+    change.adopt();
+    it.simulation.tellChange("LOAD hall.env hall.3dm", change.news->scene_text);
+    EXPECT_EQ(texts, 1);
+    EXPECT_EQ(readAll(folder / "run/scenes/scene-000001.env"), "1 robots");
+    // Without a name of a file the request is sufficient.
+    const WorldChange edit = it.editor.edit({parseEdit(Edit::Kind::Set, "r1.heading=30")});
+    edit.carryOut();
+    EXPECT_EQ(edit.news->scene_text, "");
+    EXPECT_EQ(texts, 1);
 }
 
 TEST(WorldEditor, SomebodyMayHaveComeMeanwhile) {

@@ -17,9 +17,10 @@
 namespace ispace {
 
 SceneResources::SceneResources(std::shared_ptr<const Scene> made_of, const RunOptions& options,
-                               const Worlds::Meshes& meshes)
+                               const Worlds::Meshes& meshes, const SceneResources* before)
     : scene(std::move(made_of)),
-      obstacles(obstaclesOf(scene->environment, moversOf(*scene))),
+      obstacles(obstaclesOf(scene->environment, moversOf(*scene),
+                            before == nullptr ? nullptr : &before->obstacles)),
       friction(scene->environment),
       worlds(scene->environment) {
     if (meshes.opaque) worlds.prepareMesh();
@@ -29,11 +30,10 @@ SceneResources::SceneResources(std::shared_ptr<const Scene> made_of, const RunOp
                     [](const PlacedRobot& robot) { return !robot.model.sonar.places.empty(); }))
         worlds.prepareMesh(Surfaces::Solid);
     for (const Sensor& sensor : scene->sensors) {
-        if (sensor.is<Ranger>()) worlds.prepareMesh();
-        if (sensor.is<Tag>()) worlds.prepareMesh(Surfaces::Solid);
+        if (isReadAtOnce(sensor.model)) worlds.prepareMesh(kindOf(sensor.model).stopped_by);
         const auto* const laser = std::get_if<Laser>(&sensor.model);
         if (laser == nullptr) continue;
-        worlds.prepare(sensor.pose);
+        worlds.prepare(sensor.pose, before == nullptr ? nullptr : &before->worlds);
         if (laser->sweep != SweepAxis::None) worlds.prepareMesh();
     }
     const bool has_cameras = std::any_of(scene->sensors.begin(), scene->sensors.end(),
@@ -181,6 +181,37 @@ void World::Data::put(std::size_t mover, const RobotStatus& status) {
     Gait& gait = gaits[mover - scene->robots.size()];
     gait.phase = status.phase;
     swings[mover - scene->robots.size()] = gait.swing(std::hypot(status.speed, status.sidespeed));
+}
+
+void World::Data::prepareEchoes() {
+    for (std::size_t i = 0; i < scene->robots.size(); ++i) {
+        const RobotModel& model = movers[i].model;
+        if (model.sonar.places.empty() || states[i].echoes != nullptr) continue;
+        const double top = sonarTop(model);
+        ObstacleSets& echoes = setting->echoes;
+        if (!echoes.contains(top))
+            echoes.emplace(top, Obstacles(echoBand(scene->environment, top)));
+        states[i].echoes = &echoes.at(top);
+    }
+}
+
+SonarVicinity World::Data::sonarVicinity(std::size_t robot, const FloorGrid& grid,
+                                         std::span<const MovingBody> bodies) {
+    SonarVicinity near;
+    MoverState& state = states[robot];
+    if (state.echoes == nullptr) return near;
+    const Point2 place = motions[robot].pose.position;
+    const double reach = sonarReach(movers[robot].model) + kEchoSlack;
+    near.is_within_solid = state.echoes->overlap(place, kEchoSlack).has_value();
+    state.echoes_near.forEachWithin(
+        *state.echoes, place, reach,
+        [&near](const Segment2& line, double) { near.lines.push_back(line); });
+    const Vec2 margin{reach, reach};
+    grid.forEachNear({place - margin, place + margin}, [&](std::size_t k) {
+        if (bodies[k].owner != robot)
+            near.bodies.emplace_back(bodies[k].pose.position, bodies[k].reach() + bodies[k].sway());
+    });
+    return near;
 }
 
 void World::Data::keepGait(std::size_t mover, const Data& before, std::size_t old) {

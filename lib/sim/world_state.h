@@ -5,10 +5,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "geom/pose.h"
@@ -20,6 +22,7 @@
 #include "sim/navigator.h"
 #include "sim/odometry.h"
 #include "sim/sensor_scheduler.h"
+#include "sim/sonar_vicinity.h"
 #include "sim/world.h"
 #include "trace/ray_world.h"
 
@@ -28,12 +31,14 @@ namespace ispace {
 /// A scene and the structures built from it, independent of where movers are; slow to build.
 struct SceneResources {
     /// \param meshes to build now; others are built when required
+    /// \param before of another scene, which may share data with this one; may be null
     /// \throws FormatError for a texture that cannot be read, if there are cameras
     SceneResources(std::shared_ptr<const Scene> made_of, const RunOptions& options,
-                   const Worlds::Meshes& meshes);
+                   const Worlds::Meshes& meshes, const SceneResources* before = nullptr);
 
     std::shared_ptr<const Scene> scene;
     ObstacleSets obstacles;
+    ObstacleSets echoes;  // by sonarTop(); built when all sonars are read at once
     FrictionMap friction;
     Worlds worlds;
     std::unique_ptr<Photographer> photographer;  // if there are cameras
@@ -49,10 +54,25 @@ std::unordered_set<std::string_view> unchangedMovers(const Scene& before, const 
 void keepInPlace(Scene& next, const std::unordered_set<std::string_view>& stayers,
                  const std::unordered_map<std::string_view, Pose2>& places);
 
+/// A stalled robot's surroundings, and the bumpers that they press.
+struct Contact {
+    Pose2 pose;
+    Vec2 bump;
+    std::vector<std::pair<Point2, double>> others;  // movers near it, with their radii
+    std::vector<bool> pressed;
+
+    [[nodiscard]] bool sameAs(const Contact& other) const {
+        return pose == other.pose && bump == other.bump && others == other.others &&
+               !other.pressed.empty();
+    }
+};
+
 /// Non-kinematic state of a mover.
 struct MoverState {
     const Obstacles* obstacles = nullptr;
-    Vicinity vicinity;  // lines of those obstacles
+    Vicinity vicinity;                  // lines of those obstacles
+    const Obstacles* echoes = nullptr;  // for its sonars
+    Vicinity echoes_near;               // lines of these
     MotionLimits limits;
     std::optional<MotionLimits> own_limits;  // from orders to its wheels
     double clearance = 0;  // distance that it can go before it meets an obstacle, at least
@@ -63,7 +83,8 @@ struct MoverState {
     std::int64_t told = 0;
     SimTime told_first{}, told_last{};
     bool stall = false;
-    Vec2 bump;  // displacement of the step that was cancelled when the stall began
+    Vec2 bump;        // displacement of the step that was cancelled when the stall began
+    Contact contact;  // of the last stall in which its bumpers were read
     std::vector<bool> recorded_bumpers;  // of a replay
     std::optional<std::size_t> blocked;  // by an element of the environment
 };
@@ -118,6 +139,11 @@ struct World::Data {
     void walk(std::size_t mover);
     void keepGait(std::size_t mover, const Data& before, std::size_t old);
     void end(std::size_t mover, Outcome outcome);
+    void prepareEchoes();
+    /// Finds the surroundings of a robot's sonars, among all bodies, which `grid` holds. Several
+    /// threads may call it for different robots. \pre prepareEchoes()
+    [[nodiscard]] SonarVicinity sonarVicinity(std::size_t robot, const FloorGrid& grid,
+                                              std::span<const MovingBody> bodies);
     /// Maps ids of robots and people to their poses.
     [[nodiscard]] std::unordered_map<std::string_view, Pose2> places() const;
     /// Builds the data of another scene: remaining movers keep their motion, and clients keep the

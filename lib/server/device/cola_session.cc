@@ -10,8 +10,6 @@ namespace ispace {
 
 namespace {
 
-/// Unsent bytes of a slow reader above which scans are skipped.
-constexpr std::size_t kRoom = std::size_t{1} << 16;
 constexpr double kAngleUnits = 10'000;  // per degree
 constexpr double kAhead = 90;           // degrees
 constexpr std::uint32_t kRemission = 200;
@@ -55,14 +53,14 @@ std::string refusalOfCola(const World& world, std::string_view id) {
     std::string refusal = refusalOfSensor(world, "laser", id);
     if (!refusal.empty()) return refusal;
     const auto& sensor = world.sensors()[*world.sensorNamed(id)];
-    const Laser& laser = *sensor.model<Laser>();
+    const Laser& laser = *sensor.tryAs<Laser>();
     if (laser.sweep != SweepAxis::None) return sensor.id + ": it sweeps, which CoLa cannot tell";
     const double step = std::round(laser.step.degrees() * kAngleUnits);
     if (step >= 1 && step <= kMost) return "";
     return sensor.id + ": its step is not from 0.0001 to 6.5535 degrees, as CoLa wants it";
 }
 
-std::unique_ptr<WireSession> open(WireHost& host, const std::string& id) {
+std::unique_ptr<WireSession> openCola(WireHost& host, const std::string& id) {
     return std::make_unique<ColaSession>(host, id);
 }
 
@@ -75,10 +73,10 @@ const WireProtocol kCola{
     .port = 2111,
     .clients = 8,
     .refusal = refusalOfCola,
-    .open = open};
+    .open = openCola};
 
 ColaFigures ColaFigures::of(const Laser& laser) {
-    constexpr double kHundred = 100, kMillimetres = 1000;
+    constexpr double kHundred = 100;
     ColaFigures out;
     out.name = laser.model.empty() ? "laser" : laser.model;
     for (char& c : out.name)
@@ -89,14 +87,13 @@ ColaFigures ColaFigures::of(const Laser& laser) {
     out.frequency = static_cast<std::uint32_t>(std::lround(laser.rate * kHundred));
     const double beams = laser.rate * 360 / laser.step.degrees();
     out.measurements = static_cast<std::uint32_t>(std::lround(beams / kHundred));
-    while (laser.max_range * kMillimetres / static_cast<double>(out.scale) > kMost) out.scale *= 2;
+    while (laser.max_range * kMmPerMetre / static_cast<double>(out.scale) > kMost) out.scale *= 2;
     return out;
 }
 
 std::uint32_t ColaFigures::number(float range) const {
-    constexpr double kMillimetres = 1000;
     if (!std::isfinite(range)) return 0;
-    const double steps = static_cast<double>(range) * kMillimetres / static_cast<double>(scale);
+    const double steps = static_cast<double>(range) * kMmPerMetre / static_cast<double>(scale);
     return static_cast<std::uint32_t>(std::clamp(std::round(steps), 0.0, double{kMost}));
 }
 
@@ -105,7 +102,7 @@ ColaSession::ColaSession(WireHost& host, std::string id) : host_(&host), id_(std
 }
 
 const Laser& ColaSession::laser() const {
-    return *host_->world().sensors()[sensor_].model<Laser>();
+    return *host_->world().sensors()[sensor_].tryAs<Laser>();
 }
 
 /// Follows changes of the world. \returns false once the laser was removed
@@ -310,7 +307,7 @@ void ColaSession::state(bool is_binary) {
 void ColaSession::stepped(std::size_t unsent) {
     if (closing() || !follow() || !streams_ || !measures_) return;
     const std::int64_t period = host_->world().period(sensor_);
-    if (period < next_ || unsent > kRoom) return;
+    if (period < next_ || unsent > kMaxUnsentBytes) return;
     next_ = period + content_.every;
     send(scan("sSN", binary_stream_));
 }

@@ -53,7 +53,7 @@ std::string headerOf(const PictureFile& file) {
     return out.append("\r\nX-Sequence: ").append(std::to_string(file.seq)).append("\r\n\r\n");
 }
 
-std::string_view lineOf(std::string_view& text) {
+std::string_view takeLine(std::string_view& text) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
@@ -92,7 +92,7 @@ bool isStranger(std::string_view host) {
 }  // namespace
 
 PictureRequest parsePictureRequest(std::string_view head) {
-    const std::string_view first = lineOf(head);
+    const std::string_view first = takeLine(head);
     const std::size_t space = first.find(' '), end = first.rfind(' ');
     const bool is_http = end != space && first.substr(end + 1).starts_with("HTTP/1.");
     PictureRequest request;
@@ -113,7 +113,7 @@ PictureRequest parsePictureRequest(std::string_view head) {
         request.refusal = kNotFound;
     if (method != "GET" && method != "HEAD") request.refusal = kNoMethod;
     while (!head.empty()) {
-        const std::string_view line = lineOf(head);
+        const std::string_view line = takeLine(head);
         if (isDoubtful(line)) request.refusal = kBad;
         constexpr std::string_view kHost = "host";
         if (isHeader(line, kHost) && isStranger(line.substr(kHost.size() + 1)))
@@ -182,7 +182,7 @@ void MjpegSession::stepped(std::size_t unsent) {
 void MjpegSession::show() {
     World& world = host_->world();
     const auto sensor = world.sensorNamed(id_);
-    if (!sensor || !world.sensors()[*sensor].isHeavy()) return close();
+    if (!sensor || !isHeavy(world.sensors()[*sensor])) return close();
     const bool streams = request_->kind == PictureRequest::Kind::Stream;
     // A paused world loses no time.
     if (!coming_)
@@ -216,24 +216,25 @@ void MjpegSession::show() {
 
 namespace {
 
-constexpr std::uint16_t kPort = 8080;
-constexpr std::size_t kClients = 8;
-
-std::string refusal(const World& world, std::string_view id) {
+std::string refusalOfMjpeg(const World& world, std::string_view id) {
     const auto sensor = world.sensorNamed(id);
-    if (sensor && world.sensors()[*sensor].model<Ranger>() != nullptr) return "";
+    if (sensor && world.sensors()[*sensor].tryAs<Ranger>() != nullptr) return "";
     return refusalOfSensor(world, "camera", id);
 }
 
-std::unique_ptr<WireSession> open(WireHost& host, const std::string& id) {
+std::unique_ptr<WireSession> openMjpeg(WireHost& host, const std::string& id) {
     return std::make_unique<MjpegSession>(host, id);
 }
 
 }  // namespace
 
 const WireProtocol kMjpeg{
-    "mjpeg", "CAMERA", "pictures of a camera or a 3-D ranger over HTTP, as of a network camera",
-    kPort,   kClients, refusal,
-    open};
+    .name = "mjpeg",
+    .device = "CAMERA",
+    .help = "pictures of a camera or a 3-D ranger over HTTP, as of a network camera",
+    .port = 8080,
+    .clients = 8,
+    .refusal = refusalOfMjpeg,
+    .open = openMjpeg};
 
 }  // namespace ispace

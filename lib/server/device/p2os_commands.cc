@@ -12,8 +12,6 @@ namespace ispace {
 
 namespace {
 
-constexpr double kMillimetres = 1000;
-
 // Ids that share a method.
 constexpr std::uint8_t kSeta = 5, kSetv = 6, kMove = 8, kRotate = 9, kSetrv = 10, kVel = 11,
                        kHead = 12, kDhead = 13, kRvel = 21, kSetra = 23, kStop = 29;
@@ -105,8 +103,8 @@ void P2osSession::setOrigin(const P2osPacket& packet) {
     constexpr std::size_t kSize = 7;
     Pose2 at;
     if (packet.data.size() >= kSize) {
-        at.position = {p2osInteger(packet.data, 1, 2) / kMillimetres,
-                       p2osInteger(packet.data, 3, 2) / kMillimetres};
+        at.position = {p2osInteger(packet.data, 1, 2) / kMmPerMetre,
+                       p2osInteger(packet.data, 3, 2) / kMmPerMetre};
         at.heading = Angle::degrees(p2osInteger(packet.data, 5, 2));
     }
     odometer_.set(at);
@@ -184,8 +182,8 @@ void P2osSession::setLaser(const P2osPacket& packet) {
 void P2osSession::setPose(const P2osPacket& packet) {
     constexpr std::size_t kSize = 13;
     if (packet.data.size() < kSize) return;
-    new_place_ = {{p2osInteger(packet.data, 1, 4) / kMillimetres,
-                   p2osInteger(packet.data, 5, 4) / kMillimetres},
+    new_place_ = {{p2osInteger(packet.data, 1, 4) / kMmPerMetre,
+                   p2osInteger(packet.data, 5, 4) / kMmPerMetre},
                   wrapped(Angle::degrees(p2osInteger(packet.data, 9, 4)))};
     place();
 }

@@ -13,9 +13,9 @@ namespace {
 
 constexpr char kFirst = '\xFA', kSecond = '\xFB';
 /// FA, FB and the length; then id and checksum at least.
-constexpr std::size_t kHead = 3, kMinValue = 3, kChecksum = 2;
+constexpr std::size_t kHeadBytes = 3, kMinValue = 3, kChecksum = 2;
 /// Maximum value of the length byte.
-constexpr std::size_t kMost = 200;
+constexpr std::size_t kMaxLength = 200;
 constexpr std::uint8_t kNegative = 0x1B;
 
 unsigned byteAt(std::string_view bytes, std::size_t at) {
@@ -57,19 +57,19 @@ std::optional<P2osPacket> P2osParser::take() {
             ++at;
             continue;
         }
-        if (rest.size() < kHead) break;
+        if (rest.size() < kHeadBytes) break;
         const std::size_t length = byteAt(rest, 2);
-        if (length < kMinValue || length > kMost) {
+        if (length < kMinValue || length > kMaxLength) {
             ++at;
             continue;
         }
-        if (rest.size() < kHead + length) break;
-        const std::string_view body = rest.substr(kHead, length - kChecksum);
-        const std::size_t sum = kHead + body.size();
+        if (rest.size() < kHeadBytes + length) break;
+        const std::string_view body = rest.substr(kHeadBytes, length - kChecksum);
+        const std::size_t sum = kHeadBytes + body.size();
         const unsigned wanted = byteAt(rest, sum) << 8U | byteAt(rest, sum + 1);
         if (p2osChecksum(body) == wanted) {
             packet = P2osPacket{static_cast<std::uint8_t>(body[0]), std::string(body.substr(1))};
-            at += kHead + length;
+            at += kHeadBytes + length;
         } else {
             ++at;
         }
@@ -135,7 +135,6 @@ const P2osType& p2osTypeOf(const Scene& scene, std::string_view robot) {
 
 namespace {
 
-constexpr double kMillimetres = 1000;
 constexpr double kMax16 = 65535;
 /// 12.5 V, a charged battery.
 constexpr int kBattery = 125;
@@ -157,8 +156,8 @@ std::int64_t headingUnits(Angle heading) {
 }
 
 void addPose(P2osWriter& out, const P2osType& type, const Pose2& pose) {
-    out.u16(rounded(pose.position.x * kMillimetres / type.distance));
-    out.u16(rounded(pose.position.y * kMillimetres / type.distance));
+    out.u16(rounded(pose.position.x * kMmPerMetre / type.distance));
+    out.u16(rounded(pose.position.y * kMmPerMetre / type.distance));
     out.u16(headingUnits(pose.heading));
 }
 
@@ -170,7 +169,7 @@ void addSonars(P2osWriter& out, const P2osType& type, const P2osStatus& status) 
         const std::size_t sonar = (status.first_sonar + k) % count;
         const float range = status.ranges[sonar];
         const double millimetres =
-            std::isinf(range) ? kNoEcho : static_cast<double>(range) * kMillimetres;
+            std::isinf(range) ? kNoEcho : static_cast<double>(range) * kMmPerMetre;
         out.u8(static_cast<std::int64_t>(sonar)).u16(range16(millimetres / type.range));
     }
 }
@@ -201,7 +200,7 @@ int p2osBumperCount(const RobotModel& model, bool front) {
 
 std::string p2osStatusPacket(const P2osType& type, const P2osStatus& status) {
     constexpr unsigned kStalled = 0x0101, kMotors = 1, kSonars = 0x1E, kStopped = 1U << 5U;
-    const double speed = status.speed * kMillimetres;
+    const double speed = status.speed * kMmPerMetre;
     const double difference = status.rotspeed.radians() / type.turn;
     P2osWriter out;
     addPose(out, type, status.pose);
@@ -222,16 +221,16 @@ std::string p2osStatusPacket(const P2osType& type, const P2osStatus& status) {
 
 P2osLimits p2osUsualLimits(const RobotModel& model) {
     constexpr double kSpeed = 750, kRotspeed = 100;
-    const double accel = model.accel * kMillimetres, rotaccel = model.rotaccel.degrees();
-    return {std::min(kSpeed, model.max_speed * kMillimetres),  accel,    accel,
+    const double accel = model.accel * kMmPerMetre, rotaccel = model.rotaccel.degrees();
+    return {std::min(kSpeed, model.max_speed * kMmPerMetre),   accel,    accel,
             std::min(kRotspeed, model.max_rotspeed.degrees()), rotaccel, rotaccel};
 }
 
 P2osLimits p2osTopLimits(const P2osType& type, const RobotModel& model) {
     constexpr double kAccel = 2000, kRotaccel = 300;
-    const double accel = std::max(kAccel, model.accel * kMillimetres);
+    const double accel = std::max(kAccel, model.accel * kMmPerMetre);
     const double rotaccel = std::max(kRotaccel, model.rotaccel.degrees());
-    return {std::min<double>(type.top_speed, model.max_speed * kMillimetres),  accel,    accel,
+    return {std::min<double>(type.top_speed, model.max_speed * kMmPerMetre),   accel,    accel,
             std::min<double>(type.top_rotspeed, model.max_rotspeed.degrees()), rotaccel, rotaccel};
 }
 
@@ -261,7 +260,7 @@ std::string p2osSimPacket(const Pose2& pose, SimTime step) {
     constexpr unsigned kHasMap = 1;
     P2osWriter out;
     out.u8(0).u8(0).u32(kHasMap).u16(interval).u16(interval).u16(interval);
-    out.u32(rounded(pose.position.x * kMillimetres)).u32(rounded(pose.position.y * kMillimetres));
+    out.u32(rounded(pose.position.x * kMmPerMetre)).u32(rounded(pose.position.y * kMmPerMetre));
     out.u32(0).u32(rounded(wrapped(pose.heading).degrees()));
     out.u32(0).u32(0).u32(0).u32(-1);  // no geographic position
     out.u32(0).u32(0).u32(0);
@@ -286,7 +285,7 @@ std::string p2osLaserPackets(int mode, const P2osType& type, const Pose2& pose,
         packet.u16(static_cast<std::int64_t>(first)).u8(static_cast<std::int64_t>(part.size()));
         for (const float range : part) {
             const double metres = std::isinf(range) ? max_range : static_cast<double>(range);
-            packet.u16(range16(metres * kMillimetres));
+            packet.u16(range16(metres * kMmPerMetre));
             if (mode != 1) packet.u8(0).u8(0).u8(0);
         }
         if (mode != 1) packet.u8(0).u8(0);

@@ -9,7 +9,6 @@ namespace ispace {
 
 namespace {
 
-constexpr double kMillimetres = 1000;
 constexpr SimTime kRetryAfter = std::chrono::milliseconds(500);
 
 /// Computes an axis' current limits of speed and acceleration.
@@ -33,7 +32,7 @@ void P2osDrive::limit(double P2osLimits::*which, double value) {
 
 void P2osDrive::setSpeed(double speed) {
     if (!mayMove()) return;
-    const AxisGoal goal{AxisGoal::Kind::Speed, speed / kMillimetres};
+    const AxisGoal goal{AxisGoal::Kind::Speed, speed / kMmPerMetre};
     if (goal == drive_) return;
     if (goal.value * drive_.value <= 0) stalled_ = false;
     drive_ = goal;
@@ -49,7 +48,7 @@ void P2osDrive::setRotspeed(double rotspeed) {
 
 void P2osDrive::move(double distance) {
     if (!mayMove()) return;
-    drive_ = {AxisGoal::Kind::Distance, distance / kMillimetres};
+    drive_ = {AxisGoal::Kind::Distance, distance / kMmPerMetre};
     new_drive_ = true;
     stalled_ = false;
 }
@@ -111,8 +110,8 @@ WheelOrder P2osDrive::order(const RobotStatus& status) const {
     const P2osLimits& is = stopping_ ? top_ : limits_;
     WheelOrder order;
     order.drive_limits =
-        limitsFor(hushed_ ? AxisGoal() : drive_, status.speed, is.speed / kMillimetres,
-                  is.accel / kMillimetres, is.decel / kMillimetres);
+        limitsFor(hushed_ ? AxisGoal() : drive_, status.speed, is.speed / kMmPerMetre,
+                  is.accel / kMmPerMetre, is.decel / kMmPerMetre);
     order.turn_limits = limitsFor(hushed_ ? AxisGoal() : turn_, status.rotspeed.degrees(),
                                   is.rotspeed, is.rotaccel, is.rotdecel);
     return order;
@@ -351,12 +350,12 @@ void P2osSession::sendScan() {
     laser.max_range = kUsualRange;
     sensor.mount = Mount{
         robot(),
-        {{type_.laser_x / kMillimetres, type_.laser_y / kMillimetres, kScanHeight}, {}, {}, {}}};
-    for (const RunSensor& own : world.sensors()) {
-        if (own.model<Laser>() == nullptr || !own.isOn(robot())) continue;
-        sensor.mount = own.sensor()->mount;
-        laser.min_range = own.model<Laser>()->min_range;
-        laser.max_range = own.model<Laser>()->max_range;
+        {{type_.laser_x / kMmPerMetre, type_.laser_y / kMmPerMetre, kScanHeight}, {}, {}, {}}};
+    for (const Sensor& own : world.sensors()) {
+        if (own.tryAs<Laser>() == nullptr || !own.isOn(robot())) continue;
+        sensor.mount = own.mount;
+        laser.min_range = own.tryAs<Laser>()->min_range;
+        laser.max_range = own.tryAs<Laser>()->max_range;
         break;
     }
     laser.beams = readings;
@@ -373,16 +372,18 @@ void P2osSession::sendSim() {
 
 namespace {
 
-constexpr std::uint16_t kPort = 8101;
-
 std::unique_ptr<WireSession> openP2os(WireHost& host, const std::string& id) {
     return std::make_unique<P2osSession>(host, id);
 }
 
 }  // namespace
 
-const WireProtocol kP2os{"p2os",  "ROBOT", "the packets of Pioneer robots, for ARIA and Player",
-                         kPort,   1,       refusalOfRobot,
-                         openP2os};
+const WireProtocol kP2os{.name = "p2os",
+                         .device = "ROBOT",
+                         .help = "the packets of Pioneer robots, for ARIA and Player",
+                         .port = 8101,
+                         .clients = 1,
+                         .refusal = refusalOfRobot,
+                         .open = openP2os};
 
 }  // namespace ispace

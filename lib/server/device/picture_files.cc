@@ -13,15 +13,15 @@ namespace {
 constexpr std::chrono::milliseconds kMinGap{10};
 constexpr double kPerMetre = 1000;
 
-std::shared_ptr<const PictureFile> fileOf(const RunSensor& sensor, const SensorReading& reading) {
+std::shared_ptr<const PictureFile> fileOf(const Sensor& sensor, const SensorReading& reading) {
     auto file = std::make_shared<PictureFile>();
     file->seq = reading.seq;
     file->time = reading.time;
-    if (const auto* const camera = sensor.model<Camera>()) {
+    if (const auto* const camera = sensor.tryAs<Camera>()) {
         file->type = "image/jpeg";
         file->bytes = jpegOfRgb(camera->columns, camera->rows, std::get<Photo>(reading.value).rgb);
     } else {
-        const auto& ranger = *sensor.model<Ranger>();
+        const auto& ranger = *sensor.tryAs<Ranger>();
         file->type = "image/png";
         file->bytes = depthPng(ranger.columns, ranger.rows,
                                std::get<DepthFrame>(reading.value).depths, kPerMetre);
@@ -49,7 +49,7 @@ std::shared_ptr<const PictureFiles::Asked> PictureFiles::newest(World& world, st
 
 void PictureFiles::make(World& world, std::size_t sensor, const Entry& entry, const Doer& does) {
     struct Making {
-        RunSensor sensor;
+        Sensor sensor;
         SensorReading reading;
         std::function<SensorReading()> take;
         std::shared_ptr<const PictureFile> file;

@@ -13,7 +13,6 @@ namespace {
 
 /// Steps have four digits, distances 18 bits.
 constexpr int kMaxSteps = 9999, kMaxScipDistance = (1 << 18) - 1;
-constexpr double kMillimetres = 1000;
 
 struct Row {
     std::string_view model;  // of share/devices
@@ -49,10 +48,12 @@ bool isWhole(double value) {
     return std::fabs(value - std::round(value)) < kRounding;
 }
 
-int rounded(double value) { return static_cast<int>(std::lround(value)); }
+int roundedToInt(double value) { return static_cast<int>(std::lround(value)); }
 
 /// Step of the first beam, counted from the front.
-int offsetOf(const Laser& laser) { return rounded(laser.first.degrees() / laser.step.degrees()); }
+int offsetOf(const Laser& laser) {
+    return roundedToInt(laser.first.degrees() / laser.step.degrees());
+}
 
 int frontOf(const Laser& laser) {
     const Row* const row = rowOf(laser);
@@ -78,11 +79,11 @@ std::string ScipModel::refusal(const Laser& laser) {
 ScipModel ScipModel::of(const Laser& laser) {
     constexpr double kSecondsAMinute = 60;
     ScipModel out;
-    out.turn = rounded(360 / laser.step.degrees());
+    out.turn = roundedToInt(360 / laser.step.degrees());
     out.front = frontOf(laser);
     out.first = out.front + offsetOf(laser);
     out.last = out.first + laser.beams - 1;
-    out.rpm = std::max(1, rounded(laser.rate * kSecondsAMinute));
+    out.rpm = std::max(1, roundedToInt(laser.rate * kSecondsAMinute));
     if (const Row* const row = rowOf(laser)) {
         out.name = row->name;
         out.product = row->product;
@@ -97,17 +98,17 @@ ScipModel ScipModel::of(const Laser& laser) {
     }
     out.name = laser.model.empty() ? "ispace laser" : "ispace " + laser.model;
     out.product = "simulated laser";
-    const double most = std::min(laser.max_range * kMillimetres, double{kMaxScipDistance});
+    const double most = std::min(laser.max_range * kMmPerMetre, double{kMaxScipDistance});
     out.max_mm = std::max(1, static_cast<int>(std::ceil(most)));
-    const double least = std::min(laser.min_range * kMillimetres, double{kMaxScipDistance});
-    out.min_mm = std::clamp(rounded(least), 1, out.max_mm);
+    const double least = std::min(laser.min_range * kMmPerMetre, double{kMaxScipDistance});
+    out.min_mm = std::clamp(roundedToInt(least), 1, out.max_mm);
     out.has_intensity = true;
     return out;
 }
 
 int ScipModel::number(float range) const {
     if (!std::isfinite(range)) return none;
-    const double mm = std::round(static_cast<double>(range) * kMillimetres);
+    const double mm = std::round(static_cast<double>(range) * kMmPerMetre);
     if (mm < min_mm) return near;
     return mm > max_mm ? none : static_cast<int>(mm);
 }

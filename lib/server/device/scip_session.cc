@@ -9,8 +9,6 @@ namespace ispace {
 
 namespace {
 
-/// Unsent bytes of a slow reader above which scans are skipped: some ten of the largest.
-constexpr std::size_t kRoom = std::size_t{1} << 16;
 constexpr std::uint32_t kTimeMask = 0xFFFFFF;
 constexpr int kIntensity = 1000;
 constexpr int kMaxOfTwo = 4095;
@@ -30,7 +28,7 @@ std::string serialOf(std::string_view id) {
     return "H" + std::string(7 - digits.size(), '0') + digits;
 }
 
-std::string lineOf(std::string_view content) {
+std::string scipLine(std::string_view content) {
     std::string out;
     appendScipLine(out, content);
     return out;
@@ -40,11 +38,11 @@ std::string refusalOfScip(const World& world, std::string_view id) {
     std::string refusal = refusalOfSensor(world, "laser", id);
     if (!refusal.empty()) return refusal;
     const auto& sensor = world.sensors()[*world.sensorNamed(id)];
-    refusal = ScipModel::refusal(*sensor.model<Laser>());
+    refusal = ScipModel::refusal(*sensor.tryAs<Laser>());
     return refusal.empty() ? "" : sensor.id + ": " + refusal;
 }
 
-std::unique_ptr<WireSession> open(WireHost& host, const std::string& id) {
+std::unique_ptr<WireSession> openScip(WireHost& host, const std::string& id) {
     return std::make_unique<ScipSession>(host, id);
 }
 
@@ -57,7 +55,7 @@ const WireProtocol kScip{
     .port = 10940,
     .clients = 8,
     .refusal = refusalOfScip,
-    .open = open};
+    .open = openScip};
 
 ScipSession::ScipSession(WireHost& host, std::string id) : host_(&host), id_(std::move(id)) {
     static_cast<void>(follow());
@@ -73,7 +71,7 @@ bool ScipSession::follow() {
         return false;
     }
     sensor_ = *world.sensorNamed(id_);
-    model_ = ScipModel::of(*world.sensors()[sensor_].model<Laser>());
+    model_ = ScipModel::of(*world.sensors()[sensor_].tryAs<Laser>());
     if (stream_.sweep.end > model_.last) rest();
     // Periods restart with another rate and after a replay's seek.
     stream_.next = std::min(stream_.next, world.period(sensor_) + 1 + stream_.sweep.interval);
@@ -117,7 +115,7 @@ void ScipSession::answer(const std::string& line) {
     if (is_bare && request.command == "VV") return tell(product());
     if (is_bare && request.command == "PP") return tell(parameters());
     if (is_bare && request.command == "II") return tell(state());
-    if (is_bare && request.command == "%ST") return tell(lineOf(stateCode()));
+    if (is_bare && request.command == "%ST") return tell(scipLine(stateCode()));
     const std::string_view status = statusOf(request);
     if (status != kUnknown) setUnderstood();
     const bool tells_time = request.command == "TM" && request.parameters == "1" && status == "00";
@@ -240,7 +238,7 @@ void ScipSession::takeSweep(const ScipRequest& request, std::string_view line) {
 void ScipSession::stepped(std::size_t unsent) {
     if (closing() || !follow() || !stream_.on) return;
     const std::int64_t period = host_->world().period(sensor_);
-    if (period < stream_.next || unsent > kRoom) return;
+    if (period < stream_.next || unsent > kMaxUnsentBytes) return;
     ScipSweep& sweep = stream_.sweep;
     stream_.next = period + 1 + sweep.interval;
     if (!stream_.endless) {
@@ -258,7 +256,7 @@ void ScipSession::stepped(std::size_t unsent) {
 std::string ScipSession::timeLine(std::chrono::nanoseconds time) const {
     std::string digits;
     appendScipNumber(digits, milliseconds(time), 4);
-    return lineOf(digits);
+    return scipLine(digits);
 }
 
 /// Of the UST and the UTM-30LX-EW, as %ST answers it.

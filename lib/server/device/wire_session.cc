@@ -49,8 +49,8 @@ void WireHost::runInBackground(std::function<void()> work,
 
 std::string refusalOfSensor(const World& world, std::string_view keyword, std::string_view id) {
     std::vector<std::string> known;
-    for (const RunSensor& sensor : world.sensors()) {
-        if (sensor.keyword() != keyword) continue;
+    for (const Sensor& sensor : world.sensors()) {
+        if (kindOf(sensor.model).keyword != keyword) continue;
         if (sensor.id == id) return "";
         known.push_back(sensor.id);
     }

@@ -109,6 +109,11 @@ class WireSession {
     bool closing_ = false, understood_ = false;
 };
 
+/// Unsent bytes of a slow reader above which scans are skipped: some ten of the largest.
+inline constexpr std::size_t kMaxUnsentBytes = std::size_t{1} << 16;
+/// Devices report lengths in millimetres.
+inline constexpr double kMmPerMetre = 1000;
+
 /// Registration of one protocol. A new protocol needs its session, such a row, and an entry in
 /// wireProtocols().
 struct WireProtocol {

@@ -47,9 +47,9 @@ void ZpsSession::follow() {
     tags_.clear();
     const auto named = world.sensorNamed(id_);
     if (!named) return close();
-    const bool all = world.sensors()[*named].model<Tag>() == nullptr;
+    const bool all = world.sensors()[*named].tryAs<Tag>() == nullptr;
     for (std::size_t i = 0; i < world.sensors().size(); ++i)
-        if (world.sensors()[i].model<Tag>() != nullptr && (all || i == *named))
+        if (world.sensors()[i].tryAs<Tag>() != nullptr && (all || i == *named))
             tags_.push_back({.sensor = i, .seq = world.reading(i).seq});
 }
 
@@ -67,24 +67,25 @@ void ZpsSession::stepped(std::size_t unsent) {
 
 namespace {
 
-constexpr std::uint16_t kPort = 8200;
-constexpr std::size_t kClients = 32;
-
-std::string refusal(const World& world, std::string_view id) {
+std::string refusalOfZps(const World& world, std::string_view id) {
     const auto sensor = world.sensorNamed(id);
-    if (sensor && world.sensors()[*sensor].model<Receiver>() != nullptr) return "";
+    if (sensor && world.sensors()[*sensor].tryAs<Receiver>() != nullptr) return "";
     return refusalOfSensor(world, "tag", id);
 }
 
-std::unique_ptr<WireSession> open(WireHost& host, const std::string& id) {
+std::unique_ptr<WireSession> openZps(WireHost& host, const std::string& id) {
     return std::make_unique<ZpsSession>(host, id);
 }
 
 }  // namespace
 
 const WireProtocol kZps{
-    "zps", "TAG",    "positions of an ultrasonic tag (of all: a receiver), as lines of text",
-    kPort, kClients, refusal,
-    open};
+    .name = "zps",
+    .device = "TAG",
+    .help = "positions of an ultrasonic tag (of all: a receiver), as lines of text",
+    .port = 8200,
+    .clients = 32,
+    .refusal = refusalOfZps,
+    .open = openZps};
 
 }  // namespace ispace

@@ -41,6 +41,8 @@ export class Movers {
     if (frame.all) this.scans.clear();
     for (const reading of frame.readings) {
       if (reading.r) this.scans.set(reading.id, this.pathsOf(reading));
+      else if (reading.points)
+        this.scans.set(reading.id, {area: new Path2D(), hits: reading.points.map(part => part / 1000), size: 7});
       else this.floor.set(reading.id, reading);
     }
   }
@@ -88,7 +90,7 @@ export class Movers {
   drawScans(context, view, selected) {
     view.inMetres(context);
     const faint = 0.14 * Math.min(1, Math.sqrt(20 / this.scans.size));
-    for (const [id, {area, hits}] of this.scans) {
+    for (const [id, {area, hits, size: pixels = 2}] of this.scans) {
       const color = this.colorOf.get(id) ?? this.colors.sensor;
       const sensor = this.sensors.find(other => other.id === id);
       const strong = selected && sensor?.on !== undefined && this.all[sensor.on] === selected;
@@ -96,7 +98,7 @@ export class Movers {
       context.fillStyle = color;
       context.fill(area);
       context.globalAlpha = strong ? 0.9 : 0.65;
-      const size = 2 / view.scale;
+      const size = pixels / view.scale;
       for (let i = 0; i < hits.length; i += 2) context.fillRect(hits[i] - size / 2, hits[i + 1] - size / 2, size, size);
     }
     context.globalAlpha = 1;

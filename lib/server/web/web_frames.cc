@@ -14,6 +14,7 @@
 #include "drawing/color.h"
 #include "drawing/plan/plan.h"
 #include "drawing/plan/plan_json.h"
+#include "sense/formats/reading_fields.h"
 #include "sim/mover.h"
 #include "sim/sim_time.h"
 
@@ -23,7 +24,7 @@ namespace {
 
 double rounded(double value) { return std::round(value * 1000) / 1000; }
 
-void addPose(JsonWriter& json, const Pose3& pose) {
+void addPlanPose(JsonWriter& json, const Pose3& pose) {
     json.key("pose").beginArray();
     json.value(rounded(pose.position.x)).value(rounded(pose.position.y));
     json.value(rounded(pose.heading.degrees())).endArray();
@@ -56,7 +57,7 @@ void addSensors(JsonWriter& json, const Scene& scene) {
         if (sensorKind(keyword) != nullptr)
             if (const auto& person = scene.sensors[placed.index].person)
                 json.key("on").value(scene.robots.size() + *person);
-        addPose(json, placed.mount ? placed.mount->robot_from_sensor : placed.pose);
+        addPlanPose(json, placed.mount ? placed.mount->robot_from_sensor : placed.pose);
         if (keyword == "mat") {
             json.key("size").value(std::vector<double>(record.tuple("size")));
         } else if (keyword == "gate") {
@@ -135,44 +136,53 @@ void append(std::string& out, std::initializer_list<std::int64_t> numbers) {
 
 void appendText(std::string& out, std::string_view text) { out += JsonWriter().value(text).text(); }
 
-void appendScan(std::string& out, const Laser& laser, const SensorReading& reading) {
-    const Pose3& pose = reading.pose;
-    out += ",\"pose\":";
-    append(out, {fixed(pose.position.x), fixed(pose.position.y), fixed(pose.heading),
-                 fixed(pose.tilt), fixed(pose.roll)});
-    out.append(",\"first\":").append(formatDouble(laser.first.degrees()));
-    out.append(",\"step\":").append(formatDouble(laser.step.degrees()));
-    out.append(",\"max\":").append(formatDouble(laser.max_range)).append(",\"r\":[");
-    bool comma = false;
-    for (const float range : reading.scan().ranges) {
-        if (std::exchange(comma, true)) out += ',';
-        append(out, std::isinf(range) ? -1 : std::llround(static_cast<double>(range) * 1000));
+/// Appends the values of fields that the page shows.
+struct PageValue {
+    std::string& out;
+    std::size_t numbers = 0;  ///< of lists with a number an element
+
+    void operator()(std::int64_t value) { append(out, value); }
+    void operator()(double value) { out += formatDouble(value); }
+    void operator()(Angle angle) { out += formatDouble(angle.degrees()); }
+    void operator()(const std::vector<std::int64_t>& values) {
+        char separator = '[';
+        for (const std::int64_t value : values) {
+            out += std::exchange(separator, ',');
+            append(out, value);
+        }
+        out += values.empty() ? "[]" : "]";
     }
-    out += ']';
-}
+    void operator()(std::span<const float> ranges) {
+        out += '[';
+        bool comma = false;
+        for (const float range : ranges) {
+            if (std::exchange(comma, true)) out += ',';
+            append(out, std::isinf(range) ? -1 : std::llround(static_cast<double>(range) * 1000));
+        }
+        out += ']';
+        numbers = ranges.size();
+    }
+    template <typename Value>
+    void operator()(const Value& /*value*/) {}
+};
 
 /// Appends the part of a reading that the page shows. \returns its size in numbers, 0 if the page
 /// does not show this sensor
-std::size_t appendReading(std::string& out, const RunSensor& sensor, const SensorReading& reading) {
-    const auto* const laser = sensor.model<Laser>();
-    const auto* const mat = std::get_if<MatState>(&reading.value);
-    const auto* const gate = std::get_if<GateState>(&reading.value);
-    if (laser == nullptr && mat == nullptr && gate == nullptr) return 0;
+std::size_t appendReading(std::string& out, const Sensor& sensor, const SensorReading& reading) {
+    const std::span<const ReadingField> fields = readingKind(sensor.model).fields;
+    const auto is_shown = [](const ReadingField& field) { return (field.uses & kInPage) != 0; };
+    if (std::none_of(fields.begin(), fields.end(), is_shown)) return 0;
     out += out.ends_with('[') ? "{\"id\":" : ",{\"id\":";
     appendText(out, sensor.id);
-    if (laser != nullptr) {
-        appendScan(out, *laser, reading);
-    } else if (mat != nullptr) {
-        out += ",\"on\":";
-        append(out, static_cast<std::int64_t>(mat->on.size()));
-    } else {
-        out += ",\"in\":";
-        append(out, gate->in);
-        out += ",\"out\":";
-        append(out, gate->out);
+    const ReadingView view = viewOf(sensor, reading);
+    PageValue values{out};
+    for (const ReadingField& field : fields) {
+        if (!is_shown(field)) continue;
+        out.append(",\"").append(field.name).append("\":");
+        std::visit(values, field.value(view));
     }
     out += '}';
-    return laser == nullptr ? 1 : reading.scan().ranges.size();
+    return std::max<std::size_t>(values.numbers, 1);
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ from .errors import (
 )
 from .filters import CoverageReport, Figure, Layout, Object, Record, arrange, coverage, info, scan
 from .movers import Bumper, End, Limits, Motion, Odometry, Person, Robot, Sonar, Status
+from .radar import Detection, Detections, Radar
 from .readings import Burst, Cloud, Depths, Fix, Load, Passages, Picture, Reading, Scan
 from .sensors import (
     Camera,
@@ -59,6 +60,8 @@ __all__ = [
     "ConnectionFailed",
     "CoverageReport",
     "Depths",
+    "Detection",
+    "Detections",
     "End",
     "Error",
     "Event",
@@ -81,6 +84,7 @@ __all__ = [
     "Pose",
     "Pose3",
     "ProtocolError",
+    "Radar",
     "Ranger",
     "Reading",
     "Record",
