@@ -85,7 +85,7 @@ struct ArrangeOptions {
     std::optional<double> budget;
     bool wants_curve = false, wants_trace = false;
 
-    double plane = 0;                 ///< height at which rangers, cameras and receivers cover
+    double plane = 0;                 ///< height at which all sensors but level lasers cover
     double pixel_density = 0;         ///< least pixels per metre where a camera covers; 0: no limit
     std::optional<CellChoice> cells;  ///< during the search, see searchCells()
     std::size_t max_bytes = std::size_t{8} << 30U;  ///< of candidates and of the tree of Exact
@@ -154,8 +154,8 @@ struct Arrangement {
 ///
 /// Builds candidates by options.strategy for each kind of sensor, weighs the target's cells by
 /// options.weights, then runs search() or minimumCostCover(), and refine() if asked. `mps`:
-/// receives the model before the search. A shard (options.search.share) stores its steps in the
-/// ledger and returns an arrangement without sensors.
+/// receives the model before the search. A shard (options.search.share) stores its steps in
+/// the job results and returns an arrangement without sensors.
 /// \throws UnmetError if a kind has no valid site or the budget buys no sensor, UsageError if the
 ///         candidates do not fit in memory
 Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,

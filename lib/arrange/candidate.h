@@ -95,8 +95,8 @@ constexpr std::size_t kMinPlaces = 64;
 /// far and `least` of the others, or all, spread over the plan; in order.
 /// \throws UsageError once set.bytes() exceeds max_bytes
 ///
-/// With a ledger, reads the views that it holds and stores the others. A shard of the candidates
-/// scans only its share of the sites: its candidates at all others have empty views.
+/// With share.results, reads the views stored there and stores the others. A shard of the
+/// candidates scans only its share of the sites: its candidates at all others have empty views.
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
                    std::size_t max_bytes, Progress& progress, std::size_t least = kMinPlaces,
                    const SearchShare& share = SearchShare());

@@ -14,6 +14,10 @@
 
 namespace ispace {
 
+Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
+    return {.curves = std::move(curves), .counts = false, .marks = marks};
+}
+
 namespace {
 
 std::vector<double> redundancyOf(const std::vector<std::uint32_t>& times, const CellSet& indoor,
@@ -142,10 +146,6 @@ constexpr std::size_t kFirstZoneBit = 2, kZonesAtOnce = 62;
 
 std::uint64_t zoneMark(std::size_t zone) {
     return std::uint64_t{1} << (kFirstZoneBit + zone % kZonesAtOnce);
-}
-
-Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
-    return {.curves = std::move(curves), .counts = false, .marks = marks};
 }
 
 void addZoneLayers(std::span<const Zone> zones, std::vector<Layer>& layers) {

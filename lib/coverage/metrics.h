@@ -11,6 +11,8 @@
 
 namespace ispace {
 
+/// Returns a layer that sets bits of `marks` and is not counted.
+Layer markLayer(std::vector<Curve> curves, std::uint64_t marks);
 /// Returns the region heard by at least kMinReceivers of these receivers; empty if unknown.
 std::optional<std::vector<Curve>> regionHeardByEnough(std::span<const SensorView* const> receivers);
 /// A zone of the environment.

@@ -196,10 +196,6 @@ std::vector<const SensorView*> camerasOf(const Coverage& coverage) {
     return cameras;
 }
 
-Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
-    return {.curves = std::move(curves), .counts = false, .marks = marks};
-}
-
 /// Builds the overlay of as many zones from `first` on as fit.
 Overlay densityOverlay(const Coverage& coverage, const Environment& environment,
                        const std::vector<Region>& free_floor, std::span<const Zone> zones) {

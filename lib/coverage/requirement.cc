@@ -172,17 +172,20 @@ Verdict checkRequirement(const Requirement& requirement, const Coverage& coverag
         return {true, text + ", as required (" + required + ")"};
     text += ", below the required " + required;
     if (area <= 0) return {false, text + ": it has no floor in the room"};
-    text += ": " + squareMetres((requirement.share - share) * area) + " are missing";
+    const double missing = (requirement.share - share) * area;
+    text += ": " + squareMetres(missing) + " are missing";
     std::optional<UncoveredSpot> largest;
     if (requirement.density)
         largest = largestWithout(requirement, coverage);
     else if (requirement.of != Requirement::Of::Zone && !report.unseen.empty())
         largest = report.unseen.front();
-    if (!largest) return {false, text};
+    if (!largest) return {false, text, missing};
     const UncoveredSpot& spot = *largest;
-    return {false, text + "; the largest " + (requirement.density ? "such" : "unseen") +
-                       " spot has " + squareMetres(spot.area) + " around (" +
-                       formatFixed(spot.place.x, 2) + ", " + formatFixed(spot.place.y, 2) + ")"};
+    return {false,
+            text + "; the largest " + (requirement.density ? "such" : "unseen") + " spot has " +
+                squareMetres(spot.area) + " around (" + formatFixed(spot.place.x, 2) + ", " +
+                formatFixed(spot.place.y, 2) + ")",
+            missing};
 }
 
 }  // namespace ispace

@@ -38,6 +38,7 @@ void mustHaveZone(const Requirement& requirement, const Environment& environment
 struct Verdict {
     bool is_met = false;
     std::string text;
+    double missing = 0;  ///< covered floor that is required besides, m2; 0 if unknown
 };
 
 /// Compares with the exact metric if it is known, else with the one by cells; if both are unknown,

@@ -231,9 +231,10 @@ void flush(const DetectionMonitor& watch, Members& members, std::vector<Sample>&
     tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
         Sample& sample = samples[i];
         const WatchMoment moment{.robots = sample.robots, .people = sample.people};
+        std::vector<DetectionMonitor::Target> targets;
         for (const RunState& state : sample.states)
-            sample.counts.push_back(
-                watch.seenBy({state.pose.position, members.ownerOf(state.who)}, moment));
+            targets.push_back({state.pose.position, members.ownerOf(state.who)});
+        sample.counts = watch.seenBy(targets, moment);
     });
     for (const Sample& sample : samples) sum.add(sample);
     samples.clear();

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/per_thread.h"
 #include "scene/sensor/field_of_view.h"
 
 namespace ispace {
@@ -357,8 +358,7 @@ std::optional<Sector> sectorOf(const Laser& laser, Angle heading) {
 
 void cellsBySector(const Grid& grid, const Level& level, Point2 place, double max_range,
                    std::span<const Angle> limits, CellParts& parts) {
-    thread_local SectorRaster raster;  // reuses its memory
-    raster.run(grid, level, place, max_range, limits, parts);
+    perThread<SectorRaster, SectorRaster>().run(grid, level, place, max_range, limits, parts);
 }
 
 }  // namespace ispace

@@ -2,6 +2,7 @@
 #include "coverage/shadow_bodies.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -9,13 +10,14 @@
 
 #include "env/mesh.h"
 #include "geom/curve.h"
+#include "geom/polygon.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
 
 namespace {
 
-constexpr int kSides = 5;  // sides of the box, and the plane
+constexpr int kPlanes = 5;  // sides of the box, and the plane
 
 using Edge = ShadowEdge;
 
@@ -104,7 +106,7 @@ std::array<Point3, 3> cornersOf(const ShadowBody& body, std::size_t triangle) {
     return {body.vertices[i], body.vertices[j], body.vertices[k]};
 }
 
-void add(Mesh mesh, ShadowBody::Kind kind, std::vector<ShadowBody>& bodies) {
+ShadowBody bodyOf(Mesh mesh, ShadowBody::Kind kind) {
     ShadowBody body{kind, std::move(mesh.vertices), std::move(mesh.triangles), {}, 0, 0};
     body.bottom = std::numeric_limits<double>::infinity();
     body.top = -body.bottom;
@@ -113,11 +115,12 @@ void add(Mesh mesh, ShadowBody::Kind kind, std::vector<ShadowBody>& bodies) {
         body.bottom = std::min(body.bottom, p.z);
         body.top = std::max(body.top, p.z);
     }
-    bodies.push_back(std::move(body));
+    return body;
 }
 
 void addAll(const Body& body, ShadowBody::Kind kind, std::vector<ShadowBody>& bodies) {
-    for (Mesh& mesh : meshesOf(body, Surfaces::Solid)) add(std::move(mesh), kind, bodies);
+    for (Mesh& mesh : meshesOf(body, Surfaces::Solid))
+        bodies.push_back(bodyOf(std::move(mesh), kind));
 }
 
 void addSheet(const Sheet& sheet, std::vector<ShadowBody>& bodies) {
@@ -142,12 +145,81 @@ void addPrism(const Prism& prism, std::vector<ShadowBody>& bodies) {
     for (const double z : {prism.bottom, prism.top}) addPlate({prism.footprint, z}, bodies);
 }
 
-std::vector<ShadowBody> clearBodiesOf(const Environment& environment) {
+namespace {
+
+ShadowBodies::Space spaceOf(const Body& body) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    ShadowBodies::Space space{{}, kInfinity, -kInfinity};
+    const auto add = [&space](std::span<const Point2> outline, double bottom, double top) {
+        for (const Point2 p : outline) space.plan.add(p);
+        space.bottom = std::min(space.bottom, bottom);
+        space.top = std::max(space.top, top);
+    };
+    for (const Prism& prism : body.prisms) add(prism.footprint, prism.bottom, prism.top);
+    for (const Sheet& sheet : body.sheets)
+        add(std::array{sheet.line.a, sheet.line.b}, sheet.bottom, sheet.top);
+    for (const Plate& plate : body.plates) add(plate.outline, plate.z, plate.z);
+    for (const Mesh& mesh : body.meshes)
+        for (const Point3& p : mesh.vertices) add(std::array{p.onFloor()}, p.z, p.z);
+    return space;
+}
+
+/// Returns the clear glass, which blocks sound only.
+std::vector<ShadowBody> clearBodiesOf(const Body& body) {
     std::vector<ShadowBody> bodies;
-    for (const Element& element : environment.elements())
-        for (const Sheet& sheet : element.body.sheets)
-            if (!isAmong(Surfaces::Opaque, sheet)) addSheet(sheet, bodies);
+    for (const Sheet& sheet : body.sheets)
+        if (!isAmong(Surfaces::Opaque, sheet)) addSheet(sheet, bodies);
     return bodies;
+}
+
+std::vector<ShadowBody> opaqueBodiesOf(const Body& body) {
+    std::vector<ShadowBody> bodies;
+    for (const Prism& prism : body.prisms) addPrism(prism, bodies);
+    for (const Sheet& sheet : body.sheets)
+        if (isAmong(Surfaces::Opaque, sheet)) addSheet(sheet, bodies);
+    for (const Plate& plate : body.plates) addPlate(plate, bodies);
+    addAll({{}, {}, {}, body.meshes}, ShadowBody::Kind::Loose, bodies);
+    return bodies;
+}
+
+}  // namespace
+
+ShadowBodies::ShadowBodies(const Environment& environment) : environment_(environment) {
+    std::vector<Box2> plans;
+    for (const Element& element : environment.elements()) {
+        const Space space = spaceOf(element.body);
+        plans.push_back(space.plan);
+        Standing& standing = elements_.emplace_back();
+        standing.bottom = space.bottom;
+        standing.top = space.top;
+    }
+    plan_ = BoxTree(plans);
+}
+
+std::vector<const ShadowBody*> ShadowBodies::near(const Space& space, Surfaces surfaces) const {
+    std::vector<std::size_t> found;
+    plan_.search(space.plan, [&](std::size_t i) {
+        if (elements_[i].bottom <= space.top && elements_[i].top >= space.bottom)
+            found.push_back(i);
+    });
+    std::sort(found.begin(), found.end());
+    std::vector<const ShadowBody*> bodies;
+    const auto add = [&bodies](const std::vector<ShadowBody>& some) {
+        for (const ShadowBody& body : some) bodies.push_back(&body);
+    };
+    const auto body_of = [this](std::size_t i) -> const Body& {
+        return environment_.elements()[i].body;
+    };
+    if (surfaces != Surfaces::Opaque)
+        for (const std::size_t i : found)
+            add(elements_[i].clear.get([&] { return clearBodiesOf(body_of(i)); }));
+    for (const std::size_t i : found)
+        add(elements_[i].opaque.get([&] { return opaqueBodiesOf(body_of(i)); }));
+    return bodies;
+}
+
+const ShadowBody& ShadowBodies::floor() const {
+    return floor_.get([this] { return bodyOf(environment_.floor(), ShadowBody::Kind::Flat); });
 }
 
 const ShadowBody& seenFrom(Point3 place, const ShadowBody& body, ShadowBody& memory) {
@@ -159,26 +231,13 @@ const ShadowBody& seenFrom(Point3 place, const ShadowBody& body, ShadowBody& mem
     return memory;
 }
 
-std::vector<ShadowBody> opaqueBodiesOf(const Environment& environment) {
-    std::vector<ShadowBody> bodies;
-    for (const Element& element : environment.elements()) {
-        const Body& body = element.body;
-        for (const Prism& prism : body.prisms) addPrism(prism, bodies);
-        for (const Sheet& sheet : body.sheets)
-            if (isAmong(Surfaces::Opaque, sheet)) addSheet(sheet, bodies);
-        for (const Plate& plate : body.plates) addPlate(plate, bodies);
-        addAll({{}, {}, {}, body.meshes}, ShadowBody::Kind::Loose, bodies);
-    }
-    add(environment.floor(), ShadowBody::Kind::Flat, bodies);
-    return bodies;
-}
-
-Shadows::Shadows(std::span<const ShadowBody> bodies, Point3 sensor, double height, const Box2& box)
+Shadows::Shadows(std::span<const ShadowBody* const> bodies, Point3 sensor, double height,
+                 const Box2& box)
     : sensor_(sensor), drop_(height - sensor.z), box_(box) {
-    for (const ShadowBody& body : bodies) {
-        if (!mayTouch(body)) continue;
-        for (std::size_t i = 0; i < body.triangles.size(); ++i) {
-            const std::array<Point3, 3> triangle = cornersOf(body, i);
+    for (const ShadowBody* const body : bodies) {
+        if (!mayTouch(*body)) continue;
+        for (std::size_t i = 0; i < body->triangles.size(); ++i) {
+            const std::array<Point3, 3> triangle = cornersOf(*body, i);
             if (distance(sensor_, triangle) > kRayEpsilon) continue;
             const Vec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
             const double size = length(normal);
@@ -232,7 +291,7 @@ bool Shadows::isClear(const Corners& corners) const {
     const auto& [a, b, c] = corners;
     const double touching = 1 - kRayEpsilon / std::fabs(drop_);
     if (std::min({a.share, b.share, c.share}) >= touching) return true;
-    for (int plane = 0; plane < kSides; ++plane)
+    for (int plane = 0; plane < kPlanes; ++plane)
         if (sideOf(a, plane) < 0 && sideOf(b, plane) < 0 && sideOf(c, plane) < 0) return true;
     return false;
 }
@@ -269,7 +328,7 @@ Point2 Shadows::shadowOf(const Place& p) const {
 void Shadows::addShadow(const Corners& corners, double turn, std::vector<Edge>& edges) const {
     std::vector<Place> polygon(corners.begin(), corners.end());
     if (turn < 0) std::swap(polygon[1], polygon[2]);
-    for (int plane = 0; plane < kSides; ++plane) clip(polygon, plane);
+    for (int plane = 0; plane < kPlanes; ++plane) clip(polygon, plane);
     if (polygon.size() < 3 ||
         std::any_of(polygon.begin(), polygon.end(), [](const Place& p) { return p.share <= 0; }))
         return;
@@ -352,18 +411,16 @@ std::optional<Segment2> cutOf(const std::vector<Vec3>& local,
 
 }  // namespace
 
-std::vector<Segment2> cutsOf(std::span<const ShadowBody> bodies, const Frame3& plane,
+std::vector<Segment2> cutsOf(std::span<const ShadowBody* const> bodies, const Frame3& plane,
                              double max_range) {
     std::vector<Segment2> cuts;
     std::vector<Vec3> local;
     ShadowBody memory;
-    for (const ShadowBody& standing : bodies) {
-        if (standing.plan.low.x > plane.origin.x + max_range ||
-            standing.plan.high.x < plane.origin.x - max_range ||
-            standing.plan.low.y > plane.origin.y + max_range ||
-            standing.plan.high.y < plane.origin.y - max_range)
-            continue;
-        const ShadowBody& body = seenFrom(plane.origin, standing, memory);
+    const Vec2 reach{max_range, max_range};
+    const Point2 foot = plane.origin.onFloor();
+    for (const ShadowBody* const standing : bodies) {
+        if (!meets(standing->plan, {foot - reach, foot + reach})) continue;
+        const ShadowBody& body = seenFrom(plane.origin, *standing, memory);
         local.clear();
         for (const Point3& p : body.vertices) {
             Vec3 place = plane.toLocal(p);

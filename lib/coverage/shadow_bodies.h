@@ -3,14 +3,17 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "base/parallel.h"
 #include "env/environment.h"
 #include "geom/overlay/overlay.h"
 #include "geom/point.h"
 #include "geom/pose.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 
@@ -36,10 +39,35 @@ const ShadowBody& seenFrom(Point3 place, const ShadowBody& body, ShadowBody& mem
 
 /// Adds a prism: as one body if it is convex, else face by face.
 void addPrism(const Prism& prism, std::vector<ShadowBody>& bodies);
-/// Returns clear glass, which blocks sound only.
-std::vector<ShadowBody> clearBodiesOf(const Environment& environment);
-/// Returns all other standing bodies, and the floor as the last.
-std::vector<ShadowBody> opaqueBodiesOf(const Environment& environment);
+
+/// The bodies of an environment. Those of an element are built when the first sensor comes near
+/// it. Thread-safe.
+class ShadowBodies {
+  public:
+    explicit ShadowBodies(const Environment& environment);
+
+    /// A box in space.
+    struct Space {
+        Box2 plan;
+        double bottom = 0, top = 0;
+    };
+    /// Returns the bodies of all elements that reach into a space: for Solid surfaces clear glass
+    /// first, then the others.
+    [[nodiscard]] std::vector<const ShadowBody*> near(const Space& space, Surfaces surfaces) const;
+
+    [[nodiscard]] const ShadowBody& floor() const;
+
+  private:
+    struct Standing {
+        double bottom = 0, top = 0;
+        Lazy<std::vector<ShadowBody>> clear, opaque;
+    };
+
+    Environment environment_;
+    BoxTree plan_;
+    std::deque<Standing> elements_;
+    Lazy<ShadowBody> floor_;
+};
 
 /// An edge of a shadow, which lies on its left.
 struct ShadowEdge {
@@ -51,7 +79,8 @@ class Shadows {
   public:
     /// Sets the level plane at `height` and the box, relative to the sensor's foot, that clips the
     /// shadows. \pre height is not that of the sensor
-    Shadows(std::span<const ShadowBody> bodies, Point3 sensor, double height, const Box2& box);
+    Shadows(std::span<const ShadowBody* const> bodies, Point3 sensor, double height,
+            const Box2& box);
 
     /// Returns the shadow of a standing body as layers relative to the sensor's foot. Surfaces in
     /// contact with the sensor (and those that continue them) or with the plane cast no shadow.
@@ -84,7 +113,7 @@ class Shadows {
 
 /// Returns the segments in which bodies cut a plane, in its axes (forward, left) from its origin.
 /// Skips faces in the plane, but not the sides of faces that only touch it.
-std::vector<Segment2> cutsOf(std::span<const ShadowBody> bodies, const Frame3& plane,
+std::vector<Segment2> cutsOf(std::span<const ShadowBody* const> bodies, const Frame3& plane,
                              double max_range);
 
 }  // namespace ispace

@@ -14,10 +14,16 @@ namespace {
 
 constexpr Box2 kBox{{-20, -20}, {20, 20}};
 
+std::vector<const ShadowBody*> pointersTo(const std::vector<ShadowBody>& bodies) {
+    std::vector<const ShadowBody*> pointers;
+    for (const ShadowBody& body : bodies) pointers.push_back(&body);
+    return pointers;
+}
+
 /// Area that any layer covers.
 double shaded(const std::vector<ShadowBody>& bodies, Point3 sensor, double height,
               const Box2& box = kBox) {
-    const Shadows shadows(bodies, sensor, height, box);
+    const Shadows shadows(pointersTo(bodies), sensor, height, box);
     std::vector<Layer> layers;
     for (const ShadowBody& body : bodies)
         for (Layer& layer : shadows.of(body)) layers.push_back(std::move(layer));
@@ -25,9 +31,11 @@ double shaded(const std::vector<ShadowBody>& bodies, Point3 sensor, double heigh
 }
 
 std::vector<ShadowBody> bodiesOf(const std::string& lines) {
-    std::vector<ShadowBody> bodies =
-        opaqueBodiesOf(sceneOf("ispace size=40,40,0.01\n" + lines).environment);
-    // Neither the walls nor the floor.
+    const ShadowBodies all(sceneOf("ispace size=40,40,0.01\n" + lines).environment);
+    std::vector<ShadowBody> bodies;
+    for (const ShadowBody* const body : all.near({{{-50, -50}, {50, 50}}, -9, 9}, Surfaces::Opaque))
+        bodies.push_back(*body);
+    // Without the walls.
     std::erase_if(bodies, [](const ShadowBody& body) {
         return body.plan.width() >= 40 || body.plan.depth() >= 40;
     });
@@ -100,7 +108,7 @@ TEST(Shadows, LieOnTheLeftOfTheirEdges) {
     for (const std::vector<ShadowBody>& bodies :
          {bodiesOf("cube at=3,0 size=2,2,2\n"), loose(bodiesOf("screen at=3,0 size=1,2\n"))})
         for (const double z : {-1.0, 4.0}) {
-            const Shadows shadows(bodies, {0, 0, z}, 3 - z, kBox);
+            const Shadows shadows(pointersTo(bodies), {0, 0, z}, 3 - z, kBox);
             for (const ShadowBody& body : bodies)
                 for (const Layer& layer : shadows.of(body))
                     for (const Curve& curve : layer.curves) EXPECT_GT(signedArea(curve), 0);
@@ -134,7 +142,8 @@ TEST(CutsOf, LevelPlaneMeetsWhatReachesIt) {
         Frame3 plane;
         plane.origin = {0.5, 0, height};
         double sum = 0;
-        for (const Segment2& cut : cutsOf(bodies, plane, 9)) sum += distance(cut.a, cut.b);
+        for (const Segment2& cut : cutsOf(pointersTo(bodies), plane, 9))
+            sum += distance(cut.a, cut.b);
         return sum;
     };
     EXPECT_NEAR(lengthOf(1), 8, 1e-12);
@@ -143,7 +152,7 @@ TEST(CutsOf, LevelPlaneMeetsWhatReachesIt) {
     EXPECT_EQ(lengthOf(2.001), 0);
     Frame3 far;
     far.origin = {20, 0, 1};
-    EXPECT_TRUE(cutsOf(bodies, far, 9).empty());
+    EXPECT_TRUE(cutsOf(pointersTo(bodies), far, 9).empty());
 }
 
 }  // namespace

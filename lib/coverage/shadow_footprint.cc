@@ -19,8 +19,6 @@ namespace ispace {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 Polygon square(double half) { return {{-half, -half}, {half, -half}, {half, half}, {-half, half}}; }
 
 /// Returns the part of a level plane, `drop` above the foot, on the positive side of a plane
@@ -85,7 +83,8 @@ ConeCut coneOnPlane(Vec3 axis, Angle half, double drop, double reach) {
     if (swing <= least) return {conic.rise >= conic.cosine, std::nullopt};
     Curve curve;
     if (-swing >= least) {
-        follow([&conic](double around) { return conic.at(around); }, kPi, -kPi, curve);
+        follow([&conic](double around) { return conic.at(around); }, std::numbers::pi,
+               -std::numbers::pi, curve);
         curve.back().to = curve.front().from;
         return {false, std::move(curve)};
     }
@@ -248,17 +247,12 @@ Footprint::Footprint(const FieldOfView& view, double drop, bool disc_is_left_out
 }
 
 struct ShadowCaster::Data {
-    std::vector<ShadowBody> bodies;  ///< sorted: clear glass first, the floor last
-    std::size_t clear = 0;           ///< number of bodies of clear glass
+    explicit Data(const Environment& environment) : bodies(environment) {}
 
-    explicit Data(const Environment& environment) : bodies(clearBodiesOf(environment)) {
-        clear = bodies.size();
-        std::vector<ShadowBody> opaque = opaqueBodiesOf(environment);
-        std::move(opaque.begin(), opaque.end(), std::back_inserter(bodies));
-    }
-    /// Bodies that cast shadows of sound, and of light.
-    [[nodiscard]] std::span<const ShadowBody> solid() const { return bodies; }
-    [[nodiscard]] std::span<const ShadowBody> opaque() const { return solid().subspan(clear); }
+    ShadowBodies bodies;
+
+    [[nodiscard]] std::vector<Curve> regionInView(const FieldOfView& view, double height,
+                                                  Surfaces surfaces) const;
     [[nodiscard]] std::optional<std::vector<Curve>> regionScanned(const Sensor& sensor) const;
 };
 
@@ -287,28 +281,48 @@ std::vector<Curve> laid(std::span<const Layer> layers, std::uint64_t marks, Poin
 /// A plane this near to the sensor counts as one through it.
 bool passesThrough(double drop) { return std::fabs(drop) <= kRayEpsilon; }
 
-std::vector<Curve> regionInView(std::span<const ShadowBody> bodies, const FieldOfView& view,
-                                double height) {
+/// The space between two heights over a box relative to a sensor's foot, and over the foot itself,
+/// enlarged by more than the distance of contact.
+ShadowBodies::Space spaceAbout(Point2 foot, Box2 box, double bottom, double top) {
+    constexpr double kMargin = 2 * kRayEpsilon;
+    box.add({0, 0});
+    const Vec2 out = foot - Point2{kMargin, kMargin}, in = foot - Point2{-kMargin, -kMargin};
+    return {{box.low + out, box.high + in}, bottom - kMargin, top + kMargin};
+}
+
+Box2 boxAbout(double reach) { return {{-reach, -reach}, {reach, reach}}; }
+
+}  // namespace
+
+std::vector<Curve> ShadowCaster::Data::regionInView(const FieldOfView& view, double height,
+                                                    Surfaces surfaces) const {
     const Point3 sensor = view.frame.origin;
     const bool is_level = passesThrough(height - sensor.z);
     const double drop = is_level ? 0 : height - sensor.z;
     Footprint footprint(view, drop, is_level);
     const Box2 box = footprint.box;
     if (!(box.low.x < box.high.x && box.low.y < box.high.y)) return {};
+    const ShadowBodies::Space space =
+        spaceAbout(sensor.onFloor(), is_level ? boxAbout(footprint.reach) : box,
+                   std::min(sensor.z, height), std::max(sensor.z, height));
+    std::vector<const ShadowBody*> near = bodies.near(space, surfaces);
+    if (space.bottom <= 0 && space.top >= 0) near.push_back(&bodies.floor());
     if (is_level) {
         Frame3 plane;
         plane.origin = sensor;
-        const VisibilityMap map(cutsOf(bodies, plane, footprint.reach));
+        const VisibilityMap map(cutsOf(near, plane, footprint.reach));
         const Curve seen = outlineOf(map.query({0, 0}, footprint.reach));
         if (seen.empty()) return {};
         footprint.mark({seen});
     } else {
-        const Shadows shadows(bodies, sensor, height, box);
-        for (const ShadowBody& body : bodies)
-            for (Layer& layer : shadows.of(body)) footprint.layers.push_back(std::move(layer));
+        const Shadows shadows(near, sensor, height, box);
+        for (const ShadowBody* const body : near)
+            for (Layer& layer : shadows.of(*body)) footprint.layers.push_back(std::move(layer));
     }
     return laid(footprint.layers, footprint.marks, sensor.onFloor());
 }
+
+namespace {
 
 /// Adds the floor, an unbounded plane, at which lines of sight in a scan plane end.
 void addFloor(const Frame3& plane, double max_range, std::vector<Segment2>& lines) {
@@ -367,15 +381,17 @@ std::optional<std::vector<Curve>> ShadowCaster::Data::regionScanned(const Sensor
     const ScanPlane plane(sensor.pose);
     if (plane.up() == 0) return std::vector<Curve>{};
     const bool is_over_floor = sensor.pose.position.z > kRayEpsilon;
-    const std::span<const ShadowBody> all = opaque();
-    std::vector<Segment2> lines =
-        cutsOf(is_over_floor ? all.first(all.size() - 1) : all, plane.frame(), laser.max_range);
+    const Point2 foot = sensor.pose.position.onFloor();
+    constexpr double kAnyHeight = std::numeric_limits<double>::infinity();
+    std::vector<const ShadowBody*> near = bodies.near(
+        spaceAbout(foot, boxAbout(laser.max_range), -kAnyHeight, kAnyHeight), Surfaces::Opaque);
+    if (!is_over_floor) near.push_back(&bodies.floor());
+    std::vector<Segment2> lines = cutsOf(near, plane.frame(), laser.max_range);
     if (is_over_floor) addFloor(plane.frame(), laser.max_range, lines);
     const VisibilityMap map(lines);
     const VisibleRegion seen = map.query({0, 0}, laser.max_range);
     const Curve curve = onPlan(outlineOf(sectorOf(seen, laser.first, laser.span())), plane);
     if (curve.empty()) return std::vector<Curve>{};
-    const Point2 foot = sensor.pose.position.onFloor();
     if (is_over_floor) return std::vector<Curve>{movedBy(foot - Point2{}, curve)};
     // From below the floor: the part of the scan plane above it.
     const double far = laser.max_range;
@@ -395,8 +411,7 @@ std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const Sensor& sensor,
     if (const Camera* camera = std::get_if<Camera>(&sensor.model);
         camera != nullptr && camera->isLopsided() && !camera->fillsPicture())
         return std::nullopt;
-    const bool is_light = kindOf(sensor.model).stopped_by == Surfaces::Opaque;
-    return regionInView(is_light ? data_->opaque() : data_->solid(), *view, height);
+    return data_->regionInView(*view, height, kindOf(sensor.model).stopped_by);
 }
 
 }  // namespace ispace

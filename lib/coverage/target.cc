@@ -22,24 +22,24 @@ double squareCells(const Box2& limits, double edge) {
 }
 
 /// An edge of two decimal digits: digits * 10^exponent metres.
-struct Edge {
+struct CellEdge {
     int digits = 10, exponent = -2;
 
     [[nodiscard]] double metres() const {
         const double power = std::pow(10.0, std::abs(exponent));
         return exponent < 0 ? digits / power : digits * power;
     }
-    [[nodiscard]] Edge longer() const {
-        return digits < 99 ? Edge{digits + 1, exponent} : Edge{10, exponent + 1};
+    [[nodiscard]] CellEdge longer() const {
+        return digits < 99 ? CellEdge{digits + 1, exponent} : CellEdge{10, exponent + 1};
     }
-    [[nodiscard]] Edge shorter() const {
-        return digits > 10 ? Edge{digits - 1, exponent} : Edge{99, exponent - 1};
+    [[nodiscard]] CellEdge shorter() const {
+        return digits > 10 ? CellEdge{digits - 1, exponent} : CellEdge{99, exponent - 1};
     }
 };
 
 double roomCell(const Box2& limits, int most) {
     constexpr double kMinCount = 10'000, kMinLength = 1e-4;
-    Edge edge;
+    CellEdge edge;
     if (squareCells(limits, edge.metres()) > most) {
         while (squareCells(limits, edge.metres()) > most) edge = edge.longer();
         return edge.metres();

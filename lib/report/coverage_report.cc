@@ -112,7 +112,8 @@ void writeList(JsonWriter& json, const char* key, const std::vector<Item>& items
 
 }  // namespace
 
-std::string coverageJson(const CoverageReport& report, const RunCoverage* run) {
+std::string coverageJson(const CoverageReport& report, const RunCoverage* run,
+                         const Advice* advice) {
     const Box2& limits = report.limits;
     JsonWriter json;
     beginReport(json, "ispace-coverage/1", "coverage");
@@ -161,6 +162,7 @@ std::string coverageJson(const CoverageReport& report, const RunCoverage* run) {
     }
     if (report.comparison) write(json, *report.comparison);
     if (run != nullptr) writeRun(json, *run);
+    if (advice != nullptr) writeSuggestions(json, *advice);
     json.endObject();
     return json.take() + "\n";
 }
@@ -347,7 +349,7 @@ std::string coverageText(const CoverageReport& report) {
     if (report.comparison) text += comparisonText(report);
     text += "\n";
     if (report.sensors.empty())
-        text += "no laser, ranger, camera or ultrasonic receiver is placed\n";
+        text += "no sensor that covers floor is placed\n";
     else
         text +=
             sensorTable(report.sensors) + cameraTable(report.sensors) + "\n" + piecesText(report);

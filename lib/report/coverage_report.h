@@ -6,12 +6,14 @@
 
 #include "coverage/coverage.h"
 #include "coverage/run_coverage.h"
+#include "report/suggestion_report.h"
 
 namespace ispace {
 
-/// Writes one JSON object and a newline, schema ispace-coverage/1; with a member `run` unless that
-/// is null.
-std::string coverageJson(const CoverageReport& report, const RunCoverage* run = nullptr);
+/// Writes one JSON object and a newline, schema ispace-coverage/1; with the members `run` and
+/// `suggestions` unless these are null.
+std::string coverageJson(const CoverageReport& report, const RunCoverage* run = nullptr,
+                         const Advice* advice = nullptr);
 /// Writes the report as aligned lines of text.
 std::string coverageText(const CoverageReport& report);
 

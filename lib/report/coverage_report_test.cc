@@ -134,9 +134,8 @@ TEST(CoverageText, ManySensorsShareARow) {
 TEST(CoverageText, SaysSoWhereNoSensorIsPlaced) {
     CoverageReport report = sampleReport();
     report.sensors.clear();
-    EXPECT_NE(
-        coverageText(report).find("\nno laser, ranger, camera or ultrasonic receiver is placed\n"),
-        std::string::npos);
+    EXPECT_NE(coverageText(report).find("\nno sensor that covers floor is placed\n"),
+              std::string::npos);
 }
 
 TEST(CoverageJson, MetricsHaveNoDigitsThatRoundingMade) {

@@ -23,33 +23,33 @@ std::string pointText(Point2 place) {
     return "(" + formatFixed(place.x, 2) + ", " + formatFixed(place.y, 2) + ")";
 }
 
-void write(JsonWriter& json, const char* key, double value) {
+void writeMember(JsonWriter& json, const char* key, double value) {
     json.key(key).value(roundSignificant(value));
 }
 
-void write(JsonWriter& json, const char* key, std::vector<double> values) {
+void writeMember(JsonWriter& json, const char* key, std::vector<double> values) {
     for (double& value : values) value = roundSignificant(value);
     json.key(key).value(values);
 }
 
-void write(JsonWriter& json, const RunSightMetrics& metrics) {
+void writeMember(JsonWriter& json, const RunSightMetrics& metrics) {
     json.beginObject();
     if (!metrics.id.empty()) {
         json.key("id").value(metrics.id);
         json.key("kind").value(metrics.is_person ? "person" : "robot");
     }
-    write(json, "duration", metrics.duration);
-    write(json, "length", metrics.length);
-    write(json, "time_shares", metrics.time_shares);
-    write(json, "way_shares", metrics.way_shares);
+    writeMember(json, "duration", metrics.duration);
+    writeMember(json, "length", metrics.length);
+    writeMember(json, "time_shares", metrics.time_shares);
+    writeMember(json, "way_shares", metrics.way_shares);
     json.key("losses").value(metrics.losses);
     json.key("longest_unseen");
     if (const auto& gap = metrics.longest_gap) {
         json.beginObject();
-        write(json, "begin", gap->begin);
-        write(json, "end", gap->end);
-        write(json, "from", {gap->from.x, gap->from.y});
-        write(json, "to", {gap->to.x, gap->to.y});
+        writeMember(json, "begin", gap->begin);
+        writeMember(json, "end", gap->end);
+        writeMember(json, "from", {gap->from.x, gap->from.y});
+        writeMember(json, "to", {gap->to.x, gap->to.y});
         json.endObject();
     } else {
         json.null();
@@ -106,20 +106,20 @@ std::string tableOf(const RunCoverage& run, bool is_way) {
 void writeRun(JsonWriter& json, const RunCoverage& run) {
     json.key("run").beginObject();
     json.key("record").value(run.name);
-    write(json, "begin", run.begin);
-    write(json, "end", run.end);
+    writeMember(json, "begin", run.begin);
+    writeMember(json, "end", run.end);
     json.key("members").beginArray();
-    for (const RunSightMetrics& member : run.members) write(json, member);
+    for (const RunSightMetrics& member : run.members) writeMember(json, member);
     json.endArray();
     json.key("all");
-    write(json, run.all);
+    writeMember(json, run.all);
     json.key("losses").beginArray();
     for (const TrackLoss& loss : run.losses) {
         json.beginObject();
         json.key("id").value(run.members[loss.who].id);
-        write(json, "begin", loss.begin);
-        write(json, "duration", loss.duration);
-        write(json, "place", {loss.place.x, loss.place.y});
+        writeMember(json, "begin", loss.begin);
+        writeMember(json, "duration", loss.duration);
+        writeMember(json, "place", {loss.place.x, loss.place.y});
         json.endObject();
     }
     json.endArray().endObject();

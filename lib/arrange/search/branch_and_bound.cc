@@ -321,7 +321,7 @@ class Tree {
     OpenNodes open_;
     const SearchShare& share_;
     bool is_dealt_ = false;
-    std::string name_;        // of the tree in the ledger
+    std::string name_;        // of the tree in the job results
     std::uint64_t mark_ = 0;  // of its search
 };
 

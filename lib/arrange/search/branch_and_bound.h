@@ -74,8 +74,8 @@ std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const 
 /// If a budget can be split in more ways than CountChoice lists (20'000), no tree is built: returns
 /// `known` unchanged. known.best need not be a solution: only better values are searched.
 ///
-/// With a ledger, reads the tree stored there and continues it; writes the tree now and then and at
-/// the end.
+/// With share.results, reads the tree stored there and continues it; writes the tree now and then
+/// and at the end.
 SearchResult branchAndBound(const Problem& problem, const Bound& bound, SearchResult known,
                             double gap, Progress& progress,
                             std::uint64_t enough = std::numeric_limits<std::uint64_t>::max(),

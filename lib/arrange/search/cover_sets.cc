@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrange/search/cover_sets.h"
+#include "base/per_thread.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -165,7 +166,7 @@ void CandidateSet::weighSite(std::size_t site, const WeightSums& weights,
                              std::span<std::uint32_t> values) const {
     assert(weights.sums().size() == cells_ + 1);
     const Site& own = sites_[site];
-    thread_local std::vector<std::uint32_t> before;
+    auto& before = perThread<std::vector<std::uint32_t>, struct RunWeights>();
     if (before.size() <= own.runs) before.resize(own.runs + 1);
     sumRuns(runsOf(own), own.runs, length_bits_, weights.sums().data(), before.data());
     const std::uint32_t* parts = partsOf(own);

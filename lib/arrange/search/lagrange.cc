@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "arrange/search/search.h"
+#include "base/simd.h"
 
 namespace ispace {
 
@@ -26,8 +27,12 @@ RootRelaxation::RootRelaxation(const Problem& problem)
         const auto same = std::find(cells_.multiplicities.begin(), cells_.multiplicities.end(),
                                     cells_.multiplicities[k]);
         const auto first = static_cast<std::size_t>(same - cells_.multiplicities.begin());
-        sums_of_.push_back(first == k ? reduced_costs_.size() : sums_of_[first]);
-        if (first == k) reduced_costs_.emplace_back();
+        costs_of_.push_back(first == k ? cell_costs_.size() : costs_of_[first]);
+        if (first == k) cell_costs_.emplace_back().costs.resize(problem.cells());
+        kinds_[k].least_bounds.resize(kinds_[k].candidates->sites());
+        is_met_at_once_ = is_met_at_once_ &&
+                          std::all_of(cells_.needs.begin(), cells_.needs.end(),
+                                      [&](auto need) { return need <= cells_.multiplicities[k]; });
     }
     cover_.resize(problem.cells());
 }
@@ -66,9 +71,12 @@ std::uint64_t RootRelaxation::evaluate(const std::vector<std::uint32_t>& multipl
     for (std::size_t i = 0; i < multipliers.size(); ++i)
         free_ += cells_.weights[i] - multipliers[i];
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
-        const auto& sites = is_all ? kinds_[k].sites : kinds_[k].working;
-        weighSites(k, sites);
-        findTop(k, sites, counts_.most(k));
+        if (is_all) {
+            weighSites(k, kinds_[k].sites);
+            findTop(k, kinds_[k].sites, counts_.most(k));
+        } else {
+            weighTop(k, counts_.most(k));
+        }
         sums_[k].assign(1, 0);
         for (const std::uint32_t i : kinds_[k].top)
             sums_[k].push_back(sums_[k].back() + kinds_[k].reduced_costs[i]);
@@ -81,31 +89,82 @@ std::uint64_t RootRelaxation::evaluate(const std::vector<std::uint32_t>& multipl
     return free_ + best_.value;
 }
 
+namespace {
+
+/// Replaces the costs of cells; returns the sum of the increases.
+ISPACE_SIMD_CLONES std::uint64_t replace(const std::uint32_t* now, std::uint32_t* costs,
+                                         std::size_t cells) {
+    std::uint64_t risen = 0;
+    for (std::size_t i = 0; i < cells; ++i) {
+        risen += std::max(now[i], costs[i]) - costs[i];
+        costs[i] = now[i];
+    }
+    return risen;
+}
+
+}  // namespace
+
 void RootRelaxation::setReducedCosts(const std::vector<std::uint32_t>& multipliers) {
+    std::vector<std::uint32_t> costs;
     for (std::size_t k = 0, next = 0; k < kinds_.size(); ++k) {
-        if (sums_of_[k] != next) continue;
-        const std::uint16_t multiplicity = cells_.multiplicities[k];
-        shared_.resize(multipliers.size());
-        for (std::size_t i = 0; i < multipliers.size(); ++i)
-            shared_[i] = reducedCost(multipliers[i], multiplicity, cells_.needs[i]);
-        reduced_costs_[next++].assign(shared_);
+        if (costs_of_[k] != next) continue;
+        CellCosts& own = cell_costs_[next++];
+        const std::uint32_t* now = multipliers.data();
+        if (!is_met_at_once_) {
+            costs.resize(multipliers.size());
+            for (std::size_t i = 0; i < costs.size(); ++i)
+                costs[i] = reducedCost(multipliers[i], cells_.multiplicities[k], cells_.needs[i]);
+            now = costs.data();
+        }
+        own.risen += static_cast<std::int64_t>(replace(now, own.costs.data(), own.costs.size()));
+        own.sums.assign(own.costs);
     }
 }
 
-void RootRelaxation::weighSites(std::size_t kind, const std::vector<std::uint32_t>& sites) {
+void RootRelaxation::weighSites(std::size_t kind, std::span<const std::uint32_t> sites) {
     OfKind& own = kinds_[kind];
-    const WeightSums& reduced_costs = reduced_costs_[sums_of_[kind]];
+    const CellCosts& costs = cell_costs_[costs_of_[kind]];
     constexpr std::size_t kGrain = 32;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites.size(), kGrain),
                       [&](const tbb::blocked_range<std::size_t>& some) {
                           for (std::size_t i = some.begin(); i < some.end(); ++i) {
                               const std::size_t first = own.candidates->firstOf(sites[i]);
                               const std::size_t end = own.candidates->firstOf(sites[i] + 1);
-                              own.candidates->weighSite(
-                                  sites[i], reduced_costs,
-                                  std::span(own.reduced_costs).subspan(first, end - first));
+                              const std::span values =
+                                  std::span(own.reduced_costs).subspan(first, end - first);
+                              own.candidates->weighSite(sites[i], costs.sums, values);
+                              own.least_bounds[sites[i]] =
+                                  *std::max_element(values.begin(), values.end()) - costs.risen;
                           }
                       });
+}
+
+/// Finds the best of the working set: weighs the sites of the last best ones, then those that
+/// their bounds do not exclude.
+void RootRelaxation::weighTop(std::size_t kind, std::size_t count) {
+    OfKind& own = kinds_[kind];
+    std::vector<std::uint32_t>& weighed = own.weighed;
+    weighed.clear();
+    for (const std::uint32_t i : own.top)
+        if (const std::size_t site = own.candidates->siteOf(i); own.is_working[site] != 0)
+            weighed.push_back(static_cast<std::uint32_t>(site));
+    std::sort(weighed.begin(), weighed.end());
+    weighed.erase(std::unique(weighed.begin(), weighed.end()), weighed.end());
+    const std::size_t known = weighed.size();
+    weighSites(kind, weighed);
+    findTop(kind, weighed, count);
+    if (count == 0) return;
+    const std::int64_t least =
+        own.top.size() < count ? 0 : std::int64_t{own.reduced_costs[own.top.back()]};
+    const std::int64_t risen = cell_costs_[costs_of_[kind]].risen;
+    for (const std::uint32_t site : own.working)
+        if (own.least_bounds[site] + risen >= least &&
+            !std::binary_search(weighed.begin(),
+                                weighed.begin() + static_cast<std::ptrdiff_t>(known), site))
+            weighed.push_back(site);
+    if (weighed.size() == known) return;
+    weighSites(kind, std::span(weighed).subspan(known));
+    findTop(kind, weighed, count);
 }
 
 void RootRelaxation::findTop(std::size_t kind, const std::vector<std::uint32_t>& sites,
@@ -146,7 +205,7 @@ void RootRelaxation::setCover() {
         const std::uint16_t multiplicity = cells_.multiplicities[choice.kind];
         kinds_[choice.kind].candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
             for (std::uint32_t i = run.first; i < run.end; ++i)
-                cover_[i] += partOf(multiplicity, cells_.needs[i]);
+                cover_[i] += is_met_at_once_ ? 1.0F : partOf(multiplicity, cells_.needs[i]);
         });
     }
 }
@@ -201,8 +260,7 @@ std::vector<std::vector<std::uint32_t>> RootRelaxation::survivors() const {
 
 namespace {
 
-constexpr int kTrials = 20;     // between two evaluations of all candidates
-constexpr int kRoundsBack = 4;  // compared for progress
+constexpr int kTrialsPerPass = 20;  // between two evaluations of all candidates
 
 bool isGood(const Bound& bound, const LagrangeLimits& limits) {
     return static_cast<double>(bound.value - std::min(bound.value, limits.cut)) <=
@@ -248,7 +306,7 @@ Bound lagrangianBound(const Problem& problem, const std::vector<Choice>& near,
                 limits.stall * static_cast<double>(leasts.back() - cut))
             break;
         root.widen(working);
-        for (int trial = 0; trial < kTrials; ++trial) {
+        for (int trial = 0; trial < kTrialsPerPass; ++trial) {
             const std::uint64_t value = root.evaluate(search.trial(), false);
             search.report(static_cast<double>(value), root.cover());
         }

@@ -271,7 +271,7 @@ void LocalSearch::improveByPairs(CoverageState& state) {
 namespace {
 
 constexpr std::size_t kChains = 4;
-constexpr std::uint64_t kKicks = 12;             // of a chain in a round
+constexpr std::uint64_t kKicksPerRound = 12;     // of a chain in a round
 constexpr std::size_t kMinOut = 2, kMaxOut = 4;  // sensors taken out by a kick
 constexpr std::size_t kNeighbours = 5;           // from which the others are drawn
 constexpr float kSlack = 0.002F;    // a chain may continue from a solution worse by this,
@@ -296,7 +296,8 @@ class Chain {
     Solution run(const Solution& from) {
         Solution best = from, now = from;
         set(from.chosen);
-        for (std::uint64_t i = 0; i < kKicks && best.value < enough_ && !progress_.stopped(); ++i) {
+        for (std::uint64_t i = 0;
+             i < kKicksPerRound && best.value < enough_ && !progress_.stopped(); ++i) {
             std::array<float, kDraws> draws{};
             draw({seed_, Purpose::Placement, kFirstKey + index_, next_kick_++}, 0,
                  {.uniform = draws});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrange/search/packed_search.h"
 
+#include <algorithm>
+#include <functional>
 #include <memory>
 #include <unordered_map>
 
@@ -24,6 +26,14 @@ class Numbering {
   private:
     std::unordered_map<const void*, std::uint64_t> numbers_;
 };
+
+using List = std::vector<std::uint32_t>;
+
+/// Returns true for strictly ascending numbers below `end`.
+bool isAscending(const List& list, std::size_t end) {
+    return std::adjacent_find(list.begin(), list.end(), std::greater_equal<>()) == list.end() &&
+           (list.empty() || list.back() < end);
+}
 
 void pack(Packer& to, const CandidateSet& set) {
     to.add(set.cells());
@@ -87,14 +97,12 @@ std::shared_ptr<const ReducedProblem> unpackProblem(Unpacker& from, const Proble
         own.multiplicity = static_cast<std::uint16_t>(from.number());
         own.original = from.all<std::uint32_t>();
         own.candidates = unpackSet(from, problem->cells());
-        if (own.candidates->size() != own.original.size()) Unpacker::refuse();
-        for (const std::uint32_t candidate : own.original)
-            if (candidate >= kind.candidates->size()) Unpacker::refuse();
+        if (own.candidates->size() != own.original.size() ||
+            !isAscending(own.original, kind.candidates->size()))
+            Unpacker::refuse();
     }
     return problem;
 }
-
-using List = std::vector<std::uint32_t>;
 
 /// Data that nodes share, in the order of its numbers.
 struct SharedThings {
@@ -106,6 +114,18 @@ template <typename T>
 const T& at(const std::vector<T>& things, std::uint64_t number) {
     if (number >= things.size()) Unpacker::refuse();
     return things[number];
+}
+
+/// Returns true if the fixed choices and full groups are within the limits of the problem.
+bool isWithinLimits(const Problem& problem, const BranchNode& node) {
+    std::size_t most = 0;
+    for (const Kind& kind : problem.kinds) most += static_cast<std::size_t>(std::max(kind.most, 0));
+    std::vector<Choice> all = node.fixed;
+    for (const BranchGroup& group : node.groups) {
+        if (all.size() > most || group.count > most - all.size()) return false;
+        all.resize(all.size() + group.count, {group.kind, 0});
+    }
+    return isWithinLimits(problem, all);
 }
 
 BranchNode unpackNode(Unpacker& from, const SharedThings& shared, const Problem& original) {
@@ -126,10 +146,12 @@ BranchNode unpackNode(Unpacker& from, const SharedThings& shared, const Problem&
     for (std::uint64_t groups = from.number(); groups > 0; --groups) {
         const std::uint64_t kind = from.number(), count = from.number();
         const auto& list = at(shared.lists, from.number());
-        for (const std::uint32_t candidate : *list) check(kind, candidate);
-        if (count > list->size()) Unpacker::refuse();
+        if (!isAscending(*list, at(node.problem->kinds, kind).original.size()) ||
+            count > list->size())
+            Unpacker::refuse();
         node.groups.push_back({kind, count, list});
     }
+    if (!isWithinLimits(original, node)) Unpacker::refuse();
     return node;
 }
 
@@ -184,6 +206,10 @@ SearchResult unpackResult(Unpacker& from, const Problem& problem) {
     result.best.chosen = unpackChoices(from, problem);
     result.bound = from.number();
     result.is_complete = from.number() != 0;
+    const Solution& best = result.best;
+    if (!isFeasible(problem, best.chosen) || best.value != valueOf(problem, best.chosen) ||
+        result.bound < best.value)
+        Unpacker::refuse();
     return result;
 }
 
@@ -206,11 +232,15 @@ Bound unpackBound(Unpacker& from, const Problem& problem) {
     if (kinds != 0 && kinds != problem.kinds.size()) Unpacker::refuse();
     for (std::uint64_t k = 0; k < kinds; ++k) {
         bound.survivors.push_back(from.all<std::uint32_t>());
-        for (const std::uint32_t candidate : bound.survivors.back())
-            if (candidate >= problem.kinds[k].candidates->size()) Unpacker::refuse();
+        if (!isAscending(bound.survivors.back(), problem.kinds[k].candidates->size()))
+            Unpacker::refuse();
     }
     bound.cut = from.number();
-    if (bound.multipliers.size() != problem.cells()) Unpacker::refuse();
+    const RelaxedCells cells(problem);
+    if (bound.scale != cells.scale || bound.multipliers.size() != problem.cells() ||
+        !std::equal(bound.multipliers.begin(), bound.multipliers.end(), cells.weights.begin(),
+                    std::less_equal<>()))
+        Unpacker::refuse();
     return bound;
 }
 

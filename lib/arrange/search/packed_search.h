@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/arrange/search: writes and reads the ledger entries of a search.
+// Private to lib/arrange/search: writes and reads the job results of a search.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +21,12 @@ void pack(Packer& to, const std::vector<Choice>& chosen);
 /// \throws FormatError for a choice that the problem does not have
 std::vector<Choice> unpackChoices(Unpacker& from, const Problem& problem);
 
-/// Writes the solution; unpacking computes its value anew.
 void pack(Packer& to, const SearchResult& result);
+/// \throws FormatError unless the solution is feasible, has this value and is within the bound
 SearchResult unpackResult(Unpacker& from, const Problem& problem);
 
 void pack(Packer& to, const Bound& bound);
+/// \throws FormatError for multipliers above the weights of their cells, or foreign candidates
 Bound unpackBound(Unpacker& from, const Problem& problem);
 
 /// Writes the nodes; data that nodes share is written once, and shared again after reading.

@@ -245,8 +245,7 @@ void OverlapRelaxation::setCover() {
 namespace {
 
 constexpr std::size_t kMinSensors = 6, kMaxSensors = 64;
-constexpr int kTrials = 10;     // between two evaluations of all candidates
-constexpr int kRoundsBack = 4;  // compared for progress
+constexpr int kTrials = 10;  // between two evaluations of all candidates
 
 }  // namespace
 

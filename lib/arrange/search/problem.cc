@@ -61,12 +61,16 @@ double costOf(const Problem& problem, const std::vector<Choice>& chosen) {
     return cost;
 }
 
-bool isFeasible(const Problem& problem, const std::vector<Choice>& chosen) {
+bool isWithinLimits(const Problem& problem, const std::vector<Choice>& chosen) {
     std::vector<int> counts(problem.kinds.size(), 0);
     for (const Choice& choice : chosen)
         if (++counts[choice.kind] > problem.kinds[choice.kind].most) return false;
-    if (problem.budget && !isAffordable(problem, costOf(problem, chosen))) return false;
-    return !problem.is_connected || isConnected(problem, chosen);
+    return !problem.budget || isAffordable(problem, costOf(problem, chosen));
+}
+
+bool isFeasible(const Problem& problem, const std::vector<Choice>& chosen) {
+    return isWithinLimits(problem, chosen) &&
+           (!problem.is_connected || isConnected(problem, chosen));
 }
 
 bool isCheaper(double cost, double than) {

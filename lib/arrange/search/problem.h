@@ -81,7 +81,9 @@ std::size_t affordableCount(double budget, double spent, double cost, std::size_
 /// Rounds a sum of decimal costs to 12 significant digits, or to as many as isCheaper() tells
 /// apart: 0.1 + 0.2 becomes 0.3.
 double normaliseCost(double cost);
-/// Returns true for choices within Kind::most and the budget and, if required, connected.
+/// Returns true for choices within Kind::most and the budget.
+bool isWithinLimits(const Problem& problem, const std::vector<Choice>& chosen);
+/// Returns true for choices within these limits and, if required, connected.
 bool isFeasible(const Problem& problem, const std::vector<Choice>& chosen);
 /// Returns true if the coverage is connected, see Problem::is_connected.
 bool isConnected(const Problem& problem, const std::vector<Choice>& chosen);

@@ -207,16 +207,23 @@ ISPACE_SIMD_CLONES void mix(float* average, const float* cover, float part, std:
     for (std::size_t i = 0; i < cells; ++i) average[i] += part * (cover[i] - average[i]);
 }
 
-ISPACE_SIMD_CLONES void move(const std::uint32_t* weights, const std::uint32_t* at,
-                             const float* average, float length, std::uint32_t* trial,
-                             std::size_t cells) {
+/// Whole numbers below 2^31 convert as `Int` = std::int32_t, several times as fast as others.
+template <typename Int>
+inline void moveAs(const std::uint32_t* weights, const std::uint32_t* at, const float* average,
+                   float length, std::uint32_t* trial, std::size_t cells) {
     for (std::size_t i = 0; i < cells; ++i) {
-        const auto top = static_cast<double>(weights[i]);
-        const double to =
-            static_cast<double>(at[i]) + static_cast<double>(length * (1.0F - average[i]));
-        const double within = to < 0.0 ? 0.0 : (to > top ? top : to);
-        trial[i] = static_cast<std::uint32_t>(within);
+        const auto top = static_cast<double>(static_cast<Int>(weights[i]));
+        const double to = static_cast<double>(static_cast<Int>(at[i])) +
+                          static_cast<double>(length * (1.0F - average[i]));
+        const double up = to < 0.0 ? 0.0 : to;
+        const double within = up > top ? top : up;
+        trial[i] = static_cast<std::uint32_t>(static_cast<Int>(within));
     }
+}
+ISPACE_SIMD_CLONES void moveSmall(const std::uint32_t* weights, const std::uint32_t* at,
+                                  const float* average, float length, std::uint32_t* trial,
+                                  std::size_t cells) {
+    moveAs<std::int32_t>(weights, at, average, length, trial, cells);
 }
 
 }  // namespace
@@ -228,6 +235,8 @@ MultiplierSearch::MultiplierSearch(std::span<const std::uint32_t> weights,
       target_(target),
       pace_(pace),
       factor_(pace.factor),
+      is_small_(std::all_of(weights.begin(), weights.end(),
+                            [](std::uint32_t weight) { return weight < 1U << 31U; })),
       trial_(std::move(start)) {}
 
 void MultiplierSearch::restart(double bound, std::span<const float> cover) {
@@ -282,6 +291,7 @@ void MultiplierSearch::step() {
     const double length =
         lack.average > 0 ? factor_ * above / static_cast<double>(lack.average) : 0.0;
     trial_.resize(best_.size());
+    const auto move = is_small_ ? moveSmall : moveAs<std::int64_t>;
     move(weights_.data(), best_.data(), average_.data(), static_cast<float>(length), trial_.data(),
          trial_.size());
 }

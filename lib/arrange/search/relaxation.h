@@ -106,6 +106,9 @@ constexpr SearchPace kLongPace = {.factor = 1, .least_part = 0.4, .patience = 10
 /// For some tens of trials from a nearly optimal start: longer steps only lead away.
 constexpr SearchPace kWarmPace = {.factor = 0.5, .least_part = 0.1, .patience = 0};
 
+/// A search compares its bound with that of so many rounds before, to see whether it stalls.
+constexpr int kRoundsBack = 4;
+
 /// Finds the Lagrange multipliers with the lowest bound, trial by trial: the volume algorithm
 /// (Barahona & Anbil 2000), a subgradient method that steps from the best multipliers so far along
 /// an average of the subgradients, so that it neither swings between nearly equal sensors nor needs
@@ -140,6 +143,7 @@ class MultiplierSearch {
     SearchPace pace_;
     double bound_ = std::numeric_limits<double>::infinity(), settled_ = bound_;
     double factor_, mixing_ = 0.2, part_ = 1;
+    bool is_small_;  // all weights are below 2^31
     int failures_ = 0, reports_ = 0;
     std::vector<std::uint32_t> trial_, best_;
     std::vector<float> average_;  // of cover
@@ -186,10 +190,21 @@ class RootRelaxation {
         std::vector<char> is_working;
         std::vector<std::uint32_t> reduced_costs;
         std::vector<std::uint32_t> top;  ///< the best, their number at most counts_.most()
+        /// Per site, the highest reduced cost when it was last weighed, less CellCosts::risen of
+        /// that moment: a later reduced cost is at most this and the later `risen`.
+        std::vector<std::int64_t> least_bounds;
+        std::vector<std::uint32_t> weighed;  ///< sites of the last weighTop()
+    };
+    /// Reduced costs of the cells for one multiplicity.
+    struct CellCosts {
+        std::vector<std::uint32_t> costs;
+        WeightSums sums;
+        std::int64_t risen = 0;  ///< sum of all increases of all cells so far
     };
 
     void setReducedCosts(const std::vector<std::uint32_t>& multipliers);
-    void weighSites(std::size_t kind, const std::vector<std::uint32_t>& sites);
+    void weighSites(std::size_t kind, std::span<const std::uint32_t> sites);
+    void weighTop(std::size_t kind, std::size_t count);
     void findTop(std::size_t kind, const std::vector<std::uint32_t>& sites, std::size_t count);
     void setCover();
 
@@ -197,9 +212,9 @@ class RootRelaxation {
     RelaxedCells cells_;
     CountChoice counts_;
     std::vector<OfKind> kinds_;
-    std::vector<WeightSums> reduced_costs_;  // per kind; of the first with the same multiplicity
-    std::vector<std::size_t> sums_of_;       // kind -> index in reduced_costs_
-    std::vector<std::uint32_t> shared_;      // scratch: reduced costs for one multiplicity
+    std::vector<CellCosts> cell_costs_;  // per kind; of the first with the same multiplicity
+    std::vector<std::size_t> costs_of_;  // kind -> index in cell_costs_
+    bool is_met_at_once_ = true;         // every sensor meets the whole need of any cell
     std::vector<std::vector<std::uint64_t>> sums_;
     std::uint64_t free_ = 0;  // the bound without sensors
     CountChoice::Best best_;

@@ -77,7 +77,7 @@ Solution placeFeasibly(const Problem& problem, Progress& progress) {
 
 namespace {
 
-/// Returns the ledger's entry under this name for this very problem, else the result of `compute`,
+/// Returns the job's result under this name for this very problem, else the result of `compute`,
 /// which is stored unless it was cut short.
 template <typename T, typename Compute>
 T recalled(const SearchShare& share, const Problem& problem, const std::string& step,
@@ -110,9 +110,6 @@ SearchResult joinedProof(const Problem& problem, const SearchShare& share) {
         Unpacker from(*bytes);
         if (from.number() != fingerprintOf(problem)) Unpacker::refuse();
         SearchResult own = unpackResult(from, problem);
-        if (own.best.value != valueOf(problem, own.best.chosen) ||
-            !isFeasible(problem, own.best.chosen) || own.bound < own.best.value)
-            Unpacker::refuse();
         if (i == 1 || own.best.value > all.best.value) all.best = std::move(own.best);
         all.bound = std::max(all.bound, own.bound);
         all.is_complete = all.is_complete && own.is_complete;
@@ -166,6 +163,7 @@ class Search {
         const Bound bound = recalled(share_, problem_, "bound", unpackBound, progress_, [&] {
             return lagrangianBound(problem_, result_.best.chosen, limits, progress_);
         });
+        if (bound.value < result_.best.value) Unpacker::refuse();  // a kept bound is wrong
         result_.bound = std::min(result_.bound, bound.value);
         noteProgress(problem_, result_, progress_);
         if (options_.optimizer != Optimizer::Exact) return;

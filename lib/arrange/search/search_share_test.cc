@@ -184,9 +184,112 @@ TEST(SearchShare, StepsOfAnotherProblemAreNotTaken) {
     EXPECT_EQ(result.bound, single.bound);
 }
 
+/// A stored step with another result.
+std::string forged(const std::string& bytes, const Problem& problem,
+                   void (*change)(SearchResult&)) {
+    Unpacker from(bytes);
+    Packer before, after;
+    for (Packer* to : {&before, &after}) to->add(Unpacker(bytes).number());
+    static_cast<void>(from.number());
+    SearchResult result = unpackResult(from, problem);
+    pack(before, result);
+    change(result);
+    pack(after, result);
+    return after.bytes() + bytes.substr(before.bytes().size());
+}
+
+TEST(SearchShare, ForgedStartsAreSearchedAgain) {
+    const RandomProblem random = hardProblem(36);
+    const SearchOptions options = searchOptions(Optimizer::Swap);
+    SilentProgress silent;
+    const SearchResult single = search(random.problem, options, silent);
+    TestResults kept, forged;
+    SearchOptions keeping = options;
+    keeping.share.results = kept.get();
+    (void)search(random.problem, keeping, silent);
+    std::vector<Choice> many;
+    for (std::size_t i = 0; i < 60; ++i) many.push_back({0, i});
+    int starts = 0;
+    for (const std::string& key : kept.get()->keys()) {
+        if (!key.starts_with("start1/")) continue;
+        const std::string bytes = kept.get()->find(key).value();
+        Packer to;
+        to.add(Unpacker(bytes).number());
+        pack(to, many);
+        forged.get()->store(key, to.bytes());
+        ++starts;
+    }
+    EXPECT_EQ(starts, options.swap.starts + 1);
+    keeping.share.results = forged.get();
+    const SearchResult result = search(random.problem, keeping, silent);
+    EXPECT_EQ(result.best.chosen, single.best.chosen);
+    EXPECT_EQ(result.best.value, single.best.value);
+}
+
+TEST(SearchShare, ForgedStepsAreRefused) {
+    const RandomProblem random = hardProblem(36);
+    const Problem& problem = random.problem;
+    SilentProgress silent;
+    TestResults kept;
+    SearchOptions keeping = searchOptions(Optimizer::Exact);
+    keeping.share.results = kept.get();
+    (void)search(problem, keeping, silent);
+    const std::vector<void (*)(SearchResult&)> changes = {
+        [](SearchResult& result) { ++result.best.value; },
+        [](SearchResult& result) { result.bound = result.best.value - 1; },
+        [](SearchResult& result) { result.best.chosen.pop_back(); },
+        [](SearchResult& result) { result.best.chosen.resize(60); },
+    };
+    int steps = 0;
+    for (const std::string& key : kept.get()->keys())
+        for (const auto change : changes) {
+            if (key.starts_with("start") || key.starts_with("bound")) continue;
+            TestResults again;
+            again.takeFrom(kept);
+            again.get()->store(key, forged(kept.get()->find(key).value(), problem, change));
+            keeping.share.results = again.get();
+            EXPECT_THROW((void)search(problem, keeping, silent), FormatError) << key;
+            ++steps;
+        }
+    EXPECT_GE(steps, 8);
+}
+
+TEST(SearchShare, ForgedBoundsAreRefused) {
+    const RandomProblem random = hardProblem(36);
+    const Problem& problem = random.problem;
+    SilentProgress silent;
+    TestResults kept;
+    SearchOptions keeping = searchOptions(Optimizer::Exact);
+    keeping.share.results = kept.get();
+    (void)search(problem, keeping, silent);
+    const std::vector<void (*)(Bound&)> changes = {
+        [](Bound& bound) { bound.value = 1; },
+        [](Bound& bound) { ++bound.scale; },
+        [](Bound& bound) { bound.multipliers.back() = 0xffffffffU; },
+        [](Bound& bound) {
+            bound.survivors.at(0) = {2, 1};
+        },
+    };
+    for (const auto change : changes) {
+        const std::string bytes = kept.get()->find("bound1").value();
+        Unpacker from(bytes);
+        Packer to;
+        to.add(from.number());
+        Bound bound = unpackBound(from, problem);
+        change(bound);
+        pack(to, bound);
+        TestResults again;
+        again.takeFrom(kept);
+        again.get()->store("bound1", to.bytes());
+        keeping.share.results = again.get();
+        EXPECT_THROW((void)search(problem, keeping, silent), FormatError);
+    }
+}
+
 TEST(PackedSearch, DamageIsRefused) {
     const RandomProblem random = hardProblem(36);
-    SearchResult result{{{{0, 3}, {0, 7}}, 12}, 20, true};
+    SearchResult result{{{{0, 3}, {0, 7}}, 0}, random.problem.totalWeight(), true};
+    result.best.value = valueOf(random.problem, result.best.chosen);
     Packer to;
     pack(to, result);
     Unpacker from(to.bytes());
@@ -209,6 +312,7 @@ TEST(PackedSearch, SurvivorsAreOneListForEachKindOrNone) {
     problem.kinds.push_back(problem.kinds.front());
     for (std::size_t lists = 0; lists <= 3; ++lists) {
         Bound bound;
+        bound.scale = RelaxedCells(problem).scale;
         bound.multipliers.resize(problem.cells());
         bound.survivors.resize(lists);
         Packer to;

@@ -86,6 +86,20 @@ void CoverageState::clear() {
 template <bool kAdds>
 void CoverageState::change(const Choice& choice) {
     const std::uint32_t multiplicity = multiplicities_[choice.kind], required = required_;
+    const std::uint32_t *weights = problem_->weights.data(), *parts = partial_weights_->data();
+    std::uint32_t* loads = loads_.data();
+    // The first sensor that sees a cell, or the last one, decides.
+    const auto change_single = [&](const CellRun& run) {
+        std::uint64_t value = 0, partial = 0;
+        for (std::uint32_t cell = run.first; cell < run.end; ++cell) {
+            const std::uint32_t counts = loads[cell] == (kAdds ? 0 : multiplicity) ? ~0U : 0;
+            value += weights[cell] & counts;
+            partial += parts[cell] & counts;
+            loads[cell] = kAdds ? loads[cell] + multiplicity : loads[cell] - multiplicity;
+        }
+        value_ = kAdds ? value_ + value : value_ - value;
+        partial_value_ = kAdds ? partial_value_ + partial : partial_value_ - partial;
+    };
     const auto change_run = [&](const CellRun& run) {
         for (std::uint32_t cell = run.first; cell < run.end; ++cell) {
             const std::uint32_t less = kAdds ? loads_[cell] : loads_[cell] - multiplicity;
@@ -99,7 +113,11 @@ void CoverageState::change(const Choice& choice) {
             partial_value_ = kAdds ? partial_value_ + parts : partial_value_ - parts;
         }
     };
-    problem_->kinds[choice.kind].candidates->forEachRun(choice.candidate, change_run);
+    const CandidateSet& candidates = *problem_->kinds[choice.kind].candidates;
+    if (required == 1)
+        candidates.forEachRun(choice.candidate, change_single);
+    else
+        candidates.forEachRun(choice.candidate, change_run);
 }
 
 void CoverageState::insert(std::size_t position, const Choice& choice) {

@@ -14,7 +14,7 @@ namespace ispace {
 
 namespace {
 
-constexpr int kTrials = 10;            // of the bound of each child
+constexpr int kTrialsPerChild = 10;    // of the bound of each child
 constexpr int kSplitsPerGroup = 3;     // tried
 constexpr std::size_t kCoreSize = 96;  // candidates with which splits are compared
 constexpr double kLevelsToClose =
@@ -131,7 +131,7 @@ SoonBound soonBoundOf(const BranchNode& node, std::uint64_t cut, const Progress&
     MultiplierSearch search(relaxed.problem().weights, relaxed.start(node),
                             static_cast<double>(cut), kWarmPace);
     std::uint64_t bound = node.bound;
-    for (int trial = 0; trial < kTrials && bound > cut && !progress.stopped(); ++trial) {
+    for (int trial = 0; trial < kTrialsPerChild && bound > cut && !progress.stopped(); ++trial) {
         std::uint64_t now = trial > 0 ? relaxed.evaluateWorking(search.trial()) : 0;
         if (static_cast<double>(now) < search.bound()) {
             now = relaxed.evaluate(search.trial());

@@ -74,7 +74,7 @@ constexpr std::size_t kRandomSensors = 8;
 /// is inserted at random and one on its best candidate. Measured with 3 to 12 sensors: this halves
 /// the loss of 20 starts, for as much time again.
 constexpr std::size_t kStartsPerKicked = 5;
-constexpr std::uint64_t kKicks = 10;
+constexpr std::uint64_t kKicksPerStart = 10;
 /// Maximum number of results that exchange pairs of sensors, if costs differ.
 constexpr std::size_t kMaxBuyers = 6;
 constexpr std::size_t kStartsPerBuyer = 4;
@@ -133,7 +133,9 @@ class KeptEnds {
         if (!bytes) return std::nullopt;
         Unpacker from(*bytes);
         if (from.number() != mark_) return std::nullopt;
-        return unpackChoices(from, problem_);
+        std::vector<Choice> chosen = unpackChoices(from, problem_);
+        if (!isFeasible(problem_, chosen)) return std::nullopt;
+        return chosen;
     }
     void keep(std::size_t start, const std::vector<Choice>& chosen) {
         if (results_ == nullptr) return;
@@ -207,7 +209,7 @@ class SwapSearch {
         CoverageState state = stateOf(end);
         LocalSearch search(basis_, cache_, enough_, progress_);
         End best = end;
-        for (std::uint64_t kick = 1; kick <= kKicks && !isOver(best); ++kick) {
+        for (std::uint64_t kick = 1; kick <= kKicksPerStart && !isOver(best); ++kick) {
             const std::vector<Choice> before = state.chosen();
             kickOut(state, {seed_, Purpose::Placement, kick, end.start});
             search.fill(state);

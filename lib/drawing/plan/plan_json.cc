@@ -146,7 +146,7 @@ namespace {
 using namespace palette;
 
 /// Sizes of marks and names, metres.
-constexpr double kMark = 0.06, kArrow = 0.3, kDxfText = 0.15;
+constexpr double kDxfMark = 0.06, kArrow = 0.3, kDxfText = 0.15;
 
 /// Width of the line of a shut door, metres; an open one is a line of width 0.
 constexpr double kLeaf = 0.04;
@@ -238,7 +238,7 @@ void addPlaced(DxfWriter& out, const Scene& scene, const PlacedRecord& placed) {
                            pose.heading),
                  true);
     if (moves) out.line(layer, {pose.position, pose * Point2{kArrow, 0}});
-    out.text(layer, pose.position + Vec2{kMark, kMark}, id, kDxfText);
+    out.text(layer, pose.position + Vec2{kDxfMark, kDxfMark}, id, kDxfText);
 }
 
 void addAreas(DxfWriter& out, const Environment& environment) {
@@ -295,10 +295,10 @@ void addRoomToDxf(DxfWriter& out, const Environment& environment) {
 
 void addSensorToDxf(DxfWriter& out, const std::string& id, const Pose3& pose) {
     const Point2 place = pose.position.onFloor();
-    out.circle("sensors", place, kMark);
+    out.circle("sensors", place, kDxfMark);
     if (const auto heading = headingOf(pose))
         out.line("sensors", {place, place + kArrow * unitVector(*heading)});
-    out.text("sensors", place + Vec2{kMark, kMark}, id, kDxfText);
+    out.text("sensors", place + Vec2{kDxfMark, kDxfMark}, id, kDxfText);
 }
 
 std::string writeDxf(const Scene& scene, std::optional<double> slice_height) {

@@ -123,7 +123,7 @@ constexpr std::size_t kMaxColors = 256;
 constexpr int kMaxSize = 65535;
 
 /// A rectangle of a picture: columns and rows from a first one to before a last.
-struct Part {
+struct Patch {
     int left = 0, top = 0, right = 0, bottom = 0;
 
     [[nodiscard]] int width() const { return right - left; }
@@ -132,8 +132,8 @@ struct Part {
 
 /// Returns the bounds of changed pixels; one pixel if no pixel changed, since GIF requires a
 /// picture.
-Part changeOf(const Image& before, const Image& image) {
-    Part part{image.width, image.height, 0, 0};
+Patch changeOf(const Image& before, const Image& image) {
+    Patch part{image.width, image.height, 0, 0};
     for (int y = 0; y < image.height; ++y) {
         const auto row = static_cast<std::ptrdiff_t>(y) * image.width;
         const auto begin = image.pixels.begin() + row, end = begin + image.width;
@@ -146,7 +146,7 @@ Part changeOf(const Image& before, const Image& image) {
         part.top = std::min(part.top, y);
         part.bottom = y + 1;
     }
-    return part.right == 0 ? Part{0, 0, 1, 1} : part;
+    return part.right == 0 ? Patch{0, 0, 1, 1} : part;
 }
 
 int distanceOf(std::uint32_t a, std::uint32_t b) {
@@ -162,7 +162,7 @@ int distanceOf(std::uint32_t a, std::uint32_t b) {
 /// The colours of a rectangle of a picture, and the colour index of each pixel.
 class Palette {
   public:
-    Palette(const Image& image, const Part& part) {
+    Palette(const Image& image, const Patch& part) {
         std::unordered_map<std::uint32_t, int> counts;
         for (int y = part.top; y < part.bottom; ++y)
             for (int x = part.left; x < part.right; ++x) ++counts[image.at(x, y)];
@@ -226,7 +226,7 @@ struct GifFilm::Data {
     Data& operator=(const Data&) = delete;
 
     void begin(const Image& image);
-    void write(const Image& image, const Part& part);
+    void write(const Image& image, const Patch& part);
     void close() {
         int ignored = 0;
         if (file != nullptr) EGifCloseFile(std::exchange(file, nullptr), &ignored);
@@ -267,7 +267,7 @@ void GifFilm::Data::begin(const Image& image) {
     check(EGifPutExtensionTrailer(file));
 }
 
-void GifFilm::Data::write(const Image& image, const Part& part) {
+void GifFilm::Data::write(const Image& image, const Patch& part) {
     constexpr double kHundredths = 100;
     const auto time_of = [this](int picture) {
         return static_cast<int>(std::lround(picture * kHundredths / fps));
@@ -302,8 +302,8 @@ GifFilm::~GifFilm() = default;
 std::string GifFilm::add(const Image& image) {
     const bool is_first = data_->count == 0;
     if (is_first) data_->begin(image);
-    data_->write(image,
-                 is_first ? Part{0, 0, image.width, image.height} : changeOf(data_->before, image));
+    data_->write(
+        image, is_first ? Patch{0, 0, image.width, image.height} : changeOf(data_->before, image));
     data_->before = image;
     ++data_->count;
     return std::exchange(data_->bytes, {});
@@ -336,21 +336,21 @@ struct Luma {
 };
 constexpr Luma kY{66, 129, 25, 16}, kCb{-38, -74, 112, 128}, kCr{112, -94, -18, 128};
 
-struct Rgb {
+struct PixelColor {
     int red = 0, green = 0, blue = 0;
 };
 
-Rgb rgbOf(std::uint32_t pixel) {
+PixelColor rgbOf(std::uint32_t pixel) {
     return {static_cast<int>(pixel >> 16U & 255U), static_cast<int>(pixel >> 8U & 255U),
             static_cast<int>(pixel & 255U)};
 }
 
 /// Returns the mean of a square of four pixels.
-Rgb meanOf(const Image& image, int x, int y) {
-    Rgb sum;
+PixelColor meanOf(const Image& image, int x, int y) {
+    PixelColor sum;
     for (const int dy : {0, 1})
         for (const int dx : {0, 1}) {
-            const Rgb pixel = rgbOf(image.at(x + dx, y + dy));
+            const PixelColor pixel = rgbOf(image.at(x + dx, y + dy));
             sum.red += pixel.red;
             sum.green += pixel.green;
             sum.blue += pixel.blue;

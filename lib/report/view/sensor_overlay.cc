@@ -327,7 +327,7 @@ Rgb FloorColors::at(Point2 place) const {
 
 namespace {
 
-bool isWall(const Element& element) {
+bool isPartOfWall(const Element& element) {
     const std::string& keyword = element.record.keyword();
     return keyword == "wall" || keyword == "ispace" || keyword == "fence" || keyword == "door" ||
            keyword == "window";
@@ -371,7 +371,7 @@ void addStrip(Mesh& mesh, const Segment2& line, double half_width, double z) {
 }  // namespace
 
 bool WallTops::isBetween(const Element& element, std::span<const Point2> footprint) const {
-    if (!standpoint_.looks_in || !standpoint_.place || !isWall(element)) return false;
+    if (!standpoint_.looks_in || !standpoint_.place || !isPartOfWall(element)) return false;
     const auto [middle, across] = crossingOf(footprint);
     const Vec2 way = standpoint_.place->onFloor() - middle;
     const Vec2 outward = dot(way, across) < 0 ? -across : across;
@@ -395,7 +395,7 @@ PaintedMesh WallTops::paint() const {
         return (isBetween(element, footprint) ? bottom : top) + kAbove;
     };
     for (const Element& element : scene_.environment.elements()) {
-        if (!isWall(element)) continue;
+        if (!isPartOfWall(element)) continue;
         for (const Sheet& sheet : element.body.sheets) {
             const std::array line{sheet.line.a, sheet.line.b};
             addStrip(tops.mesh, sheet.line, half_width,

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "coverage/coverage.h"
+#include "coverage/requirement.h"
+#include "record/edit.h"
+#include "scene/devices.h"
+#include "scene/scene.h"
+
+namespace ispace {
+
+/// A change of a scene, and the floor that sensors gain or lose by it.
+struct Suggestion {
+    enum class Kind {
+        Add,        ///< another sensor like one of the scene, at its best pose
+        Turn,       ///< of one sensor, in whole degrees
+        Shift,      ///< of one sensor, by at most a metre
+        Furniture,  ///< a piece moved by at most two metres
+        Replace,    ///< a cheaper device of the scene, by `cost`
+        Remove,     ///< of a sensor that adds hardly any floor
+        Together,   ///< additions, turns and shifts that meet all requirements
+    };
+    Kind kind = Kind::Add;
+    std::string text;         ///< "turn l1 by 35 degrees"
+    std::vector<Edit> edits;  ///< that make the change, in order
+    double gained = 0;        ///< covered indoor floor after the change, less that before, m2
+    double share = 0;         ///< covered share of the indoor floor after it
+    double saved = 0;         ///< cost, of Replace and Remove
+};
+
+/// Returns the word of reports: "add".
+std::string_view nameOf(Suggestion::Kind kind);
+
+struct SuggestOptions {
+    std::size_t most = 5;     ///< number of suggestions
+    CoverageOptions measure;  ///< as the scene was measured
+    /// Requirements to meet: additions, turns and shifts are ranked by the floor that these still
+    /// miss, and Together meets all. Empty: by covered floor.
+    std::vector<Requirement> requirements = {};
+};
+
+/// Finds changes of a measured scene that would help, at most one of each kind, the one with the
+/// largest gain first; then those that save a sensor or its cost.
+///
+/// Every gain is that of measureCoverage() on the edited scene: exact where exact metrics are
+/// known, else by cells. Turns and shifts are found by exact gains (ExactGain) and skipped if a
+/// sensor has no exact region; sensors on robots and people stay. Furniture: the pieces nearest to
+/// sensors, by the floor that they can hide, moved to positions without new findings. Together
+/// repeats the best change, so it is short, not proven shortest. Deterministic.
+/// Measures the scene some dozens of times. Returns the suggestions so far if progress says stop.
+/// \param coverage of the scene, by options.measure
+std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& coverage,
+                                       const SuggestOptions& options,
+                                       const DeviceCatalogue& devices, Progress& progress);
+
+}  // namespace ispace

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/suggestion_report.h"
+
+#include "base/message.h"
+#include "base/number.h"
+#include "report/coverage_report.h"
+
+namespace ispace {
+
+namespace {
+
+/// "+3.20 m2, to 85.71%; saves 120"
+std::string gainText(const Suggestion& suggestion) {
+    std::string text = formatFixed(suggestion.gained, 2);
+    if (text.front() != '-') text.insert(0, 1, '+');
+    text += " m2, to " + percentText(suggestion.share);
+    if (suggestion.saved > 0) text += "; saves " + formatDouble(suggestion.saved);
+    return text;
+}
+
+}  // namespace
+
+std::string commandOf(const Suggestion& suggestion, const std::vector<std::string>& operands) {
+    std::string command = "envc";
+    for (const std::string& operand : operands) command += ' ' + shellQuote(operand);
+    for (const Edit& edit : suggestion.edits)
+        command += ' ' + optionOf(edit.kind) + ' ' + shellQuote(edit.text);
+    return command + " -o changed.env";
+}
+
+void writeSuggestions(JsonWriter& json, const Advice& advice) {
+    json.key("suggestions").beginArray();
+    for (const Suggestion& suggestion : advice.suggestions) {
+        json.beginObject();
+        json.key("kind").value(nameOf(suggestion.kind));
+        json.key("text").value(suggestion.text);
+        json.key("gained").value(roundSignificant(suggestion.gained));
+        json.key("coverage").value(roundSignificant(suggestion.share));
+        if (suggestion.saved > 0) json.key("saved").value(suggestion.saved);
+        json.key("command").value(commandOf(suggestion, advice.operands));
+        json.endObject();
+    }
+    json.endArray();
+}
+
+std::string suggestionsText(const Advice& advice) {
+    if (advice.suggestions.empty()) return "\nno change of one sensor or piece helps\n";
+    std::string text = "\nsuggestions:\n";
+    for (const Suggestion& suggestion : advice.suggestions) {
+        text += "  " + printable(suggestion.text) + ": " + gainText(suggestion) + '\n';
+        text += "    " + commandOf(suggestion, advice.operands) + '\n';
+    }
+    return text;
+}
+
+}  // namespace ispace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "arrange/suggestion.h"
+#include "base/json_writer.h"
+
+namespace ispace {
+
+/// Suggestions for a scene, and the operands from which it was read.
+struct Advice {
+    std::vector<Suggestion> suggestions;
+    std::vector<std::string> operands;
+};
+
+/// Returns the command that writes the changed scene: "envc room.env layout.3dm --rotate l1:35 -o
+/// changed.env".
+std::string commandOf(const Suggestion& suggestion, const std::vector<std::string>& operands);
+
+/// Writes the member `suggestions` of coverageJson().
+void writeSuggestions(JsonWriter& json, const Advice& advice);
+
+/// Writes a line with its gain, and a line with its command, for each suggestion.
+std::string suggestionsText(const Advice& advice);
+
+}  // namespace ispace
