@@ -7,37 +7,76 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
+#include <iterator>
 #include <pugixml.hpp>
+#include <set>
 #include <sstream>
 #include <utility>
 
 #include "base/error.h"
 #include "base/message.h"
+#include "base/packed.h"
+#include "base/part_file.h"
+#include "base/run_files.h"
 #include "cli/outputs.h"
+#include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "record/text.h"
 #include "sim/sim_time.h"
 
 namespace ispace {
 
-void addBatchOptions(CommandLine& line, BatchOptions& options, const std::string& shares) {
+void addListOption(CommandLine& line, BatchOptions& options, const std::string& help) {
+    line.file(
+        "--batch", "LIST", options.list,
+        "a process for many scenes: LIST (- is stdin) has a line `ENV [LAYOUT]` for each; " + help,
+        Enters::Nothing);
+}
+
+void addBatchOptions(CommandLine& line, BatchOptions& options, const std::string& shares,
+                     bool has_parts) {
     line.parsed(
         "--shard", "I/N", [&options](const std::string& text) { options.shard = parseShard(text); },
-        "do the I-th of N shares of the job (" + shares + ") and write a part for --merge",
+        "do the I-th of N shares of the job (" + shares + ")" +
+            (has_parts ? " and write a part for --merge" : ""),
         Enters::Nothing);
-    line.flag("--merge", options.merge,
-              "merge the parts of all shards, which are the operands, to the output of one run",
-              Enters::Nothing);
+    if (has_parts) {
+        line.flag("--merge", options.merge,
+                  "merge the parts of all shards, which are the operands, to the output of one run",
+                  Enters::Nothing);
+        line.manyOperandsWith(options.merge);
+    }
     line.flag("--resume", options.resume,
               "store completed work in FILE.resume beside the output, and continue a killed run of "
               "the same command from there",
               Enters::Nothing);
-    line.manyOperandsWith(options.merge);
 }
 
+namespace {
+
+void checkList(const CommandLine& line, const BatchOptions& options,
+               const std::vector<std::string>& operands, std::span<const char* const> single) {
+    if (options.merge) throw UsageError("--merge joins parts, and --batch writes none");
+    if (!operands.empty())
+        throw UsageError("--batch takes scenes from LIST: put " + operands.front() +
+                         " on a line of it");
+    std::vector<std::string> names(single.begin(), single.end());
+    names.insert(names.end(), {"--MD", "--MF"});
+    for (const std::string& name : names)
+        if (line.given(name))
+            throw UsageError((name[2] == 'M' ? name.substr(1) : name) +
+                             " is about one scene, and --batch about many");
+}
+
+}  // namespace
+
 void checkBatchOptions(const CommandLine& line, const BatchOptions& options,
-                       const CommonOptions& common, const std::vector<std::string>& operands) {
-    if (options.merge) {
+                       const CommonOptions& common, const std::vector<std::string>& operands,
+                       std::span<const char* const> single) {
+    if (!options.list.empty()) {
+        checkList(line, options, operands, single);
+    } else if (options.merge) {
         if (options.shard) throw UsageError("--merge joins what shards made: leave out --shard");
         if (options.resume) throw UsageError("--merge takes moments: leave out --resume");
         if (operands.empty()) throw UsageError("--merge: name the parts of all shards");
@@ -50,7 +89,8 @@ void checkBatchOptions(const CommandLine& line, const BatchOptions& options,
         }
     }
     const std::string suffix = suffixOf(common.output);
-    if (options.shard && !suffix.empty() && suffix != "part" && !OutputSet::of(common.output))
+    if (options.shard && options.list.empty() && !suffix.empty() && suffix != "part" &&
+        !OutputSet::of(common.output))
         throw UsageError("--shard writes a part, which --merge makes a whole: name it " +
                          withoutSuffix(common.output) +
                          ".part, and the format by --to if it is "
@@ -129,15 +169,15 @@ void runInOrder(std::size_t count, const std::function<std::function<void()>(std
 
 namespace {
 
-using Outcome = JunitCase::Outcome;
+using Verdict = JunitCase::Outcome;
 
 void addCase(pugi::xml_node list, const std::string& tool, const JunitCase& one) {
     pugi::xml_node test = list.append_child("testcase");
     test.append_attribute("classname") = tool.c_str();
     test.append_attribute("name") = printable(one.name).c_str();
     test.append_attribute("time") = formatMilliseconds(one.time).c_str();
-    if (one.outcome == Outcome::Met) return;
-    const bool is_error = one.outcome == Outcome::Error;
+    if (one.outcome == Verdict::Met) return;
+    const bool is_error = one.outcome == Verdict::Error;
     pugi::xml_node failure = test.append_child(is_error ? "error" : "failure");
     failure.append_attribute("message") = printable(one.message).c_str();
     failure.append_attribute("type") = is_error ? "error" : "unmet";
@@ -149,7 +189,7 @@ void addCase(pugi::xml_node list, const std::string& tool, const JunitCase& one)
 // GitHub's readers share: https://github.com/testmoapp/junitxml
 std::string junitXml(const std::string& tool, const std::string& suite,
                      std::span<const JunitCase> cases) {
-    const auto count = [cases](Outcome outcome) {
+    const auto count = [cases](Verdict outcome) {
         return static_cast<unsigned long>(std::count_if(
             cases.begin(), cases.end(), [=](const JunitCase& c) { return c.outcome == outcome; }));
     };
@@ -164,14 +204,208 @@ std::string junitXml(const std::string& tool, const std::string& suite,
     pugi::xml_node list = root.append_child("testsuite");
     list.append_attribute("name") = printable(suite).c_str();
     list.append_attribute("tests") = static_cast<unsigned long>(cases.size());
-    list.append_attribute("failures") = count(Outcome::Unmet);
-    list.append_attribute("errors") = count(Outcome::Error);
+    list.append_attribute("failures") = count(Verdict::Unmet);
+    list.append_attribute("errors") = count(Verdict::Error);
     list.append_attribute("skipped") = 0;
     list.append_attribute("time") = formatMilliseconds(end).c_str();
     for (const JunitCase& one : cases) addCase(list, tool, one);
     std::ostringstream out;
     document.save(out, "  ");
     return out.str();
+}
+
+std::string JobOutcome::bytes() const {
+    Packer to;
+    const auto add = [&to](const std::string& text) {
+        to.add(text.size());
+        to.addBytes(text);
+    };
+    to.add(static_cast<std::uint64_t>(status));
+    add(line);
+    to.add(messages.size());
+    for (const std::string& message : messages) add(message);
+    to.add(verdicts.size());
+    for (const JunitCase& verdict : verdicts) {
+        to.add(static_cast<std::uint64_t>(verdict.outcome));
+        add(verdict.name);
+        add(verdict.message);
+    }
+    return to.bytes();
+}
+
+JobOutcome JobOutcome::fromBytes(std::string_view bytes) {
+    Unpacker from(bytes);
+    const auto text = [&from] {
+        const std::vector<char> all = from.all<char>();
+        return std::string(all.begin(), all.end());
+    };
+    JobOutcome outcome;
+    outcome.status = static_cast<int>(from.number());
+    outcome.line = text();
+    for (std::uint64_t left = from.number(); left > 0; --left) outcome.messages.push_back(text());
+    for (std::uint64_t left = from.number(); left > 0; --left) {
+        JunitCase& verdict = outcome.verdicts.emplace_back();
+        verdict.outcome = static_cast<Verdict>(from.number());
+        verdict.name = text();
+        verdict.message = text();
+    }
+    return outcome;
+}
+
+JsonWriter jobLine(const std::string& tool, const BatchJob& job) {
+    JsonWriter json;
+    json.beginObject().key("schema").value("ispace-batch/1").key("tool").value(tool);
+    json.key("version").value(version()).key("line").value(job.line);
+    json.key("operands").value(job.operands);
+    return json;
+}
+
+namespace {
+
+constexpr int kUnmetStatus = 3;
+
+/// Names the products: %s is the first operand without folder and suffix, %d the line.
+void nameProducts(const BatchRun& run, std::vector<BatchJob>& jobs) {
+    const bool is_folder = run.product == "/";
+    const auto names = OutputSet::of(run.common.output);
+    if (!names || (is_folder && !suffixOf(run.common.output).empty()))
+        throw UsageError(std::string("--batch writes a ") + (is_folder ? "folder" : "file") +
+                         " for each line of LIST: name a folder for them (-o DIR/) or a pattern "
+                         "(-o '%s-%04d" +
+                         (is_folder ? "" : run.product) + "')");
+    std::set<std::string> taken, folders;
+    for (const BatchJob& job : jobs) taken.insert(job.operands.begin(), job.operands.end());
+    for (BatchJob& job : jobs) {
+        if (!job.wrong.empty()) continue;
+        job.product = names->fileOf(withoutSuffix(baseName(job.operands.front())), job.line,
+                                    is_folder ? "" : run.product);
+        if (!taken.insert(job.product).second)
+            throw UsageError("--output: " + job.product +
+                             " is an operand of LIST, or the file of two lines: write %04d where "
+                             "the number of the line goes");
+        folders.insert(std::filesystem::path(job.product).parent_path());
+        if (is_folder) job.product += '/';
+    }
+    for (const std::string& folder : folders)
+        if (!folder.empty()) std::filesystem::create_directories(folder);
+}
+
+JobOutcome outcomeOf(const BatchRun& run, const BatchJob& job, const JobWork& work) {
+    JobOutcome outcome;
+    CommonOptions common = run.common;
+    common.output = job.product;
+    common.progress = false;
+    common.messages = [&outcome](const std::string& text) { outcome.messages.push_back(text); };
+    try {
+        if (!job.wrong.empty()) throw UsageError(job.wrong);
+        work(job, common, outcome);
+    } catch (...) {
+        const ToolFailure failure = currentFailure();
+        const std::string& error = failure.lines.front();
+        outcome.status = failure.status;
+        outcome.messages.insert(outcome.messages.end(), failure.lines.begin(), failure.lines.end());
+        if (failure.status != kUnmetStatus)
+            outcome.verdicts = {{.name = job.name, .outcome = Verdict::Error, .message = error}};
+        if (outcome.line.empty() && !run.product.empty())
+            outcome.line =
+                jobLine(run.tool, job).key("error").value(error).endObject().take() + '\n';
+    }
+    if (outcome.line.empty()) outcome.line = "null\n";
+    return outcome;
+}
+
+/// Writes the results of the jobs, in their order.
+class BatchWriter {
+  public:
+    explicit BatchWriter(const BatchRun& run)
+        : run_(run), lines_(run.product.empty() ? run.common.output : "-") {}
+
+    void take(const BatchJob& job, JobOutcome outcome) {
+        lines_.write(outcome.line);
+        for (const std::string& message : outcome.messages)
+            writeErrorLine({run_.tool, ": ", displayName(run_.batch.list), ":",
+                            std::to_string(job.line), ": ", printable(message)});
+        if (outcome.status != 0) ++(outcome.status == kUnmetStatus ? unmet_ : failed_);
+        std::move(outcome.verdicts.begin(), outcome.verdicts.end(), std::back_inserter(verdicts_));
+    }
+
+    void commit(JunitFile& junit) {
+        lines_.commit();
+        junit.write(baseName(run_.batch.list), verdicts_);
+    }
+
+    /// \throws as runBatch
+    void conclude(std::size_t jobs) const {
+        const auto share = [jobs](std::size_t count) {
+            return std::to_string(count) + " of " + std::to_string(jobs) + " jobs ";
+        };
+        if (failed_ > 0)
+            throw FormatError(
+                {displayName(run_.batch.list), 0, 0, share(failed_) + "failed, see above"});
+        if (unmet_ > 0) throw UnmetError(share(unmet_) + "missed a requirement");
+        talk(run_.common, run_.tool, std::to_string(jobs) + " jobs done");
+    }
+
+  private:
+    const BatchRun& run_;
+    OutputFile lines_;
+    std::vector<JunitCase> verdicts_;
+    std::size_t failed_ = 0, unmet_ = 0;
+};
+
+/// Returns the identity of a list's results. \param list its bytes
+JobId idOf(const BatchRun& run, const std::string& list, std::size_t jobs) {
+    JobId id;
+    id.tool = run.tool;
+    id.history = {run.command};
+    id.inputs = sha256(list);
+    id.seed = run.common.seed;
+    id.form = "jobs";
+    id.units = static_cast<std::int64_t>(jobs);
+    return id;
+}
+
+void runShare(const BatchRun& run, const JobWork& work, JunitFile& junit) {
+    const std::string& list = run.batch.list;
+    const std::string bytes = list == "-" ? readStdin() : readAll(list);
+    std::vector<BatchJob> jobs = readBatchList(bytes, displayName(list));
+    for (BatchJob& job : jobs)
+        job.name = baseName(list) + ':' + std::to_string(job.line) + ' ' + job.text();
+    if (!run.product.empty()) nameProducts(run, jobs);
+    const Shard shard = run.batch.shard.value_or(Shard());
+    const auto [first, end] = shard.blockOf(std::ssize(jobs));
+    const std::span own = std::span(jobs).subspan(static_cast<std::size_t>(first),
+                                                  static_cast<std::size_t>(end - first));
+    std::optional<JobResults> results;
+    if (run.batch.resume)
+        results.emplace(run.common.output, idOf(run, bytes, jobs.size()), shard, true);
+    BatchWriter writer(run);
+    const auto progress = makeProgress(run.tool, run.common.progress, run.common.quiet);
+    progress->begin("scenes", std::ssize(own));
+    runInOrder(own.size(), [&](std::size_t i) {
+        const std::string key = std::to_string(own[i].line);
+        const auto done = results ? results->find(key) : std::nullopt;
+        return [&, i, key, is_new = !done,
+                outcome = done ? JobOutcome::fromBytes(*done) : outcomeOf(run, own[i], work)] {
+            if (results && is_new) results->store(key, outcome.bytes());
+            writer.take(own[i], outcome);
+            progress->advance(1);
+        };
+    });
+    progress->end();
+    writer.commit(junit);
+    if (results) results->finish();
+    writer.conclude(own.size());
+}
+
+}  // namespace
+
+void runBatch(const BatchRun& run, const JobWork& work) {
+    limitThreads(run.common.threads);
+    claimOutputs(run.common);
+    claimOutput(run.junit, "--junit");
+    JunitFile junit(run.tool, run.junit);
+    junit.during({&run.batch.list, 1}, [&] { runShare(run, work, junit); });
 }
 
 JunitFile::JunitFile(std::string tool, const std::string& file) : tool_(std::move(tool)) {
@@ -189,7 +423,7 @@ void JunitFile::during(std::span<const std::string> inputs, const std::function<
     try {
         work();
     } catch (...) {
-        JunitCase error{.name = tool_, .outcome = Outcome::Error};
+        JunitCase error{.name = tool_, .outcome = Verdict::Error};
         for (const std::string& input : inputs) error.name += ' ' + displayName(baseName(input));
         for (const std::string& line : currentFailure().lines)
             error.message.append(error.message.empty() ? "" : "; ").append(line);

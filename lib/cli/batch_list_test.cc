@@ -45,6 +45,27 @@ TEST(BatchList, WantsTextAndJobs) {
     EXPECT_THROW(readBatchList(std::string("a\0b\n", 4), "jobs"), FormatError);
 }
 
+TEST(JobOutcome, IsReadBackFromItsBytes) {
+    JobOutcome outcome;
+    outcome.line = "{\"a\":1}\n";
+    outcome.messages = {"warning: no\nfloor", ""};
+    outcome.verdicts = {
+        {.name = "list:1 a", .outcome = JunitCase::Outcome::Unmet, .message = "40%"},
+        {.name = "list:1 b"}};
+    outcome.status = 3;
+    const std::string bytes = outcome.bytes();
+    const JobOutcome back = JobOutcome::fromBytes(bytes);
+    EXPECT_EQ(back.line, outcome.line);
+    EXPECT_EQ(back.messages, outcome.messages);
+    EXPECT_EQ(back.status, 3);
+    ASSERT_EQ(back.verdicts.size(), 2U);
+    EXPECT_EQ(back.verdicts[0].outcome, JunitCase::Outcome::Unmet);
+    EXPECT_EQ(back.verdicts[0].message, "40%");
+    EXPECT_EQ(back.verdicts[1].name, "list:1 b");
+    for (std::size_t size = 0; size < bytes.size(); ++size)
+        EXPECT_THROW(JobOutcome::fromBytes(std::string_view(bytes).substr(0, size)), FormatError);
+}
+
 TEST(RunInOrder, DeliversInOrderAndFewAtATime) {
     for (const int threads : {1, 2, 8}) {
         limitThreads(threads);

@@ -3,9 +3,13 @@
 // product and for reruns.
 #include "cli/command_line.h"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "base/error.h"
@@ -16,6 +20,127 @@
 #include "record/schema.h"
 
 namespace ispace {
+
+namespace {
+
+/// -MD and -MF are written as compilers have them; CLI11 knows them as --MD and --MF.
+bool isCompilerName(std::string_view name) { return name == "MD" || name == "MF"; }
+
+/// "--output", "-X" where that is the only name, "-MF"
+std::string nameOf(const CLI::Option& option) {
+    const std::string name = option.get_name();
+    return isCompilerName(std::string_view(name).substr(2)) ? name.substr(1) : name;
+}
+
+}  // namespace
+
+struct CommandLine::Data {
+    struct Entry {
+        CLI::Option* option;
+        std::string value, help;
+        Enters enters;
+        /// Of options that keep their relative order.
+        std::function<void(const std::string&)> take = {};
+    };
+
+    std::string tool, synopsis, summary;
+    std::string statuses = "0 done, 1 bad data or failed I/O, 2 usage, 3 requirement not met";
+    CLI::App app;
+    std::vector<Entry> entries;
+    bool help = false, version = false;
+    std::vector<std::string> unused_operands;
+    std::vector<std::string>* operands = &unused_operands;
+    std::size_t max_operands = 0;
+    const bool* many = nullptr;                  // if set, there may be more
+    std::map<std::string, std::string> renamed;  // removed options and their hints
+    std::map<std::string, std::string> values;   // of options that may stand without one
+    std::function<void()> check = [] {};  // of options against each other, once all are known
+
+    CLI::Option* keep(CLI::Option* option, const std::string& value, const std::string& text,
+                      Enters enters) {
+        entries.push_back({option, value, text, enters, {}});
+        return option;
+    }
+    [[noreturn]] void usage(const std::string& message) const {
+        throw UsageError(message + " (see " + tool + " --help)");
+    }
+    /// Rejects an option without its value, or given too often, in our words.
+    void explain(const std::string& mismatch) const {
+        for (const Entry& entry : entries) {
+            const CLI::Option& option = *entry.option;
+            if (!mismatch.starts_with(option.get_name() + ": ")) continue;
+            if (option.count() > 1)
+                usage(nameOf(option) + ": may be given once, and is given " +
+                      std::to_string(option.count()) + " times");
+            usage(nameOf(option) + ' ' + entry.value + ": the value is missing");
+        }
+    }
+    /// Adds the value of an option that may stand without one where no number follows it.
+    void addValues(std::vector<std::string>& words) const {
+        for (std::size_t i = 0; i < words.size(); ++i) {
+            const auto value = values.find(words[i]);
+            const bool has_number = i + 1 < words.size() && parseInteger(words[i + 1]).has_value();
+            if (value != values.end() && !has_number) words[i] += '=' + value->second;
+        }
+    }
+    void sortOut(const std::vector<std::string>& words) {
+        bool options_ended = false;
+        for (const std::string& word : words) {
+            if (!options_ended && word == "--") {
+                options_ended = true;
+            } else if (!options_ended && word.size() > 1 && word.starts_with('-')) {
+                usage("unknown option " + shellQuote(word) +
+                      hintFor(word.substr(0, word.find('='))));
+            } else if (word.empty()) {
+                usage("an operand is empty");
+            } else {
+                operands->push_back(word);
+            }
+        }
+        if (operands->size() > max_operands && !(many != nullptr && *many))
+            usage("too many operands: " + shellQuote((*operands)[max_operands]));
+    }
+    [[nodiscard]] std::string hintFor(const std::string& unknown) const {
+        if (const auto hint = renamed.find(unknown); hint != renamed.end())
+            return ": " + hint->second;
+        std::vector<std::string> known;
+        for (const Entry& entry : entries)
+            for (const std::string& name : entry.option->get_lnames()) known.push_back("--" + name);
+        return didYouMean(unknown, known);
+    }
+    /// Calls visit(entry, text) for the ordered options as they came.
+    template <typename Visit>
+    void forEachOrdered(Visit visit) const {
+        std::map<const CLI::Option*, std::size_t> used;
+        for (const CLI::Option* option : app.parse_order())
+            for (const Entry& entry : entries)
+                if (entry.option == option && entry.take)
+                    visit(entry, option->results().at(used[option]++));
+    }
+    /// Calls visit(name, value or null, entry) for the options that enter the history, in the man
+    /// page's order.
+    template <typename Visit>
+    void forEachResult(Visit visit) const {
+        bool ordered_done = false;
+        for (const Entry& entry : entries) {
+            const CLI::Option& option = *entry.option;
+            if (entry.enters == Enters::Nothing || option.count() == 0) continue;
+            if (entry.take) {
+                // At the man page's position of the first one, all follow in the order of the
+                // command line.
+                if (!std::exchange(ordered_done, true))
+                    forEachOrdered([&](const Entry& one, const std::string& text) {
+                        visit(nameOf(*one.option), &text, one);
+                    });
+            } else if (entry.value.empty()) {
+                visit(nameOf(option), nullptr, entry);
+            } else {
+                for (const std::string& value : option.results())
+                    visit(nameOf(option), &value, entry);
+            }
+        }
+    }
+};
 
 CommandLine::CommandLine(std::string tool, std::string synopsis, std::string summary)
     : data_(std::make_unique<Data>()) {
@@ -132,13 +257,12 @@ auto takeCount(Number& variable, int lowest, int highest) {
 template <typename Number>
 auto takeQuantity(Number& variable, Unit unit, double lowest, double highest) {
     return [&variable, unit, lowest, highest](const std::string& text) {
-        const bool is_time = unit == Unit::Time;
         KeySpec key;
         key.unit = unit;
         const double value = std::get<double>(parseValue(key, text));
         if (value < lowest || value > highest)
             throw UsageError('`' + text + "` is not from " + formatDouble(lowest) + " to " +
-                             formatDouble(highest) + (is_time ? " seconds" : " metres"));
+                             formatDouble(highest) + (unit == Unit::Time ? " seconds" : " metres"));
         variable = value;
     };
 }
@@ -155,6 +279,13 @@ void CommandLine::count(const std::string& names, const std::string& value, int&
                         int lowest, int highest, const std::string& help, Enters enters) {
     parsed(names, value, takeCount(variable, lowest, highest),
            help + " (default " + std::to_string(variable) + ")", enters);
+}
+
+void CommandLine::countOr(const std::string& name, std::optional<int>& variable, int otherwise,
+                          int lowest, int highest, const std::string& help, Enters enters) {
+    data_->values[name] = std::to_string(otherwise);
+    parsed(name, "[N]", takeCount(variable, lowest, highest),
+           help + " (default " + std::to_string(otherwise) + ")", enters);
 }
 
 void CommandLine::meters(const std::string& names, std::optional<double>& variable, double lowest,
@@ -220,43 +351,6 @@ void rewriteCompilerNames(std::vector<std::string>& words) {
 
 }  // namespace
 
-std::string CommandLine::Data::hintFor(const std::string& unknown) const {
-    if (const auto hint = renamed.find(unknown); hint != renamed.end()) return ": " + hint->second;
-    std::vector<std::string> known;
-    for (const Entry& entry : entries)
-        for (const std::string& name : entry.option->get_lnames()) known.push_back("--" + name);
-    return didYouMean(unknown, known);
-}
-
-void CommandLine::Data::explain(const std::string& mismatch) const {
-    for (const Entry& entry : entries) {
-        const CLI::Option& option = *entry.option;
-        if (!mismatch.starts_with(option.get_name() + ": ")) continue;
-        if (option.count() > 1)
-            usage(nameOf(option) + ": may be given once, and is given " +
-                  std::to_string(option.count()) + " times");
-        usage(nameOf(option) + ' ' + entry.value + ": the value is missing");
-    }
-}
-
-void CommandLine::Data::sortOut(const std::vector<std::string>& words) {
-    bool options_ended = false;
-    for (const std::string& word : words) {
-        if (!options_ended && word == "--") {
-            options_ended = true;
-        } else if (!options_ended && word.size() > 1 && word.starts_with('-')) {
-            usage("unknown option " + shellQuote(word) + hintFor(word.substr(0, word.find('='))));
-        } else if (word.empty()) {
-            usage("an operand is empty");
-        } else {
-            operands->push_back(word);
-        }
-    }
-    const bool takes_many = many != nullptr && *many;
-    if (operands->size() > max_operands && !takes_many)
-        usage("too many operands: " + shellQuote((*operands)[max_operands]));
-}
-
 void CommandLine::parse(int argc, const char* const* argv) {
     Data& d = *data_;
     std::vector<std::string> words(argv + 1, argv + argc);
@@ -265,6 +359,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
     const std::vector<std::string> tail(end, words.end());
     words.erase(end, words.end());
     rewriteCompilerNames(words);
+    d.addValues(words);
     std::reverse(words.begin(), words.end());
     try {
         d.app.parse(words);
@@ -325,27 +420,6 @@ std::string fileInHistory(const std::string& operand) {
 
 }  // namespace
 
-template <typename Visit>
-void CommandLine::Data::forEachResult(Visit visit) const {
-    bool ordered_done = false;
-    for (const Entry& entry : entries) {
-        const CLI::Option& option = *entry.option;
-        if (entry.enters == Enters::Nothing || option.count() == 0) continue;
-        if (entry.take) {
-            // At the man page's position of the first one, all follow in the order of the command
-            // line.
-            if (!std::exchange(ordered_done, true))
-                forEachOrdered([&](const Entry& one, const std::string& text) {
-                    visit(nameOf(*one.option), &text, one);
-                });
-        } else if (entry.value.empty()) {
-            visit(nameOf(option), nullptr, entry);
-        } else {
-            for (const std::string& value : option.results()) visit(nameOf(option), &value, entry);
-        }
-    }
-}
-
 std::string CommandLine::historyLine(const std::vector<std::string>& operands) const {
     std::string line = data_->tool;
     for (const std::string& operand : operands) line += ' ' + fileInHistory(operand);
@@ -380,10 +454,9 @@ std::string CommandLine::helpText() const {
     for (const Data::Entry& entry : data_->entries) {
         const std::string name = "  " + signature(*entry.option, entry.value);
         out += name;
-        if (name.size() + 2 > kHelpColumn)
-            out += '\n' + std::string(kHelpColumn, ' ');
-        else
-            out += std::string(kHelpColumn - name.size(), ' ');
+        const bool fits = name.size() + 2 <= kHelpColumn;
+        out += fits ? std::string(kHelpColumn - name.size(), ' ')
+                    : '\n' + std::string(kHelpColumn, ' ');
         appendWrapped(out, entry.help, kHelpColumn, kHelpColumn);
     }
     out += "\nExit status: " + data_->statuses + ".\n";

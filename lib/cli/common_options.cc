@@ -85,26 +85,23 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
                     "do not report it", Enters::Nothing);
 }
 
-void talk(const CommonOptions& options, const std::string& tool, const std::string& text) {
-    if (options.verbose > 0 && !options.quiet) std::cerr << tool << ": " << text << '\n';
+void tell(const CommonOptions& options, const std::string& tool, const std::string& sentence) {
+    if (options.quiet) return;
+    if (options.messages) return options.messages(sentence);
+    std::cerr << tool << ": " << printable(sentence) << '\n';
 }
 
-void tell(const CommonOptions& options, const std::string& tool,
-          std::span<const std::string> sentences) {
-    if (options.quiet) return;
-    for (const std::string& sentence : sentences)
-        std::cerr << tool << ": " << printable(sentence) << '\n';
+void talk(const CommonOptions& options, const std::string& tool, const std::string& text) {
+    if (options.verbose > 0) tell(options, tool, text);
 }
 
 void warn(const CommonOptions& options, const std::string& tool,
           std::span<const Diagnostic> warnings) {
-    if (options.quiet) return;
-    for (const Diagnostic& warning : warnings)
-        std::cerr << tool << ": " << printable(warning.text()) << '\n';
+    for (const Diagnostic& warning : warnings) tell(options, tool, warning.text());
 }
 
 void warn(const CommonOptions& options, const std::string& tool, const std::string& sentence) {
-    if (!options.quiet) std::cerr << tool << ": warning: " << sentence << '\n';
+    tell(options, tool, "warning: " + sentence);
 }
 
 void warn(const CommonOptions& options, const std::string& tool,

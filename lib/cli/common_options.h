@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <span>
@@ -25,6 +26,8 @@ struct CommonOptions {
     std::uint64_t seed = 0;
     std::optional<bool> progress;
     DependencyOptions dependencies;
+    /// Receives warnings and messages, without the tool's name; empty: they go to stderr.
+    std::function<void(const std::string&)> messages = {};
 };
 /// Declares -MD -MF -o -q -v -j --seed --progress; `output_help` describes the product; if empty
 /// there is no -o, -MD and -MF.
@@ -33,9 +36,8 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
 /// Prints `text` on stderr with -v and without -q.
 void talk(const CommonOptions& options, const std::string& tool, const std::string& text);
 
-/// Prints each sentence on stderr unless -q is given.
-void tell(const CommonOptions& options, const std::string& tool,
-          std::span<const std::string> sentences);
+/// Prints a sentence on stderr unless -q is given.
+void tell(const CommonOptions& options, const std::string& tool, const std::string& sentence);
 
 /// Prints each warning on stderr unless -q is given.
 void warn(const CommonOptions& options, const std::string& tool,

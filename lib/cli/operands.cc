@@ -48,10 +48,10 @@ Document read(const std::string& operand, const SceneRules& rules, ImportReport*
                           : readDocument(operand, defaultImport(rules, report), sceneSchemas());
 }
 
-bool hasPlaced(const Document& document, const std::vector<std::string>& keywords) {
+bool hasPlaced(const Document& document, bool (*is_meant)(const SensorKind&)) {
     return std::any_of(document.records.begin(), document.records.end(), [&](const Record& r) {
-        return std::find(keywords.begin(), keywords.end(), r.keyword()) != keywords.end() &&
-               (r.has("at") || r.has("on"));
+        const SensorKind* const kind = sensorKind(r.keyword());
+        return kind != nullptr && is_meant(*kind) && (r.has("at") || r.has("on"));
     });
 }
 
@@ -173,7 +173,7 @@ class OperandReader {
         if (layout_) return false;
         if (!environment_ && !request_.layout_from_stdin) throw UsageError("no environment given");
         return request_.layout_from_stdin &&
-               !(environment_ && hasPlaced(*environment_, request_.sensors));
+               !(environment_ && hasPlaced(*environment_, request_.is_meant));
     }
 
     void takeLayoutFromStdin() {
@@ -236,7 +236,7 @@ std::string readStdin() {
 SceneInput readScene(const SceneRequest& request) { return OperandReader(request).read(); }
 
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SceneInput& input) {
-    tell(options, tool, input.choices);
+    for (const std::string& choice : input.choices) tell(options, tool, choice);
     warn(options, tool, input.environment.warnings);
 }
 

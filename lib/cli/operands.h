@@ -28,7 +28,8 @@ struct SceneRules {
 
 /// Returns the changes that clients made to the world of a recorded run, which began in a scene.
 /// \throws FormatError if events.csv holds no events
-RunChanges changesOfRun(const std::string& folder, const Scene& start);
+RunChanges changesOfRun(const std::string& folder, const Scene& start,
+                        std::optional<std::uint64_t> max_work);
 
 struct CommonOptions;
 
@@ -40,8 +41,8 @@ struct SceneRequest {
     /// Read LAYOUT from stdin if ENV holds no placed sensor, or without operands (scan and
     /// coverage); otherwise a missing operand is a usage error (arrange).
     bool layout_from_stdin = true;
-    /// Keywords of sensors; an ENV with a placed one needs no LAYOUT.
-    std::vector<std::string> sensors = {"laser", "ranger", "camera", "ultrasound"};
+    /// An ENV with a placed sensor of such a kind needs no LAYOUT.
+    bool (*is_meant)(const SensorKind&) = [](const SensorKind& kind) { return kind.perceives; };
 };
 
 /// Content of the operands.

@@ -136,7 +136,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A piece of a pattern: text, or the frame (with a least width), or the id.
-struct Piece {
+struct PatternPart {
     enum class Kind { Text, Frame, Id } kind = Kind::Text;
     std::string text;
     std::size_t width = 0;
@@ -144,15 +144,15 @@ struct Piece {
 
 constexpr std::size_t kMaxName = 255;  // bytes
 
-[[noreturn]] void refuse(const std::string& pattern, const std::string& piece) {
+[[noreturn]] void refusePattern(const std::string& pattern, const std::string& piece) {
     throw UsageError("--output: `" + pattern + "`: `" + piece +
                      "` is no part of a pattern; %d or %04d is the frame, %s the sensor, %% a "
                      "percent sign");
 }
 
-std::vector<Piece> patternParts(const std::string& pattern) {
+std::vector<PatternPart> patternParts(const std::string& pattern) {
     constexpr std::size_t kMaxWidth = 9;
-    std::vector<Piece> pieces(1);
+    std::vector<PatternPart> pieces(1);
     for (std::size_t i = 0; i < pattern.size(); ++i) {
         if (pattern[i] != '%') {
             pieces.back().text += pattern[i];
@@ -172,29 +172,29 @@ std::vector<Piece> patternParts(const std::string& pattern) {
         }
         const bool frame = sign == 'd' && width <= kMaxWidth && (plain || (zero && width > 0));
         if (!frame && !(sign == 's' && plain))
-            refuse(pattern, pattern.substr(begin, i - begin + 1));
-        pieces.push_back({frame ? Piece::Kind::Frame : Piece::Kind::Id, "", width});
+            refusePattern(pattern, pattern.substr(begin, i - begin + 1));
+        pieces.push_back({frame ? PatternPart::Kind::Frame : PatternPart::Kind::Id, "", width});
         pieces.emplace_back();
     }
     return pieces;
 }
 
-bool has(const std::vector<Piece>& pieces, Piece::Kind kind) {
+bool has(const std::vector<PatternPart>& pieces, PatternPart::Kind kind) {
     return std::any_of(pieces.begin(), pieces.end(),
-                       [kind](const Piece& piece) { return piece.kind == kind; });
+                       [kind](const PatternPart& piece) { return piece.kind == kind; });
 }
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
 /// Returns true for an id and a frame without a separator, or with one that could be part of a
 /// number: l1 and 2 are l12, and so are l and 12.
-bool runsTogether(const std::vector<Piece>& pieces) {
+bool runsTogether(const std::vector<PatternPart>& pieces) {
     // Pieces that are no text have text in between.
     for (std::size_t i = 1; i + 2 < pieces.size(); i += 2) {
-        const Piece &a = pieces[i], &text = pieces[i + 1], &b = pieces[i + 2];
+        const PatternPart &a = pieces[i], &text = pieces[i + 1], &b = pieces[i + 2];
         if (a.kind == b.kind) continue;
         if (text.text.empty()) return true;
-        if (isDigit(b.kind == Piece::Kind::Frame ? text.text.back() : text.text.front()))
+        if (isDigit(b.kind == PatternPart::Kind::Frame ? text.text.back() : text.text.front()))
             return true;
     }
     return false;
@@ -263,10 +263,10 @@ void OutputSet::prepare(const std::vector<std::string>& ids, bool several_frames
         };
         if (suffix_.find('%') != std::string::npos)
             refuse_pattern("has % in its suffix; write the suffix of the format behind it");
-        const std::vector<Piece> pieces = patternParts(pattern_);
-        if (several_frames && !has(pieces, Piece::Kind::Frame))
+        const std::vector<PatternPart> pieces = patternParts(pattern_);
+        if (several_frames && !has(pieces, PatternPart::Kind::Frame))
             refuse_pattern("gives all frames one name; write %04d where their number goes");
-        if (ids.size() > 1 && !has(pieces, Piece::Kind::Id))
+        if (ids.size() > 1 && !has(pieces, PatternPart::Kind::Id))
             refuse_pattern("gives all sensors one name; write %s where their id goes");
         if (several_frames && ids.size() > 1 && runsTogether(pieces))
             refuse_pattern(
@@ -310,11 +310,11 @@ std::string OutputSet::stem(const std::string& id, int frame) const {
         return (fs::path(folder_) / name).string();
     }
     std::string out;
-    for (const Piece& piece : patternParts(pattern_)) {
-        if (piece.kind == Piece::Kind::Frame)
+    for (const PatternPart& piece : patternParts(pattern_)) {
+        if (piece.kind == PatternPart::Kind::Frame)
             out += padded(frame, piece.width);
         else
-            out += piece.kind == Piece::Kind::Id ? name : piece.text;
+            out += piece.kind == PatternPart::Kind::Id ? name : piece.text;
     }
     return out;
 }

@@ -103,8 +103,10 @@ std::unique_ptr<Progress> makeProgress(const std::string& tool, std::optional<bo
     return std::make_unique<ProgressBar>(tool);
 }
 
-SearchWatch::SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> limit)
+SearchWatch::SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> limit,
+                         bool takes_signals)
     : shown_(std::move(shown)) {
+    if (takes_signals) signals_.emplace();
     constexpr double kMaxLength = 1e9;  // some thirty years, without overflow
     if (limit)
         end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(

@@ -45,7 +45,9 @@ std::unique_ptr<Progress> makeProgress(const std::string& tool, std::optional<bo
 class SearchWatch final : public Progress {
   public:
     /// \param shown receives the progress; \param limit seconds from now on
-    SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> limit);
+    /// \param takes_signals false: signals end the process; several may live at a time
+    SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> limit,
+                bool takes_signals = true);
 
     void begin(std::string_view phase, std::int64_t total) override { shown_->begin(phase, total); }
     void advance(std::int64_t count) override { shown_->advance(count); }
@@ -55,13 +57,13 @@ class SearchWatch final : public Progress {
     [[nodiscard]] bool stopped() const override;
 
     /// Returns the signal received, or 0.
-    [[nodiscard]] int signal() const { return signals_.signal(); }
+    [[nodiscard]] int signal() const { return signals_ ? signals_->signal() : 0; }
 
   private:
     using Clock = std::chrono::steady_clock;
     std::unique_ptr<Progress> shown_;
     std::optional<Clock::time_point> end_;
-    StopSignals signals_;
+    std::optional<StopSignals> signals_;
 };
 
 /// Ends this process by the signal, as if it had not been caught.

@@ -5,10 +5,16 @@
 
 namespace ispace {
 
-RunChanges changesOfRun(const std::string& folder, const Scene& start) {
-    return {folder, start, shippedDevices(), [](const std::string& file) {
-                return readScene({{file}, {.same_environment = true}, false}).scene;
-            }};
+RunChanges changesOfRun(const std::string& folder, const Scene& start,
+                        std::optional<std::uint64_t> max_work) {
+    return {folder, start, shippedDevices(),
+            [max_work](const std::string& file) {
+                SceneRules rules;
+                rules.same_environment = true;
+                rules.max_work = max_work;
+                return readScene({{file}, rules, false}).scene;
+            },
+            max_work};
 }
 
 }  // namespace ispace

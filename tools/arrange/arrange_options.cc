@@ -113,10 +113,15 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
                   "Compute poses for sensors in a room: those of LAYOUT without one, and those of "
                   "--sensor. Writes a layout (.3dm) and reports an upper bound on coverage.") {
     line_.operands(options_.operands, 2);
-    line_.texts("--sensor", "MODEL[,KEY=VALUE...][:COUNT]", options_.sensors,
-                "add COUNT sensors of a device or a bare kind (laser, ranger, camera, ultrasound), "
-                "e.g. urg-04lx:3 or laser,range=4,fov=180:3",
-                Enters::History);
+    line_.texts(
+        "--sensor", "MODEL[,KEY=VALUE...][:COUNT]", options_.sensors,
+        "add COUNT sensors of a device or a bare kind (" +
+            listOf(manualKeywords([](const SensorKind& kind) { return kind.is_arranged; })) +
+            "), e.g. urg-04lx:3 or laser,range=4,fov=180:3",
+        Enters::History);
+    addListOption(line_, options_.batch,
+                  "-o names the folder or pattern of the layouts, and stdout receives a line of "
+                  "JSON for each");
     line_.texts("--fixed", "ID", options_.fixed,
                 "keep the poses of these sensors of LAYOUT only (globs allowed) and compute new "
                 "ones for the others; by default all sensors with a pose keep it",
@@ -237,7 +242,7 @@ void ArrangeCommand::addGoalOptions() {
         "spend at most this, at cost= per sensor (default 1); COUNT is then a maximum",
         Enters::History);
     line_.meters("--plane", how.plane, 0, 1000,
-                 "height of the plane that rangers, cameras and ultrasound cover, 0 is the floor",
+                 "height of the plane that all sensors but level lasers cover, 0 is the floor",
                  Enters::History);
     addDensityOption(line_, how.pixel_density);
     addCellOptions(line_, words_.cells, "while searching");
@@ -293,8 +298,12 @@ void ArrangeCommand::addFileOptions() {
 
 void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
-    checkBatchOptions(line_, options_.batch, options_.common, options_.operands);
-    if (!options_.batch.shard)
+    constexpr const char* kSingle[] = {"--curve", "--trace", "--export-mps", "--share",
+                                       "--checkpoint-interval"};
+    checkBatchOptions(line_, options_.batch, options_.common, options_.operands, kSingle);
+    if (!options_.batch.list.empty() && options_.places_file == "-")
+        throw UsageError("--places: stdin is not read again for each line of LIST: give a file");
+    if (!options_.batch.shard || !options_.batch.list.empty())
         (void)outputFormat({}, options_.common.output, {"3dm"});  // rejects another suffix
     if (!words_.mount.empty()) how.mount.on = valueOf(words_.mount, kMounts);
     settleStrategy();
@@ -390,6 +399,7 @@ void ArrangeCommand::addShareOptions() {
 }
 
 void ArrangeCommand::settleBatch() {
+    if (!options_.batch.list.empty()) return;  // its shards share the lines
     const ArrangeOptions& how = options_.how;
     SearchShare& share = options_.how.search.share;
     share.own = options_.batch.shard;

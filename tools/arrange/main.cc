@@ -28,9 +28,8 @@ bool endsWithoutProduct(const ArrangeToolOptions& options) {
            (options.batch.shard && options.how.search.share.what != Shared::Tree);
 }
 
-void writeLayout(const ArrangeCommand& command, const ArrangeWork& work,
-                 const Arrangement& arrangement) {
-    const ArrangeToolOptions& options = command.options();
+void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& options,
+                 const ArrangeWork& work, const Arrangement& arrangement) {
     const SceneInput& input = work.input;
     LayoutParts parts{input.layout ? input.layout->history : History(),
                       environmentFileFor(options.common.output, input.environment_operand),
@@ -111,7 +110,7 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
         if (shard)
             writePart(command, *results);
         else
-            writeLayout(command, work, arrangement);
+            writeLayout(command, options, work, arrangement);
         if (results && (shard || arrangement.is_complete)) results->finish();
         signal = watch.signal();
     }
@@ -128,8 +127,37 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
         checkGoals(options, work, arrangement);
 }
 
+/// Arranges the sensors of one scene of a list.
+void arrangeJob(const ArrangeCommand& command, const BatchJob& job, const CommonOptions& common,
+                JobOutcome& outcome) {
+    ArrangeToolOptions options = command.options();
+    options.common = common;
+    options.operands = job.operands;
+    const ArrangeWork work = readWork(options);
+    warnOfSearch(options, work);
+    SearchWatch watch(std::make_unique<SilentProgress>(), options.time_limit, false);
+    const Arrangement found = arrange(work.input.scene, work.groups, work.how, watch);
+    writeLayout(command, options, work, found);
+    JsonWriter json = jobLine("arrange", job);
+    json.key("product").value(common.output).key("sensors").value(found.sensors.size());
+    json.key("coverage").value(roundSignificant(found.coverage));
+    json.key("area").value(roundSignificant(found.area));
+    json.key("value").value(roundSignificant(found.value.value_or(found.coverage)));
+    json.key("bound").value(roundSignificant(found.bound)).key("cost").value(found.cost);
+    json.key("candidates").value(found.candidates).key("unplaced").value(found.unplaced);
+    json.key("reached").value(found.is_reached).key("complete").value(found.is_complete);
+    outcome.line = json.endObject().take() + '\n';
+    checkGoals(options, work, found);
+}
+
 void arrangeSensors(const ArrangeCommand& command) {
     const ArrangeToolOptions& options = command.options();
+    if (!options.batch.list.empty())
+        return runBatch(
+            {"arrange", options.common, options.batch, command.historyLine({}), "", ".3dm"},
+            [&command](const BatchJob& job, const CommonOptions& common, JobOutcome& outcome) {
+                arrangeJob(command, job, common, outcome);
+            });
     if (!options.batch.merge) return runCommand(command, nullptr);
     auto parts = std::make_unique<JobResults>(mergeParts(options.operands, "arrange"));
     const auto made_by = commandOf(*parts, options);

@@ -21,6 +21,8 @@ std::vector<std::string> formatNames() {
     return names;
 }
 
+constexpr int kSuggestions = 5, kMaxSuggestions = 7;  // one of each kind
+
 /// Options that apply to the map alone.
 constexpr const char* kMapOptions[] = {"--to",   "--width", "--color",
                                        "--fans", "--trace", "--speeds"};
@@ -71,7 +73,7 @@ void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words
                 Enters::History);
     line.meters("--height", measure.height, 0, 1000, "height of the free floor", Enters::History);
     line.meters("--plane", measure.plane, 0, 1000,
-                "height of the plane that rangers, cameras and ultrasound cover, 0 is the floor",
+                "height of the plane that all sensors but level lasers cover, 0 is the floor",
                 Enters::History);
     addDensityOption(line, measure.density);
     const auto parallax = [&measure](const std::string& text) {
@@ -117,20 +119,10 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    if (!o.operands.empty())
-        throw UsageError("--batch takes scenes from LIST: put " + o.operands.front() +
-                         " on a line of it");
-    for (const char* option : {"--report", "--compare", "--run", "--MD", "--MF"})
-        if (line.given(option))
-            throw UsageError(std::string(option[2] == 'M' ? option + 1 : option) +
-                             " is about one scene, and --batch about many");
-    for (const char* option : kMapOptions)
-        if (line.given(option))
-            throw UsageError(std::string(option) +
-                             " is about the map, and --batch draws none: it writes reports");
+    std::vector<const char*> single = {"--report", "--suggest", "--compare", "--run"};
+    single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
+    checkBatchOptions(line, o.batch, o.common, o.operands, single);
     static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
-    if (o.resume && isStream(o.common.output))
-        throw UsageError("--resume keeps what is done beside a file: give -o FILE.jsonl");
 }
 
 void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
@@ -158,20 +150,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
     line.file("--report", "FILE", o.report, "also write the report there, as JSON (.json)",
               Enters::Nothing);
-    line.file("--batch", "LIST", o.batch,
-              "measure many scenes in one process: LIST (- is stdin) has a line `ENV [LAYOUT]` for "
-              "each; a report a line, as JSON, in its order",
-              Enters::Nothing);
-    line.parsed(
-        "--shard", "I/N", [&o](const std::string& text) { o.shard = parseShard(text); },
-        "with --batch: measure the I-th of N shares of LIST; their outputs joined by cat are that "
-        "of "
-        "the whole",
-        Enters::Nothing);
-    line.flag(
-        "--resume", o.resume,
-        "with --batch: store completed reports beside FILE, and continue a killed run from there",
-        Enters::Nothing);
+    addListOption(line, o.batch, "the output is a report a line, as JSON, in its order");
+    addBatchOptions(line, o.batch, "of the lines of LIST; cat joins their outputs", false);
     addMeasureOptions(line, o.measure, words);
     line.texts("--zone", "ZONE", o.zones,
                "report this part of the floor, too, as a zone: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
@@ -192,6 +172,12 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "report by how many sensors robots and people were seen in the run that simrun "
               "--record wrote there, and where sight was lost, in numbers and on the map",
               Enters::BaseName);
+    line.countOr(
+        "--suggest", o.suggestions, kSuggestions, 1, kMaxSuggestions,
+        "report up to N changes that would help: a sensor to add, turn, move, replace or "
+        "remove, furniture to move, and with --require the changes that meet it; each with "
+        "its gain and its command",
+        Enters::Nothing);
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
                 Enters::History);
     constexpr int kMinWidth = 200, kMaxWidth = 10000;
@@ -228,9 +214,9 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     if (line.given("--junit") && o.requirements.empty())
         throw UsageError("--junit writes what became of requirements: give --require");
     // The reports of a list may go to a file.
-    if (isStdout(o.junit) && (o.batch.empty() || isStdout(o.common.output)))
+    if (isStdout(o.junit) && (o.batch.list.empty() || isStdout(o.common.output)))
         throw UsageError("the report goes to stdout: give --junit a file");
-    if (o.batch.empty())
+    if (o.batch.list.empty())
         checkOne(line, o, words.to);
     else
         checkBatch(line, o);

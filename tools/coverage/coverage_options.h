@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "base/shard.h"
+#include "cli/batch.h"
 #include "cli/common_options.h"
 #include "coverage/requirement.h"
 #include "report/coverage_formats.h"
@@ -20,12 +21,11 @@ struct CoverageToolOptions {
     std::vector<std::string> zones;  ///< to report besides those of the room
     std::string junit;               ///< file for the verdicts on requirements; "": no file
     std::string command;             ///< its history line, without operands
-    std::string batch;               ///< list of scenes to report on; "" for one scene
-    Shard shard;                     ///< of the list
-    bool resume = false;
-    std::string other;  ///< LAYOUT to compare with; "": no comparison
+    BatchOptions batch;              ///< a list of scenes to report on
+    std::string other;               ///< LAYOUT to compare with; "": no comparison
     bool json = false;
-    std::string report;  ///< file for the report as JSON besides stdout; "": no file
+    std::string report;              ///< file for the report as JSON besides stdout; "": no file
+    std::optional<int> suggestions;  ///< number of changes to suggest
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of tried poses of a search, for the map; "" without
     std::string run;    ///< folder of a record of robots and people; "" without

@@ -14,6 +14,7 @@
 #include "coverage/coverage_options.h"
 #include "coverage/requirement.h"
 #include "coverage/run_coverage.h"
+#include "report/suggestion_report.h"
 
 namespace ispace {
 
@@ -29,6 +30,10 @@ Measured measure(const CoverageToolOptions& options, const Scene& scene, const S
 
 /// Computes the coverage of a recorded run; nullopt without --run.
 std::optional<RunCoverage> lookAtRun(const CoverageToolOptions& options, const Scene& scene);
+
+/// Finds the changes of --suggest; nullopt without it. \param coverage of the scene
+std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInput& input,
+                              const Coverage& coverage);
 
 /// Writes the map to -o, with its accompanying file. \pre there is a format
 void writeProduct(const CoverageToolOptions& options, const SceneInput& input,
@@ -48,21 +53,12 @@ std::vector<JunitCase> judge(std::span<const Requirement> requirements, const Co
 /// Joins unmet requirements into a message; "" if all are met.
 std::string unmetText(std::span<const JunitCase> verdicts);
 
-/// Result of one scene of a list.
-struct SceneOutcome {
-    std::string report = "null\n";           ///< one line; each scene has its own
-    std::vector<std::string> messages = {};  ///< for stderr, without tool and location
-    std::vector<JunitCase> verdicts = {};
-    bool failed = false;
+/// Warns of the sensors and the size of the cells, and measures. \throws as measure() and
+/// mustHaveZone()
+Measured measureScene(const CoverageToolOptions& options, const SceneInput& input,
+                      const Scene* other);
 
-    /// Converts the result to lines for checkpoints, the report first.
-    [[nodiscard]] std::string text() const;
-    static SceneOutcome fromText(std::string_view text);
-};
-
-/// Measures all scenes of a list in this process, and writes their reports in its order.
-/// \throws UnmetError if one falls short of a requirement, FormatError if one failed; both after
-/// the last scene
-void runBatch(const CoverageToolOptions& options);
+/// --batch: a report for each scene of the list, see runBatch().
+void measureList(const CoverageToolOptions& options);
 
 }  // namespace ispace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // coverage: computes and draws the coverage of a scene's sensors.
-#include <iostream>
 #include <optional>
 #include <utility>
 
@@ -56,9 +55,10 @@ void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
 }
 
 std::string reportText(const CoverageToolOptions& options, const CoverageReport& report,
-                       const RunCoverage* run) {
-    if (options.json) return coverageJson(report, run);
-    return coverageText(report) + (run == nullptr ? "" : "\n" + runText(*run));
+                       const RunCoverage* run, const Advice* advice) {
+    if (options.json) return coverageJson(report, run, advice);
+    return coverageText(report) + (run == nullptr ? "" : "\n" + runText(*run)) +
+           (advice == nullptr ? "" : suggestionsText(*advice));
 }
 
 void coverScene(CoverageToolOptions options, JunitFile& junit) {
@@ -76,15 +76,9 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
         files.push_back(options.trace);
     }
     if (!options.report.empty()) mustBeWritable(options.report);
-    for (const Requirement& requirement : options.requirements)
-        mustHaveZone(requirement, input.scene.environment);
-    warn(options.common, "coverage", sensorFindings(input.scene));
     const Measured& measured =
-        leftToExit(measure(options, input.scene, other ? &other->scene : nullptr));
+        leftToExit(measureScene(options, input, other ? &other->scene : nullptr));
     const CoverageReport& report = measured.coverage.report;
-    if (const std::string text = largeCellsText(options.measure, report.grid);
-        !text.empty() && !options.common.quiet)
-        std::cerr << "coverage: " << text << '\n';
     const std::optional<RunCoverage> run = lookAtRun(options, input.scene);
     if (run) options.map.run = &*run;
     if (run) files.push_back(RecordedFiles(options.run).robots);
@@ -94,8 +88,11 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
         writeProduct(options, input, measured);
         writeDependencies(options.common, files);
     }
-    if (!options.report.empty()) writeAll(options.report, coverageJson(report, options.map.run));
-    writeAll("-", reportText(options, report, options.map.run));
+    const std::optional<Advice> advice = suggest(options, input, measured.coverage);
+    const Advice* told = advice ? &*advice : nullptr;
+    if (!options.report.empty())
+        writeAll(options.report, coverageJson(report, options.map.run, told));
+    writeAll("-", reportText(options, report, options.map.run, told));
     talk(options.common, "coverage",
          std::to_string(report.sensors.size()) + " sensors measured on " +
              std::to_string(measured.coverage.target.grid.size()) + " cells");
@@ -119,9 +116,9 @@ void coverage(const CoverageToolOptions& options) {
 int main(int argc, char** argv) {
     return ispace::runTool("coverage", [&] {
         const auto options = ispace::parseCoverageOptions(argc, argv);
-        if (options.batch.empty())
+        if (options.batch.list.empty())
             coverage(options);
         else
-            ispace::runBatch(options);
+            ispace::measureList(options);
     });
 }

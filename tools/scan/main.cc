@@ -45,14 +45,8 @@ class BuriedPoses {
     ReadingJob first_;
 };
 
-void scan(const ScanCommand& command) {
-    const ScanToolOptions& options = command.options();
-    claimOutputs(options.common);
-    if (options.list_models) return writeAll(options.common.output, deviceTable(shippedDevices()));
-    if (options.batch.merge) return mergeReadings(command);
-    limitThreads(options.common.threads);
-    if (!options.view.views.empty()) return takeViews(command);
-    if (!options.view.run.empty()) return writeRecorded(command);
+/// Reads the sensors of a scene. Returns the number of readings; 0 if the part exists already.
+std::int64_t scanScene(const ScanCommand& command, const ScanToolOptions& options) {
     const SceneInput input = readScene(requestOf(options));
     warnOfImport(options.common, "scan", input);
     const Scene& scene = input.scene;
@@ -67,22 +61,26 @@ void scan(const ScanCommand& command) {
                                    .ids = [&options](const std::string& id) {
                                        return isSelected(id, options.select);
                                    }}));
-    const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
+    const auto format = makeFormat(options.format, sensors, formatOptions(command, options, input));
     warn(options.common, "scan", format->warnings());
     if (format->isBinary()) refuseTerminal(options.common.output, options.format);
 
     Worlds worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
-    TakerOptions taking{.celsius = options.celsius, .follows_poses = moves};
+    TakerOptions taking{.celsius = options.celsius,
+                        .follows_poses = moves,
+                        .velocities = startVelocities(scene)};
     if (options.noise) taking.noise_seed = options.common.seed;
     std::optional<Photographer> photographer;
     if (std::any_of(sensors.read.begin(), sensors.read.end(),
                     [](const Sensor& one) { return one.is<Camera>(); }))
         taking.photographer = &photographer.emplace(scene, options.photo);
     ReadingSampler taker(sensors, worlds, bodies, taking);
-    const ReadingWork work = workOf(command, input, sensors, *format);
-    if (!work.delivery)
-        return talk(options.common, "scan", options.common.output + " is done already");
+    const ReadingWork work = workOf(command, options, input, sensors, *format);
+    if (!work.delivery) {
+        talk(options.common, "scan", options.common.output + " is done already");
+        return 0;
+    }
     const std::int64_t count = work.count;
     constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
     LimitedSource own_part(*work.source, count < 0 ? kAll : count);
@@ -107,6 +105,46 @@ void scan(const ScanCommand& command) {
     writeDependencies(options.common, files);
     talk(options.common, "scan",
          std::to_string(done) + (done == 1 ? " reading" : " readings") + " written");
+    return done;
+}
+
+/// Returns the suffix of the file that holds all readings of a scene; "/" if they take several.
+std::string suffixOfReadings(const ScanToolOptions& options) {
+    const std::string& format = options.format;
+    if (format == "png" || format == "jpeg" || (cloudFormatOf(format) && !isOneCloud(options)))
+        return "/";
+    return format == "carmen" ? ".log" : format == "rgb24" ? ".rgb" : "." + format;
+}
+
+void scanJob(const ScanCommand& command, const BatchJob& job, const CommonOptions& common,
+             JobOutcome& outcome) {
+    ScanToolOptions options = command.options();
+    options.common = common;
+    options.operands = job.operands;
+    options.batch.shard.reset();
+    options.batch.resume = false;
+    const std::int64_t readings = scanScene(command, options);
+    JsonWriter json = jobLine("scan", job);
+    json.key("product").value(common.output).key("readings").value(readings);
+    outcome.line = json.endObject().take() + '\n';
+}
+
+void scan(const ScanCommand& command) {
+    const ScanToolOptions& options = command.options();
+    if (!options.batch.list.empty())
+        return runBatch(
+            {"scan", options.common, options.batch, command.historyLine({}), "",
+             suffixOfReadings(options)},
+            [&command](const BatchJob& job, const CommonOptions& common, JobOutcome& outcome) {
+                scanJob(command, job, common, outcome);
+            });
+    claimOutputs(options.common);
+    if (options.list_models) return writeAll(options.common.output, deviceTable(shippedDevices()));
+    if (options.batch.merge) return mergeReadings(command);
+    limitThreads(options.common.threads);
+    if (!options.view.views.empty()) return takeViews(command);
+    if (!options.view.run.empty()) return writeRecorded(command);
+    scanScene(command, options);
 }
 
 }  // namespace

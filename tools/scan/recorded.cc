@@ -134,7 +134,7 @@ void writeRecorded(const ScanCommand& command) {
     const SceneInput input = sceneOf(options);
     warnOfImport(options.common, "scan", input);
     const Sensors lasers = recordedLasers(options, input.scene);
-    FormatOptions how = formatOptions(command, input);
+    FormatOptions how = formatOptions(command, command.options(), input);
     const bool wants_moments = options.format == "mcap";
     if (wants_moments) how.members = membersOf(options.view.run);
     const auto format = makeFormat(options.format, lasers, std::move(how));

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -65,18 +64,19 @@ std::string keyOf(std::int64_t first, std::size_t count) {
     return key + '+' + std::to_string(count);
 }
 
-/// Returns the end of the stored readings from `first` on. \throws FormatError for a foreign key
-std::int64_t endOfReadings(const JobResults& results, std::int64_t first) {
+/// Returns the end of the stored readings from `first` on. \throws FormatError for a record that
+/// does not continue those before it, or exceeds `end`
+std::int64_t endOfReadings(const JobResults& results, std::int64_t first, std::int64_t end) {
     for (const std::string& key : results.keys()) {
         if (key == kHeader) continue;
-        const std::size_t plus = key.find('+');
+        const std::size_t plus = std::min(key.find('+'), key.size() - 1);
         const auto at = parseInteger(key.substr(0, plus));
-        const auto count =
-            plus == std::string::npos ? std::nullopt : parseInteger(key.substr(plus + 1));
-        if (!at || !count || *count < 0 ||
-            *count > std::numeric_limits<std::int64_t>::max() - first)
-            throw FormatError({results.file(), 0, 0, "no key of readings: " + key});
-        if (*at != first) break;
+        const auto count = parseInteger(key.substr(plus + 1));
+        if (at != first || !count || *count <= 0 || *count > end - first)
+            throw FormatError({results.file(), 0, 0,
+                               "record " + excerpt(key) + " does not continue the first " +
+                                   std::to_string(first) + " of " + std::to_string(end) +
+                                   " readings"});
         first += *count;
     }
     return first;
@@ -181,7 +181,7 @@ JobId readingsJob(const ScanCommand& command, const SceneInput& input, const Rea
     const ScanToolOptions& options = command.options();
     JobId job;
     job.tool = "scan";
-    job.history = formatOptions(command, input).history;
+    job.history = formatOptions(command, options, input).history;
     job.room = input.scene.digest();
     std::string all;
     for (const Document* document : {&input.environment, input.layout ? &*input.layout : nullptr})
@@ -223,7 +223,7 @@ OwnReadings ownReadings(const ScanToolOptions& options, const JobId& job, const 
     if (names)
         files = makeDelivery(options, sensors, format, options.poses.empty() ? *job.units : -1);
     JobResults results(output, job, head.shard, options.batch.resume);
-    own.block.first = endOfReadings(results, own.block.first);
+    own.block.first = endOfReadings(results, own.block.first, own.block.end);
     own.delivery = std::make_unique<StoredReadings>(options, format, std::move(results),
                                                     own.block.first, std::move(files));
     return own;
@@ -238,11 +238,11 @@ void mergeReadings(const ScanCommand& command) {
     if (!suffixOf(output).empty() && options.format != format)
         throw UsageError(output + ": the parts hold " + format + "; name the file so");
     if (job.form.find(" binary") != std::string::npos) refuseTerminal(output, format);
-    const std::int64_t count = endOfReadings(parts, 0);
-    if (count != job.units)
+    const std::int64_t units = job.units.value_or(0), count = endOfReadings(parts, 0, units);
+    if (count != units)
         throw FormatError({parts.file(), 0, 0,
                            "the parts lack reading " + std::to_string(count + 1) + " of " +
-                               std::to_string(job.units.value_or(0))});
+                               std::to_string(units)});
     writeReadings(parts, output);
     writeDependencies(options.common, options.operands);
     talk(options.common, "scan",

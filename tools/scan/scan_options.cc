@@ -45,10 +45,14 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     declare();
     line_.parse(argc, argv);
     ScanToolOptions& o = options_;
-    checkBatchOptions(line_, o.batch, o.common, o.operands);
+    constexpr const char* kSingle[] = {"--view", "--run", "--list-models"};
+    checkBatchOptions(line_, o.batch, o.common, o.operands, kSingle);
+    if (!o.batch.list.empty() && o.poses == "-")
+        throw UsageError("--poses: stdin is not read again for each line of LIST: give a file");
     checkViewOptions(line_, o.view);
     // The suffix of a part does not name the format of its readings.
-    const bool is_part = o.batch.shard && suffixOf(o.common.output) == "part";
+    const bool is_part =
+        o.batch.shard && o.batch.list.empty() && suffixOf(o.common.output) == "part";
     const std::string output = is_part ? "-" : o.common.output;
     if (o.view.views.empty()) {
         o.format = outputFormat(to_, output, readingFormats(),
@@ -74,6 +78,9 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
 void ScanCommand::declare() {
     ScanToolOptions& o = options_;
     line_.operands(o.operands, 2);
+    addListOption(line_, o.batch,
+                  "-o names the folder or pattern of the readings, and stdout receives a line of "
+                  "JSON for each");
     line_.choice("--to", to_, readingFormats(),
                  "format of the readings (default: by the suffix of -o, else jsonl)",
                  Enters::History);

@@ -58,16 +58,23 @@ std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const S
 
 }  // namespace
 
+namespace {
+
+/// A receiver alone has no readings.
+bool hasReadings(const SensorKind& kind) { return kind.is_read && kind.together == 1; }
+
+}  // namespace
+
 SceneRequest requestOf(const ScanToolOptions& options) {
     // The sensor of --poses may come from a LAYOUT, too.
     const bool wants_layout =
-        options.poses.empty() || (options.model.empty() && options.poses != "-");
+        options.batch.list.empty() &&
+        (options.poses.empty() || (options.model.empty() && options.poses != "-"));
     const bool takes_stdin =
         std::find(options.operands.begin(), options.operands.end(), "-") != options.operands.end();
     if (options.poses == "-" && takes_stdin)
         throw UsageError("stdin cannot be read twice: only one of operands and --poses can be -");
-    // A receiver alone has no readings.
-    return {options.operands, options.rules, wants_layout, {"laser", "ranger", "camera", "tag"}};
+    return {options.operands, options.rules, wants_layout, hasReadings};
 }
 
 Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
@@ -78,14 +85,13 @@ Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
             "--select chooses nothing that is read: receivers hear tags, and sensors "
             "need a place");
     const std::string& file = input.layout ? input.layout_operand : input.environment_operand;
-    throw FormatError(
-        {displayName(file), 0, 0,
-         "no placed laser, ranger, camera or tag: give one `at=x,y`, or let arrange place it"});
+    throw FormatError({displayName(file), 0, 0,
+                       "no placed " + listOf(manualKeywords(hasReadings)) +
+                           ": give one `at=x,y`, or let arrange place it"});
 }
 
-ReadingWork workOf(const ScanCommand& command, const SceneInput& input, const Sensors& sensors,
-                   const ReadingFormat& format) {
-    const ScanToolOptions& options = command.options();
+ReadingWork workOf(const ScanCommand& command, const ScanToolOptions& options,
+                   const SceneInput& input, const Sensors& sensors, const ReadingFormat& format) {
     const bool moves = !options.poses.empty();
     const auto poses = posesText(options);
     ReadingWork work;
@@ -311,8 +317,8 @@ void checkPoints(std::size_t points) {
                                "or take fewer"});
 }
 
-FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input) {
-    const ScanToolOptions& options = command.options();
+FormatOptions formatOptions(const ScanCommand& command, const ScanToolOptions& options,
+                            const SceneInput& input) {
     History history = input.layout ? input.layout->history : History();
     history.push_back(command.historyLine(input.named));
     return {.history = std::move(history),

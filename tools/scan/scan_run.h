@@ -22,7 +22,8 @@ Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene,
                        const DeviceCatalogue& devices, std::vector<std::string>& sources);
 
 /// Returns the options that formats require, with the history of the scene and of this command.
-FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input);
+FormatOptions formatOptions(const ScanCommand& command, const ScanToolOptions& options,
+                            const SceneInput& input);
 
 /// Writes readings to one stream, a set of files, or one cloud.
 class Delivery {
@@ -61,8 +62,8 @@ struct ReadingWork {
 };
 
 /// Returns the readings that this run takes: all, or its part less the completed ones.
-ReadingWork workOf(const ScanCommand& command, const SceneInput& input, const Sensors& sensors,
-                   const ReadingFormat& format);
+ReadingWork workOf(const ScanCommand& command, const ScanToolOptions& options,
+                   const SceneInput& input, const Sensors& sensors, const ReadingFormat& format);
 
 /// Writes the scans that `simrun --record` has recorded (--run without --view) in another format.
 /// \throws as the scene's readers, UsageError if the format cannot hold scans in one file

@@ -210,7 +210,7 @@ void takeViews(const ScanCommand& command) {
     if (!options.view.run.empty()) {
         run.emplace(RunReader(options.view.run));
         run->checkStart(scene);
-        changes.emplace(changesOfRun(options.view.run, scene));
+        changes.emplace(changesOfRun(options.view.run, scene, options.rules.max_work));
         files.push_back(RecordedFiles(options.view.run).robots);
     }
     const int frames = options.frames.value_or(1);

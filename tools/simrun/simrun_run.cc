@@ -53,7 +53,8 @@ std::string titleOf(const SimrunOptions& options, const SceneInput& input) {
 std::optional<Replay> openReplay(const SimrunOptions& options, Scene& scene) {
     if (options.replay.empty()) return std::nullopt;
     Replay replay(options.replay);
-    if (replay.changedAt()) replay.makeChanges(changesOfRun(options.replay, scene));
+    if (replay.changedAt())
+        replay.makeChanges(changesOfRun(options.replay, scene, options.rules.max_work));
     replay.placeAtStart(scene);
     return replay;
 }
@@ -348,28 +349,14 @@ void CollisionLog::tell() {
     }
 }
 
-namespace {
-
-/// Readings of a camera's light always have noise.
-bool isNoisy(const Sensor& sensor) {
-    const auto noise_of = [&sensor]() -> const RangeNoise* {
-        if (const auto* laser = std::get_if<Laser>(&sensor.model)) return &laser->noise;
-        if (const auto* ranger = std::get_if<Ranger>(&sensor.model)) return &ranger->noise;
-        if (const auto* receiver = std::get_if<Receiver>(&sensor.model)) return &receiver->noise;
-        return nullptr;
-    };
-    if (const auto* tag = std::get_if<Tag>(&sensor.model)) return tag->is_simple;
-    return sensor.is<Camera>() || (noise_of() != nullptr && !noise_of()->isNone());
-}
-
-}  // namespace
-
 void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options) {
     const bool strays = moves && std::any_of(scene.robots.begin(), scene.robots.end(),
                                              [](const PlacedRobot& robot) {
                                                  return robot.model.noise != MotionNoise();
                                              });
-    if (strays || std::any_of(scene.sensors.begin(), scene.sensors.end(), isNoisy)) return;
+    if (strays || std::any_of(scene.sensors.begin(), scene.sensors.end(),
+                              [](const Sensor& sensor) { return isNoisy(sensor.model); }))
+        return;
     warn(options, kTool,
          "--noise changes nothing: no sensor has noise, and no robot has motion_noise, "
          "odometry_noise or start_noise");
