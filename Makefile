@@ -94,9 +94,9 @@ format:
 
 lint:
 	@.ci/deps build lint
-	@$(MAKE) --no-print-directory $(BUILD)/configured
+	@$(MAKE) --no-print-directory $(BUILD)/lint/configured
 	@.ci/prose
-	@.ci/lint $(BUILD) $(JOBS) $(BASE)
+	@.ci/lint $(BUILD)/lint $(JOBS) $(BASE)
 
 install: all
 	DESTDIR="$(DESTDIR)" cmake --install $(BUILD) --prefix "$(prefix)"
@@ -116,6 +116,11 @@ clean:
 
 $(BUILD)/configured:
 	$(configure) -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
+	@touch $@
+
+# The compile database of clang-tidy names each source.
+$(BUILD)/lint/configured:
+	$(configure) -B $(BUILD)/lint -DISPACE_UNITY=OFF
 	@touch $@
 
 $(SANITIZED)/configured:
