@@ -39,6 +39,10 @@ struct Building {
     double indoor_area = 0;  ///< square metres
 };
 Building building(std::size_t walls);
+/// Text of a DXF drawing with about as many lines: a square floor of cubicles of 2.5 m, each with a
+/// gap of 0.8 m to its neighbours; with `doors` also a leaf and its swing, an arc, in each gap. All
+/// are one indoor region. `walls` counts the lines and arcs.
+Building drawnCubicles(std::size_t lines, bool doors);
 
 /// A closed surface with bumps, about a metre wide, as it comes from a scan: a globe of `rings`
 /// times `sectors` quadrangles, those at the poles triangles.

@@ -15,7 +15,7 @@
 #include "bench_scenes.h"
 #include "bench_table.h"
 #include "embree_raw.h"
-#include "geom/pose.h"
+#include "geom/rotation.h"
 #include "sense/depth.h"
 #include "sense/trajectory.h"
 #include "tool_run.h"

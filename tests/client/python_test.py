@@ -208,6 +208,18 @@ class Sensors(unittest.TestCase):
             with self.assertRaisesRegex(ispace.Refused, "not on this robot"):
                 robot.reading("c1", ispace.Picture)
 
+    def test_radar(self):
+        with self.run_.world() as world, self.run_.robot("r1") as robot:
+            world.add("radar id=w1 at=1.8,0,0.11 heading=180")
+            with ispace.Radar(self.run_.address, "w1") as radar:
+                world.advance(0.1)
+                self.assertEqual(radar.scan().movers, [])
+                robot.speed(0.2)
+                world.advance(2)
+                (seen,) = radar.scan().movers
+                self.assertAlmostEqual(seen.speed, -0.2, delta=0.002)
+                self.assertAlmostEqual(seen.bearing, 0, delta=0.01)
+
     def test_sonars_and_bumpers(self):
         with self.run_.world() as world:
             world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90 bumpers=-45,45;135,225")

@@ -98,6 +98,25 @@ TEST_F(Sensors, MatsAndGatesNoticeARobot) {
     EXPECT_THROW(robot.reading<Picture>("c1"), Refused);
 }
 
+TEST_F(Sensors, ARadarDetectsAMovingRobot) {
+    world.add("radar id=w1 at=1.8,0,0.11 heading=180");
+    Radar radar(server.address(), "w1");
+    EXPECT_EQ(radar.info().text("kind"), "radar");
+    EXPECT_EQ(radar.info().numbers("fov"), std::vector<double>({120, 60}));
+    simulate(0.1);
+    EXPECT_TRUE(radar.scan().movers.empty());
+    Robot robot(server.address(), "r1");
+    robot.speed(0.2);
+    simulate(2);
+    const Detections seen = radar.scan();
+    ASSERT_EQ(seen.movers.size(), 1U);
+    EXPECT_NEAR(seen.movers[0].speed, -0.2, 0.002);
+    EXPECT_NEAR(seen.movers[0].bearing, 0, 0.01);
+    radar.stream();
+    simulate(0.5);
+    EXPECT_LT(radar.next().movers.at(0).range, seen.movers[0].range);
+}
+
 TEST_F(Sensors, ARobotHasSonarsAndBumpers) {
     world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90 bumpers=-45,45;135,225");
     Robot robot(server.address(), "r5");

@@ -33,7 +33,7 @@ refused svg_use_text 15000 plan.svg
 refused svg_use_hidden 15000 plan.svg
 refused svg_use_unknown 15000 plan.svg
 refused svg_use_empty 15000 plan.svg
-refused sdf_same 400000 world.sdf
+refused sdf_same 400000 model.sdf
 refused sdf_nested 4000 model.sdf
 refused yaml_parts 15000 room.yaml
 refused yaml_repeats 15000 room.yaml

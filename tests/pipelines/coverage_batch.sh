@@ -107,7 +107,7 @@ expect_error 2 coverage --batch two -o map.png
 works="--help --version --json --batch --shard --resume --grid --cell --grid-of --height --plane --density --parallax
     --require --junit --same-environment --any-environment --output --quiet --verbose --threads --seed --progress
     --no-progress --zone --include-files --max-work"
-refused="--report=r.json --compare=half.3dm --run=r -MD --to=png --width=300 --color=sensor --fans=beams
+refused="--report=r.json --suggest --compare=half.3dm --run=r -MD --to=png --width=300 --color=sensor --fans=beams
     --trace=two --speeds=30%"
 for option in $refused; do
     expect_error 2 coverage --batch two -o reports.jsonl "$option"

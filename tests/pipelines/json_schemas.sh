@@ -32,6 +32,9 @@ coverage "$data/zones.env" "$data/domes.3dm" --density 500 --parallax 45 --json 
 coverage "$data/square.env" "$data/half.3dm" --compare "$data/whole.3dm" --json >compared.json
 arrange "$data/square.env" --sensor laser,range=2:2 --sensor ranger:1 --strategy grid -X 3 -Y 3 -q \
     --trace tried.jsonl -o best.3dm
+printf '%s\n' "$data/square.env" missing.env | arrange --batch - --sensor laser --strategy grid -X 2 -Y 2 -o by/ \
+    >arranged.jsonl && fail "a list with a missing room passes"
+printf '%s\n' "$data/square.env $data/half.3dm" | scan --batch - -q -o by/ >scanned.jsonl
 simrun "$data/square.env" "$data/session.3dm" -q --clock fast --until 0.5 --record run >simrun.json
 # The JSON for a browser.
 sed '$a mat id=under at=0,1\ngate id=way at=1,1\nhuman id=her at=1,-1' "$data/session.3dm" >web.3dm

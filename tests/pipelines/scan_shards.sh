@@ -69,6 +69,19 @@ expect_error 1 scan --merge s1.part s3.part
 grep -q 'missing shard 2 of 3' err || fail "$(cat err)"
 expect_error 1 scan --merge s1.part s2.part s3.part s2.part
 grep -q 'shard 2/3 is given twice' err || fail "$(cat err)"
+# A part with readings beyond those of its job: the record of another one, before the end of the first.
+"${noisy[@]}" --frames 8 --shard 2/2 -o other.part
+"${noisy[@]}" --frames 4 --shard 1/1 -o more.part
+expect_status 0 scan --merge more.part -o whole
+python3 - <<'PY'
+with open("more.part", "rb") as more, open("other.part", "rb") as other:
+    part, rest = more.read(), other.read()
+at, begin = part.rindex(b"=end "), rest.index(b"\n=0") + 1
+with open("forged.part", "wb") as forged:
+    forged.write(part[:at] + rest[begin:])
+PY
+expect_error 1 scan --merge forged.part -o none
+grep -q 'record `000000000008+8` does not continue the first 8 of 8 readings' err || fail "$(cat err)"
 cp s2.part doubled.part
 expect_error 1 scan --merge s1.part s2.part s3.part doubled.part
 refused() {

@@ -65,10 +65,11 @@ struct Beams {
     }
 };
 
-/// Computes where the ray meets the closed triangle, within a nanometre aside, all in doubles;
-/// +infinity if it misses within its reach.
+/// Computes where the ray meets the closed triangle, within a nanometre aside, or the round body,
+/// all in doubles; +infinity if it misses within its reach.
 inline double exactMeet(const TriangleSet& set, std::size_t triangle, const Ray& ray) {
     constexpr double kTouch = 1e-9;
+    if (set.roundOf(triangle) != nullptr) return set.meet(triangle, ray, kTouching).multiple;
     const double size = length(ray.direction);
     bool left = true, right = true;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -150,6 +150,18 @@ def svg_css_selectors(size):
     return svg("", "<style>" + ",".join(f"a{i}" for i in range(size // 7)) + "{a:b}</style>\n")
 
 
+def svg_css_rules(size):
+    """Rules that apply, each to no element."""
+    return svg("", "<style>" + ",".join(f".a{i}" for i in range(size // 8)) + "{fill:none}</style>\n")
+
+
+def svg_css_classes(size):
+    """A rule for the class of each element."""
+    count = size // 2 // 34
+    return svg("".join(f'<path class="a{i}" d="M1 1"/>\n' for i in range(count)),
+               "<style>" + "".join(f".a{i}{{fill:none}}" for i in range(count)) + "</style>\n")
+
+
 def svg_depth(size):
     deep = 150
     group = "<g>" * deep + '<path d="M1 1h1"/>' + "</g>" * deep

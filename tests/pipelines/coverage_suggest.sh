@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# coverage --suggest: each command that it prints changes the scene, and coverage then reports the figures told.
+. "$(dirname "$0")/common.sh"
+command -v python3 >/dev/null || skip "no python3 here"
+
+cp "$scenes"/* . 2>/dev/null || true
+
+# suggestions_of ENV LAYOUT OPTION…
+suggestions_of() {
+    coverage -q --cell 0.2 "$@" --json >told.json 2>err || [ $? -eq 3 ]
+    python3 - <<'END'
+import json
+for one in json.load(open("told.json"))["suggestions"]:
+    print(one["kind"], one["gained"], one["coverage"], one["command"], sep="\t")
+END
+}
+
+# applied: runs the commands on stdin; prints the number that gain as told.
+applied() {
+    local count=0 kind share command
+    while IFS=$'\t' read -r kind _ share command; do
+        (eval "$command -q") || fail "no such change: $command"
+        coverage -q --cell 0.2 changed.env --json >changed.json
+        python3 - "$share" <<'END' || fail "$kind gains other floor than told: $command"
+import json, sys
+figure = json.load(open("changed.json"))["coverage"]
+share = figure["grid"] if figure["exact"] is None else figure["exact"]
+sys.exit(abs(share - float(sys.argv[1])) > 1e-9)
+END
+        count=$((count + 1))
+    done
+    echo "$count"
+}
+
+total=0
+for scene in "near-far.env near-far.3dm" "barriers.env barriers.3dm" "ispace.env ispace.3dm" \
+    "crowded.env walkers.3dm"; do
+    # shellcheck disable=SC2086
+    suggestions_of $scene --suggest 7 >told
+    count=$(applied <told)
+    [ "$count" -ge 4 ] || fail "only $count suggestions for $scene"
+    total=$((total + count))
+done
+[ "$total" -ge 17 ] || fail "$total suggestions in all"
+
+# The same bytes on any number of threads; text and JSON tell the same commands.
+coverage barriers.env barriers.3dm --suggest 3 -j 1 >one
+coverage barriers.env barriers.3dm --suggest 3 -j 5 >five
+expect_same one five "suggestions depend on the threads"
+[ "$(grep -c '^    envc barriers.env barriers.3dm --' one)" -eq 3 ] || fail "not three commands"
+
+# Without a number there are five at most; operands stay operands.
+coverage --suggest barriers.env barriers.3dm >out
+has '^suggestions:' <out || fail "no suggestions"
+
+# A requirement: the first suggestion meets it.
+expect_status 3 coverage barriers.env barriers.3dm --require 60%
+suggestions_of barriers.env barriers.3dm --suggest 1 --require 60% >told
+grep -q '^together' told || fail "no changes that meet the requirement: $(cat told)"
+(eval "$(cut -f 4 told) -q")
+expect_status 0 coverage changed.env --require 60%
+
+# Prices are those of the records: the cheaper scanner sees as much of a small room.
+printf '#env 1\nispace size=3,3,2.5\n' >small.env
+cat >small.3dm <<'END'
+#3dm 1
+laser id=dear model=utm-30lx at=-1.4,-1.4 heading=45 cost=5000
+laser id=cheap model=urg-04lx at=1.4,1.4 heading=-135 cost=1000
+END
+suggestions_of small.env small.3dm --suggest >told
+grep -q "^replace.*--set dear.model=urg-04lx --set dear.cost=1000" told || fail "no cheaper device: $(cat told)"
+grep -q '"saved":4000' told.json || fail "the saving is not told"
+[ "$(applied <told)" -ge 2 ] || fail "no two suggestions"
+
+expect_error 2 coverage coverage barriers.env barriers.3dm --suggest=0
+expect_error 2 coverage coverage --batch list --suggest
