@@ -34,8 +34,8 @@ struct ParallaxChoice {
 struct CoverageOptions {
     CellChoice cells = RoomCells();
     double height = kScanHeight;  ///< height at which the free floor is computed
-    double plane = 0;    ///< height of the plane that all sensors but level lasers cover
-    double density = 0;  ///< pixels a metre that a camera requires to cover floor; 0: any
+    double plane = 0;             ///< height of the plane that all sensors but level lasers cover
+    double density = 0;           ///< pixels a metre that a camera requires to cover floor; 0: any
     CellRule cells_by = CellRule::Region;
     bool exact = true;  ///< computes closed forms, too
     /// Stores the number of sensors in Coverage::overlay; else only whether any sensor sees the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Poses as transforms and rotations of Eigen. Apart from pose.h, which nearly every source includes:
-// Eigen takes a third of the time to compile a small one.
+// Poses as transforms and rotations of Eigen. Apart from pose.h, which nearly every source
+// includes: Eigen takes a third of the time to compile a small one.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -27,7 +27,7 @@ struct RadarFrame {
     std::vector<Detection> detections;  ///< the nearest first
 };
 
-/// Detects the movers that a radar at `pose` sees move.
+/// Detects the movers that the radar `sensor` sees move from `pose`.
 ///
 /// A mover is seen where the ray towards the centre of one of its bodies meets that body, in the
 /// field of view and in range (ends included, as float32), if neither `mesh` nor a body of another
@@ -40,7 +40,7 @@ struct RadarFrame {
 /// sensor, frame and mover alone, and changes neither the order nor, but for drop-outs, the number.
 /// \param mesh surfaces that stop its rays; not a slice
 RadarFrame castRadar(const RayWorld& mesh, const MovingBodies& bodies,
-                     const MoverVelocities& velocities, const Sensor& radar, const Pose3& pose,
+                     const MoverVelocities& velocities, const Sensor& sensor, const Pose3& pose,
                      int frame, std::optional<std::uint64_t> noise_seed);
 
 }  // namespace ispace

@@ -67,9 +67,8 @@ std::int64_t scanScene(const ScanCommand& command, const ScanToolOptions& option
 
     Worlds worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
-    TakerOptions taking{.celsius = options.celsius,
-                        .follows_poses = moves,
-                        .velocities = startVelocities(scene)};
+    TakerOptions taking{
+        .celsius = options.celsius, .follows_poses = moves, .velocities = startVelocities(scene)};
     if (options.noise) taking.noise_seed = options.common.seed;
     std::optional<Photographer> photographer;
     if (std::any_of(sensors.read.begin(), sensors.read.end(),

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "server/device/wire_session.h"
+
 namespace ispace {
 
 namespace {
