@@ -28,7 +28,7 @@ using Cone = std::array<Vec3, kSonarRays>;
 /// Computes unit vectors within a cone about x.
 Cone coneOf(Angle fov) {
     // Of all cones: the direction off the axis, in the plane across it.
-    static const Cone kAround = [] {
+    static const Cone across = [] {
         Cone rays{};
         std::size_t next = 1;
         for (int circle = 1; circle <= kCircles; ++circle)
@@ -44,7 +44,7 @@ Cone coneOf(Angle fov) {
     for (int circle = 1; circle <= kCircles; ++circle) {
         const auto [c, s] = cosSin((0.5 * circle / kCircles) * fov);
         for (int k = 0; k < kInFirst * circle; ++k, ++next)
-            rays[next] = {c, s * kAround[next].y, s * kAround[next].z};
+            rays[next] = {c, s * across[next].y, s * across[next].z};
     }
     return rays;
 }
