@@ -56,8 +56,8 @@ Words hallOfRobots(const std::string& folder, int count) {
     std::string layout = "#3dm 1\n";
     for (int i = 0; i < count; ++i) {
         const std::string id = "r" + std::to_string(i);
-        const double x = kApart * (i % columns + 1) - side / 2;
-        const double y = kApart * (i / columns + 1) - side / 2;
+        const int column = i % columns + 1, row = i / columns + 1;
+        const double x = kApart * column - side / 2, y = kApart * row - side / 2;
         layout.append("robot id=").append(id).append(" model=pioneer-3dx walk=wander at=");
         layout.append(formatDouble(x)).append(",").append(formatDouble(y));
         layout.append(" heading=").append(std::to_string(37 * i % 360)).append("\n");
