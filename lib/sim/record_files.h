@@ -3,6 +3,7 @@
 #pragma once
 
 #include <sys/types.h>
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -29,13 +30,16 @@ class LineFile {
     void endStep(std::int64_t step) {
         ends_.push_back({step, size_ + static_cast<off_t>(pending.size())});
     }
-    /// Returns the last step whose lines are all in the file, of those since the last forget().
+    /// Returns the last step whose lines are all in the file, of those that are stored.
     [[nodiscard]] std::int64_t wholeSteps() const;
     /// Truncates the file after this step. Skips devices and pipes, which cannot be truncated.
     void cutBehind(std::int64_t step);
-    /// Removes the stored ends of all steps but the last: the file will not be truncated there.
-    void forget() {
-        if (ends_.size() > 1) ends_.erase(ends_.begin(), ends_.end() - 1);
+    /// Removes the stored ends before that of this step: the file will not be truncated there.
+    void forgetBefore(std::int64_t step) {
+        const auto later = std::upper_bound(
+            ends_.begin(), ends_.end(), step,
+            [](std::int64_t value, const StepEnd& end) { return value < end.step; });
+        if (later - ends_.begin() > 1) ends_.erase(ends_.begin(), later - 1);
     }
     /// Replaces the whole content by `text`, which must not be shorter. Less than a page is written
     /// whole or not at all. \throws std::system_error
@@ -98,8 +102,10 @@ class FrameFiles {
     void write(const std::string& name, std::string_view bytes, std::int64_t step);
     /// Removes the frames of later steps.
     void cutBehind(std::int64_t step);
-    /// Keeps the frames so far.
-    void forget() { recent_.clear(); }
+    /// Keeps the frames of steps up to this one for good.
+    void keepUpTo(std::int64_t step) {
+        std::erase_if(recent_, [step](const Frame& frame) { return frame.step <= step; });
+    }
     [[nodiscard]] std::uint64_t size() const { return size_; }
 
   private:

@@ -177,13 +177,28 @@ TEST_F(RecordLines, OthersFilesStayAmongTheFrames) {
 TEST_F(RecordLines, FramesBehindTheEndAreTakenBack) {
     FrameFiles frames(path("frames"));
     frames.write("a-000001.png", "1", 1);
-    frames.forget();
+    frames.keepUpTo(1);
     frames.write("a-000002.png", "22", 2);
     frames.write("a-000003.png", "333", 3);
     EXPECT_EQ(frames.size(), 6U);
     frames.cutBehind(2);
     EXPECT_EQ(filesIn("frames"), 2U);
     EXPECT_EQ(readAll(path("frames/a-000002.png")), "22");
+}
+
+TEST_F(RecordLines, StepsBeforeTheLastWholeOneCannotBeTakenBack) {
+    LineFile file(path("lines"));
+    for (std::int64_t step = 1; step <= 3; ++step) {
+        file.pending += std::to_string(step) + "\n";
+        file.endStep(step);
+    }
+    file.flush();
+    file.forgetBefore(2);
+    EXPECT_EQ(file.wholeSteps(), 3);
+    file.cutBehind(1);
+    EXPECT_EQ(readAll(path("lines")), "1\n2\n3\n");
+    file.cutBehind(2);
+    EXPECT_EQ(readAll(path("lines")), "1\n2\n");
 }
 
 TEST(FrameName, HasTheIdAndThePeriod) {

@@ -145,6 +145,12 @@ struct Recorder::Data {
     [[nodiscard]] std::array<LineFile*, 7> stepFiles() {
         return {&robots, &odometry, &people, &scans, &sonars, &bumpers, &events};
     }
+    /// Returns the last step that all files hold.
+    [[nodiscard]] std::int64_t wholeSteps() {
+        std::int64_t whole = steps;
+        for (const LineFile* file : stepFiles()) whole = std::min(whole, file->wholeSteps());
+        return whole;
+    }
     void begin();
     void remember(const World& world);
     void lookAtSensors(const World& world);
@@ -310,13 +316,10 @@ std::uint64_t Recorder::Data::size() const {
 
 void Recorder::Data::writeLines() {
     for (LineFile* file : stepFiles()) file->flush();
-    // Otherwise the step before may have to be the last.
-    if (!is_open) {
-        for (LineFile* file : stepFiles()) file->forget();
-        pictures.forget();
-        depths.forget();
-        scenes.forget();
-    }
+    // While readings of this step lack, the step before may have to be the last.
+    const std::int64_t whole = wholeSteps();
+    for (LineFile* file : stepFiles()) file->forgetBefore(whole);
+    for (FrameFiles* files : {&pictures, &depths, &scenes}) files->keepUpTo(whole);
     writeInfo();
     const std::chrono::duration<double> wall = flushed - started;
     timing.pending.append(formatSimTime(time)).append(",").append(formatFixed(wall.count(), 6));
@@ -334,11 +337,9 @@ void Recorder::Data::writeLines() {
 /// A file cannot be written: the record ends with the last step that all files hold.
 void Recorder::Data::endEarly() {
     ended = std::current_exception();
-    for (LineFile* file : stepFiles()) steps = std::min(steps, file->wholeSteps());
+    steps = wholeSteps();
     for (LineFile* file : stepFiles()) file->cutBehind(steps);
-    pictures.cutBehind(steps);
-    depths.cutBehind(steps);
-    scenes.cutBehind(steps);
+    for (FrameFiles* files : {&pictures, &depths, &scenes}) files->cutBehind(steps);
     flushed_all = true;
     try {
         writeInfo();

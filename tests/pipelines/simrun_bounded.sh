@@ -42,6 +42,26 @@ for line in lines:
 END
 simrun --replay run --clock fast >/dev/null 2>err || fail "no replay: $(cat err)"
 
+# Memory of a recorded run does not grow with its steps.
+python3 - "$data/square.env" <<'END' || fail "the memory of a recorded run grows"
+import os
+import subprocess
+import sys
+
+
+def peak(until):
+    child = subprocess.Popen(
+        ["simrun", sys.argv[1], "bounded.3dm", "--clock", "fast", "--until", until, "--record", "long"],
+        stdout=subprocess.DEVNULL)
+    _, status, used = os.wait4(child.pid, 0)
+    assert status == 0, status
+    return used.ru_maxrss
+
+
+few, many = peak("20"), peak("1200")
+assert many < few + 4096, f"{few} kB after 20 s, {many} kB after 1200 s"
+END
+
 # Connections at every port.
 { cat bounded.3dm; echo "camera id=c1 at=0,-1.5,1 pixels=32,24"; } >places.3dm
 rm -f port
