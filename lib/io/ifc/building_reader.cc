@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <span>
 #include <stdexcept>
 #include <unordered_map>
 #include <utility>
@@ -61,7 +63,11 @@ class BuildingReader {
             addWall(id, tree_.above(id, "IFCCURTAINWALL") == 0);  // a mullion, else a post or brace
         });
         forEach(kColumns, [this](StepId id) { addWall(id, true); });
-        for (const StepId id : file_.ofType("IFCSPACE")) addSpace(id);
+        const std::span<const StepId> spaces = file_.ofType("IFCSPACE");
+        std::set<StepId> wholes;  // their parts are the spaces
+        for (const StepId id : spaces) wholes.insert(tree_.above(id, "IFCSPACE"));
+        for (const StepId id : spaces)
+            if (!wholes.contains(id)) addSpace(id);
         for (const char* type : {"IFCOPENINGELEMENT", "IFCOPENINGSTANDARDCASE"})
             for (const StepId id : file_.ofType(type)) addHole(id);
         forEach(kDoors, [this](StepId id) { addFiller(id); });

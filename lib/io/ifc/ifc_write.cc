@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/ifc/ifc_write.h"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <numeric>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -16,81 +16,13 @@
 #include "geom/arrangement.h"
 #include "geom/planar_map.h"
 #include "io/exporters.h"
+#include "io/ifc/ifc_walls.h"
 #include "io/ifc/ifc_write_model.h"
 #include "io/plan/line_plan.h"
 #include "scene/bodies.h"
 #include "scene/sensor/sensor.h"
 
 namespace ispace {
-
-namespace {
-
-/// Returns the parts without those inside another one on the same line.
-std::vector<WallPart> withoutDoubles(const std::vector<WallPart>& parts) {
-    const auto ends = [&](std::size_t i) {
-        const auto& [a, b] = parts[i].piece.line;
-        return lexLess(b, a) ? std::tuple(b.x, b.y, a.x, a.y) : std::tuple(a.x, a.y, b.x, b.y);
-    };
-    const auto holds = [&](std::size_t i, std::size_t k) {
-        const WallLine &outer = parts[i].piece, &inner = parts[k].piece;
-        return outer.thickness >= inner.thickness && outer.bottom <= inner.bottom &&
-               outer.top >= inner.top;
-    };
-    std::vector<std::size_t> order(parts.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
-        return std::tuple(ends(i), -parts[i].piece.thickness, i) <
-               std::tuple(ends(k), -parts[k].piece.thickness, k);
-    });
-    std::vector<bool> dropped(parts.size());
-    std::size_t last = 0;  // the last one that is kept
-    for (std::size_t i = 1; i < order.size(); ++i) {
-        dropped[order[i]] = ends(order[last]) == ends(order[i]) && holds(order[last], order[i]);
-        if (!dropped[order[i]]) last = i;
-    }
-    std::vector<WallPart> kept;
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        if (!dropped[i]) kept.push_back(parts[i]);
-    return kept;
-}
-
-}  // namespace
-
-WholeWalls::WholeWalls(const std::vector<Element>& elements) {
-    Diagnostics findings;  // the environment has had them
-    for (std::size_t i = 0; i < elements.size(); ++i)
-        if (isWall(elements[i].record))
-            for (const WallLine& wall : wallLinesOf(elements[i].record, findings))
-                plan.add(wall, i);
-    openings = placeOpenings(elements, plan, findings);
-    std::vector<WallLine> thick = plan.walls;
-    for (WallLine& wall : thick)
-        if (wall.thickness <= kThinnest) wall.thickness = kThinWall;
-    const std::vector<WallPart> parts = withoutDoubles(wallParts(thick, weld(plan.lines)));
-    bodies = wallBodies(parts, thick.size());
-    lengths.resize(thick.size());
-    for (const WallPart& part : parts)
-        lengths[part.source] += distance(part.piece.line.a, part.piece.line.b);
-}
-
-bool WholeWalls::stands(const OpeningCut& cut) const {
-    const Point2 middle = cut.jambs.a + 0.5 * (cut.jambs.b - cut.jambs.a);
-    const Opening& opening = openings[cut.opening];
-    const auto& prisms = bodies[cut.line].prisms;
-    return std::any_of(prisms.begin(), prisms.end(), [&](const Prism& prism) {
-        return prism.bottom < opening.top && prism.top > opening.bottom &&
-               locate(prism.footprint, middle) != Side::Outside;
-    });
-}
-
-std::vector<Polygon> WholeWalls::footprints() const {
-    std::vector<Polygon> footprints;
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-        if (plan.walls[i].thickness > kThinnest)
-            for (const Prism& prism : bodies[i].prisms)
-                if (prism.bottom <= 0) footprints.push_back(prism.footprint);
-    return footprints;
-}
 
 namespace {
 
@@ -181,8 +113,9 @@ class RoomWriter {
 
     ExportedFiles write(const std::string& title) {
         addStorey(title);
-        const WholeWalls walls(elements_);
+        const WholeWalls walls(scene_.environment);
         addWalls(walls);
+        addSolids(walls);
         addOpenings(walls);
         addSpaces(walls);
         for (const Element& element : elements_)
@@ -280,49 +213,91 @@ class RoomWriter {
         }
     }
 
-    /// Cuts openings into all walls that they go through, and fills each once.
-    void addOpenings(const WholeWalls& walls) {
-        std::vector<OpeningCut> cuts = openingCuts(walls.plan, walls.openings);
-        std::erase_if(cuts, [&](const OpeningCut& cut) { return !walls.stands(cut); });
-        // The opening's own line first.
-        std::stable_sort(cuts.begin(), cuts.end(), [&](const OpeningCut& c, const OpeningCut& d) {
-            const auto other = [&](const OpeningCut& cut) {
-                return std::pair(cut.opening, cut.line != walls.openings[cut.opening].line);
-            };
-            return other(c) < other(d);
-        });
-        for (std::size_t i = 0; i < cuts.size(); ++i) {
-            const bool is_first = i == 0 || cuts[i - 1].opening != cuts[i].opening;
-            addOpening(walls, cuts[i], is_first);
+    /// Adds walls with two faces, each with the name of one of its faces.
+    void addSolids(const WholeWalls& walls) {
+        for (std::size_t i = 0; i < walls.solids.size(); ++i) {
+            const SolidWall& solid = walls.solids[i];
+            const std::string id = lineId(walls.plan, solid.line);
+            const Id place = model_.addPlacement(place_, {{0, 0, solid.bottom}, {}, {}, {}});
+            const Id product = addProduct(
+                "IFCWALL", id, elements_[walls.plan.owner[solid.line]].record.keyword(), place,
+                model_.addShape(solid.footprint, solid.top - solid.bottom), ".NOTDEFINED.");
+            contain(product);
+            solids_.push_back({product, place});
+            model_.addQuantities(product, id, "Qto_WallBaseQuantities",
+                                 {{"LENGTH", "Height", solid.top - solid.bottom},
+                                  {"AREA", "GrossFootprintArea", solid.footprint.area()}});
         }
     }
 
-    void addOpening(const WholeWalls& walls, const OpeningCut& cut, bool is_filled) {
-        const Opening& opening = walls.openings[cut.opening];
+    /// The part of a wall that an opening cuts out.
+    struct Hole {
+        Id wall = 0, wall_place = 0;
+        WallFrame frame;    ///< of the wall
+        Pose2 pose;         ///< of its beginning, in that frame
+        double length = 0;  ///< along the wall
+        double depth = 0;   ///< of the wall
+        std::string of;     ///< id of the wall
+    };
+
+    /// Cuts openings into all walls that they go through, and fills each once.
+    void addOpenings(const WholeWalls& walls) {
+        std::set<std::size_t> filled;
+        for (const SolidHole& hole : walls.holes) {
+            const auto& [product, place] = solids_[hole.solid];
+            const SolidWall& solid = walls.solids[hole.solid];
+            const Vec2 along = hole.middle.b - hole.middle.a;
+            addOpening(walls.openings[hole.opening],
+                       {product,
+                        place,
+                        {{}, solid.bottom},
+                        {hole.middle.a, directionOf(along.x, along.y)},
+                        length(along),
+                        hole.depth,
+                        lineId(walls.plan, solid.line) + " solid"},
+                       filled.insert(hole.opening).second);
+        }
+        for (const OpeningCut& cut : walls.cuts) {
+            const WallFrame& frame = frames_[cut.line];
+            const auto [from, to] =
+                std::minmax({frame.along(cut.jambs.a), frame.along(cut.jambs.b)});
+            addOpening(walls.openings[cut.opening],
+                       {products_[cut.line],
+                        places_[cut.line],
+                        frame,
+                        {{from, 0}, {}},
+                        to - from,
+                        std::max(walls.plan.walls[cut.line].thickness, kThinWall),
+                        lineId(walls.plan, cut.line)},
+                       filled.insert(cut.opening).second);
+        }
+    }
+
+    void addOpening(const Opening& opening, const Hole& hole, bool is_filled) {
         const Element& element = elements_[opening.element];
-        const WallFrame& frame = frames_[cut.line];
-        const auto [from, to] = std::minmax({frame.along(cut.jambs.a), frame.along(cut.jambs.b)});
+        const Point2 from = hole.pose.position;
         const Id place = model_.addPlacement(
-            places_[cut.line], {{from, 0, opening.bottom - frame.bottom}, {}, {}, {}});
-        SdfPart hole;
-        hole.length = to - from;
-        hole.width = std::max(walls.plan.walls[cut.line].thickness, kThinWall) + 2 * kOpeningRim;
-        hole.height = opening.top - opening.bottom;
-        hole.place = {hole.length / 2, 0, hole.height / 2};
-        const std::string wall = lineId(walls.plan, cut.line);
-        const std::string key = is_filled ? element.id : element.id + ' ' + wall;
+            hole.wall_place,
+            {{from.x, from.y, opening.bottom - hole.frame.bottom}, hole.pose.heading, {}, {}});
+        SdfPart part;
+        part.length = hole.length;
+        part.width = hole.depth + 2 * kOpeningRim;
+        part.height = opening.top - opening.bottom;
+        part.place = {part.length / 2, 0, part.height / 2};
+        const std::string key = is_filled ? element.id : element.id + ' ' + hole.of;
         const Id void_id = addProduct("IFCOPENINGELEMENT", key, "", place,
-                                      model_.addShape({&hole, 1}, {}), ".OPENING.");
+                                      model_.addShape({&part, 1}, {}), ".OPENING.");
         model_.addRooted("IFCRELVOIDSELEMENT", key, "",
-                         {IfcModel::ref(products_[cut.line]), IfcModel::ref(void_id)});
+                         {IfcModel::ref(hole.wall), IfcModel::ref(void_id)});
         if (!is_filled) return;
-        const Pose2 origin{frame.pose * Point2{from, 0}, frame.pose.heading};
+        const Pose2& wall = hole.frame.pose;
+        const Pose2 origin{wall * from, wall.heading + hole.pose.heading};
         const bool is_door = element.record.keyword() == "door";
         const Id filling = model_.addRooted(
             is_door ? "IFCDOOR" : "IFCWINDOW", element.id, element.id,
             {stepText(fillingName(opening.filling)), IfcModel::ref(model_.addPlacement(place, {})),
              model_.addShape(sdfParts(element.body, origin, opening.bottom, true, ""), {}),
-             stepText(element.id), stepReal(hole.height), stepReal(hole.length),
+             stepText(element.id), stepReal(part.height), stepReal(part.length),
              is_door ? ".DOOR." : ".WINDOW.", ".NOTDEFINED.", "$"});
         contain(filling);
         model_.addRooted("IFCRELFILLSELEMENT", element.id, "",
@@ -335,33 +310,56 @@ class RoomWriter {
         return kNames[static_cast<std::size_t>(filling)];
     }
 
-    /// Adds the rooms, minus the walls in them, and the zones.
+    /// Adds the rooms, minus the walls in them, and the zones, as parts of the rooms around them.
     void addSpaces(const WholeWalls& walls) {
         const std::vector<Region> rooms =
             difference(scene_.environment.indoor(), walls.footprints());
-        for (std::size_t i = 0; i < rooms.size(); ++i) {
-            const std::string number = rooms.size() == 1 ? "" : ' ' + std::to_string(i + 1);
-            addSpace("indoor" + number, "room", ".INTERNAL.", rooms[i]);
+        std::vector<std::vector<std::string>> zones(rooms.size());
+        for (const Element& element : elements_) {
+            if (element.record.keyword() != "zone") continue;
+            const Region zone{zoneOutline(element.record), {}};
+            const auto room = std::find_if(rooms.begin(), rooms.end(),
+                                           [inside = interiorPoint(zone)](const Region& each) {
+                                               return each.locate(inside) != Side::Outside;
+                                           });
+            auto& parts = room == rooms.end()
+                              ? spaces_
+                              : zones[static_cast<std::size_t>(room - rooms.begin())];
+            const Record& record = element.record;
+            parts.push_back(addSpace(
+                {"zone", element.id, record.has("number") ? record.text("number") : element.id,
+                 record.has("name") ? stepText(record.text("name")) : "$",
+                 ".PARTIAL.,.USERDEFINED."},
+                zone));
         }
-        for (const Element& element : elements_)
-            if (element.record.keyword() == "zone")
-                addSpace(element.id, "zone", ".USERDEFINED.", {zoneOutline(element.record), {}});
+        for (std::size_t i = 0; i < rooms.size(); ++i) {
+            const std::string name =
+                rooms.size() == 1 ? "indoor" : "indoor " + std::to_string(i + 1);
+            spaces_.push_back(
+                addSpace({"room", name, name, "$", ".ELEMENT.,.INTERNAL."}, rooms[i]));
+            relate("IFCRELAGGREGATES", name, spaces_.back(), stepList(zones[i]), zones[i]);
+        }
     }
 
-    void addSpace(const std::string& name, const std::string& what, std::string kind,
-                  const Region& region) {
-        const std::string key = what + ' ' + name;
+    struct Space {
+        std::string object_type, id, name;
+        std::string long_name;  ///< quoted, or $
+        std::string kind;       ///< composition and predefined type
+    };
+
+    /// \returns a reference to it
+    std::string addSpace(const Space& what, const Region& region) {
+        const std::string key = what.object_type + ' ' + what.id;
         const Id place = model_.addPlacement(place_, {});
-        const Id space =
-            model_.addRooted("IFCSPACE", key, name,
-                             {stepText(what), IfcModel::ref(place),
-                              model_.addShape(region, scene_.environment.height()), "$",
-                              what == "zone" ? ".PARTIAL." : ".ELEMENT.", std::move(kind), "0."});
-        spaces_.push_back(IfcModel::ref(space));
+        const Id space = model_.addRooted("IFCSPACE", key, what.name,
+                                          {stepText(what.object_type), IfcModel::ref(place),
+                                           model_.addShape(region, scene_.environment.height()),
+                                           what.long_name, what.kind, "0."});
         model_.addQuantities(space, key, "Qto_SpaceBaseQuantities",
                              {{"AREA", "NetFloorArea", region.area()},
                               {"LENGTH", "NetPerimeter", region.boundaryLength()},
                               {"LENGTH", "Height", scene_.environment.height()}});
+        return IfcModel::ref(space);
     }
 
     void addThing(const Element& element) {
@@ -406,6 +404,7 @@ class RoomWriter {
     Id storey_ = 0, place_ = 0;
     std::vector<WallFrame> frames_;  // of each line of walls
     std::vector<Id> places_, products_;
+    std::vector<std::pair<Id, Id>> solids_;  // and their placements
     std::vector<std::string> contained_, spaces_;
     std::map<std::string, std::size_t> left_out_;
 };

@@ -67,6 +67,39 @@ TEST(IfcWrite, AnOpeningThroughTwoWallsIsFilledOnce) {
     EXPECT_EQ(count(text, "=IFCWINDOW("), 1U);
 }
 
+constexpr const char* kTwoFaces =
+    "#env 1\nfence path=0,0;6,0;6,4;0,4 closed=yes height=2.5\n"
+    "fence path=0.3,0.3;2.9,0.3;2.9,3.7;0.3,3.7 closed=yes height=2.5\n"
+    "fence path=3.1,0.3;5.7,0.3;5.7,3.7;3.1,3.7 closed=yes height=2.5\n"
+    "door at=3.1,2 size=0.9,0.5 height=2 open=yes\nwindow at=0,2 size=1,0.7\ninside at=1,1\n"
+    "zone id=z1 at=1,1 size=1,1 number=12 name=Hall\n";
+
+TEST(IfcWrite, FacesThatAnOpeningJoinsAreOneWall) {
+    const std::string text = written(kTwoFaces);
+    EXPECT_EQ(count(text, "=IFCWALL("), 1U);
+    EXPECT_EQ(count(text, "IFCARBITRARYPROFILEDEFWITHVOIDS"), 1U);
+    EXPECT_EQ(count(text, "=IFCOPENINGELEMENT("), 2U);
+    EXPECT_EQ(count(text, "=IFCDOOR("), 1U);
+    EXPECT_EQ(count(text, "=IFCWINDOW("), 1U);
+    EXPECT_EQ(count(text, "=IFCRELFILLSELEMENT("), 2U);
+}
+
+TEST(IfcWrite, RoomsThatAWindowJoinsAreNoWall) {
+    const std::string text = written(
+        "#env 1\nfence path=0,0;3,0;3,4;0,4 closed=yes\nfence path=3.8,0;6,0;6,4;3.8,4 closed=yes\n"
+        "fence path=3,0;3.8,0 closed=no\nfence path=3,4;3.8,4 closed=no\n"
+        "window at=3,2 size=1,1.8\ninside at=3.4,1\n");
+    EXPECT_EQ(count(text, "IFCARBITRARYPROFILEDEFWITHVOIDS"), 0U);
+    EXPECT_GT(count(text, "=IFCWALL("), 8U);
+}
+
+TEST(IfcWrite, ZonesArePartsOfTheirRoomWithNumberAndName) {
+    const std::string text = written(kTwoFaces);
+    EXPECT_EQ(count(text, "=IFCSPACE("), 2U);
+    EXPECT_EQ(count(text, ",'12',$,'zone',"), 1U);
+    EXPECT_EQ(count(text, ",'Hall',.PARTIAL."), 1U);
+}
+
 }  // namespace
 
 }  // namespace ispace
