@@ -62,7 +62,7 @@ View viewSlowly(const MovingBodies& bodies, Point3 origin, const RayGrid& grid, 
         for (std::size_t k = 0; k < grid.size(); ++k) {
             const auto columns = static_cast<std::size_t>(grid.columns);
             const Vec3 ray = grid.ray(static_cast<int>(k % columns), static_cast<int>(k / columns));
-            const BodyMeeting met = from.meet(ray);
+            const RayHit met = from.meet(ray);
             const auto multiple = static_cast<float>(met.multiple);
             if (!(multiple <= static_cast<float>(most) && multiple < view.multiples[k])) continue;
             view.multiples[k] = multiple;

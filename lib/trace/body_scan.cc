@@ -67,7 +67,7 @@ BodyScan::BodyScan(std::span<const Point3> origins, const Directions& directions
       ranges_(ranges),
       low_(std::numeric_limits<double>::infinity()),
       high_(-low_) {
-    const double most = max_range * (1 + kFarSlack);
+    const double most = max_range * (1 + kFloatTolerance);
     Box2 origin_box;
     for (std::size_t k = begin; k < end; k += is_one_ ? end - begin : 1)
         origin_box.add(origin(k).onFloor());
@@ -77,8 +77,8 @@ BodyScan::BodyScan(std::span<const Point3> origins, const Directions& directions
     box_ = origin_box;
     Vec2 ahead;
     for (std::size_t k = begin; k < end; ++k) {
-        const double far =
-            std::min(static_cast<double>(ranges_[k]) * (1 + kFarSlack) + kFarSlack, most);
+        const double far = std::min(
+            static_cast<double>(ranges_[k]) * (1 + kFloatTolerance) + kFloatTolerance, most);
         const Point3 from = origin(k);
         const double rise = from.z + far * directions.z[k];
         const Vec2 flat{directions.x[k], directions.y[k]};
@@ -101,7 +101,7 @@ BodyScan::BodyScan(std::span<const Point3> origins, const Directions& directions
 }
 
 void BodyScan::meet(const MovingBody& body, const BodyExtent& extent) {
-    const double radius = extent.whole * (1 + kFarSlack) + kFarSlack;
+    const double radius = extent.whole * (1 + kFloatTolerance) + kFloatTolerance;
     const Vec2 there = body.pose.position - middle_;
     const double around = radius + spread_, far = around + reach_;
     if (body.bottom > high_ || body.top < low_ || cross(right_, there) < -around ||
@@ -142,7 +142,7 @@ BodyPicture::BodyPicture(Point3 origin, const RayGrid& grid, double most,
 
 Box2 BodyPicture::box() const {
     const Point2 middle = origin_.onFloor();
-    const Vec2 corner{far_ * (1 + kFarSlack), far_ * (1 + kFarSlack)};
+    const Vec2 corner{far_ * (1 + kFloatTolerance), far_ * (1 + kFloatTolerance)};
     return {middle - corner, middle + corner};
 }
 
@@ -150,7 +150,7 @@ PixelBox BodyPicture::pixelsOf(const MovingBody& body, const BodyExtent& extent)
     const PixelBox all{0, 0, grid_.columns, grid_.rows};
     if (!is_plane_) return all;
     const Vec2 way = origin_.onFloor() - body.pose.position;
-    const double near = 1e-6 + kFarSlack * extent.whole;
+    const double near = 1e-6 + kFloatTolerance * extent.whole;
     if (length(way) <= extent.whole + near && origin_.z >= body.bottom - near &&
         origin_.z <= body.top + near)
         return all;
@@ -189,7 +189,7 @@ void BodyPicture::meet(const MovingBody& body, const BodyExtent& extent) {
     for (int row = pixels.top; row < pixels.bottom; ++row) {
         for (int column = pixels.left; column < pixels.right; ++column) {
             const Vec3 ray = grid_.ray(column, row);
-            const BodyMeeting met = from.meet(ray);
+            const RayHit met = from.meet(ray);
             if (met.multiple == std::numeric_limits<double>::infinity()) continue;
             const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.columns) +
                            static_cast<std::size_t>(column);
@@ -217,7 +217,7 @@ BodyArc::BodyArc(Point3 origin, const Directions& directions, double max_range,
       bodies_(bodies),
       extents_(extents),
       far_(max_range),
-      most_(static_cast<float>(max_range * (1 + kFarSlack))),
+      most_(static_cast<float>(max_range * (1 + kFloatTolerance))),
       ranges_(ranges),
       count_(static_cast<double>(directions.size())),
       farthest_(farthestOfThread()) {
@@ -241,11 +241,11 @@ Box2 BodyArc::view() const {
     constexpr double kWide = 1;  // radians
     const double half = (kBlock - 1) / (2 * rate_);
     if (half > kWide) {
-        const Vec2 margin{far_ * (1 + kFarSlack), far_ * (1 + kFarSlack)};
+        const Vec2 margin{far_ * (1 + kFloatTolerance), far_ * (1 + kFloatTolerance)};
         return {origin_.onFloor() - margin, origin_.onFloor() + margin};
     }
     // Ends of a block, so distant that the chord between them lies beyond its arc.
-    const double beyond = (1 + kFarSlack) / std::cos(half);
+    const double beyond = (1 + kFloatTolerance) / std::cos(half);
     for (std::size_t block = 0; block < farthest_.size(); ++block) {
         const double far = static_cast<double>(farthest_[block]) * beyond;
         const std::size_t begin = block * kBlock;
@@ -304,8 +304,8 @@ void BodyArc::look(std::span<const std::uint32_t> bodies, std::uint32_t own) {
             body.pose.position - origin_.onFloor() + lean * Vec2{extent.axes.cos, extent.axes.sin};
         const double square = dot(way, way), distance = std::sqrt(square);
         Waiting waiting{distance - extent.reach, i, 0, -1, 0, -1};
-        if (waiting.nearest > far_ * (1 + kFarSlack)) continue;
-        const double wide = extent.reach * (1 + kFarSlack);
+        if (waiting.nearest > far_ * (1 + kFloatTolerance)) continue;
+        const double wide = extent.reach * (1 + kFloatTolerance);
         const double angle = angleOf(way.x * middle_.cos + way.y * middle_.sin,
                                      way.y * middle_.cos - way.x * middle_.sin);
         // Half the angle of its circle; a full turn from inside.

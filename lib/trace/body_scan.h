@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "trace/moving_bodies.h"
+#include "trace/rays.h"
 
 namespace ispace {
 
@@ -75,12 +76,6 @@ struct Stretch {
     }
 };
 
-/// Intersection of a ray with a body's surface.
-struct BodyMeeting {
-    double multiple = std::numeric_limits<double>::infinity();  ///< multiple of the ray's direction
-    double slope = 0;  ///< |normal times direction|: the cosine if the direction is a unit vector
-};
-
 /// A body as seen from one origin; stores the values that its rays share.
 class BodyFrame {
   public:
@@ -109,7 +104,7 @@ class BodyFrame {
         return stretch;
     }
     /// Finds the first intersection at a multiple of at least `least`; from inside, the exit.
-    [[nodiscard]] BodyMeeting meet(Vec3 direction, double least = 0) const {
+    [[nodiscard]] RayHit meet(Vec3 direction, double least = 0) const {
         const Stretch stretch = within(direction);
         if (stretch.from > stretch.to || stretch.to < least) return {};
         if (stretch.from >= least) return {stretch.from, stretch.slope_from};
@@ -141,7 +136,7 @@ class ShortenedRanges {
 
     [[nodiscard]] float operator[](std::size_t i) const { return ranges_[i]; }
     /// \param size length of the direction
-    void shorten(std::size_t i, const BodyMeeting& met, double size) {
+    void shorten(std::size_t i, const RayHit& met, double size) {
         // Compare as float32, so that a body exactly at the limit is met.
         const auto range = static_cast<float>(met.multiple);
         if (!(range <= far_ && range < ranges_[i])) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Moving bodies in Embree. Private to lib/trace and lib/trace/render.
+// Moving bodies in Embree. Private to lib/trace and lib/trace/render.
 #pragma once
 
 #include <span>
@@ -19,7 +19,7 @@ struct TracedBody {
     explicit TracedBody(const MovingBody& moving)
         : body(moving), axes(cosSin(moving.pose.heading)) {}
     /// As BodyFrame::meet(), with identical results.
-    [[nodiscard]] BodyMeeting meet(Point3 origin, Vec3 direction, double least) const {
+    [[nodiscard]] RayHit meet(Point3 origin, Vec3 direction, double least) const {
         return BodyFrame(body, axes, origin).meet(direction, least);
     }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Creates Embree's devices and triangle scenes for lib/trace and lib/trace/render.
+// Creates Embree's devices and triangle scenes for lib/trace and lib/trace/render.
 #pragma once
 
 #include <cstddef>

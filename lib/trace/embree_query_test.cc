@@ -19,8 +19,8 @@ struct Case {
     alignas(64) RTCRayHit16 hits{};
     RayPacket packet{};
     SureMeeting sure{.clear = 1e-5,
-                     .longest = 1 + kFarSlack,
-                     .near = static_cast<float>(kMost * (1 - kFarSlack))};
+                     .longest = 1 + kFloatTolerance,
+                     .near = static_cast<float>(kMost * (1 - kFloatTolerance))};
 
     explicit Case(std::mt19937_64& random) {
         std::uniform_real_distribution<double> any(-1, 1);
@@ -32,7 +32,7 @@ struct Case {
         packet.origin_x.fill(any(random));
         packet.origin_y.fill(any(random));
         packet.origin_z.fill(any(random));
-        packet.reach.fill(static_cast<double>(kMost) * (1 + kFarSlack));
+        packet.reach.fill(static_cast<double>(kMost) * (1 + kFloatTolerance));
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             const Vec3 way{any(random), any(random), any(random)};
             const Vec3 direction = (1 / length(way)) * way;

@@ -74,10 +74,10 @@ struct EmbreeScene::Caster {
           tail(8 * traced.set_.tolerance()),
           most(static_cast<float>(farthest)),
           sure{.clear = std::max(surfaces.reach(), traced.set_.tolerance()),
-               .longest = 1 + kFarSlack,
-               .near = static_cast<float>(farthest >= 0 ? farthest * (1 - kFarSlack) : -1)} {
+               .longest = 1 + kFloatTolerance,
+               .near = static_cast<float>(farthest >= 0 ? farthest * (1 - kFloatTolerance) : -1)} {
         // A NaN limit, like a negative one, is never reached.
-        packet.reach.fill(farthest >= 0 ? farthest * (1 + kFarSlack) : -1);
+        packet.reach.fill(farthest >= 0 ? farthest * (1 + kFloatTolerance) : -1);
         roundReach(packet, tail, far);
         setOrigins({&origin, 1});
         query.rays = {&packet, true, surfaces.rayEpsilon()};
@@ -92,7 +92,7 @@ struct EmbreeScene::Caster {
     /// Computes the lengths of the rays' directions.
     void setLengths(double shortest, double longest) {
         tail = shortest > 0 ? tail / shortest : kMaxRayReach;
-        sure.longest = longest * (1 + kFarSlack);
+        sure.longest = longest * (1 + kFloatTolerance);
         roundReach(packet, tail, far);
     }
 
@@ -199,7 +199,7 @@ struct EmbreeScene::Caster {
         one.ray.dir_x = hits.ray.dir_x[lane];
         one.ray.dir_y = hits.ray.dir_y[lane];
         one.ray.dir_z = hits.ray.dir_z[lane];
-        const double reach = ray.reach * (1 + kFarSlack) + tail;
+        const double reach = ray.reach * (1 + kFloatTolerance) + tail;
         one.ray.tfar = static_cast<float>(std::min(reach, kMaxRayReach));
         one.ray.mask = ~0U;
         one.ray.id = static_cast<unsigned>(lane);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "geom/tolerance.h"
 #include "trace/body_scan.h"
 #include "trace/rays.h"
 
@@ -75,8 +76,7 @@ double MovingBody::meet(Point3 origin, Vec3 direction) const {
 
 void FloorGrid::rebuild(std::span<const Point2> places, double reach) {
     // Small margin, so that rounding cannot lose a touching body.
-    constexpr double kSlack = 1e-9;
-    reach_ = reach * (1 + kSlack) + kSlack;
+    reach_ = reach * (1 + kContactTolerance) + kContactTolerance;
     box_ = {};
     for (const Point2& place : places) box_.add(place);
     if (places.empty()) box_ = {{0, 0}, {0, 0}};

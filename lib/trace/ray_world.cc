@@ -173,8 +173,8 @@ void RayWorld::cast(Point3 origin, const Directions& directions, double max_rang
     assert(ranges.size() == directions.size());
     const Point3 from = data_->local(origin);
     if (!data_->flat) return data_->mesh->cast(from, directions, max_range, {ranges, cosines});
-    data_->flat->cast(from.onFloor(), directions, max_range * (1 + kFarSlack), kRayEpsilon, ranges,
-                      cosines);
+    data_->flat->cast(from.onFloor(), directions, max_range * (1 + kFloatTolerance), kRayEpsilon,
+                      ranges, cosines);
     limit(ranges, static_cast<float>(max_range));
 }
 
@@ -190,7 +190,8 @@ void RayWorld::cast(std::span<const Point3> origins, const Directions& direction
     std::vector<Point2> from;
     from.reserve(origins.size());
     for (const Point3& origin : origins) from.push_back(data_->local(origin).onFloor());
-    data_->flat->cast(from, directions, max_range * (1 + kFarSlack), kRayEpsilon, ranges, cosines);
+    data_->flat->cast(from, directions, max_range * (1 + kFloatTolerance), kRayEpsilon, ranges,
+                      cosines);
     limit(ranges, static_cast<float>(max_range));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Sets of rays and their conventions, for all of lib/trace.
+// Sets of rays and their conventions, for all of lib/trace.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,23 @@
 #include <vector>
 
 #include "geom/point.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
 
 /// Range of a ray without return.
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 
-/// Margin for rounding at the far end of a ray, or around a body, relative to the distance.
-constexpr double kFarSlack = 1e-6;
+/// Intersection of a ray with a surface, flat or round, standing or moving.
+struct RayHit {
+    double multiple = std::numeric_limits<double>::infinity();  ///< multiple of the ray's direction
+    /// |normal times direction|: the cosine if the direction is a unit vector.
+    double slope = 0;
+
+    [[nodiscard]] bool isNone() const {
+        return multiple == std::numeric_limits<double>::infinity();
+    }
+};
 
 /// Unit vectors, one array per component.
 struct Directions {

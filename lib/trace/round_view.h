@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Intersects round bodies with packets of rays, for Embree. Private to lib/trace.
+// Intersects round bodies with packets of rays, for Embree. Private to lib/trace.
 #pragma once
 
 #include <array>

@@ -9,6 +9,7 @@
 #include "base/simd.h"
 #include "env/body.h"
 #include "env/mesh.h"
+#include "geom/tolerance.h"
 #include "trace/flat_kernels.h"
 
 namespace ispace {
@@ -16,9 +17,6 @@ namespace ispace {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Triangles thinner than this are skipped, in metres.
-constexpr double kThinnest = 1e-9;
 
 /// Rounding of corners, origins and directions to float32 and of Embree's products, relative to the
 /// extent of the scene.
@@ -109,7 +107,7 @@ void TriangleSet::addTriangles(const TriangleSoup& soup) {
         findPlanes(lanes, found);
         for (std::size_t lane = 0; lane < size; ++lane) {
             const double thin = found.thin[lane];
-            if (!(thin > kThinnest)) continue;
+            if (!(thin > kContactTolerance)) continue;
             const std::size_t i = first + lane;
             const auto& [a, b, c] = soup.triangles[i];
             corners_.push_back({soup.vertices[a], soup.vertices[b], soup.vertices[c]});

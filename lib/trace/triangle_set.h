@@ -10,6 +10,7 @@
 
 #include "geom/curve.h"
 #include "geom/point.h"
+#include "trace/rays.h"
 
 namespace ispace {
 
@@ -60,16 +61,6 @@ struct alignas(32) Plane {
     /// Signed distance from p to the plane, along the normal.
     [[nodiscard]] double heightOver(Point3 p) const {
         return offset - (normal.x * p.x + normal.y * p.y + normal.z * p.z);
-    }
-};
-
-/// Intersection of a ray with a surface.
-struct RayHit {
-    double multiple = std::numeric_limits<double>::infinity();  ///< multiple of the ray's direction
-    double slope = 0;                                           ///< |normal times direction|
-
-    [[nodiscard]] bool isNone() const {
-        return multiple == std::numeric_limits<double>::infinity();
     }
 };
 

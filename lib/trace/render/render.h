@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // lib/trace/render: renders lit pictures of a scene. Uses trace and below; Embree inside.
+// lib/trace/render: renders lit pictures of a scene. Uses trace and below; Embree inside.
 #pragma once
 
 #include <array>

@@ -10,6 +10,7 @@
 
 #include "env/body.h"
 #include "geom/spatial_index.h"
+#include "geom/tolerance.h"
 #include "scene/bodies.h"
 #include "trace/embree_query.h"
 #include "trace/render/render.h"
@@ -95,15 +96,13 @@ Covering coveringOf(const std::vector<Plate>& plates, std::uint32_t label, Vec3 
 class SheetSides {
   public:
     SheetSides(const Environment& environment, const RenderSceneOptions& options)
-        : lines_(linesOf(environment, options)), grid_(lines_, kOn) {}
+        : lines_(linesOf(environment, options)), grid_(lines_, kCornerTolerance) {}
 
     [[nodiscard]] bool hold(const Segment2& side, double bottom, double top) const {
         return holdsPoint(side.a, side, bottom, top) && holdsPoint(side.b, side, bottom, top);
     }
 
   private:
-    static constexpr double kOn = 1e-6;
-
     [[nodiscard]] std::vector<Segment2> linesOf(const Environment& environment,
                                                 const RenderSceneOptions& options) {
         std::vector<Segment2> lines;
@@ -126,9 +125,10 @@ class SheetSides {
             const double size = distance(a, b);
             const Vec2 along = (1 / size) * (b - a);
             const double at = dot(p - a, along);
-            return heights_[i].first <= bottom && heights_[i].second >= top && at >= -kOn &&
-                   at <= size + kOn && std::fabs(cross(along, side.a - a)) <= kOn &&
-                   std::fabs(cross(along, side.b - a)) <= kOn;
+            return heights_[i].first <= bottom && heights_[i].second >= top &&
+                   at >= -kCornerTolerance && at <= size + kCornerTolerance &&
+                   std::fabs(cross(along, side.a - a)) <= kCornerTolerance &&
+                   std::fabs(cross(along, side.b - a)) <= kCornerTolerance;
         });
     }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/simd.h"
+#include "geom/tolerance.h"
 #include "trace/render/lights.h"
 
 namespace ispace {
@@ -57,8 +58,8 @@ Vec3 Shading::normalAt(const RayTile& tile, std::size_t lane, Point3 place) cons
     const TriangleSet& set = scene_.set(tile.kind[lane]).triangles();
     Vec3 normal = set.planes()[triangle].normal;
     if (const RoundBody* round = set.roundOf(triangle)) {
-        constexpr double kAtEnd = 1e-6;
-        const bool is_end = place.z > round->top - kAtEnd || place.z < round->bottom + kAtEnd;
+        const bool is_end =
+            place.z > round->top - kCornerTolerance || place.z < round->bottom + kCornerTolerance;
         const Vec2 side = round->curve.normalAt(place.onFloor());
         normal = is_end ? Vec3{0, 0, 1} : 1 / length(side) * Vec3{side.x, side.y, 0};
     }
@@ -326,7 +327,7 @@ double TileTracer::resolve(const RayTile& tile, std::size_t lane) const {
     const std::uint32_t triangle = tile.triangle[lane];
     const double found = static_cast<double>(hits_.ray.tfar[lane]);
     if (tile.kind[lane] == SurfaceKind::Person) {
-        const BodyMeeting met =
+        const RayHit met =
             scene_.people.body(triangle).meet(tile.origin(lane), tile.direction(lane), min_depth_);
         return met.multiple < kInfinity ? met.multiple : found;
     }

@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "env/walls.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
 
@@ -92,8 +93,6 @@ Rgb TexturedFace::colorAt(Point3 place, Vec3 direction, const std::vector<Textur
 
 namespace {
 
-constexpr double kOn = 1e-6;
-
 /// The sides of an upright box, seen from outside; every second, or all.
 void addSides(const Prism& prism, std::size_t step, std::vector<TexturedFace>& faces) {
     const Polygon& p = prism.footprint;
@@ -102,14 +101,17 @@ void addSides(const Prism& prism, std::size_t step, std::vector<TexturedFace>& f
         faces.push_back({{p[i].x, p[i].y, prism.top},
                          {along.x, along.y, 0},
                          {0, 0, prism.bottom - prism.top},
-                         kOn});
+                         kCornerTolerance});
     }
 }
 
 /// A level rectangle given counter-clockwise from its lower left corner, seen from above.
 TexturedFace levelFace(Point2 low_left, Vec2 along, Vec2 across, double z) {
     const Point2 corner = low_left + across;
-    return {{corner.x, corner.y, z}, {along.x, along.y, 0}, {-across.x, -across.y, 0}, kOn};
+    return {{corner.x, corner.y, z},
+            {along.x, along.y, 0},
+            {-across.x, -across.y, 0},
+            kCornerTolerance};
 }
 
 std::vector<TexturedFace> wallFaces(const Record& record) {
@@ -120,7 +122,7 @@ std::vector<TexturedFace> wallFaces(const Record& record) {
         faces.push_back({{a.x, a.y, wall.top},
                          {b.x - a.x, b.y - a.y, 0},
                          {0, 0, wall.bottom - wall.top},
-                         wall.thickness / 2 + kOn});
+                         wall.thickness / 2 + kCornerTolerance});
     }
     return faces;
 }
