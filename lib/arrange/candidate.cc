@@ -21,6 +21,7 @@
 #include "coverage/plane_cells.h"
 #include "coverage/sector_cells.h"
 #include "geom/spatial_index.h"
+#include "geom/tolerance.h"
 #include "sense/scan.h"
 
 namespace ispace {
@@ -382,8 +383,7 @@ Laser withBeamStep(Laser laser, Angle step) {
         laser.beams = static_cast<int>(std::lround(turn / wanted));
         laser.step = Angle::degrees(turn / laser.beams);
     } else {
-        constexpr double kSlack = 1e-9;
-        laser.beams = static_cast<int>(std::floor(span / wanted + kSlack)) + 1;
+        laser.beams = static_cast<int>(std::floor(span / wanted + kStepTolerance)) + 1;
         laser.step = Angle::degrees(wanted);
     }
     return laser;

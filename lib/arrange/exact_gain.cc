@@ -30,18 +30,6 @@ struct Floor {
     Box2 box;
 };
 
-bool meet(const Box2& a, const Box2& b) {
-    return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
-}
-
-bool isVoid(const Box2& box) { return box.low.x > box.high.x || box.low.y > box.high.y; }
-
-/// An empty box lies in every box.
-bool holds(const Box2& outer, const Box2& inner) {
-    return isVoid(inner) || (outer.low.x <= inner.low.x && inner.high.x <= outer.high.x &&
-                             outer.low.y <= inner.low.y && inner.high.y <= outer.high.y);
-}
-
 Box2 grown(const Box2& box, double by) {
     return {{box.low.x - by, box.low.y - by}, {box.high.x + by, box.high.y + by}};
 }
@@ -156,16 +144,16 @@ struct ExactGain::Data {
     const std::vector<Floor>& floorsNear() {
         constexpr double kReach = 3;  // metres that a sensor may move before they are computed anew
         Surroundings& own = around[in_hand];
-        if (!own.floors.empty() && holds(own.box, near)) return own.floors;
+        if (!own.floors.empty() && own.box.contains(near)) return own.floors;
         own.box = grown(near, kReach);
-        if (holds(own.box, floor_box)) {
+        if (own.box.contains(floor_box)) {
             own.floors = floors;
             return own.floors;
         }
         own.floors.assign(floors.size(), {});
         for (std::size_t i = 0; i < floors.size(); ++i) {
             own.floors[i].weight = floors[i].weight;
-            if (!meet(floors[i].box, own.box)) continue;
+            if (!floors[i].box.meets(own.box)) continue;
             const std::vector<Layer> layers = {markLayer(floors[i].curves, 1),
                                                {.curves = {curveOf(cornersOf(own.box))}}};
             own.floors[i].curves = Overlay(layers).curves(
@@ -179,14 +167,14 @@ struct ExactGain::Data {
         constexpr double kReach = 0.6;  // metres; longer steps occur
         missing.clear();
         near = {};
-        if (isVoid(region)) return;
+        if (region.empty()) return;
         near = grown(region, kReach);
         std::vector<Layer> layers = {markLayer({curveOf(cornersOf(near))}, kNearMark)};
         addFloors(floorsNear(), layers);
         for (const View& view : standing)
-            if (meet(view.box, near)) layers.push_back(view.layer);
+            if (view.box.meets(near)) layers.push_back(view.layer);
         for (std::size_t i = 0; i < moving.size(); ++i)
-            if (i != in_hand && meet(moving[i].box, near)) layers.push_back(moving[i].layer);
+            if (i != in_hand && moving[i].box.meets(near)) layers.push_back(moving[i].layer);
         const Overlay overlay(layers);
         const bool is_receiver = isPartial(sensors[in_hand].model);
         for (std::size_t i = 0; i < floors.size(); ++i) {
@@ -268,7 +256,7 @@ std::vector<double> ExactGain::gains(std::span<const Pose3> poses) {
     Box2 all;
     for (const auto& view : views) {
         const Box2 box = common(view->box, data_->floor_box);
-        if (holds(data_->near, box)) continue;
+        if (data_->near.contains(box)) continue;
         all.add(box.low);
         all.add(box.high);
     }

@@ -16,6 +16,7 @@
 #include "base/random.h"
 #include "env/level.h"
 #include "geom/arrangement.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
 
@@ -174,8 +175,7 @@ namespace {
 int linesAlong(double extent, double max_range) {
     constexpr double kMax = 10000;
     // A room that is moved is no smaller because its corners round.
-    constexpr double kSlack = 1e-9;
-    const double lines = std::floor(extent / max_range * kSegments - 1 + kSlack);
+    const double lines = std::floor(extent / max_range * kSegments - 1 + kStepTolerance);
     return static_cast<int>(std::clamp(lines, 1.0, kMax));
 }
 

@@ -11,6 +11,7 @@
 #include "env/mesh.h"
 #include "geom/curve.h"
 #include "geom/polygon.h"
+#include "geom/tolerance.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -386,9 +387,6 @@ std::vector<Layer> Shadows::of(const ShadowBody& standing) const {
 
 namespace {
 
-/// Rays hit bodies within this distance, metres.
-constexpr double kAside = 1e-9;
-
 /// Computes the segment in which a triangle cuts the plane z = 0. The triangle is closed: one that
 /// only touches the plane with a side cuts it there; one in the plane is cut along its edge.
 std::optional<Segment2> cutOf(const std::vector<Vec3>& local,
@@ -419,12 +417,12 @@ std::vector<Segment2> cutsOf(std::span<const ShadowBody* const> bodies, const Fr
     const Vec2 reach{max_range, max_range};
     const Point2 foot = plane.origin.onFloor();
     for (const ShadowBody* const standing : bodies) {
-        if (!meets(standing->plan, {foot - reach, foot + reach})) continue;
+        if (!standing->plan.meets({foot - reach, foot + reach})) continue;
         const ShadowBody& body = seenFrom(plane.origin, *standing, memory);
         local.clear();
         for (const Point3& p : body.vertices) {
             Vec3 place = plane.toLocal(p);
-            if (std::fabs(place.z) <= kAside) place.z = 0;
+            if (std::fabs(place.z) <= kContactTolerance) place.z = 0;
             local.push_back(place);
         }
         for (const auto& [i, j, k] : body.triangles) {

@@ -11,6 +11,7 @@
 
 #include "coverage/shadow_bodies.h"
 #include "geom/overlay/overlay.h"
+#include "geom/tolerance.h"
 #include "geom/visibility/visibility.h"
 #include "scene/sensor/sensor.h"
 #include "sense/scan.h"
@@ -111,8 +112,7 @@ ConeCut coneOnPlane(Vec3 axis, Angle half, double drop, double reach) {
 CurveEdge arcThrough(Point2 a, Point2 middle, Point2 b) {
     const Vec2 m = middle - a, c = b - a;
     const double turn = cross(m, c);
-    constexpr double kStraight = 1e-9;  // metres between chord and arc
-    if (!(std::fabs(turn) > kStraight * length(c))) return {a, b};
+    if (!(std::fabs(turn) > kContactTolerance * length(c))) return {a, b};
     const double mm = dot(m, m), cc = dot(c, c);
     const Vec2 center{(c.y * mm - m.y * cc) / (2 * turn), (m.x * cc - c.x * mm) / (2 * turn)};
     const double radius = length(center);

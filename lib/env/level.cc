@@ -16,7 +16,7 @@ namespace {
 
 std::vector<Region> less(const Regions& indoor, std::vector<Polygon> solids) {
     const Box2 box = bounds(indoor);
-    std::erase_if(solids, [&box](const Polygon& solid) { return !meets(bounds(solid), box); });
+    std::erase_if(solids, [&box](const Polygon& solid) { return !bounds(solid).meets(box); });
     if (solids.empty()) return indoor.parts;
     return difference(indoor, solids);
 }

@@ -112,7 +112,7 @@ std::vector<Region> difference(const Region& region, std::span<const Polygon> so
     const EdgeTree walls({&region, 1});
     std::vector<std::size_t> clear;
     for (std::size_t i = 0; i < solids.size(); ++i) {
-        if (!meets(box, boxes[i])) continue;
+        if (!box.meets(boxes[i])) continue;
         if (is_alone[i] && !walls.meets(boxes[i]))
             clear.push_back(i);
         else

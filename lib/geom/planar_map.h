@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "geom/polygon.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
 
 /// End points nearer than this are one point, and an end point this near to another line lies
 /// on it: walls given by length and heading meet as drawn in spite of rounding.
-constexpr double kWeldDistance = 1e-6;
+constexpr double kWeldDistance = kCornerTolerance;
 
 /// The lines with nearby end points merged, split where an end point of another line touches them
 /// (within kWeldDistance); zero-length pieces are dropped. `source[i]` is the index of the line

@@ -111,7 +111,7 @@ struct Box2 {
     Point2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     Point2 high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 
-    [[nodiscard]] bool empty() const { return low.x > high.x; }
+    [[nodiscard]] bool empty() const { return low.x > high.x || low.y > high.y; }
     [[nodiscard]] double width() const { return high.x - low.x; }
     [[nodiscard]] double depth() const { return high.y - low.y; }
     [[nodiscard]] Point2 center() const {
@@ -120,6 +120,24 @@ struct Box2 {
     void add(Point2 p) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    /// Includes the boundary.
+    [[nodiscard]] bool contains(Point2 p) const {
+        return low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y;
+    }
+    /// True for an empty box, and for the box itself.
+    [[nodiscard]] bool contains(const Box2& other) const {
+        return other.empty() || (contains(other.low) && contains(other.high));
+    }
+    /// True if the closed boxes share a point; an empty box shares none.
+    [[nodiscard]] bool meets(const Box2& other) const {
+        return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y &&
+               other.low.y <= high.y;
+    }
+    /// True if the interiors share a point.
+    [[nodiscard]] bool overlaps(const Box2& other) const {
+        return low.x < other.high.x && other.low.x < high.x && low.y < other.high.y &&
+               other.low.y < high.y;
     }
     friend bool operator==(const Box2&, const Box2&) = default;
 };

@@ -141,11 +141,6 @@ void SegmentGrid::forEachCellOf(const Segment2& segment, Visit visit) const {
     }
 }
 
-/// True if the closed boxes share a point; an empty box shares none.
-inline bool meets(const Box2& a, const Box2& b) {
-    return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
-}
-
 /// Finds the boxes that meet a window: a binary tree of bounding boxes over their centres, halved
 /// across the longer side. O(n log n) to build.
 class BoxTree {
@@ -185,14 +180,14 @@ void BoxTree::search(const Box2& window, Visit visit) const {
     while (count > 0) {
         const std::uint32_t at = open[--count];
         const Node& node = nodes_[at];
-        if (!meets(node.box, window)) continue;
+        if (!node.box.meets(window)) continue;
         if (node.right != 0) {
             open[count++] = node.right;
             open[count++] = at + 1;
             continue;
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-            if (meets(items_[i].box, window)) visit(std::size_t{items_[i].index});
+            if (items_[i].box.meets(window)) visit(std::size_t{items_[i].index});
     }
 }
 

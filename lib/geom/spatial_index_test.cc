@@ -57,7 +57,7 @@ TEST(BoxTree, FindsWhatALookAtAllFinds) {
             const Box2 window = any();
             std::vector<std::size_t> expected;
             for (std::size_t k = 0; k < boxes.size(); ++k)
-                if (meets(boxes[k], window)) expected.push_back(k);
+                if (boxes[k].meets(window)) expected.push_back(k);
             EXPECT_EQ(found(tree, window), expected);
         }
     }

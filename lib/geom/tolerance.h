@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tolerances that several sources share: bounds of the rounding errors of equal values.
+// The tolerances, each with its reason: bounds of the rounding errors of equal values. Constants
+// that belong to one algorithm, such as its largest step, stand beside it.
 #pragma once
 
 namespace ispace {
@@ -10,10 +11,18 @@ namespace ispace {
 /// chords this near touch, or coincide.
 inline constexpr double kContactTolerance = 1e-9;
 
+/// Files and layouts give corners to the micrometre: those this near are one, and walls or things
+/// that overlap by less lie side by side.
+inline constexpr double kCornerTolerance = 1e-6;
+
 // Numbers without unit.
 
 /// Rounding of unit vectors, cosines and sines.
 inline constexpr double kUnitTolerance = 1e-12;
+/// Components across its axis that an upright direction of a file may have.
+inline constexpr double kUprightTolerance = 1e-6;
+/// Rounding of distances to float32, as a share, with some of its own.
+inline constexpr double kFloatTolerance = 1e-6;
 /// Quotients of decimals such as 0.3 / 0.1, counted in whole steps.
 inline constexpr double kStepTolerance = 1e-9;
 

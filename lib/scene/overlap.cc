@@ -56,12 +56,12 @@ std::optional<double> leastDepth(const Polygon& edges, const Polygon& a, const P
         const Vec2 normal = 1 / extent * perpendicular(side), back = -1 * normal;
         least = std::min({least, a_there.reach(normal) + b_back.reach(back),
                           b_there.reach(normal) + a_back.reach(back)});
-        if (least <= kTouching) return std::nullopt;
+        if (least <= kCornerTolerance) return std::nullopt;
     }
     return least;
 }
 
-/// Clips a line to the part that lies deeper than kTouching in a convex polygon.
+/// Clips a line to the part that lies deeper than kCornerTolerance in a convex polygon.
 std::optional<Segment2> pieceWithin(const Segment2& line, const Polygon& convex) {
     const Vec2 along = line.b - line.a;
     double from = 0, to = 1;
@@ -69,7 +69,7 @@ std::optional<Segment2> pieceWithin(const Segment2& line, const Polygon& convex)
         const Point2 a = convex[i], b = convex[i + 1 == convex.size() ? 0 : i + 1];
         const double extent = distance(a, b);
         if (extent == 0) continue;
-        const double start = cross(b - a, line.a - a) / extent - kTouching;
+        const double start = cross(b - a, line.a - a) / extent - kCornerTolerance;
         const double rise = cross(b - a, along) / extent;
         if (rise == 0) {
             if (start < 0) return std::nullopt;
@@ -79,7 +79,7 @@ std::optional<Segment2> pieceWithin(const Segment2& line, const Polygon& convex)
             to = std::min(to, -start / rise);
         }
     }
-    if ((to - from) * length(along) <= kTouching) return std::nullopt;
+    if ((to - from) * length(along) <= kCornerTolerance) return std::nullopt;
     return Segment2{line.a + from * along, line.a + to * along};
 }
 
@@ -91,7 +91,7 @@ std::vector<double> meetings(const Segment2& line, const Polygon& polygon) {
     const Box2 box = bounds(line);
     std::vector<double> at{0, 1};
     forEachEdge(polygon, [&](const Segment2& edge) {
-        if (!meets(bounds(edge), box)) return;
+        if (!bounds(edge).meets(box)) return;
         const Vec2 other = edge.b - edge.a;
         const double turn = cross(along, other);
         if (turn == 0) {
@@ -111,7 +111,8 @@ std::optional<Point2> placeBeside(const Polygon& a, const Polygon& b) {
     for (std::size_t i = 0; i < a.size() && i < 8; ++i) {
         const Point2 p = a[i], q = a[i + 1 == a.size() ? 0 : i + 1];
         const Point2 beside = p + 0.5 * (q - p) + kBeside * perpendicular(q - p);
-        if (containsWithMargin(a, beside, kTouching) && containsWithMargin(b, beside, kTouching))
+        if (containsWithMargin(a, beside, kCornerTolerance) &&
+            containsWithMargin(b, beside, kCornerTolerance))
             return beside;
     }
     return std::nullopt;
@@ -121,7 +122,7 @@ std::optional<Point2> edgeWithin(const Polygon& a, const Polygon& b) {
     const Box2 box = bounds(b);
     std::optional<Point2> place;
     forEachEdge(a, [&](const Segment2& edge) {
-        if (!place && meets(bounds(edge), box)) place = placeWithin(edge, b);
+        if (!place && bounds(edge).meets(box)) place = placeWithin(edge, b);
     });
     return place;
 }
@@ -131,7 +132,7 @@ std::optional<Point2> edgeWithin(const Polygon& a, const Polygon& b) {
 std::optional<Overlap> overlapOf(const Polygon& a, const Polygon& b) {
     // Separate elements are mostly separated along the line between their middles.
     const Vec2 way = middleOf(b) - middleOf(a);
-    if (length(way) > 0 && depthAlong(a, b, 1 / length(way) * way) <= kTouching)
+    if (length(way) > 0 && depthAlong(a, b, 1 / length(way) * way) <= kCornerTolerance)
         return std::nullopt;
     const double most = std::numeric_limits<double>::infinity();
     const auto first = leastDepth(a, a, b, most);
@@ -154,9 +155,9 @@ std::optional<Point2> placeWithin(const Segment2& line, const Polygon& polygon) 
     const std::vector<double> at = meetings(line, polygon);
     const double extent = distance(line.a, line.b);
     for (std::size_t i = 1; i < at.size(); ++i) {
-        if ((at[i] - at[i - 1]) * extent <= kTouching) continue;
+        if ((at[i] - at[i - 1]) * extent <= kCornerTolerance) continue;
         const Point2 middle = line.a + (at[i - 1] + at[i]) / 2 * (line.b - line.a);
-        if (containsWithMargin(polygon, middle, kTouching)) return middle;
+        if (containsWithMargin(polygon, middle, kCornerTolerance)) return middle;
     }
     return std::nullopt;
 }
@@ -166,13 +167,13 @@ std::optional<Point2> sharedPlace(const Slice& cut, const Polygon& convex) {
     std::optional<Point2> place;
     if (convex.size() == 2) {
         for (const Polygon& solid : cut.solids) {
-            if (!place && meets(bounds(solid), box))
+            if (!place && bounds(solid).meets(box))
                 place = placeWithin({convex[0], convex[1]}, solid);
         }
         return place;
     }
     cut.forEachLine([&](const Segment2& line) {
-        if (place || !meets(bounds(line), box)) return;
+        if (place || !bounds(line).meets(box)) return;
         if (const auto piece = pieceWithin(line, convex)) place = middleOf({piece->a, piece->b});
     });
     // No line of the cut enters the polygon: it lies wholly in a solid, or outside all.
@@ -184,7 +185,7 @@ std::optional<Point2> sharedPlace(const Slice& cut, const Polygon& convex) {
 std::optional<Point2> sharedPlace(const Slice& a, const Slice& b) {
     for (const Polygon& s : a.solids)
         for (const Polygon& t : b.solids) {
-            if (!meets(bounds(s), bounds(t))) continue;
+            if (!bounds(s).meets(bounds(t))) continue;
             if (auto place = edgeWithin(s, t)) return place;
             if (auto place = edgeWithin(t, s)) return place;
             if (auto place = placeBeside(s, t)) return place;
@@ -192,7 +193,7 @@ std::optional<Point2> sharedPlace(const Slice& a, const Slice& b) {
     for (const auto& [sheets, solids] : {std::pair(&a.sheets, &b.solids), {&b.sheets, &a.solids}})
         for (const Segment2& line : *sheets)
             for (const Polygon& solid : *solids)
-                if (meets(bounds(line), bounds(solid)))
+                if (bounds(line).meets(bounds(solid)))
                     if (auto place = placeWithin(line, solid)) return place;
     return std::nullopt;
 }

@@ -13,12 +13,9 @@
 #include "env/slice.h"
 #include "geom/polygon.h"
 #include "geom/spatial_index.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
-
-/// Permitted overlap in metres: elements written side by side still touch after rounding, as wall
-/// ends this near are welded.
-constexpr double kTouching = 1e-6;
 
 /// The overlap of two shapes: its depth and the middle of the shared area.
 struct Overlap {
@@ -54,8 +51,8 @@ struct Part {
 /// Heights that two elements share.
 struct HeightRange {
     double bottom = 0, top = 0;
-    /// Returns true if the range is higher than kTouching.
-    [[nodiscard]] bool isShared() const { return top - bottom > kTouching; }
+    /// Returns true if the range is higher than kCornerTolerance.
+    [[nodiscard]] bool isShared() const { return top - bottom > kCornerTolerance; }
 };
 
 template <typename A, typename B>

@@ -63,7 +63,7 @@ Watcher watcherOf(const Sensor& sensor, const std::vector<Pose2>& people, double
     // A counter-clockwise sweep adds its whole angle to the first bearing.
     if (laser != nullptr) watcher.window.emplace(*laser, laser->sweptSpan() - laser->span());
     const double range = laser != nullptr ? laser->max_range : watcher.view.value().farthest();
-    watcher.reach = range * (1 + kFarSlack) + kRayEpsilon;
+    watcher.reach = range * (1 + kFloatTolerance) + kRayEpsilon;
     watcher.together = kindOf(sensor.model).together;
     if (sensor.mount)
         watcher.from_carrier = sensor.mount->robot_from_sensor;
@@ -127,7 +127,7 @@ bool DetectionMonitor::Data::scans(const Watcher& watcher, const Pose3& pose, Po
     direction.set(0, {way.x / distance, way.y / distance, 0});
     std::array<float, 1> range = {kNoReturn};
     worlds.at(pose).cast(pose.position, direction, distance, range);
-    return static_cast<double>(range[0]) >= distance * (1 - kFarSlack) - kRayEpsilon;
+    return static_cast<double>(range[0]) >= distance * (1 - kFloatTolerance) - kRayEpsilon;
 }
 
 /// True if a scan in a plane that is not level crosses the floor at the point.

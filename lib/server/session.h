@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // One client's session, and functions shared by the requests of all roles. Private to
+// One client's session, and functions shared by the requests of all roles. Private to
 // lib/server.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Requests for the token, changes of the world, and events.
+// Requests for the token, changes of the world, and events.
 #include <algorithm>
 #include <chrono>
 #include <string>

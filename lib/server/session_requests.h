@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Requests that change the world. Private to lib/server.
+// Requests that change the world. Private to lib/server.
 #pragma once
 
 #include <memory>

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "geom/predicates.h"
+#include "geom/tolerance.h"
 #include "trace/moving_bodies.h"
 
 namespace ispace {
@@ -125,7 +126,7 @@ std::optional<std::size_t> Obstacles::find(Point2 p, double reach, Test test) co
 }
 
 std::optional<std::size_t> Obstacles::overlap(Point2 center, double radius) const {
-    const double allowed = radius - kTouch;
+    const double allowed = radius - kContactTolerance;
     if (const auto owner = find(center, allowed, [&](const Segment2& line) {
             return distance(center, line) < allowed;
         }))
@@ -177,7 +178,7 @@ bool Obstacles::near(const Segment2& way, double distance) const {
 }
 
 std::optional<std::size_t> Obstacles::stop(const Segment2& way, double radius) const {
-    const double allowed = radius - kTouch;
+    const double allowed = radius - kContactTolerance;
     const double reach = allowed + distance(way.a, way.b);
     return find(way.a, reach, [&](const Segment2& line) {
         const double start = distance(way.a, line);
@@ -189,11 +190,10 @@ std::optional<std::size_t> Obstacles::stop(const Segment2& way, double radius) c
 
 void Vicinity::find(const Obstacles& obstacles, Point2 p, double reach) {
     constexpr double kMore = 0.4;  // metres
-    constexpr double kSlack = 1e-6;
     middle_ = p;
     reach_ = reach + kMore;
     lines_.clear();
-    obstacles.findAbout(p, reach_ + kSlack, lines_);
+    obstacles.findAbout(p, reach_ + kCornerTolerance, lines_);
 }
 
 Point2 Move::place(int part) const {
@@ -210,7 +210,8 @@ void Move::cancel() {
 }
 
 std::optional<std::size_t> collides(const Move& move, const Obstacles& obstacles) {
-    if (!obstacles.near(move.chord(), move.radius - kTouch + move.to.bulge)) return std::nullopt;
+    if (!obstacles.near(move.chord(), move.radius - kContactTolerance + move.to.bulge))
+        return std::nullopt;
     if (move.to.bulge == 0) return obstacles.stop(move.chord(), move.radius);
     Point2 last = move.start();
     for (int part = 1; part <= Move::kParts; ++part) {
@@ -222,7 +223,7 @@ std::optional<std::size_t> collides(const Move& move, const Obstacles& obstacles
 }
 
 bool collides(const Move& move, const Move& other, bool other_moves) {
-    const double reach = move.radius + other.radius - kTouch;
+    const double reach = move.radius + other.radius - kContactTolerance;
     const Point2 other_end = other_moves ? other.end() : other.start();
     const RelativeWay way{move.start() - other.start(), move.end() - other_end};
     const double lag = move.to.lag + (other_moves ? other.to.lag : 0);
@@ -304,7 +305,7 @@ class Neighbours {
         std::size_t first = end;
         grid_.forEachNear({place - margin, place + margin}, [&](std::size_t other) {
             if (other >= begin && other < first &&
-                apart(i, other) < radius + movers_[other].model.radius - kTouch)
+                apart(i, other) < radius + movers_[other].model.radius - kContactTolerance)
                 first = other;
         });
         return first < end ? std::optional(first) : std::nullopt;

@@ -17,15 +17,12 @@
 #include "env/slice.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
+#include "geom/tolerance.h"
 #include "sim/motion.h"
 #include "sim/mover.h"
 #include "trace/moving_bodies.h"
 
 namespace ispace {
-
-/// Tolerated overlap of circles and bodies in metres: touching is allowed, and this absorbs
-/// rounding.
-constexpr double kTouch = 1e-9;
 
 /// Returns the distance between two closed segments, 0 if they share a point, with rounding errors.
 double distance(const Segment2& s, const Segment2& t);

@@ -31,10 +31,6 @@ constexpr SimTime kLookEvery = std::chrono::milliseconds(100);
 constexpr std::array<std::string_view, kEventKinds> kEventNames = {
     "collision", "stall", "enter", "leave", "mat", "gate", "seen", "lost", "mark", "change"};
 
-bool isIn(const Box2& box, Point2 p) {
-    return box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y;
-}
-
 }  // namespace
 
 std::string_view nameOf(EventKind kind) { return kEventNames[static_cast<std::size_t>(kind)]; }
@@ -176,7 +172,7 @@ void EventLog::Data::tellZones() {
         walker.place = place;
         for (std::size_t k = 0; k < zones.size(); ++k) {
             const bool is_in =
-                isIn(zones[k].box, place) && locate(zones[k].outline, place) != Side::Outside;
+                zones[k].box.contains(place) && locate(zones[k].outline, place) != Side::Outside;
             if (is_in == walker.in[k]) continue;
             walker.in[k] = is_in;
             Event event{.kind = is_in ? EventKind::Enter : EventKind::Leave,

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "geom/tolerance.h"
+
 namespace ispace {
 
 FrictionMap::FrictionMap(const Environment& environment) {
@@ -38,8 +40,6 @@ namespace {
 
 /// Seconds: moments closer than this count as one.
 constexpr double kInstant = 1e-13;
-/// A braking distance that misses its goal by this share is exact up to rounding.
-constexpr double kStopTolerance = 1e-12;
 /// A piece of quadrature turns by at most so many radians, and its rate changes at most so much
 /// (square root of the radians that makes): five points are then accurate to 1e-14 of the way. So
 /// are three if it turns little, as in most steps.
@@ -86,7 +86,7 @@ Profile distanceProfile(const Axis& axis, const AxisLimits& limits) {
     double left = axis.goal.value, speed = axis.speed;
     Profile profile(speed);
     const double to_rest = speed * std::abs(speed) / (2 * accel);
-    const double slack = kStopTolerance * std::max({1.0, std::abs(left), std::abs(to_rest)});
+    const double slack = kUnitTolerance * std::max({1.0, std::abs(left), std::abs(to_rest)});
     if (std::abs(left - to_rest) <= slack) {
         profile.rampTo(0, accel);
         profile.hold(kForever);

@@ -165,7 +165,8 @@ std::vector<bool> pressedBumpers(
     const std::function<double(Point2 place, double farthest)>& nearest) {
     constexpr double kStep = 0.25;  // degrees
     // Half the distance between two points on the rim, plus rounding.
-    const double slack = 0.5 * kStep * std::numbers::pi / 180 * model.radius + 2 * kTouch;
+    const double slack =
+        0.5 * kStep * std::numbers::pi / 180 * model.radius + 2 * kContactTolerance;
     std::vector<bool> pressed;
     for (const Bumper& bumper : model.bumpers) {
         const double from = bumper.from.degrees(), to = bumper.to.degrees();

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "geom/tolerance.h"
 #include "record/record.h"
 #include "scene/robot.h"
 #include "scene/sensor/sensor.h"
@@ -227,7 +228,6 @@ void World::Data::end(std::size_t mover, Outcome outcome) {
 }
 
 double World::Data::longestStep() const {
-    constexpr double kSlack = 1e-9;
     double fastest = 0;
     for (std::size_t i = 0; i < movers.size(); ++i) {
         const RobotModel& model = movers[i].model;
@@ -235,7 +235,7 @@ double World::Data::longestStep() const {
         const double aside = std::max(std::abs(motions[i].side.speed), model.max_sidespeed);
         fastest = std::max(fastest, ahead + aside);
     }
-    return fastest * seconds(step_length) * (1 + kSlack) + kSlack;
+    return fastest * seconds(step_length) * (1 + kStepTolerance) + kStepTolerance;
 }
 
 std::unordered_map<std::string_view, Pose2> World::Data::places() const {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "geom/tolerance.h"
 #include "sim/world_state.h"
 
 namespace ispace {
@@ -18,8 +19,6 @@ namespace {
 constexpr double kLookout = 1;
 /// Movers that one thread proposes for: fewer are done before other threads have begun.
 constexpr std::size_t kTogether = 64;
-/// Metres by which rounding may reduce the distance of two movers.
-constexpr double kRounding = 1e-9;
 
 }  // namespace
 
@@ -90,7 +89,8 @@ std::optional<std::size_t> World::Data::elementAhead(std::size_t mover) {
     if (move.to.path == 0) return std::nullopt;
     if (state.clearance < move.to.path) {
         const double around = move.radius + kLookout;
-        state.clearance = state.obstacles->nearest(move.start(), around) - move.radius - kTouch;
+        state.clearance =
+            state.obstacles->nearest(move.start(), around) - move.radius - kContactTolerance;
         if (state.clearance < move.to.path) {
             if (const auto element = collides(move, *state.obstacles)) return element;
         }
@@ -124,7 +124,7 @@ bool World::Data::mayMeet(std::size_t mover) {
                             if (other == mover || may_meet) return;
                             const Move& its = moves[other];
                             room = std::min(room, distance(move.start(), traffic.place(other)) -
-                                                      move.radius - its.radius - kRounding);
+                                                      move.radius - its.radius - kContactTolerance);
                             if (room < 2 * both)
                                 may_meet = collides(move, its, true) || collides(move, its, false);
                         });

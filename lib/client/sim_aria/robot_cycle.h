@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Implementation of ArRobot: connecting, the cycle, commands. Part of sim_aria/robot.h.
+// Implementation of ArRobot: connecting, the cycle, commands. Part of sim_aria/robot.h.
 #ifndef SIM_ARIA_ROBOT_CYCLE_H
 #define SIM_ARIA_ROBOT_CYCLE_H
 

@@ -20,6 +20,7 @@
 #include "geom/arrangement.h"
 #include "geom/point.h"
 #include "geom/predicates.h"
+#include "geom/tolerance.h"
 #include "raster/contour.h"
 #include "raster/grid.h"
 
@@ -91,16 +92,12 @@ std::vector<Polygon> inscribedSolids(const Slice& slice) {
 
 namespace {
 
-/// Equal corners of bodies differ by round-off after rotation; a micrometre below a board is
-/// invisible.
-constexpr double kUnseen = 1e-6;
-
 /// Maximum number of triangles that are united exactly, which takes some milliseconds.
 constexpr std::size_t kMaxExact = 200;
 /// Cells along the longer side of a larger mesh.
 constexpr int kCells = 500;
 
-/// A convex polygon, widened by kUnseen.
+/// A convex polygon, widened by kCornerTolerance.
 class Cover {
   public:
     /// Computes the half-planes. \pre the polygon is convex
@@ -108,7 +105,7 @@ class Cover {
         sides_.reserve(convex.size());
         forEachEdge(convex, [this](const Segment2& edge) {
             const Vec2 along = edge.b - edge.a;
-            sides_.push_back({edge.a, along, -kUnseen * length(along)});
+            sides_.push_back({edge.a, along, -kCornerTolerance * length(along)});
         });
     }
 
@@ -171,7 +168,7 @@ std::vector<Polygon> rasterOutline(const std::vector<Polygon>& triangles) {
     for (const Polygon& triangle : triangles)
         for (const Point2 p : triangle) box.add(p);
     const double side = std::max(box.width(), box.depth());
-    if (!(side > kUnseen)) return {};
+    if (!(side > kCornerTolerance)) return {};
     const double size = side / kCells;
     const Grid grid =
         gridOf(box.low - Vec2{2 * size, 2 * size}, size, static_cast<int>(box.width() / size) + 5,
@@ -278,8 +275,7 @@ std::vector<Region> regionsOf(std::vector<Polygon> curves) {
         Piece* best = nullptr;
         for (Piece& piece : pieces) {
             if (piece.area <= area || (best != nullptr && piece.area >= best->area) ||
-                piece.box.low.x > box.low.x || piece.box.low.y > box.low.y ||
-                piece.box.high.x < box.high.x || piece.box.high.y < box.high.y)
+                !piece.box.contains(box))
                 continue;
             if (std::none_of(hole.begin(), hole.end(), [&](Point2 p) {
                     return locate(piece.region.outline, p) == Side::Outside;

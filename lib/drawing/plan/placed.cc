@@ -15,15 +15,6 @@ namespace ispace {
 
 namespace {
 
-bool overlap(const Box2& a, const Box2& b) {
-    return a.low.x < b.high.x && b.low.x < a.high.x && a.low.y < b.high.y && b.low.y < a.high.y;
-}
-
-bool contains(const Box2& outer, const Box2& inner) {
-    return outer.low.x <= inner.low.x && inner.high.x <= outer.high.x &&
-           outer.low.y <= inner.low.y && inner.high.y <= outer.high.y;
-}
-
 Box2 boxAround(Point2 p, double half_width, double half_height) {
     return {{p.x - half_width, p.y - half_height}, {p.x + half_width, p.y + half_height}};
 }
@@ -142,9 +133,9 @@ bool LabelPlacer::take(const Box2& box) {
 }
 
 double LabelPlacer::costOf(const Box2& box) const {
-    double cost = contains(frame_, box) ? 0 : 100;
-    for (const Box2& label : labels_) cost += overlap(label, box) ? 100 : 0;
-    for (const Box2& mark : marks_) cost += overlap(mark, box) ? 5 : 0;
+    double cost = frame_.contains(box) ? 0 : 100;
+    for (const Box2& label : labels_) cost += label.overlaps(box) ? 100 : 0;
+    for (const Box2& mark : marks_) cost += mark.overlaps(box) ? 5 : 0;
     return cost;
 }
 

@@ -12,6 +12,7 @@
 
 #include "geom/overlay/overlay_lattice.h"
 #include "geom/overlay/overlay_strips.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
 
@@ -86,17 +87,13 @@ struct ChordCurves {
         }
     }
 
-    /// Circles this near to each other are one: equal centres computed in two ways (on a robot, and
-    /// written). Else chords that coincide on the lattice would belong to two circles.
-    static constexpr double kSameCircle = 1e-9;
-
     Index circleOf(const Circle& circle) {
-        const auto first = known_.lower_bound(circle.center.x - kSameCircle);
-        for (auto it = first; it != known_.end() && it->first <= circle.center.x + kSameCircle;
-             ++it) {
+        const auto first = known_.lower_bound(circle.center.x - kContactTolerance);
+        for (auto it = first;
+             it != known_.end() && it->first <= circle.center.x + kContactTolerance; ++it) {
             const Circle& other = circles[it->second];
-            if (std::abs(other.center.y - circle.center.y) <= kSameCircle &&
-                std::abs(other.radius - circle.radius) <= kSameCircle)
+            if (std::abs(other.center.y - circle.center.y) <= kContactTolerance &&
+                std::abs(other.radius - circle.radius) <= kContactTolerance)
                 return it->second;
         }
         known_.emplace(circle.center.x, static_cast<Index>(circles.size()));

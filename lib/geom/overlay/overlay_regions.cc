@@ -10,6 +10,7 @@
 #include "geom/arrangement.h"
 #include "geom/overlay/overlay_lattice.h"
 #include "geom/predicates.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
 
@@ -87,7 +88,6 @@ class ArcTable {
     /// An arc that was cut has its end on a chord: from there on to the circle, so that the area is
     /// that of Overlay::Edge::bulge.
     static Curve withEndsOnCircles(const Curve& curve) {
-        constexpr double kNear = 1e-9;  // metres
         Curve out;
         out.reserve(curve.size());
         for (const CurveEdge& edge : curve) {
@@ -98,7 +98,7 @@ class ArcTable {
             const auto on_circle = [&edge](Point2 p) {
                 const Vec2 way = p - edge.center;
                 const Point2 q = edge.center + (std::abs(edge.radius) / length(way)) * way;
-                return distance(p, q) > kNear ? q : p;
+                return distance(p, q) > kContactTolerance ? q : p;
             };
             const Point2 from = on_circle(edge.from), to = on_circle(edge.to);
             if (from != edge.from) out.push_back({edge.from, from});

@@ -66,12 +66,8 @@ class ThinFaces {
         for (const Region& face : faces_) boxes_.push_back(bounds(face.outline));
     }
     [[nodiscard]] std::optional<std::size_t> around(Point2 p) const {
-        for (std::size_t i = 0; i < faces_.size(); ++i) {
-            const Box2& box = boxes_[i];
-            if (p.x >= box.low.x && p.x <= box.high.x && p.y >= box.low.y && p.y <= box.high.y &&
-                faces_[i].locate(p) == Side::Inside)
-                return i;
-        }
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            if (boxes_[i].contains(p) && faces_[i].locate(p) == Side::Inside) return i;
         return std::nullopt;
     }
     [[nodiscard]] const Region& at(std::size_t face) const { return faces_[face]; }

@@ -9,6 +9,7 @@
 #include "geom/arrangement.h"
 #include "geom/overlay/overlay.h"
 #include "geom/predicates.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
 
@@ -310,8 +311,7 @@ std::vector<Region> areaOf(const BuildingSection& section) {
 }
 
 std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey) {
-    constexpr double kSameCut = 1e-6;
-    const double cut = building.storeys[storey].cut - kSameCut;
+    const double cut = building.storeys[storey].cut - kCornerTolerance;
     const auto first =
         std::lower_bound(building.storeys.begin(), building.storeys.end(), cut,
                          [](const BuildingStorey& s, double height) { return s.cut < height; });

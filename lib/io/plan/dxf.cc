@@ -14,6 +14,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "env/environment.h"
+#include "geom/tolerance.h"
 #include "io/importers.h"
 #include "io/plan/dxf_drawing.h"
 #include "io/plan/line_plan.h"
@@ -31,9 +32,6 @@ using MissingBlocks = std::map<std::string, std::size_t>;
 constexpr double kMinBulge = 1e-9, kMaxBulge = 1e4;
 
 constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
-
-/// Ends of a spline this near, in metres, make it closed.
-constexpr double kSameEnd = 1e-6;
 
 /// The drawing in metres with all inserts of blocks expanded, entities on layer 0 of a block on the
 /// layer of its insert. Each insert, entity and point spends from the budget; shapes on unused
@@ -231,7 +229,7 @@ class Expander {
         Polygon& points = shape_.path.points;
         points = splinePoints(spline, budget_.left());
         spend(entity, points.size());
-        shape_.path.closed = distance(points.front(), points.back()) <= kSameEnd;
+        shape_.path.closed = distance(points.front(), points.back()) <= kCornerTolerance;
         if (shape_.path.closed) points.pop_back();
     }
 

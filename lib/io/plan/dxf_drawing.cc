@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "geom/tolerance.h"
 #include "io/importers.h"
 #include "record/text.h"
 
@@ -60,9 +61,6 @@ class GroupReader {
 
 constexpr std::size_t kMaxName = 255;
 constexpr double kMaxDxfNumber = 1e12;  // of any number that counts: drawings end far below
-
-/// A normal this near to the z axis is upright.
-constexpr double kUpright = 1e-6;
 
 /// Flags of LAYER, of POLYLINE, and of VERTEX: a point of the frame that a curve was fitted to.
 constexpr int kFrozen = 1, kClosed = 1, kPolyline3d = 8, kMesh = 16 + 64, kFrameVertex = 16;
@@ -327,7 +325,7 @@ class DxfReader {
     [[nodiscard]] std::optional<int> side() const {
         const double x = entity_.number(210), y = entity_.number(220);
         const double z = entity_.number(230, 1);
-        if (z == 0 || std::hypot(x, y) > kUpright * std::abs(z)) return std::nullopt;
+        if (z == 0 || std::hypot(x, y) > kUprightTolerance * std::abs(z)) return std::nullopt;
         return z > 0 ? 1 : -1;
     }
 

@@ -9,6 +9,7 @@
 
 #include "drawing/plan/plan_json.h"
 #include "geom/pose.h"
+#include "geom/tolerance.h"
 #include "io/plan/dxf_drawing.h"
 
 namespace ispace {
@@ -23,9 +24,6 @@ struct Footprint {
     bool is_round = false;
     bool is_exact = true;
 };
-
-/// Tolerance for corners of a rectangle or an ellipse, in metres.
-constexpr double kNear = 1e-6;
 
 Footprint boxAlong(const Polygon& polygon, Vec2 along) {
     const Vec2 x = 1 / length(along) * along, y = perpendicular(x);
@@ -51,8 +49,8 @@ Footprint boxAround(const Polygon& polygon) {
         least = box.length * box.width;
         best = box;
     });
-    best.is_exact =
-        std::abs(std::abs(signedArea(polygon)) - least) <= kNear * (best.length + best.width);
+    best.is_exact = std::abs(std::abs(signedArea(polygon)) - least) <=
+                    kCornerTolerance * (best.length + best.width);
     return best;
 }
 
@@ -66,7 +64,8 @@ bool findEllipse(const Polygon& polygon, Footprint& out) {
     for (std::size_t i = 0; i < corners; ++i) {
         const double t =
             2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(corners);
-        if (distance(polygon[i], center + std::cos(t) * a + std::sin(t) * b) > kNear) return false;
+        if (distance(polygon[i], center + std::cos(t) * a + std::sin(t) * b) > kCornerTolerance)
+            return false;
     }
     // The polygon is drawn around the ellipse with the same area.
     const double step = 2 * std::numbers::pi / static_cast<double>(corners);

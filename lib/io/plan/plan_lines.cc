@@ -12,6 +12,7 @@
 #include "geom/planar_map.h"
 #include "geom/point_map.h"
 #include "geom/predicates.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
 
@@ -52,9 +53,6 @@ std::vector<std::size_t> NearSegments::near(const Box2& box, double reach) const
 }
 
 namespace {
-
-/// Points are whole micrometres: a smaller reach joins no points.
-constexpr double kMinSnap = 1e-6;
 
 /// Finds the representative of each point: the nearest earlier one within reach, else itself.
 class PointWelder {
@@ -269,7 +267,7 @@ Box2 boundsOf(std::span<const Segment2> lines) {
 }
 
 std::vector<PlanPath> snapped(std::vector<PlanPath> paths, double snap) {
-    if (snap < kMinSnap) snap = 0;
+    if (snap < kCornerTolerance) snap = 0;
     PointWelder welder(snap);
     for (PlanPath& path : paths)
         for (Point2& p : path.points) p = welder.standing(wholeMicrometres(p));

@@ -37,10 +37,6 @@ constexpr std::array<double, 3> kSharesInside{0.01, 0.501, 0.99};
 constexpr double kManyCrossings = 20;
 constexpr double kFewCrossings = 200'000;
 
-bool contains(const Box2& box, Point2 p) {
-    return box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y;
-}
-
 Point2 middleOf(const Segment2& s) { return s.a + 0.5 * (s.b - s.a); }
 
 /// The part of `line` that lies on `other`, if it is longer than a point.
@@ -263,7 +259,7 @@ void PlanFaces::makeGroups(std::span<const Segment2> doors) {
 
 std::optional<std::size_t> PlanFaces::faceAt(Point2 p) const {
     for (std::size_t i = 0; i < faces_.size(); ++i)
-        if (contains(boxes_[i], p) && faces_[i].locate(p) == Side::Inside) return i;
+        if (boxes_[i].contains(p) && faces_[i].locate(p) == Side::Inside) return i;
     return std::nullopt;
 }
 

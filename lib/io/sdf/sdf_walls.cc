@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/tolerance.h"
 #include "io/sdf/sdf_import.h"
 
 #include <algorithm>
@@ -23,7 +24,6 @@ namespace ispace {
 
 namespace {
 
-constexpr double kUpright = 1e-6;   // of a unit vector, how far an axis may lean
 constexpr double kRoundTurn = 1e9;  // steps a degree
 
 // Limits of a box that counts as a wall: metres, and multiples of its thickness.
@@ -91,7 +91,9 @@ bool isAtEdge(const SdfMeshCut& cut, const PlanRooms& rooms) {
 
 }  // namespace
 
-bool isUpright(const Eigen::Vector3d& axis) { return std::hypot(axis.x(), axis.y()) <= kUpright; }
+bool isUpright(const Eigen::Vector3d& axis) {
+    return std::hypot(axis.x(), axis.y()) <= kUprightTolerance;
+}
 
 Angle headingOf(const Eigen::Vector3d& axis) {
     const double degrees = directionOf(axis.x(), axis.y()).degrees();
@@ -145,7 +147,7 @@ bool isWall(const SdfBlock& block, std::optional<double> cut) {
 SdfWall wallOf(const SdfBlock& block) {
     const Vec2 half = block.length / 2 * unitVector(block.heading);
     // Sheets that this program wrote are such again.
-    const bool is_sheet = block.width <= kSheetThickness * (1 + kUpright);
+    const bool is_sheet = block.width <= kSheetThickness * (1 + kUprightTolerance);
     return {{{{block.center - half, block.center + half}, false, block.line}},
             is_sheet ? 0 : block.width,
             block.top,

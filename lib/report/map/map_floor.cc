@@ -36,11 +36,6 @@ std::array<HalfPlane, 4> sidesOf(const Box2& box) {
             HalfPlane{false, true, box.low.y}, HalfPlane{false, false, box.high.y}};
 }
 
-bool within(const Box2& inner, const Box2& outer) {
-    return outer.low.x <= inner.low.x && outer.low.y <= inner.low.y &&
-           inner.high.x <= outer.high.x && inner.high.y <= outer.high.y;
-}
-
 /// Thins a closed curve in two halves between distant vertices.
 Polygon thinnedCurve(const Polygon& curve, double tolerance) {
     if (curve.size() < 4) return curve;
@@ -206,7 +201,7 @@ std::vector<Point2> thinned(const std::vector<Point2>& points, double tolerance)
 }
 
 Polygon clipped(const Polygon& curve, const Box2& box) {
-    if (curve.empty() || within(bounds(curve), box)) return curve;
+    if (curve.empty() || box.contains(bounds(curve))) return curve;
     Polygon result = curve;
     for (const HalfPlane& side : sidesOf(box)) {
         Polygon kept;

@@ -81,11 +81,6 @@ void drawBeams(Picture& picture, const MapPicture& map, std::size_t sensor) {
     picture.lines(beamsOf(map, map.coverage.sensors[sensor]), {line});
 }
 
-bool contains(const Box2& outer, const Box2& inner) {
-    return outer.low.x <= inner.low.x && inner.high.x <= outer.high.x &&
-           outer.low.y <= inner.low.y && inner.high.y <= outer.high.y;
-}
-
 Point2 pageOf(const MapPicture& map, const SensorView& sensor) {
     return map.view * sensor.pose.position.onFloor();
 }
@@ -99,7 +94,7 @@ void drawSensors(Picture& picture, const MapPicture& map, const Box2& frame, boo
                                                             : 0.36);
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const Point2 page = pageOf(map, sensors[i]);
-        if (!contains(frame, {page, page})) continue;
+        if (!frame.contains({page, page})) continue;
         SensorMark mark = markOf(map, i);
         mark.hollow = hollow;
         if (hollow) mark.color = palette::kOtherSensor;
@@ -124,7 +119,7 @@ void drawIds(Picture& picture, const MapPicture& map, const Box2& frame, LabelPl
     const TextStyle style{size, true, Align::Center, palette::kInk, palette::kWhite.faded(0.85)};
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const Point2 page = pageOf(map, sensors[i]);
-        if (!contains(frame, {page, page})) continue;
+        if (!frame.contains({page, page})) continue;
         const std::string id = fitText(sensors[i].id, 10 * size, style);
         const Angle heading = markOf(map, i).heading.value_or(Angle());
         if (const auto middle = places.placeLabel(page, heading, textWidth(id, style), size, crowd))

@@ -261,18 +261,16 @@ class ViewDrawer {
     void addLabel(Picture& page, Point2 at, const std::string& id, Color color) {
         const TextStyle style{em(), true, Align::Left, color, palette::kWhite};
         const double wide = textWidth(id, style), gap = 0.6 * em();
+        const Box2 frame{{}, {static_cast<double>(size_.columns), static_cast<double>(size_.rows)}};
         std::optional<Box2> best;
         for (int i = 0; i < 6 && !best; ++i) {
             const double left = i % 2 == 0 ? at.x + gap : at.x - gap - wide;
             const double base = at.y + (i / 2 == 0 ? -gap : i / 2 == 1 ? gap + em() : 2 * em());
             const Box2 box{{left, base - em()}, {left + wide, base}};
-            const bool is_free =
-                box.low.x >= 0 && box.low.y >= 0 && box.high.x <= size_.columns &&
-                box.high.y <= size_.rows &&
-                std::none_of(labels_.begin(), labels_.end(), [&box](const Box2& other) {
-                    return box.low.x < other.high.x && other.low.x < box.high.x &&
-                           box.low.y < other.high.y && other.low.y < box.high.y;
-                });
+            const bool is_free = frame.contains(box) && std::none_of(labels_.begin(), labels_.end(),
+                                                                     [&box](const Box2& other) {
+                                                                         return box.overlaps(other);
+                                                                     });
             if (is_free) best = box;
         }
         if (!best) return;

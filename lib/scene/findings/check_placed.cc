@@ -47,7 +47,7 @@ void checkOutside(CheckContext& context, std::size_t record, std::vector<Finding
     if (placed == nullptr || placed->mount) return;
     const Point3 p = placed->pose.position;
     const bool is_out = context.isOut(p.onFloor());
-    if (!is_out && p.z >= -kTouching) return;
+    if (!is_out && p.z >= -kCornerTolerance) return;
     findings.push_back(
         context.finding(record, Severity::Error, p.onFloor(),
                         (is_out ? " stands outside the room at " : " stands below the floor at ") +
@@ -61,7 +61,7 @@ void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>
     const Point3 p = placed->pose.position;
     const Point2 at = p.onFloor();
     // A level laser measures in the plane of its height, where tops and bottoms count as solid.
-    const double slack = context.scene.records[record].keyword() == "laser" ? 0 : kTouching;
+    const double slack = context.scene.records[record].keyword() == "laser" ? 0 : kCornerTolerance;
     std::map<std::size_t, double> tops;  // of the solids around it, by element
     context.parts().search({at, at}, [&](const Part& part) {
         if (part.isSheet() || p.z < part.bottom + slack || p.z > part.top - slack) return;
@@ -69,7 +69,7 @@ void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>
         tops[part.element] = std::max(tops[part.element], part.top);
     });
     for (auto& [element, mesh] : context.meshes()) {
-        if (!meets(mesh.box(), {at, at}) || p.z <= mesh.heights().bottom ||
+        if (!mesh.box().meets({at, at}) || p.z <= mesh.heights().bottom ||
             p.z >= mesh.heights().top)
             continue;
         for (const Polygon& solid : mesh.at(p.z).solids)
@@ -144,7 +144,7 @@ std::map<std::size_t, CircleCheck::Met> CircleCheck::metBy(const Circle& circle)
         const Point2 nearest = nearestOf(footprint, circle.center);
         const double away = distance(circle.center, nearest);
         const bool inside = !is_line && locate(footprint, circle.center) == Side::Inside;
-        if (!inside && away >= circle.radius - kTouching) return;
+        if (!inside && away >= circle.radius - kCornerTolerance) return;
         const double way = inside ? circle.radius + away : circle.radius - away;
         const auto [place, is_new] = met.try_emplace(element, Met{nearest, way});
         if (!is_new && way > place->second.way) place->second = {nearest, way};
@@ -156,7 +156,7 @@ std::map<std::size_t, CircleCheck::Met> CircleCheck::metBy(const Circle& circle)
     for (const auto& entry : context_->meshes()) {
         const std::size_t element = entry.first;
         const MeshCuts& mesh = entry.second;
-        if (!meets(mesh.box(), box) || !sharedHeights(mesh.heights(), heights).isShared()) continue;
+        if (!mesh.box().meets(box) || !sharedHeights(mesh.heights(), heights).isShared()) continue;
         const MeshBand& near = bandOf(element, circle.height);
         near.solids.search(box, [&](std::size_t i) { look(element, near.band.solids[i]); });
         near.sheets.search(box, [&](std::size_t i) {
@@ -183,7 +183,7 @@ void CircleCheck::check(std::size_t record, std::vector<Finding>& findings) {
     tree_.search(boxAbout(circle.center, circle.radius), [&](std::size_t i) {
         const Circle& other = circles_[i];
         if (other.record > circle.record &&
-            distance(circle.center, other.center) < circle.radius + other.radius - kTouching)
+            distance(circle.center, other.center) < circle.radius + other.radius - kCornerTolerance)
             others.push_back(&other);
     });
     std::sort(others.begin(), others.end(),

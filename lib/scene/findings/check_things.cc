@@ -149,7 +149,7 @@ std::vector<std::size_t> ThingCheck::neighbours(std::size_t element) const {
             if (sharedHeights(part, heights).isShared()) add(part.element);
         });
         for (const auto& [other, mesh] : context_->meshes())
-            if (meets(mesh.box(), box) && sharedHeights(mesh.heights(), heights).isShared())
+            if (mesh.box().meets(box) && sharedHeights(mesh.heights(), heights).isShared())
                 add(other);
     };
     for (const Part& part : context_->parts().of(element)) look(bounds(part.footprint), part);
@@ -203,7 +203,7 @@ std::optional<ThingCheck::Shared> ThingCheck::sharedParts(std::size_t a, std::si
 std::optional<Point2> ThingCheck::sharedMesh(MeshCuts& mesh, std::size_t other) {
     for (const Part& part : context_->parts().of(other)) {
         const HeightRange heights = sharedHeights(mesh.heights(), part);
-        if (!heights.isShared() || !meets(mesh.box(), bounds(part.footprint))) continue;
+        if (!heights.isShared() || !mesh.box().meets(bounds(part.footprint))) continue;
         for (const double height : mesh.heightsIn(heights))
             if (auto place = sharedPlace(mesh.at(height), part.footprint)) return place;
     }
@@ -212,7 +212,7 @@ std::optional<Point2> ThingCheck::sharedMesh(MeshCuts& mesh, std::size_t other) 
 
 std::optional<Point2> ThingCheck::sharedMeshes(MeshCuts& a, MeshCuts& b) {
     const HeightRange heights = sharedHeights(a.heights(), b.heights());
-    if (!heights.isShared() || !meets(a.box(), b.box())) return std::nullopt;
+    if (!heights.isShared() || !a.box().meets(b.box())) return std::nullopt;
     for (const double height : a.heightsIn(heights))
         if (auto place = sharedPlace(a.at(height), b.at(height))) return place;
     return std::nullopt;

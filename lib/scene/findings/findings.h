@@ -145,8 +145,8 @@ struct CheckContext {
     [[nodiscard]] const Element& element(std::size_t i) const {
         return scene.environment.elements()[i];
     }
-    /// Returns true if p is outside the room by more than kTouching.
-    [[nodiscard]] bool isOut(Point2 p) const { return !indoor.isWithin(p, kTouching); }
+    /// Returns true if p is outside the room by more than kCornerTolerance.
+    [[nodiscard]] bool isOut(Point2 p) const { return !indoor.isWithin(p, kCornerTolerance); }
     /// Returns true for furniture, pillars, ceiling frames and meshes.
     [[nodiscard]] bool isObject(std::size_t element) const;
     /// Returns "desk d1", or the id alone if it consists of keyword and number.

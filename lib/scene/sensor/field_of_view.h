@@ -11,6 +11,7 @@
 #include "env/mesh.h"
 #include "geom/point.h"
 #include "geom/pose.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
 
@@ -74,9 +75,8 @@ struct FieldOfView {
 };
 
 inline bool FieldOfView::points(Vec3 local) const {
-    constexpr double kRounding = 1e-12;
     const double plan = local.x * local.x + local.y * local.y;
-    const double distance = std::sqrt(plan + local.z * local.z), slack = kRounding * distance;
+    const double distance = std::sqrt(plan + local.z * local.z), slack = kUnitTolerance * distance;
     switch (shape) {
         case Shape::Pyramid:
             return local.y <= sides.left * local.x + slack &&

@@ -9,6 +9,7 @@
 #include "base/number.h"
 #include "drawing/color.h"
 #include "drawing/drawing.h"
+#include "geom/tolerance.h"
 
 namespace ispace {
 
@@ -79,16 +80,16 @@ class Scale {
     }
     /// Returns round depths for the ticks of an axis with room for so many labels.
     [[nodiscard]] std::vector<double> ticks(double room) const {
-        constexpr double kSlack = 1e-9;
         std::vector<double> depths;
         if (is_ratio_) {
-            for (double tick = roundStep(near_); tick <= far_ * (1 + kSlack);
+            for (double tick = roundStep(near_); tick <= far_ * (1 + kStepTolerance);
                  tick = roundStep(1.5 * tick))
                 depths.push_back(tick);
             return depths;
         }
         const double step = roundStep((far_ - near_) / room);
-        for (double k = std::ceil(near_ / step - kSlack); k * step <= far_ + kSlack * step; ++k)
+        for (double k = std::ceil(near_ / step - kStepTolerance);
+             k * step <= far_ + kStepTolerance * step; ++k)
             depths.push_back(k * step);
         return depths;
     }
