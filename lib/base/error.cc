@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/error.h"
 
+#include <array>
 #include <utility>
 
 namespace ispace {
@@ -13,14 +14,22 @@ std::string firstLine(const std::vector<Diagnostic>& diagnostics) {
 
 }  // namespace
 
-std::string Diagnostic::text() const {
+std::string_view nameOf(Severity severity) {
+    constexpr std::array<std::string_view, 3> kNames{"error", "warning", "note"};
+    return kNames[static_cast<std::size_t>(severity)];
+}
+
+std::string Diagnostic::place() const {
     std::string place = displayName(file);
     if (!place.empty() && line > 0) {
         place += ':' + std::to_string(line);
         if (column > 0) place += ':' + std::to_string(column);
     }
-    return (place.empty() ? "" : place + ": ") +
-           (severity == Severity::Warning ? "warning: " : "error: ") + message;
+    return place.empty() ? "" : place + ": ";
+}
+
+std::string Diagnostic::text() const {
+    return place().append(nameOf(severity)).append(": ").append(message);
 }
 
 FormatError::FormatError(Diagnostic diagnostic)

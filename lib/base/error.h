@@ -24,17 +24,22 @@ class UnmetError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Severity of a finding. A warning points at a probable mistake; the data are usable.
-enum class Severity { Error, Warning };
+/// Severity of a finding. A warning points at a probable mistake; the data are usable. A note tells
+/// a choice that the program made.
+enum class Severity { Error, Warning, Note };
+/// Returns "error", "warning" or "note".
+std::string_view nameOf(Severity severity);
 
 /// One finding in an input: `file:line:column: error: message`.
 struct Diagnostic {
-    std::string file;     ///< as the user named it; "-" reads as "stdin"; empty if unknown
-    int line = 0;         ///< 1-based; 0: the file as a whole
-    int column = 0;       ///< 1-based, in bytes; 0: the line as a whole
-    std::string message;  ///< value found, value wanted, hint
+    std::string file = {};     ///< as the user named it; "-" reads as "stdin"; empty if unknown
+    int line = 0;              ///< 1-based; 0: the file as a whole
+    int column = 0;            ///< 1-based, in bytes; 0: the line as a whole
+    std::string message = {};  ///< value found, value wanted, hint
     Severity severity = Severity::Error;
 
+    /// "room.env:14:7: ", or "" without a file.
+    [[nodiscard]] std::string place() const;
     /// "room.env:14:7: error: wall has zero length"
     [[nodiscard]] std::string text() const;
 };

@@ -301,9 +301,10 @@ JobOutcome outcomeOf(const BatchRun& run, const BatchJob& job, const JobWork& wo
         work(job, common, outcome);
     } catch (...) {
         const ToolFailure failure = currentFailure();
-        const std::string& error = failure.lines.front();
+        const std::vector<std::string> lines = failure.lines();
+        const std::string& error = lines.front();
         outcome.status = failure.status;
-        outcome.messages.insert(outcome.messages.end(), failure.lines.begin(), failure.lines.end());
+        outcome.messages.insert(outcome.messages.end(), lines.begin(), lines.end());
         if (failure.status != kUnmetStatus)
             outcome.verdicts = {{.name = job.name, .outcome = Verdict::Error, .message = error}};
         if (outcome.line.empty() && !run.product.empty())
@@ -323,8 +324,11 @@ class BatchWriter {
     void take(const BatchJob& job, JobOutcome outcome) {
         lines_.write(outcome.line);
         for (const std::string& message : outcome.messages)
-            writeErrorLine({run_.tool, ": ", displayName(run_.batch.list), ":",
-                            std::to_string(job.line), ": ", printable(message)});
+            writeSentence(run_.tool,
+                          {.file = run_.batch.list,
+                           .line = job.line,
+                           .message = message,
+                           .severity = outcome.status == 0 ? Severity::Warning : Severity::Error});
         if (outcome.status != 0) ++(outcome.status == kUnmetStatus ? unmet_ : failed_);
         std::move(outcome.verdicts.begin(), outcome.verdicts.end(), std::back_inserter(verdicts_));
     }
@@ -425,7 +429,7 @@ void JunitFile::during(std::span<const std::string> inputs, const std::function<
     } catch (...) {
         JunitCase error{.name = tool_, .outcome = Verdict::Error};
         for (const std::string& input : inputs) error.name += ' ' + displayName(baseName(input));
-        for (const std::string& line : currentFailure().lines)
+        for (const std::string& line : currentFailure().lines())
             error.message.append(error.message.empty() ? "" : "; ").append(line);
         try {
             write(error.name, {&error, 1});

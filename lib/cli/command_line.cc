@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "cli/outputs.h"
@@ -349,6 +350,23 @@ void rewriteCompilerNames(std::vector<std::string>& words) {
     }
 }
 
+bool wantsJsonErrors(const std::vector<std::string>& words) {
+    for (std::size_t i = 0; i < words.size(); ++i)
+        if (words[i] == "--errors=json" ||
+            (words[i] == "--errors" && i + 1 < words.size() && words[i + 1] == "json"))
+            return true;
+    return false;
+}
+
+std::string versionJson(const std::string& tool) {
+    JsonWriter json;
+    beginReport(json, "ispace-version/1", tool)
+        .key("licence")
+        .value("GPL-3.0-or-later")
+        .endObject();
+    return json.take() + '\n';
+}
+
 }  // namespace
 
 void CommandLine::parse(int argc, const char* const* argv) {
@@ -358,6 +376,13 @@ void CommandLine::parse(int argc, const char* const* argv) {
     const auto end = std::find(words.begin(), words.end(), "--");
     const std::vector<std::string> tail(end, words.end());
     words.erase(end, words.end());
+    const auto has = [&words](std::string_view word) {
+        return std::find(words.begin(), words.end(), word) != words.end();
+    };
+    // Also of tools without reports in JSON.
+    if ((has("-V") || has("--version")) && has("--json")) throw TextRequested{versionJson(d.tool)};
+    // Selected at once, so that errors of the command line have that form.
+    if (wantsJsonErrors(words)) selectMessageForm(MessageForm::Json);
     rewriteCompilerNames(words);
     d.addValues(words);
     std::reverse(words.begin(), words.end());

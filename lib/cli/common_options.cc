@@ -80,6 +80,9 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
     };
     line.parsed("--seed", "N", take_seed, "seed of all random numbers (default 0)",
                 Enters::History);
+    line.choice("--errors", options.errors, {"text", "json"},
+                "messages on stderr as lines for people, or as a JSON object each (default text)",
+                Enters::Nothing);
     line.switchFlag("--progress", "--no-progress", options.progress,
                     "show progress of long work on stderr (default: if that is a terminal)",
                     "do not report it", Enters::Nothing);
@@ -88,7 +91,7 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
 void tell(const CommonOptions& options, const std::string& tool, const std::string& sentence) {
     if (options.quiet) return;
     if (options.messages) return options.messages(sentence);
-    std::cerr << tool << ": " << printable(sentence) << '\n';
+    writeSentence(tool, {.message = sentence, .severity = Severity::Note});
 }
 
 void talk(const CommonOptions& options, const std::string& tool, const std::string& text) {
@@ -97,11 +100,18 @@ void talk(const CommonOptions& options, const std::string& tool, const std::stri
 
 void warn(const CommonOptions& options, const std::string& tool,
           std::span<const Diagnostic> warnings) {
-    for (const Diagnostic& warning : warnings) tell(options, tool, warning.text());
+    for (const Diagnostic& warning : warnings) {
+        if (options.quiet) return;
+        if (options.messages)
+            options.messages(warning.text());
+        else
+            writeMessage(tool, warning);
+    }
 }
 
 void warn(const CommonOptions& options, const std::string& tool, const std::string& sentence) {
-    tell(options, tool, "warning: " + sentence);
+    const Diagnostic warning{.message = sentence, .severity = Severity::Warning};
+    warn(options, tool, {&warning, 1});
 }
 
 void warn(const CommonOptions& options, const std::string& tool,

@@ -24,13 +24,14 @@ struct CommonOptions {
     int verbose = 0;
     int threads = 0;  ///< 0: all cores this process may use
     std::uint64_t seed = 0;
+    std::string errors = "text";  ///< parse() has selected the form already
     std::optional<bool> progress;
     DependencyOptions dependencies;
     /// Receives warnings and messages, without the tool's name; empty: they go to stderr.
     std::function<void(const std::string&)> messages = {};
 };
-/// Declares -MD -MF -o -q -v -j --seed --progress; `output_help` describes the product; if empty
-/// there is no -o, -MD and -MF.
+/// Declares -MD -MF -o -q -v -j --seed --errors --progress; `output_help` describes the product; if
+/// empty there is no -o, -MD and -MF.
 void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help);
 
 /// Prints `text` on stderr with -v and without -q.

@@ -236,7 +236,7 @@ std::string readStdin() {
 SceneInput readScene(const SceneRequest& request) { return OperandReader(request).read(); }
 
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SceneInput& input) {
-    for (const std::string& choice : input.choices) tell(options, tool, choice);
+    warn(options, tool, input.choices);
     warn(options, tool, input.environment.warnings);
 }
 

@@ -54,7 +54,7 @@ struct SceneInput {
     std::string layout_operand;       ///< "" without LAYOUT
     /// For history lines: the operands given, and "-" if stdin was read without one.
     std::vector<std::string> named;
-    std::vector<std::string> choices;  ///< of importers, see ImportReport
+    std::vector<Diagnostic> choices;  ///< of importers, see ImportReport
 };
 
 /// Prints the warnings and choices of importers on stderr unless -q is given.

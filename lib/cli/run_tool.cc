@@ -22,6 +22,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_writer.h"
 #include "base/message.h"
 #include "base/run_files.h"
 
@@ -31,18 +32,16 @@ namespace {
 
 enum Status { kDone = 0, kFailed = 1, kUsage = 2, kUnmet = 3 };
 
-void say(const std::string& tool, const std::string& line) {
-    writeErrorLine({tool, ": ", printable(line)});
-}
+MessageForm message_form = MessageForm::Text;
 
-/// "house.glb: error: No such file or directory" from what() = "house.glb: No such file …".
-std::string systemErrorText(const std::system_error& error) {
+/// The file "house.glb" from what() = "house.glb: No such file …".
+Diagnostic messageOf(const std::system_error& error) {
     const std::string message = error.code().message();
     const std::string what = error.what();
     const std::string tail = ": " + message;
     if (what.size() > tail.size() && what.ends_with(tail))
-        return what.substr(0, what.size() - tail.size()) + ": error: " + message;
-    return "error: " + what;
+        return {what.substr(0, what.size() - tail.size()), 0, 0, message};
+    return {.message = what};
 }
 
 /// A file opened later must not get the number of a standard stream that the parent closed. The
@@ -74,7 +73,7 @@ void letNumbersThrow() {
         [](void* memory, std::size_t) { std::free(memory); });
 }
 
-constexpr std::string_view kNoMemory = "error: not enough memory for this input";
+constexpr std::string_view kNoMemory = "not enough memory for this input";
 
 /// Prints the exception. \pre within a handler
 int sayException(const std::string& tool) {
@@ -86,7 +85,8 @@ int sayException(const std::string& tool) {
         sayMemoryIsOut(tool);
     } catch (...) {
         const ToolFailure failure = currentFailure();
-        for (const std::string& line : failure.lines) say(tool, line);
+        for (const Diagnostic& message : failure.messages)
+            writeMessage(tool, message, failure.status);
         return failure.status;
     }
     return kFailed;
@@ -98,23 +98,48 @@ ToolFailure currentFailure() {
     try {
         throw;
     } catch (const UsageError& error) {
-        return {kUsage, {std::string("error: ") + error.what()}};
+        return {kUsage, {{.message = error.what()}}};
     } catch (const UnmetError& error) {
-        return {kUnmet, {std::string("error: ") + error.what()}};
+        return {kUnmet, {{.message = error.what()}}};
     } catch (const FormatError& error) {
-        ToolFailure failure{kFailed};
-        for (const Diagnostic& diagnostic : error.diagnostics())
-            failure.lines.push_back(diagnostic.text());
-        return failure;
+        return {kFailed, error.diagnostics()};
     } catch (const std::system_error& error) {
-        return {kFailed, {systemErrorText(error)}};
+        return {kFailed, {messageOf(error)}};
     } catch (const std::bad_alloc&) {
-        return {kFailed, {std::string(kNoMemory)}};
+        return {kFailed, {{.message = std::string(kNoMemory)}}};
     } catch (const std::length_error&) {
-        return {kFailed, {std::string(kNoMemory)}};
+        return {kFailed, {{.message = std::string(kNoMemory)}}};
     } catch (const std::exception& error) {
-        return {kFailed, {std::string("error: ") + error.what()}};
+        return {kFailed, {{.message = error.what()}}};
     }
+}
+
+std::vector<std::string> ToolFailure::lines() const {
+    std::vector<std::string> lines;
+    for (const Diagnostic& message : messages) lines.push_back(message.text());
+    return lines;
+}
+
+void selectMessageForm(MessageForm form) { message_form = form; }
+
+void writeMessage(std::string_view tool, const Diagnostic& message, int status) {
+    if (message_form == MessageForm::Text)
+        return writeErrorLine({tool, ": ", printable(message.text())});
+    JsonWriter json;
+    beginReport(json, "ispace-message/1", tool)
+        .key("severity")
+        .value(std::string(nameOf(message.severity)));
+    if (status != 0) json.key("status").value(status);
+    if (!message.file.empty()) json.key("file").value(printable(displayName(message.file)));
+    if (message.line > 0) json.key("line").value(message.line);
+    if (message.line > 0 && message.column > 0) json.key("column").value(message.column);
+    json.key("message").value(printable(message.message)).endObject();
+    writeErrorLine({json.take()});
+}
+
+void writeSentence(std::string_view tool, const Diagnostic& sentence) {
+    if (message_form == MessageForm::Json) return writeMessage(tool, sentence);
+    writeErrorLine({tool, ": ", printable(sentence.place() + sentence.message)});
 }
 
 int runTool(const std::string& tool, const std::function<void()>& body) {
@@ -143,6 +168,13 @@ int runTool(const std::string& tool, const std::function<void()>& body) {
 
 namespace {
 
+/// Writes an error that ends the process, without memory. \pre `message` needs no quoting
+void writeFatal(std::string_view tool, std::string_view message) {
+    if (message_form == MessageForm::Text) return writeErrorLine({tool, ": error: ", message});
+    writeErrorLine({R"({"schema":"ispace-message/1","tool":")", tool, R"(","version":")", version(),
+                    R"(","severity":"error","status":1,"message":")", message, "\"}"});
+}
+
 /// Returns the first part of `text` that fits in one line.
 std::string_view firstLine(std::string_view text) { return text.substr(0, text.find('\n')); }
 
@@ -164,7 +196,7 @@ void sayWhy(std::string_view tool) {
         } catch (const std::length_error&) {
             return sayMemoryIsOut(tool);
         } catch (const std::exception& error) {
-            return writeErrorLine({tool, ": error: ", firstLine(error.what())});
+            return writeFatal(tool, firstLine(error.what()));
         } catch (...) {
             std::abort();
         }
@@ -213,7 +245,7 @@ void writeErrorLine(std::initializer_list<std::string_view> pieces) noexcept {
 
 void sayMemoryIsOut(std::string_view tool) noexcept {
     static std::atomic_flag is_told = ATOMIC_FLAG_INIT;
-    if (!is_told.test_and_set()) writeErrorLine({tool, ": ", kNoMemory});
+    if (!is_told.test_and_set()) writeFatal(tool, kNoMemory);
 }
 
 namespace {

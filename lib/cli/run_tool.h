@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
+
 namespace ispace {
 
 /// Request of `--help` and `--version`: text for stdout, exit status 0.
@@ -25,17 +27,34 @@ struct TextRequested {
 /// ends the process silently.
 int runTool(const std::string& tool, const std::function<void()>& body);
 
+/// Form of messages on stderr: lines for people, or a line of JSON each (schema ispace-message/1).
+enum class MessageForm { Text, Json };
+
+/// Selects the form for the process. Call it before its first message, in one thread.
+void selectMessageForm(MessageForm form);
+
+/// Writes a message to stderr as one line: "TOOL: FILE:LINE:COLUMN: error: MESSAGE", or as JSON.
+/// \param status the exit status that it leads to; 0: the tool goes on
+void writeMessage(std::string_view tool, const Diagnostic& message, int status = 0);
+
+/// Likewise, but lines for people lack the severity: for sentences about the work, and for messages
+/// of other work, which have their own.
+void writeSentence(std::string_view tool, const Diagnostic& sentence);
+
 /// Exit status and messages of an exception.
 struct ToolFailure {
     int status = 1;
-    std::vector<std::string> lines = {};  ///< of its message, without the tool's name
+    std::vector<Diagnostic> messages = {};
+
+    /// Returns the messages as text, without the tool's name.
+    [[nodiscard]] std::vector<std::string> lines() const;
 };
 
 /// Converts the exception being handled, for callers that go on after it. \pre within a handler
 ToolFailure currentFailure();
 
-/// Writes the pieces and a newline to stderr. Requires no memory, and waits if stderr is
-/// non-blocking. May be called at any time, also before main().
+/// Writes the pieces and a newline to stderr, in any form of messages. Requires no memory, and
+/// waits if stderr is non-blocking. May be called at any time, also before main().
 void writeErrorLine(std::initializer_list<std::string_view> pieces) noexcept;
 
 /// Reports, once, that memory ran out; allocates no memory.

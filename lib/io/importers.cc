@@ -255,7 +255,7 @@ Document parseDocument(std::string_view bytes, const std::string& operand,
 }
 
 void ImportReport::addChoice(const std::string& operand, const std::string& sentence) {
-    choices.push_back(displayName(operand) + ": note: " + sentence);
+    choices.push_back({operand, 0, 0, sentence, Severity::Note});
 }
 
 void loadFiles(Document& document, const std::string& operand) {

@@ -29,9 +29,9 @@ enum class RoomChoice {
 
 /// Messages of an import besides its document.
 struct ImportReport {
-    std::vector<std::string> choices;  ///< "FILE: note: …", always shown
-    std::vector<Diagnostic> doubts;    ///< warnings that only a check reports
-    bool has_storeys = false;          ///< an input is a building with storeys
+    std::vector<Diagnostic> choices;  ///< notes, always shown
+    std::vector<Diagnostic> doubts;   ///< warnings that only a check reports
+    bool has_storeys = false;         ///< an input is a building with storeys
 
     void addChoice(const std::string& operand, const std::string& sentence);
 };

@@ -36,6 +36,14 @@ printf '%s\n' "$data/square.env" missing.env | arrange --batch - --sensor laser 
     >arranged.jsonl && fail "a list with a missing room passes"
 printf '%s\n' "$data/square.env $data/half.3dm" | scan --batch - -q -o by/ >scanned.jsonl
 simrun "$data/square.env" "$data/session.3dm" -q --clock fast --until 0.5 --record run >simrun.json
+for tool in envc arrange scan coverage simrun; do
+    $tool --version --json >"$tool.version.json"
+    $tool missing.env --errors json 2>"$tool.said.jsonl" >/dev/null && fail "$tool reads a missing file"
+    $tool --no-such --errors=json 2>>"$tool.said.jsonl" >/dev/null && fail "$tool takes any option"
+done
+envc "$data/map.yaml" --errors json -o map.glb 2>notes.jsonl
+printf '#env 1\nwall from=0,0 to=1\n' | envc - --errors json 2>wrong.jsonl && fail "half a point passes"
+printf '%s\n' missing.env | coverage --batch - --errors json 2>jobs.said.jsonl >/dev/null && fail "a missing room passes"
 # The JSON for a browser.
 sed '$a mat id=under at=0,1\ngate id=way at=1,1\nhuman id=her at=1,-1' "$data/session.3dm" >web.3dm
 simrun "$data/square.env" web.3dm --any-environment -q --web 127.0.0.1:0 >web_begin.json &

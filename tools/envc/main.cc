@@ -68,7 +68,7 @@ Document readModel(const EnvcOptions& options, FoundRooms* found, ImportReport& 
     if (request.compiles) loadFiles(document, "");
     if (options.format == nullptr || !options.format->takes_zones) addZones(options, document);
     document.history.push_back(options.history_line);
-    for (const std::string& choice : report.choices) tell(options.common, "envc", choice);
+    warn(options.common, "envc", report.choices);
     if (!options.check) warn(options.common, "envc", document.warnings);
     for (const std::string& note : document.notes) talk(options.common, "envc", note);
     return document;

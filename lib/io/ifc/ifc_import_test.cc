@@ -67,6 +67,14 @@ TEST_P(Cabin, RoomsDoorsWindowsZonesAndThings) {
     EXPECT_EQ(warningsOf(document).find("warning"), std::string::npos) << warningsOf(document);
 }
 
+/// Returns the choices, a line each.
+std::string choicesOf(const ImportReport& report) {
+    std::string lines;
+    for (const Diagnostic& choice : report.choices)
+        lines.append(lines.empty() ? "" : "\n").append(choice.text());
+    return lines;
+}
+
 TEST(Ifc, StoreysAreChosen) {
     const std::string name = "cabin-2x3-mm.ifc";
     const std::string ground =
@@ -76,7 +84,7 @@ TEST(Ifc, StoreysAreChosen) {
         "others: 1 \"Footing\" at -1.00 m, no spaces; 3 \"Upper floor\" at 3.00 m, no spaces; "
         "--storey NAME chooses";
     for (const char* storey : {"", "2", "ground FLOOR"})
-        EXPECT_EQ(reportOf(name, storey).choices, std::vector<std::string>{ground}) << storey;
+        EXPECT_EQ(choicesOf(reportOf(name, storey)), ground) << storey;
     const auto refused = [&](const char* storey) {
         ImportOptions options;
         options.storey = storey;
@@ -123,10 +131,10 @@ TEST(Ifc, RoomsAreListedByStoreys) {
 // A facility of IFC4.3 around the building, walls as polygonal faces, profiles as indexed curves.
 TEST(Ifc, ReadsIfc4x3) {
     const ImportReport report = reportOf("halt-4x3-m.ifc");
-    EXPECT_EQ(report.choices, std::vector<std::string>{
-                                  "halt-4x3-m.ifc: note: read storey 1 \"Platform level\" at 0.50 "
-                                  "m, 23.4 m2 in 2 spaces, 5 walls, 2 doors, 1 window; others: 2 "
-                                  "\"Roof deck\" at 3.50 m, no spaces; --storey NAME chooses"});
+    EXPECT_EQ(choicesOf(report),
+              "halt-4x3-m.ifc: note: read storey 1 \"Platform level\" at 0.50 m, 23.4 m2 in 2 "
+              "spaces, 5 walls, 2 doors, 1 window; others: 2 \"Roof deck\" at 3.50 m, no spaces; "
+              "--storey NAME chooses");
     const Document document = readCabin("halt-4x3-m.ifc");
     EXPECT_EQ(warningsOf(document), "");
     EXPECT_NEAR(environmentOf(document).indoor().area(), 23.4 + 0.9 * 0.1 + 1 * 0.2, 1e-4);
