@@ -48,6 +48,7 @@ class MinimumCostSearch {
     [[nodiscard]] Solution reduced(const Problem& cheaper, const Solution& solution) const;
     [[nodiscard]] MinimumCostCover unreached(const Solution& greedy);
     [[nodiscard]] MinimumCostCover cheapen(Solution best);
+    [[nodiscard]] bool isSetCover() const;
     void lowerValueBound(const Solution& best, const LagrangeLimits& limits, Progress& progress);
     void raiseProven(const CostLevels& levels, const Solution& best, int rounds);
     void descend(const CostLevels& levels, Solution& best);
@@ -287,9 +288,24 @@ void MinimumCostSearch::stepDown(const CostLevels& levels, Solution& best) {
     }
 }
 
+/// Returns true if the fewest sensors have to see every cell.
+bool MinimumCostSearch::isSetCover() const {
+    return problem_.required == 1 && !problem_.is_connected && !problem_.budget &&
+           wanted_ == problem_.totalWeight() &&
+           std::all_of(problem_.kinds.begin(), problem_.kinds.end(), [this](const Kind& kind) {
+               return kind.cost == problem_.kinds.front().cost;
+           });
+}
+
 MinimumCostCover MinimumCostSearch::cheapen(Solution best) {
     const double most = costOf(problem_, best.chosen);
     const CostLevels levels(problem_.kinds, most);
+    if (options_.optimizer != Optimizer::Greedy && isSetCover()) {
+        const WholeCover cover =
+            coverAllCells(problem_, best.chosen, options_.optimizer == Optimizer::Exact, progress_);
+        best = {cover.chosen, wanted_};
+        proven_ = levels.below(static_cast<double>(cover.bound) * problem_.kinds.front().cost);
+    }
     // Computes quick bounds first, in case time runs out.
     lowerValueBound(best, {.cut = best.value, .gap = 0.01, .rounds = 2}, progress_);
     raiseProven(levels, best, kQuickRounds);

@@ -106,6 +106,18 @@ struct MinimumCostCover {
 MinimumCostCover minimumCostCover(const Problem& problem, std::uint64_t wanted,
                                   const SearchOptions& options, Progress& progress);
 
+/// Sensors that see every cell of positive weight, and a lower bound of their number.
+struct WholeCover {
+    std::vector<Choice> chosen;
+    std::size_t bound = 1;
+};
+/// Solves set covers of ever more cells: each bounds the number of sensors, and its sensors show
+/// which cells to add. Returns `start` unless fewer sensors suffice.
+/// \param proves false: without branching, so the bound may be lower
+/// \pre one sensor covers a cell, all cost the same, and `start` sees every cell
+WholeCover coverAllCells(const Problem& problem, std::vector<Choice> start, bool proves,
+                         Progress& progress);
+
 /// Reports value and bound as shares of the total weight: "best 85.7 %, at most 85.9 %".
 void noteProgress(const Problem& problem, std::uint64_t value, std::uint64_t bound,
                   Progress& progress);

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/error.h"
+
+namespace ispace {
+
+/// A set cover problem: choose columns of least total cost that cover every row.
+struct SetCover {
+    std::size_t rows = 0;
+    std::vector<std::vector<std::uint32_t>> columns;  ///< rows of each, ascending, distinct
+    std::vector<std::uint32_t> costs;                 ///< of each, positive; sum below 2^31
+};
+
+struct SetCoverOptions {
+    std::uint64_t steps = 100'000;  ///< of local search, for each try
+    int tries = 2;                  ///< of local search, in parallel
+    bool proves = true;             ///< false: no branching, the bound is that of the root
+};
+
+struct SetCoverResult {
+    std::vector<std::uint32_t> chosen;  ///< ascending
+    std::uint64_t cost = 0;
+    std::uint64_t bound = 0;    ///< no cover costs less
+    bool is_coverable = false;  ///< false: some row is in no column, and nothing is chosen
+};
+
+/// Finds a minimum-cost cover. Removes dominated rows and columns; improves a greedy cover by
+/// local search with weights of rows (Gao, Weise & Li 2015); raises Lagrangian multipliers by
+/// subgradients, whose reduced costs exclude columns (Beasley 1990; Caprara, Fischetti & Toth
+/// 1999); and branches on the columns of the shortest row. Multipliers are multiples of 2^-20, so
+/// all sums of them are exact and bounds hold in spite of rounding. Deterministic for any number
+/// of threads unless `progress` says stop; cost and bound are valid even then.
+SetCoverResult minimumSetCover(const SetCover& problem, const SetCoverOptions& options,
+                               Progress& progress);
+
+}  // namespace ispace
