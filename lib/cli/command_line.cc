@@ -45,6 +45,8 @@ struct CommandLine::Data {
     };
 
     std::string tool, synopsis, summary;
+    std::map<std::size_t, std::string> groups = {{0, "Options"}};  // by index of the first entry
+    std::vector<std::pair<std::string, std::string>> examples;     // commands and their effects
     std::string statuses = "0 done, 1 bad data or failed I/O, 2 usage, 3 requirement not met";
     CLI::App app;
     std::vector<Entry> entries;
@@ -329,6 +331,12 @@ void CommandLine::renamed(const std::string& name, const std::string& hint) {
 
 void CommandLine::exitStatus(const std::string& text) { data_->statuses = text; }
 
+void CommandLine::group(const std::string& title) { data_->groups[data_->entries.size()] = title; }
+
+void CommandLine::example(const std::string& command, const std::string& effect) {
+    data_->examples.emplace_back(command, effect);
+}
+
 void CommandLine::operands(std::vector<std::string>& variable, std::size_t most) {
     data_->operands = &variable;
     data_->max_operands = most;
@@ -475,14 +483,21 @@ std::vector<std::string> CommandLine::resultWords() const {
 std::string CommandLine::helpText() const {
     std::string out = "Usage: " + data_->tool + " [OPTION]... " + data_->synopsis + "\n";
     appendWrapped(out, data_->summary, 0, 0);
-    out += "\nOptions:\n";
-    for (const Data::Entry& entry : data_->entries) {
+    for (std::size_t i = 0; i < data_->entries.size(); ++i) {
+        const Data::Entry& entry = data_->entries[i];
+        if (const auto group = data_->groups.find(i); group != data_->groups.end())
+            out += '\n' + group->second + ":\n";
         const std::string name = "  " + signature(*entry.option, entry.value);
         out += name;
         const bool fits = name.size() + 2 <= kHelpColumn;
         out += fits ? std::string(kHelpColumn - name.size(), ' ')
                     : '\n' + std::string(kHelpColumn, ' ');
         appendWrapped(out, entry.help, kHelpColumn, kHelpColumn);
+    }
+    out += "\nExamples:\n";
+    for (const auto& [command, effect] : data_->examples) {
+        out += "  " + command + "\n      ";
+        appendWrapped(out, effect, 6, 6);
     }
     out += "\nExit status: " + data_->statuses + ".\n";
     out += "Details: man " + data_->tool + "\n";

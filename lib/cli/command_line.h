@@ -38,6 +38,10 @@ class CommandLine {
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;
 
+    /// Puts the options declared from here on under this heading of `--help`, "Options" at first.
+    void group(const std::string& title);
+    /// Adds a command to the examples at the end of `--help`.
+    void example(const std::string& command, const std::string& effect);
     /// `names` as CLI11 takes them ("-o,--output"), `value` names the value in help ("FILE").
     void text(const std::string& names, const std::string& value, std::string& variable,
               const std::string& help, Enters enters);

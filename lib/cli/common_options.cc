@@ -60,6 +60,7 @@ std::size_t grantedThreads(std::size_t wanted) {
 }  // namespace
 
 void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help) {
+    line.group("Options of all tools");
     if (!output_help.empty()) {
         line.dependencies(options.dependencies, options.output);
         const auto take_output = [&options](const std::string& text) {
@@ -267,6 +268,7 @@ void addDensityOption(CommandLine& line, double& pixels_per_metre) {
 }
 
 void addSceneRules(CommandLine& line, SceneRules& rules) {
+    line.group("Reading");
     line.switchFlag("--same-environment", "--any-environment", rules.same_environment,
                     "an error if LAYOUT was made for another ENV (default: a warning if ENV is an "
                     "operand, an error if LAYOUT names it)",

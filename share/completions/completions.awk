@@ -8,12 +8,12 @@ function trim(text) {
     return text
 }
 
-# "  -o, --output FILE   where …" begins an option, deeper lines continue its text.
+# "  -o, --output FILE   where …" begins an option, deeper lines continue its text; under any heading.
 /^Usage: / && !($2 in seen) { tool = $2; seen[tool] = 1; if (tool != "ispace") tools[++n_tools] = tool; part = "" }
-/^[A-Z][a-z]*:$/ { part = $1; next }
+/^[A-Z][A-Za-z, ]*:$/ { part = $0; next }
 /^[A-Z]/ { part = "" }
 part == "Tools:" && /^  [a-z]/ { name = $1; $1 = ""; summary[name] = trim($0) }
-part == "Options:" && /^  -/ {
+part != "" && /^  -/ {
     at = ++count[tool]
     # Its text begins in column 27, in the next line where there is no room for it.
     has_text = length($0) > 26 && substr($0, 25, 2) == "  "
@@ -27,7 +27,7 @@ part == "Options:" && /^  -/ {
     for (i = 1; i <= n; i++) names[tool, at] = names[tool, at] (i > 1 ? " " : "") words[i]
     next
 }
-part == "Options:" && /^          / { text[tool, count[tool]] = trim(text[tool, count[tool]] " " trim($0)) }
+part != "" && part != "Examples:" && /^          / { text[tool, count[tool]] = trim(text[tool, count[tool]] " " trim($0)) }
 
 # The kind of an option's value: "words a b", "files", "folders", "models", "" for nothing, "any" for no value.
 function kind(tool, at,    v, list) {

@@ -112,6 +112,10 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     : ToolCommand("arrange", "[ENV] [LAYOUT]",
                   "Compute poses for sensors in a room: those of LAYOUT without one, and those of "
                   "--sensor. Writes a layout (.3dm) and reports an upper bound on coverage.") {
+    line_.example("arrange room.env --sensor urg-04lx:3 -o layout.3dm",
+                  "poses of three laser scanners that cover most of the room");
+    line_.example("arrange room.env --sensor urg-04lx:9 --target 95% -o few.3dm",
+                  "the fewest that cover 95 % of it, at most nine, and how few they could be");
     line_.operands(options_.operands, 2);
     line_.texts(
         "--sensor", "MODEL[,KEY=VALUE...][:COUNT]", options_.sensors,
@@ -126,11 +130,17 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
                 "keep the poses of these sensors of LAYOUT only (globs allowed) and compute new "
                 "ones for the others; by default all sensors with a pose keep it",
                 Enters::History);
+    line_.group("Candidate sites and headings");
     addPlaceOptions();
+    line_.group("Mounting");
     addMountOptions();
+    line_.group("Goals");
     addGoalOptions();
+    line_.group("Search");
     addSearchOptions();
+    line_.group("Further files");
     addFileOptions();
+    line_.group("Jobs");
     addShareOptions();
     addSceneRules(line_, options_.rules);
     addCommonOptions(line_, options_.common, "write the layout there (default: stdout)");

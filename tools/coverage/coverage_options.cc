@@ -146,17 +146,24 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     CommandLine line("coverage", "[ENV] [LAYOUT]",
                      "Measure and draw the floor that sensors cover. Without LAYOUT read it from "
                      "stdin unless ENV holds sensors with a pose. The report goes to stdout.");
+    line.example("coverage room.env layout.3dm -o map.png",
+                 "print the covered floor by cells and exactly, and draw it");
+    line.example("coverage room.env layout.3dm --require 90% --suggest 3",
+                 "exit with 3 unless the sensors cover 90 % of the room, and name three changes "
+                 "that help");
     line.operands(o.operands, 2);
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
     line.file("--report", "FILE", o.report, "also write the report there, as JSON (.json)",
               Enters::Nothing);
     addListOption(line, o.batch, "the output is a report a line, as JSON, in its order");
     addBatchOptions(line, o.batch, "of the lines of LIST; cat joins their outputs", false);
+    line.group("Metrics");
     addMeasureOptions(line, o.measure, words);
     line.texts("--zone", "ZONE", o.zones,
                "report this part of the floor, too, as a zone: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
                "door:GLOB,M within M of doors, named DOOR-zone",
                Enters::History);
+    line.group("Requirements, comparison, advice");
     line.texts("--require", "SHARE", words.requirements,
                "exit with 3 if less is covered, by exact metrics where they are known: 95% of the "
                "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class identify:95%, "
@@ -178,6 +185,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         "remove, furniture to move, and with --require the changes that meet it; each with "
         "its gain and its command",
         Enters::Nothing);
+    line.group("The map");
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
                 Enters::History);
     constexpr int kMinWidth = 200, kMaxWidth = 10000;

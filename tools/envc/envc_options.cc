@@ -300,11 +300,17 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     CommandLine line("envc", "[INPUT]...",
                      "Compile, check, convert, edit and draw rooms (.env, YAML, .glb, floor plans, "
                      "meshes) and layouts (.3dm); without INPUT, or for -, read stdin.");
+    line.example("envc room.env -o room.glb", "compile a room; errors name line and column");
+    line.example("envc flat.dxf -o flat.png",
+                 "read a drawing, and draw the room that was chosen beside the others");
     line.operands(options.inputs, 1000);
     addProductOptions(line, options, to);
+    line.group("Edits, in the order given");
     addEditOptions(line, options.edits);
     line.flag("--closed", closed, "close the fences of --fence", Enters::History);
+    line.group("Rooms of plans, maps and buildings");
     addRoomOptions(line, options);
+    line.group("Imports");
     addImportOptions(line, options.import);
     addSceneRules(line, options.rules);
     addCommonOptions(line, options.common, "write the product there (default: stdout)");

@@ -77,6 +77,10 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
 
 void ScanCommand::declare() {
     ScanToolOptions& o = options_;
+    line_.example("scan room.env layout.3dm --noise -o readings.jsonl",
+                  "a reading of each sensor, with the noise of its device");
+    line_.example("scan room.env --poses way.txt --model utm-30lx -o drive.mcap",
+                  "readings of one scanner along a way, for ROS 2 and Foxglove");
     line_.operands(o.operands, 2);
     addListOption(line_, o.batch,
                   "-o names the folder or pattern of the readings, and stdout receives a line of "
@@ -134,7 +138,9 @@ void ScanCommand::declare() {
         [&o](const std::string& text) { o.celsius = numberWithin(text, kColdest, kHottest); },
         "air temperature for ultrasound, Celsius (default 20)", Enters::History);
     declarePictures();
+    line_.group("Views instead of readings");
     addViewOptions(line_, o.view);
+    line_.group("Jobs");
     addBatchOptions(line_, o.batch, "of its readings");
     line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",
                Enters::Nothing);

@@ -115,11 +115,20 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
           "simrun", "[ENV] [LAYOUT]",
           "Simulate the robots and sensors of a room and serve them over TCP. The first line of "
           "output holds the address; TERM, INT and the request SHUTDOWN end the run.") {
+    line_.example("simrun room.env robots.3dm --web 127.0.0.1:8080",
+                  "a world in real time, with a page to watch and drive it");
+    line_.example("simrun room.env robots.3dm --clock fast --until 60 --record run",
+                  "a minute of simulated time, recorded as fast as possible");
     line_.operands(options_.operands, 2);
+    line_.group("The run");
     declareRun();
+    line_.group("Replays");
     declareReplay();
+    line_.group("Pictures and films of a record");
     declareDrawing();
+    line_.group("Tests");
     declareJudgement();
+    line_.group("The server");
     declareServer();
     addSceneRules(line_, options_.rules);
     addCommonOptions(
