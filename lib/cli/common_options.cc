@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <iostream>
 #include <limits>
 #include <string_view>
 #include <thread>
@@ -21,6 +20,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/parallel.h"
+#include "cli/run_tool.h"
 #include "scene/sensor/camera.h"
 #include "scene/sensor/sensor.h"
 
