@@ -300,18 +300,19 @@ bool MinimumCostSearch::isSetCover() const {
 MinimumCostCover MinimumCostSearch::cheapen(Solution best) {
     const double most = costOf(problem_, best.chosen);
     const CostLevels levels(problem_.kinds, most);
-    if (options_.optimizer != Optimizer::Greedy && isSetCover()) {
-        const WholeCover cover =
-            coverAllCells(problem_, best.chosen, options_.optimizer == Optimizer::Exact, progress_);
-        best = {cover.chosen, wanted_};
-        proven_ = levels.below(static_cast<double>(cover.bound) * problem_.kinds.front().cost);
-    }
     // Computes quick bounds first, in case time runs out.
     lowerValueBound(best, {.cut = best.value, .gap = 0.01, .rounds = 2}, progress_);
     raiseProven(levels, best, kQuickRounds);
     if (options_.optimizer != Optimizer::Greedy) {
         descend(levels, best);
         lowerValueBound(best, {.cut = best.value, .gap = 0.001}, progress_);
+    }
+    if (options_.optimizer != Optimizer::Greedy && isSetCover() && !progress_.stopped()) {
+        const WholeCover cover =
+            coverAllCells(problem_, best.chosen, options_.optimizer == Optimizer::Exact, progress_);
+        best = {cover.chosen, wanted_};
+        const double cost = problem_.kinds.front().cost;
+        proven_ = std::max(proven_, levels.below(static_cast<double>(cover.bound) * cost));
     }
     stepDown(levels, best);
     if (options_.optimizer != Optimizer::Greedy) raiseProven(levels, best, LagrangeLimits().rounds);
