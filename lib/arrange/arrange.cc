@@ -110,6 +110,8 @@ void measure(Arrangement& result, MeasuredScene& model) {
         model.viewsOf(std::span(whole.sensors).subspan(model.scene().sensors.size()));
     if (!options.judges_inside || !(model.target().grid == measured.target.grid))
         result.value = model.share(model.valueOf(views));
+    result.is_value_by_cells = result.value && options.judges_inside && !options.beam_step &&
+                               options.weights.isUniform() && options.redundancy == 1;
     for (const Objective& row : objectives())
         if (row.report != nullptr && row.is_asked(options)) row.report(model, views, result);
     if (options.beam_step) result.value = result.candidate_value;

@@ -121,6 +121,7 @@ struct Arrangement {
     double area = 0;                 ///< total effective area by cells, m2, eq. (4.6)
     /// Share of the total weight; empty if it equals the coverage.
     std::optional<double> value;
+    bool is_value_by_cells = false;  ///< value and coverage differ by the cells of the search alone
     /// Upper bound of `value` (or coverage) over all choices of the search or, if refining moved
     /// sensors off their candidates, over these sensors at any poses.
     double bound = 1;

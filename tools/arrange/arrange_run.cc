@@ -2,6 +2,7 @@
 #include "arrange/arrange_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -234,6 +235,18 @@ std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) 
            cellsText(arrangement.grid);
 }
 
+/// Compares value and coverage if they differ by their cells alone; "" if the two agree.
+std::string cellsGapText(const Arrangement& arrangement) {
+    constexpr double kTold = 0.025, kHundred = 100;  // told as a share of the coverage
+    if (!arrangement.is_value_by_cells) return "";
+    const double gap = std::abs(*arrangement.value - arrangement.coverage);
+    if (gap <= kTold * arrangement.coverage) return "";
+    return "arrange: the cells of the search and those of coverage(1) are " +
+           formatFixed(kHundred * gap, 2) + " points apart: these sensors cover " +
+           percentText(*arrangement.value) + " and " + percentText(arrangement.coverage) +
+           " (--cell M sets the size of cells)\n";
+}
+
 }  // namespace
 
 std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement) {
@@ -249,7 +262,7 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
             (gap > 0 ? "gap " + percentText(gap) : "proven best") + ") " +
             overText(how, arrangement);
     if (!arrangement.is_complete && gap > 0) text += ", cut short";
-    text += '\n';
+    text += '\n' + cellsGapText(arrangement);
     if (!arrangement.is_complete && gap <= 0)
         text += "arrange: " + unfinishedText(how) + " was cut short\n";
     if (how.refine && arrangement.refined_after > arrangement.refined_before) {
