@@ -142,6 +142,21 @@ void writeSentence(std::string_view tool, const Diagnostic& sentence) {
     writeErrorLine({tool, ": ", printable(sentence.place() + sentence.message)});
 }
 
+void writeLines(std::string_view tool, std::string_view text) {
+    const std::string begin = std::string(tool) + ": ";
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (message_form == MessageForm::Text) {
+            writeErrorLine({line});
+            continue;
+        }
+        if (line.starts_with(begin)) line.remove_prefix(begin.size());
+        writeSentence(tool, {.message = std::string(line), .severity = Severity::Note});
+    }
+}
+
 int runTool(const std::string& tool, const std::function<void()>& body) {
     occupyStandardStreams();
     std::signal(SIGPIPE, SIG_DFL);  // a parent may have it ignored: filters end silently

@@ -41,6 +41,9 @@ void writeMessage(std::string_view tool, const Diagnostic& message, int status =
 /// of other work, which have their own.
 void writeSentence(std::string_view tool, const Diagnostic& sentence);
 
+/// Writes lines for people, each of which may begin with "TOOL: "; as JSON each is a note.
+void writeLines(std::string_view tool, std::string_view text);
+
 /// Exit status and messages of an exception.
 struct ToolFailure {
     int status = 1;

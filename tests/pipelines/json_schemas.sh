@@ -41,6 +41,7 @@ for tool in envc arrange scan coverage simrun; do
     $tool missing.env --errors json 2>"$tool.said.jsonl" >/dev/null && fail "$tool reads a missing file"
     $tool --no-such --errors=json 2>>"$tool.said.jsonl" >/dev/null && fail "$tool takes any option"
 done
+arrange "$data/square.env" --sensor laser,range=2:2 --strategy grid -X 3 -Y 3 --errors json -o few.3dm 2>report.said.jsonl
 envc "$data/map.yaml" --errors json -o map.glb 2>notes.jsonl
 printf '#env 1\nwall from=0,0 to=1\n' | envc - --errors json 2>wrong.jsonl && fail "half a point passes"
 printf '%s\n' missing.env | coverage --batch - --errors json 2>jobs.said.jsonl >/dev/null && fail "a missing room passes"

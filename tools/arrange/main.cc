@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // arrange: arranges sensors in a room and writes the layout.
-#include <iostream>
 
 #include "arrange/arrange.h"
 #include "arrange/arrange_batch.h"
@@ -49,7 +48,7 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
 /// Reports the layout, and unmet requests.
 void report(const ArrangeToolOptions& options, const ArrangeWork& work,
             const Arrangement& arrangement) {
-    if (!options.common.quiet) std::cerr << reportText(work.how, arrangement);
+    if (!options.common.quiet) writeLines("arrange", reportText(work.how, arrangement));
     talk(options.common, "arrange",
          "total effective area " + formatFixed(arrangement.area, 2) + " m2, cost " +
              formatDouble(arrangement.cost));
@@ -58,7 +57,7 @@ void report(const ArrangeToolOptions& options, const ArrangeWork& work,
 /// Reports that a signal left no product, and ends by it.
 [[noreturn]] void endWithNothing(const ArrangeToolOptions& options, int signal,
                                  const std::string& text) {
-    if (!options.common.quiet) std::cerr << "arrange: " << text << '\n';
+    tell(options.common, "arrange", text);
     endBySignal(signal);
 }
 
