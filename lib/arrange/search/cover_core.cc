@@ -125,12 +125,16 @@ std::vector<char> CoverCore::dominatedRows() const {
     return out;
 }
 
-/// A column is dominated by one that covers its rows and is not dearer.
+/// A column is dominated by one that covers its rows and is not dearer; one without rows by none.
 std::vector<char> CoverCore::dominatedColumns() const {
     std::vector<char> out(columns());
     const auto bits = signatures(columns(), [this](std::size_t column) { return rowsOf(column); });
     for (std::uint32_t column = 0; column < columns(); ++column) {
         const auto own = rowsOf(column);
+        if (own.empty()) {
+            out[column] = 1;
+            continue;
+        }
         const std::uint32_t rarest =
             *std::min_element(own.begin(), own.end(), [this](std::uint32_t a, std::uint32_t b) {
                 return columnsOf(a).size() < columnsOf(b).size();
