@@ -8,6 +8,7 @@
 // not ordered among each other, and a race between them is found. It handles loops and task groups,
 // tbb_pipelines.cc pipelines; code that uses the queues of arenas would seem to race.
 #include <oneapi/tbb/detail/_task.h>
+#include <oneapi/tbb/partitioner.h>
 #include <sanitizer/tsan_interface.h>
 
 #include <new>
@@ -15,6 +16,10 @@
 #include "tbb_original.h"
 
 namespace tbb::detail {
+
+// Programs take the first copy of a template that they are linked with. Those of libraries without
+// instrumentation would hide the join of a loop.
+template void d1::fold_tree<d1::tree_node>(d1::node*, const d1::execution_data&);
 
 namespace {
 
