@@ -112,15 +112,21 @@ class SvgSheet {
     /// Adds the rules of a style element, ignoring other selectors. O(length)
     void add(std::string_view css);
     /// Sets the unset `properties` by these rules. Ids win over classes, these over names, later
-    /// rules over earlier ones. \pre the element was announced, or there are no rules
+    /// rules over earlier ones.
     void apply(pugi::xml_node node, SvgProperties& properties) const;
 
   private:
     struct Hash : std::hash<std::string_view> {
         using is_transparent = void;  // NOLINT: as std::unordered_map looks for it
     };
+    std::size_t slot(std::string_view selector) const {
+        return Hash()(selector) % announced_.size();
+    }
+
     std::deque<std::string> texts_;  // without comments
-    // By selector, views of the texts.
+    // By the selector's hash: those that share one keep a rule without use.
+    std::vector<bool> announced_ = std::vector<bool>(std::size_t{1} << 20);
+    // By announced selector, views of the texts.
     std::unordered_map<std::string, SvgProperties, Hash, std::equal_to<>> rules_;
 };
 

@@ -96,7 +96,7 @@ void SvgProperties::addStronger(const SvgProperties& others) {
 }
 
 void SvgSheet::announce(pugi::xml_node node) {
-    forEachSelector(node, [this](std::string name) { rules_.try_emplace(std::move(name)); });
+    forEachSelector(node, [this](const std::string& name) { announced_[slot(name)] = true; });
 }
 
 void SvgSheet::add(std::string_view css) {
@@ -107,15 +107,18 @@ void SvgSheet::add(std::string_view css) {
         declared.declare(takeUntil(rest, '}'));
         if (declared.isEmpty()) continue;
         while (!selectors.empty())
-            if (const auto rule = rules_.find(trimmed(takeUntil(selectors, ',')));
-                rule != rules_.end())
-                rule->second.addStronger(declared);
+            if (const std::string_view name = trimmed(takeUntil(selectors, ','));
+                announced_[slot(name)])
+                rules_[std::string(name)].addStronger(declared);
     }
 }
 
 void SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) const {
     if (rules_.empty()) return;
-    forEachSelector(node, [&](const std::string& name) { properties.addWeaker(rules_.at(name)); });
+    forEachSelector(node, [&](const std::string& name) {
+        if (const auto rule = rules_.find(name); rule != rules_.end())
+            properties.addWeaker(rule->second);
+    });
 }
 
 SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet) {
