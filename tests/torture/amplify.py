@@ -386,17 +386,25 @@ def write(name, size, folder):
     return operand, total
 
 
+# Runs its arguments and prints exit status, processor time in seconds and peak memory in KiB. A process of its own: a
+# child counts the memory of its parent until it executes a program, and a whole run of torture is larger than envc.
+LAUNCHER = """
+import os, sys
+silence = [(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)]
+child = os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ, file_actions=silence)
+_, status, usage = os.wait4(child, 0)
+print(os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime, usage.ru_maxrss)
+"""
+
+
 def run(command, seconds):
     """Exit status, processor time in seconds, peak memory in bytes and the last line on stderr."""
     def bound():
         resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
-    with tempfile.TemporaryFile() as err:
-        child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=err, preexec_fn=bound)
-        _, status, usage = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)
-        err.seek(0)
-        lines = err.read().decode(errors="replace").splitlines()
-    return child.returncode, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, (lines or [""])[-1]
+    done = subprocess.run([sys.executable, "-IS", "-c", LAUNCHER, *command], capture_output=True, check=True,
+                          preexec_fn=bound, text=True, errors="replace")
+    status, spent, memory = done.stdout.split()
+    return int(status), float(spent), int(memory) * 1024, (done.stderr.splitlines() or [""])[-1]
 
 
 # The cost of an input beyond one of START_BYTES counts as this much at least: less is noise. Families with a cheaper
