@@ -7,7 +7,9 @@
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
+#include <execinfo.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -214,9 +216,19 @@ static void read_orders(void) {
     syscall(SYS_close, fd);
 }
 
+/* Says where a process aborts. */
+static void on_abort(int number) {
+    void* calls[64];
+    atomic_store(&armed, 0);
+    backtrace_symbols_fd(calls, backtrace(calls, 64), 2);
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
 typedef int Main(int, char**, char**);
 static Main* real_main;
 static int counted_main(int argc, char** argv, char** environment) {
+    signal(SIGABRT, on_abort);
     read_orders();
     atomic_store(&armed, 1);
     const int status = real_main(argc, argv, environment);
