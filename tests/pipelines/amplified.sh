@@ -29,6 +29,10 @@ quick dxf_missing_nested 60000
 refused dxf_empty_block 60000 plan.dxf
 refused dxf_empty_polylines 60000 plan.dxf
 refused dxf_circles_of_nothing 60000 plan.dxf
+refused dxf_crossing 120000 plan.dxf
+quick dxf_crossing 40000
+quick dxf_crossing_blocks 2000
+quick dxf_crossing_blocks 60000
 refused svg_use_text 15000 plan.svg
 refused svg_use_hidden 15000 plan.svg
 refused svg_use_unknown 15000 plan.svg

@@ -80,6 +80,20 @@ def dxf_coincident(size):
     return dxf({}, ROOM_OF_LINES + repeated(lambda i: line((1, 1), (2, 1)), size))
 
 
+def circle(i):
+    return ["0", "CIRCLE", "8", "0", "10", str(10 + i % 97 / 97), "20", str(10 + i % 89 / 89), "40", str(1 + i % 83 / 10)]
+
+
+def dxf_crossing(size):
+    """Each circle of dozens of chords crosses most of the others."""
+    return dxf({}, ROOM_OF_LINES + repeated(circle, size))
+
+
+def dxf_crossing_blocks(size):
+    """Lines that cross in a block, inserted upon each other."""
+    return dxf({"B": repeated(circle, size)}, ROOM_OF_LINES + insert("B", 0, 20, 20))
+
+
 def svg(body, style=""):
     return {"plan.svg": '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
                         'width="8000mm" height="6000mm" viewBox="0 0 800 600">\n' + style + '<g id="walls">\n'

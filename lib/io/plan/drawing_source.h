@@ -19,6 +19,7 @@ namespace ispace {
 struct DrawingSource {
     std::string unit;            ///< for messages: "mm"
     double metres_per_unit = 1;  ///< of the drawing's coordinates
+    std::size_t bytes = 0;       ///< of the file
     /// Computes the floor area of an import with other options, in square metres; null omits these
     /// messages. \throws FormatError as the import does
     std::function<double(const ImportOptions&)> area = {};

@@ -323,7 +323,7 @@ class DxfImporter {
             out.note(
                 std::string("unit: ") + unit.name +
                 (options.units.empty() ? ", as $INSUNITS of the drawing says" : ", as asked for"));
-            return {unit.name, unit.metres};
+            return {unit.name, unit.metres, bytes_};
         }
         const double metres = metresPerUnit(*options.width_is, name_, [&](double metres_per_unit) {
             MissingBlocks missing;
@@ -335,7 +335,7 @@ class DxfImporter {
         });
         out.note(unitText(metres) + ", so that it is " + formatDouble(*options.width_is) +
                  " m wide");
-        return {unitText(metres), metres};
+        return {unitText(metres), metres, bytes_};
     }
 
     const DxfDrawing& drawing_;

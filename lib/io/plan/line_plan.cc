@@ -6,9 +6,11 @@
 #include <map>
 #include <utility>
 
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "env/environment.h"
+#include "geom/arrangement.h"
 #include "geom/predicates.h"
 #include "io/plan/plan_rooms.h"
 
@@ -16,8 +18,9 @@ namespace ispace {
 
 namespace {
 
-constexpr double kMaxExtent = 10000;    // metres
-constexpr double kOpeningReach = 1e-5;  // from its end to its wall
+constexpr double kMaxExtent = 10000;     // metres
+constexpr double kUnitsPerCrossing = 4;  // of Budget
+constexpr double kOpeningReach = 1e-5;   // from its end to its wall
 
 /// Sizes of openings where walls are high enough.
 constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
@@ -88,10 +91,16 @@ class LinePlan {
             failFile(name,
                      "the plan is " + formatFixed(std::max(box.width(), box.depth()), 0) +
                          " m wide: is the unit right? Say another, for example with --units mm");
-        if (crossTooOften(pieces_))
+        const double crossings = sampledCrossings(pieces_);
+        if (crossTooOften(pieces_, crossings))
             failFile(name,
                      "the lines cross each other too often to be walls: leave layers of hatching "
                      "out, for example with --wall-layer 'A-WALL*'");
+        if (drawing == nullptr) return;
+        Budget budget(drawing->bytes, options.max_work);
+        if (!budget.take(static_cast<std::uint64_t>(kUnitsPerCrossing * crossings)))
+            failFile(name, "crossings of the lines make " + budget.excess() +
+                               "; --wall-layer 'A-WALL*' leaves layers out");
     }
 
     /// Keeps pieces that openings lie on or touch.

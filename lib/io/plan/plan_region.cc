@@ -329,9 +329,8 @@ std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const
     return belongs;
 }
 
-bool crossTooOften(std::span<const Segment2> lines) {
-    return sampledCrossings(lines) >
-           std::max(kFewCrossings, kManyCrossings * static_cast<double>(lines.size()));
+bool crossTooOften(std::span<const Segment2> lines, double crossings) {
+    return crossings > std::max(kFewCrossings, kManyCrossings * static_cast<double>(lines.size()));
 }
 
 }  // namespace ispace

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "geom/arrangement.h"
 #include "geom/planar_map.h"
 #include "geom/polygon.h"
 #include "io/import_records.h"
@@ -84,8 +85,12 @@ Point2 clearPoint(const Region& face, std::span<const Segment2> lines);
 std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const Segment2> lines);
 
 /// Returns true if the lines cross so often that finding their faces would take hours, which no
-/// real plan reaches. Estimates from a deterministic sample.
-bool crossTooOften(std::span<const Segment2> lines);
+/// real plan reaches.
+/// \param crossings of the lines, as sampledCrossings() estimates them
+bool crossTooOften(std::span<const Segment2> lines, double crossings);
+inline bool crossTooOften(std::span<const Segment2> lines) {
+    return crossTooOften(lines, sampledCrossings(lines));
+}
 
 /// Computes the floor that a disc sweeps when it moves from `start` without crossing a wall, as
 /// pieces of `rooms` with rounded corners; the radius is met within 1 %. Empty if the disc does not

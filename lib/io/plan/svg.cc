@@ -361,7 +361,7 @@ SvgImport importSvg(std::string_view bytes, const std::string& name, const Impor
     DrawingSource source{options.units.empty()
                              ? "units of " + formatDouble(1000 * drawing.metres_per_unit) + " mm"
                              : options.units,
-                         drawing.metres_per_unit};
+                         drawing.metres_per_unit, bytes.size()};
     if (hints)
         source.area = [&](const ImportOptions& other) {
             return importSvg(bytes, name, other, schemas, false).area;
