@@ -97,8 +97,10 @@ class LinePlan {
                      "the lines cross each other too often to be walls: leave layers of hatching "
                      "out, for example with --wall-layer 'A-WALL*'");
         if (drawing == nullptr) return;
+        // As many as the lines are the corners of outlines.
+        const double excess = std::max(0.0, crossings - static_cast<double>(pieces_.size()));
         Budget budget(drawing->bytes, options.max_work);
-        if (!budget.take(static_cast<std::uint64_t>(kUnitsPerCrossing * crossings)))
+        if (!budget.take(static_cast<std::uint64_t>(kUnitsPerCrossing * excess)))
             failFile(name, "crossings of the lines make " + budget.excess() +
                                "; --wall-layer 'A-WALL*' leaves layers out");
     }
