@@ -172,13 +172,78 @@ void Picture::text(Point2 anchor, std::string_view text, const TextStyle& style)
     add(Kind::Text, {index(list_.texts.size() - 1), 0}, {});
 }
 
+namespace {
+
+/// Scales a line with its dashes.
+Stroke scaled(Stroke stroke, double scale) {
+    stroke.width *= scale;
+    for (double& dash : stroke.dashes) dash *= scale;
+    return stroke;
+}
+
+Ink scaled(const Ink& ink, double scale) {
+    if (const auto* stroke = std::get_if<Stroke>(&ink)) return scaled(*stroke, scale);
+    if (const auto* hatch = std::get_if<Hatch>(&ink)) {
+        Hatch lines = *hatch;
+        lines.spacing = std::max(0.5, lines.spacing * scale);
+        lines.width *= scale;
+        lines.offset *= scale;
+        return lines;
+    }
+    return ink;
+}
+
+}  // namespace
+
+void Picture::inset(const Picture& other, Point2 corner, double scale) {
+    const DisplayList& from = other.list_;
+    const auto at = [&](Point2 p) {
+        return Point2{corner.x + scale * p.x, corner.y + scale * p.y};
+    };
+    const std::uint32_t curves = index(list_.ends.size() - 1), points = index(list_.points.size());
+    const std::uint32_t inks = index(list_.inks.size()), arcs = index(list_.arcs.size());
+    const std::uint32_t texts = index(list_.texts.size()), images = index(list_.images.size());
+    for (const Point2 p : from.points) list_.points.push_back(at(p));
+    for (std::size_t i = 1; i < from.ends.size(); ++i) list_.ends.push_back(points + from.ends[i]);
+    for (const Ink& ink : from.inks) list_.inks.push_back(scaled(ink, scale));
+    for (DisplayList::Arc arc : from.arcs) {
+        arc.center = at(arc.center);
+        arc.radius *= scale;
+        list_.arcs.push_back(arc);
+    }
+    for (DisplayList::Text text : from.texts) {
+        text.anchor = at(text.anchor);
+        text.style.size *= scale;
+        list_.texts.push_back(std::move(text));
+    }
+    for (DisplayList::Raster raster : from.images) {
+        raster.corner = at(raster.corner);
+        raster.pixel_width *= scale;
+        raster.pixel_height *= scale;
+        list_.images.push_back(std::move(raster));
+    }
+    for (DisplayList::Shape shape : from.shapes) {
+        if (shape.kind == Kind::Layer) shape.kind = Kind::Group;
+        if (shape.kind == Kind::Group) list_.names.emplace_back();
+        const std::uint32_t offset = shape.kind == Kind::Text    ? texts
+                                     : shape.kind == Kind::Image ? images
+                                     : shape.kind == Kind::Arc   ? arcs
+                                                                 : curves;
+        shape.first += offset;
+        shape.last += offset;
+        shape.first_ink += inks;
+        shape.last_ink += inks;
+        list_.shapes.push_back(shape);
+    }
+}
+
 std::string Picture::write(PictureFormat format) const {
     assert(pushed_.empty());
     switch (format) {
         case PictureFormat::Svg:
             return writeSvg(*this);
         case PictureFormat::Pdf:
-            return writePdf(*this);
+            return writePdf(std::span(this, 1));
         case PictureFormat::Png:
             break;
     }
@@ -366,7 +431,7 @@ Image rasterOf(const Picture& picture) {
 
 std::string writePng(const Picture& picture) { return encodePng(rasterOf(picture)); }
 
-std::string writePdf(const Picture& picture) { return painting().pdf(picture, hatchOf); }
+std::string writePdf(std::span<const Picture> pages) { return painting().pdf(pages, hatchOf); }
 
 std::string encodePng(const Image& image) {
     return pngOfDrawing(image.width, image.height, image.pixels,

@@ -223,6 +223,11 @@ class Picture {
     /// SVG and PDF store it as text for searching and copying.
     void text(Point2 anchor, std::string_view text, const TextStyle& style);
 
+    /// Adds the shapes of another picture, scaled, with its upper left corner here, in page units:
+    /// lines and text become thinner with them. Its layers and groups become groups without ids.
+    /// \pre every push of `other` has its pop
+    void inset(const Picture& other, Point2 corner, double scale);
+
     [[nodiscard]] const DisplayList& list() const { return list_; }
     /// Returns the file's bytes. \pre every push has its pop
     [[nodiscard]] std::string write(PictureFormat format) const;
@@ -245,9 +250,15 @@ class Picture {
     std::vector<Pushed> pushed_;
 };
 
+/// Writes pictures as the pages of one PDF. \pre every push has its pop
+std::string writePdf(std::span<const Picture> pages);
+
+/// Writes a picture as an `svg` element of an HTML page: as wide as its parent, and all ids begin
+/// with `prefix`, so that several fit on one page. \pre every push has its pop
+std::string svgElement(const Picture& picture, std::string_view prefix);
+
 // The writers, private to lib/drawing.
 std::string writePng(const Picture& picture);
-std::string writePdf(const Picture& picture);
 std::string writeSvg(const Picture& picture);
 
 /// Computes the lines of a hatch across a box.

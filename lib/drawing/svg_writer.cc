@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -46,8 +47,10 @@ std::string escaped(std::string_view text) {
 /// Creates unique XML names: letters, digits, `_ - .`.
 class XmlIds {
   public:
+    explicit XmlIds(std::string_view prefix) : prefix_(prefix) {}
+
     std::string take(std::string_view wanted) {
-        std::string id;
+        std::string id = prefix_;
         for (const char c : wanted) {
             const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
             const bool later = (c >= '0' && c <= '9') || c == '-' || c == '.';
@@ -61,17 +64,23 @@ class XmlIds {
     }
 
   private:
+    std::string prefix_;  ///< of all names
     std::set<std::string> taken_;
 };
 
 class SvgWriter {
   public:
-    explicit SvgWriter(const Picture& picture)
+    /// \param prefix of ids, for an element of a page; nullopt: writes a document
+    SvgWriter(const Picture& picture, std::optional<std::string_view> prefix)
         : picture_(picture),
           list_(picture.list()),
+          is_document_(!prefix),
           // A precision of a ten-thousandth of a millimetre on paper, and of a thousandth of a
           // pixel, is enough.
-          fineness_(picture.unit() == PageUnit::Millimetre ? 1e4 : 1e3) {}
+          fineness_(picture.unit() == PageUnit::Millimetre ? 1e4
+                    : prefix                               ? 1e2
+                                                           : 1e3),
+          ids_(prefix.value_or("")) {}
 
     std::string write() {
         begin();
@@ -85,18 +94,23 @@ class SvgWriter {
     void begin() {
         const std::string width = number(picture_.width()), height = number(picture_.height());
         const std::string unit = picture_.unit() == PageUnit::Millimetre ? "mm" : "px";
-        out_.append(
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-            "<svg xmlns=\"http://www.w3.org/2000/svg\""
-            " xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\"");
-        attribute("width", width + unit);
-        attribute("height", height + unit);
+        if (is_document_) {
+            out_.append(
+                "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                "<svg xmlns=\"http://www.w3.org/2000/svg\""
+                " xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\"");
+            attribute("width", width + unit);
+            attribute("height", height + unit);
+        } else {
+            out_ += "<svg role=\"img\"";
+            attribute("aria-label", escaped(picture_.title()));
+        }
         attribute("viewBox", "0 0 " + width + ' ' + height);
         out_ +=
             " font-family=\"DejaVu Sans, Verdana, sans-serif\" xml:space=\"preserve\""
             " fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\""
             " fill-rule=\"evenodd\">\n";
-        if (!picture_.title().empty())
+        if (is_document_ && !picture_.title().empty())
             out_.append("<title>").append(escaped(picture_.title())).append("</title>\n");
         if (!picture_.description().empty())
             out_.append("<desc>").append(escaped(picture_.description())).append("</desc>\n");
@@ -145,8 +159,8 @@ class SvgWriter {
         out_ += "<g";
         if (shape.kind == Kind::Layer) {
             attribute("id", layer_ids_[layers_++]);
-            attribute("inkscape:groupmode", "layer");
-            attribute("inkscape:label", escaped(name.title));
+            if (is_document_) attribute("inkscape:groupmode", "layer");
+            attribute(is_document_ ? "inkscape:label" : "data-layer", escaped(name.title));
         } else if (!name.id.empty()) {
             attribute("id", ids_.take(name.id));
         }
@@ -296,6 +310,7 @@ class SvgWriter {
 
     const Picture& picture_;
     const DisplayList& list_;
+    bool is_document_;
     double fineness_;
     XmlIds ids_;
     std::vector<std::string> layer_ids_;
@@ -306,6 +321,10 @@ class SvgWriter {
 
 }  // namespace
 
-std::string writeSvg(const Picture& picture) { return SvgWriter(picture).write(); }
+std::string writeSvg(const Picture& picture) { return SvgWriter(picture, {}).write(); }
+
+std::string svgElement(const Picture& picture, std::string_view prefix) {
+    return SvgWriter(picture, prefix).write();
+}
 
 }  // namespace ispace

@@ -306,15 +306,25 @@ Image pixelsOf(const Picture& picture, HatchOf& hatch_of, Rows rows) {
     return image;
 }
 
-std::string pdfOf(const Picture& picture, HatchOf& hatch_of) {
-    const double points = picture.unit() == PageUnit::Millimetre ? 72 / 25.4 : 1;  // a unit
+std::string pdfOf(std::span<const Picture> pages, HatchOf& hatch_of) {
+    // Points a unit of a page.
+    const auto points = [](const Picture& page) {
+        return page.unit() == PageUnit::Millimetre ? 72 / 25.4 : 1;
+    };
     std::string bytes;
     const Surface surface(cairo_pdf_surface_create_for_stream(
-                              append, &bytes, points * picture.width(), points * picture.height()),
+                              append, &bytes, points(pages.front()) * pages.front().width(),
+                              points(pages.front()) * pages.front().height()),
                           cairo_surface_destroy);
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
-    cairo_surface_set_device_scale(surface.get(), points, points);
-    Painter(picture, hatch_of, surface.get()).paint();
+    for (const Picture& page : pages) {
+        const double scale = points(page);
+        cairo_surface_set_device_scale(surface.get(), 1, 1);
+        cairo_pdf_surface_set_size(surface.get(), scale * page.width(), scale * page.height());
+        cairo_surface_set_device_scale(surface.get(), scale, scale);
+        Painter(page, hatch_of, surface.get()).paint();
+        cairo_surface_show_page(surface.get());
+    }
     cairo_surface_finish(surface.get());
     check(cairo_surface_status(surface.get()));
     return bytes;

@@ -2,6 +2,7 @@
 // Interface between lib/drawing and the module that links Cairo.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct Painting {
     /// Draws these rows of a page; the image has the size of the whole page, its other rows may be
     /// incomplete.
     Image (*pixels)(const Picture& picture, HatchOf& hatch_of, Rows rows);
-    std::string (*pdf)(const Picture& picture, HatchOf& hatch_of);
+    /// Draws pages of one document. \pre there is one or more
+    std::string (*pdf)(std::span<const Picture> pages, HatchOf& hatch_of);
 };
 constexpr const char* kPainting = "kIspacePainting";
 
