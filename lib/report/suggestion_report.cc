@@ -7,9 +7,6 @@
 
 namespace ispace {
 
-namespace {
-
-/// "+3.20 m2, to 85.71%; saves 120"
 std::string gainText(const Suggestion& suggestion) {
     std::string text = formatFixed(suggestion.gained, 2);
     if (text.front() != '-') text.insert(0, 1, '+');
@@ -17,8 +14,6 @@ std::string gainText(const Suggestion& suggestion) {
     if (suggestion.saved > 0) text += "; saves " + formatDouble(suggestion.saved);
     return text;
 }
-
-}  // namespace
 
 std::string commandOf(const Suggestion& suggestion, const std::vector<std::string>& operands) {
     std::string command = "envc";

@@ -19,6 +19,9 @@ struct Advice {
 /// changed.env".
 std::string commandOf(const Suggestion& suggestion, const std::vector<std::string>& operands);
 
+/// Returns the gain of a change: "+3.20 m2, to 85.71%; saves 120".
+std::string gainText(const Suggestion& suggestion);
+
 /// Writes the member `suggestions` of coverageJson().
 void writeSuggestions(JsonWriter& json, const Advice& advice);
 

@@ -135,7 +135,8 @@ void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string
 void checkReport(const CoverageToolOptions& o) {
     if (isStdout(o.report))
         throw UsageError("the report goes to stdout anyway: give --report a file, or --json alone");
-    static_cast<void>(outputFormat({}, o.report, {"json"}));  // rejects another suffix
+    // Rejects another suffix.
+    static_cast<void>(outputFormat({}, o.report, {"json", "html", "pdf"}));
 }
 
 }  // namespace
@@ -153,7 +154,9 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                  "that help");
     line.operands(o.operands, 2);
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
-    line.file("--report", "FILE", o.report, "also write the report there, as JSON (.json)",
+    line.file("--report", "FILE", o.report,
+              "also write the report there: as JSON (.json), or for people as a page with maps and "
+              "the sheet of an installer (.html, .pdf)",
               Enters::Nothing);
     addListOption(line, o.batch, "the output is a report a line, as JSON, in its order");
     addBatchOptions(line, o.batch, "of the lines of LIST; cat joins their outputs", false);
@@ -230,7 +233,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         checkBatch(line, o);
     o.command = line.historyLine({});
     if (line.given("--report")) checkReport(o);
-    o.measure.keep_depths = o.format != nullptr;  // for drawing
+    const bool is_page = !o.report.empty() && suffixOf(o.report) != "json";
+    o.measure.keep_depths = o.format != nullptr || is_page;  // for drawing
     return o;
 }
 

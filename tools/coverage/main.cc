@@ -15,6 +15,7 @@
 #include "coverage/coverage_run.h"
 #include "report/coverage_formats.h"
 #include "report/coverage_report.h"
+#include "report/page/coverage_page.h"
 #include "report/run_report.h"
 #include "report/trace_file.h"
 #include "scene/scene.h"
@@ -61,6 +62,22 @@ std::string reportText(const CoverageToolOptions& options, const CoverageReport&
            (advice == nullptr ? "" : suggestionsText(*advice));
 }
 
+/// Returns the bytes of --report.
+std::string reportFile(const CoverageToolOptions& options, const SceneInput& input,
+                       const Coverage& coverage, const Advice* advice) {
+    const std::string suffix = suffixOf(options.report);
+    if (suffix == "json") return coverageJson(coverage.report, options.map.run, advice);
+    CoveragePageInput page{input.scene, coverage, "", options.history_line};
+    if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
+    for (const JunitCase& verdict : judge(options.requirements, coverage))
+        page.requirements.push_back(
+            {verdict.name, verdict.outcome == JunitCase::Outcome::Met, verdict.message});
+    page.advice = advice;
+    page.run = options.map.run;
+    const ReportPage pages = coveragePage(page);
+    return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
+}
+
 void coverScene(CoverageToolOptions options, JunitFile& junit) {
     const SceneInput& input = leftToExit(readInput(options));
     warnOfImport(options.common, "coverage", input);
@@ -91,7 +108,7 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     const std::optional<Advice> advice = suggest(options, input, measured.coverage);
     const Advice* told = advice ? &*advice : nullptr;
     if (!options.report.empty())
-        writeAll(options.report, coverageJson(report, options.map.run, told));
+        writeAll(options.report, reportFile(options, input, measured.coverage, told));
     writeAll("-", reportText(options, report, options.map.run, told));
     talk(options.common, "coverage",
          std::to_string(report.sensors.size()) + " sensors measured on " +

@@ -161,8 +161,8 @@ void drawPlanSeen(Picture& picture, const MapPicture& map) {
 
 }  // namespace
 
-std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const MapOptions& options,
-                            const Coverage* other) {
+Picture coverageMap(const Scene& scene, const Coverage& coverage, const MapOptions& options,
+                    const Coverage* other) {
     if (options.width < kMinWidth || options.width > kMaxWidth)
         throw UsageError("a map " + std::to_string(options.width) +
                          " pixels wide cannot be drawn, wanted " + std::to_string(kMinWidth) +
@@ -199,7 +199,12 @@ std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const 
     picture.pushLayer("legend");
     drawLegend(picture, page.legend, page.legend_corner, page.legend_width, page.em);
     picture.pop();
-    return picture.write(options.format);
+    return picture;
+}
+
+std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const MapOptions& options,
+                            const Coverage* other) {
+    return coverageMap(scene, coverage, options, other).write(options.format);
 }
 
 namespace {

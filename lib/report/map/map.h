@@ -38,6 +38,10 @@ struct MapOptions {
     const RunCoverage* run = nullptr;
 };
 
+/// Draws the plan as a picture, as drawCoverageMap() writes it.
+Picture coverageMap(const Scene& scene, const Coverage& coverage, const MapOptions& options,
+                    const Coverage* other = nullptr);
+
 /// Draws the plan as a picture for a paper: covered floor, walls, objects, each sensor with its id,
 /// heading and view, the largest unseen spots, legend, scale bar, and metrics. Returns the bytes of
 /// the file; equal input gives equal bytes. Covered floor is drawn from coverage.overlay, sharp at

@@ -201,6 +201,15 @@ void drawViews(Picture& picture, const MapPicture& map) {
                      sensorStroke(map, sensors.size() - 1));
 }
 
+void drawRegions(Picture& picture, const MapPicture& map) {
+    for (std::size_t i = 0; i < map.coverage.sensors.size(); ++i) {
+        const SensorView& view = map.coverage.sensors[i];
+        picture.pushGroup("view-" + view.id, "field of view of " + view.id);
+        picture.area(contoursOf(map, view), {sensorStroke(map, i)});
+        picture.pop();
+    }
+}
+
 SensorMark markOf(const MapPicture& map, std::size_t sensor) {
     const SensorView& view = map.coverage.sensors[sensor];
     return {view.kind->sign, headingOf(view.pose), sensorColor(map, sensor)};

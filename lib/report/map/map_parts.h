@@ -93,6 +93,9 @@ Color sensorColor(const MapPicture& map, std::size_t sensor);
 /// Draws contours or beams, in metres. \pre a view is pushed
 void drawViews(Picture& picture, const MapPicture& map);
 
+/// Draws a group for each sensor with its region as one path. \pre a view is pushed
+void drawRegions(Picture& picture, const MapPicture& map);
+
 SensorMark markOf(const MapPicture& map, std::size_t sensor);
 /// Radius of a spot's numbered disc in em.
 constexpr double kSpotRadius = 0.62;

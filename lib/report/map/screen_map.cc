@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/map/screen_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "drawing/plan/plan.h"
+#include "report/map/map_parts.h"
+
+namespace ispace {
+
+namespace {
+
+// In pixels of a page that is as wide as a narrow column of text.
+constexpr double kWidth = 900, kMaxHeight = 1000, kEm = 14, kMargin = 20, kScaleBar = 36;
+constexpr double kLegendWidth = 420, kLegendEm = 15;
+
+void drawFloorLayers(Picture& picture, PlanDrawing& plan, const MapPicture& map) {
+    const std::vector<Polygon> indoor = curvesOf(map.scene.environment.indoor());
+    MapOptions options = map.options;
+    const MapPicture shades{map.scene, map.coverage, options, nullptr, map.em, map.view};
+    {
+        const PlanLayer layer(plan, "redundancy", indoor);
+        drawCoverage(picture, shades);
+    }
+    if (map.coverage.report.densities.indoor.empty()) return;
+    options.color = MapColor::Density;
+    const MapPicture densities{map.scene, map.coverage, options, nullptr, map.em, map.view};
+    const PlanLayer layer(plan, "density", indoor);
+    picture.area(indoor, {palette::kFloor});
+    drawCoverage(picture, densities);
+}
+
+Picture drawLegendAlone(const MapPicture& map) {
+    std::vector<LegendBlock> blocks = legendBlocks(map);
+    if (!map.coverage.report.densities.indoor.empty()) {
+        MapOptions options = map.options;
+        options.color = MapColor::Density;
+        const MapPicture densities{map.scene, map.coverage, options};
+        blocks.insert(blocks.begin() + 2, legendBlocks(densities)[1]);
+    }
+    const LegendLayout layout = layOutLegend(std::move(blocks), 1, kLegendEm);
+    Picture picture(kLegendWidth, std::ceil(layout.height + 2 * kLegendEm));
+    picture.describe("legend", "");
+    drawLegend(picture, layout, {kLegendEm, kLegendEm}, kLegendWidth - 2 * kLegendEm, kLegendEm);
+    return picture;
+}
+
+}  // namespace
+
+ScreenMap drawScreenMap(const Scene& scene, const Coverage& coverage) {
+    const MapOptions options;
+    const Box2& limits = coverage.target.grid.limits;
+    const double scale = std::min((kWidth - 2 * kMargin) / limits.width(),
+                                  (kMaxHeight - 2 * kMargin - kScaleBar) / limits.depth());
+    const double width = std::max(kWidth / 2, scale * limits.width() + 2 * kMargin);
+    const double depth = scale * limits.depth();
+    const Point2 corner{(width - scale * limits.width()) / 2, kMargin};
+    const PageView view{scale, {limits.low.x, limits.high.y}, corner};
+    const MapPicture map{scene, coverage, options, nullptr, kEm, view};
+    Picture picture(std::ceil(width), std::ceil(depth + 2 * kMargin + kScaleBar));
+    picture.describe("map of the floor that sensors see", "");
+    PlanDrawing plan(picture, scene, {view, kEm, limits, coverage.target.height, true});
+    plan.drawFloor();
+    drawFloorLayers(picture, plan, map);
+    {
+        const PlanLayer layer(plan, "views");
+        drawRegions(picture, map);
+    }
+    plan.drawThings();
+    plan.drawWalls();
+    plan.drawOpenings();
+    plan.drawZones();
+    const Box2 frame{{2, 2}, {picture.width() - 2, corner.y + depth + kMargin - 2}};
+    drawMarks(picture, map, frame);
+    picture.pushLayer("frame");
+    drawScaleBar(picture, {kMargin, picture.height() - kMargin}, 0.3 * width, scale, kEm);
+    picture.pop();
+    return {std::move(picture), drawLegendAlone(map), view};
+}
+
+}  // namespace ispace

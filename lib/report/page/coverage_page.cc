@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/page/coverage_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "base/message.h"
+#include "base/number.h"
+#include "record/text.h"
+#include "report/map/map.h"
+#include "report/map/screen_map.h"
+#include "report/page/installation.h"
+#include "report/run_report.h"
+
+namespace ispace {
+
+namespace {
+
+std::optional<double> best(const Metric& metric) {
+    return metric.exact ? metric.exact : metric.grid;
+}
+
+std::string shareText(const Metric& metric) {
+    const auto share = best(metric);
+    if (!share) return "unknown";
+    return percentText(*share) + (metric.exact ? "" : " (by cells)");
+}
+
+std::string areaText(double area) { return formatFixed(area, 2) + " m2"; }
+
+std::string pointText(Point2 p) {
+    return "(" + formatFixed(p.x, 2) + ", " + formatFixed(p.y, 2) + ")";
+}
+
+/// Returns "3 sensors: 2 × urg-04lx, 1 × camera".
+std::string sensorsText(const Scene& scene) {
+    std::map<std::string, std::size_t> counts;
+    for (const Sensor& sensor : scene.sensors) ++counts[deviceText(sensor)];
+    const std::size_t all = scene.sensors.size();
+    std::string text = std::to_string(all) + (all == 1 ? " sensor" : " sensors");
+    std::string_view separator = ": ";
+    for (const auto& [device, count] : counts) {
+        text.append(separator).append(std::to_string(count)).append(" × ").append(device);
+        separator = ", ";
+    }
+    return text;
+}
+
+/// Returns the share of indoor floor that two sensors or more see.
+std::optional<double> seenTwice(const CoverageReport& report) {
+    const std::vector<double>& shares =
+        report.redundancy_exact ? *report.redundancy_exact : report.redundancy;
+    if (!report.redundancy_exact && !report.coverage.grid) return std::nullopt;
+    double sum = 0;
+    for (std::size_t k = 2; k < shares.size(); ++k) sum += shares[k];
+    return sum;
+}
+
+/// Returns the share of floor on which cameras identify people, as a clause; "" without cameras.
+std::string identifiedText(const CoverageReport& report) {
+    for (std::size_t i = 0; i < report.densities.indoor.size(); ++i)
+        if (const PixelDensity& one = pixelDensities()[i]; one.name == "identify")
+            return "; cameras identify people (" + formatDouble(one.pixels_per_metre) +
+                   " pixels a metre) on " + shareText(report.densities.indoor[i]);
+    return "";
+}
+
+PageSection summaryOf(const CoveragePageInput& input) {
+    const CoverageReport& report = input.coverage.report;
+    PageSection section{"summary", "Summary", {}};
+    section.blocks.push_back(PageText{"The room has " + areaText(report.indoor_area) +
+                                      " of indoor floor, " + areaText(report.free_area) +
+                                      " of it free at " + formatFixed(report.height, 2) +
+                                      " m, and " + sensorsText(input.scene) + "."});
+    std::string seen = "The sensors see " + shareText(report.coverage) + " of the indoor floor";
+    if (const auto twice = seenTwice(report))
+        seen += ", and two or more of them " + percentText(*twice);
+    seen += identifiedText(report) + ".";
+    if (!report.unseen.empty())
+        seen += " The largest spot of free floor that none sees has " +
+                areaText(report.unseen.front().area) + " around " +
+                pointText(report.unseen.front().place) + ".";
+    section.blocks.push_back(PageText{std::move(seen)});
+    if (input.requirements.empty())
+        section.blocks.push_back(
+            PageText{"No requirement was given; --require 90% checks one.", Tone::Small});
+    for (const JudgedRequirement& one : input.requirements)
+        section.blocks.push_back(PageText{"Required " + one.requirement + ": " +
+                                              (one.is_met ? "met. " : "not met. ") + one.finding +
+                                              ".",
+                                          one.is_met ? Tone::Good : Tone::Bad});
+    return section;
+}
+
+PageSection mapOf(const CoveragePageInput& input) {
+    ScreenMap screen = drawScreenMap(input.scene, input.coverage);
+    MapIndex index{screen.view, {}, {"density", "views"}};
+    for (const SensorView& view : input.coverage.sensors) {
+        const Sensor& sensor = input.scene.sensors[view.index];
+        const auto* const camera = sensor.tryAs<Camera>();
+        const bool is_level = sensor.is<Laser>() && sensor.pose.isLevel();
+        index.sensors.push_back({view.id, std::string(view.kind->noun), view.pose,
+                                 is_level ? view.pose.position.z : input.coverage.report.plane,
+                                 camera == nullptr ? 0 : camera->fx});
+    }
+    MapOptions options;
+    options.run = input.run;
+    PageSection section{"map", "Map", {}};
+    section.blocks.push_back(
+        PageMap{{"Floor by the number of sensors that see it; coordinates in metres.",
+                 coverageMap(input.scene, input.coverage, options)},
+                std::move(screen.map),
+                std::move(index)});
+    section.blocks.push_back(PageFigure{"", std::move(screen.legend), 1, true});
+    return section;
+}
+
+/// Lists zones, and what cameras resolve in each.
+PageTable zonesOfReport(const CoverageReport& report) {
+    PageTable table{"share of each zone's floor", "lr", {"zone", "area", "seen"}, {}};
+    const bool has_cameras = !report.densities.indoor.empty();
+    if (has_cameras)
+        for (const PixelDensity& one : pixelDensities()) table.heads.emplace_back(one.name);
+    for (const ZoneMetrics& zone : report.zones) {
+        TextRow row = {zone.id, areaText(zone.area),
+                       zone.area > 0 ? shareText(zone.coverage) : "outside the room"};
+        for (const Metric& density : zone.densities) row.push_back(shareText(density));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+void addRequirements(const CoveragePageInput& input, ReportPage& page) {
+    const CoverageReport& report = input.coverage.report;
+    if (input.requirements.empty() && report.zones.empty()) return;
+    PageSection section{"requirements", "Requirements and zones", {}};
+    if (!input.requirements.empty()) {
+        PageTable table{"each requirement with its measurement",
+                        "lll",
+                        {"requirement", "result", "measured"},
+                        {}};
+        for (const JudgedRequirement& one : input.requirements) {
+            table.rows.push_back({one.requirement, one.is_met ? "met" : "not met", one.finding});
+            table.tones.push_back(one.is_met ? Tone::Good : Tone::Bad);
+        }
+        section.blocks.push_back(std::move(table));
+    }
+    if (!report.zones.empty()) section.blocks.push_back(zonesOfReport(report));
+    page.sections.push_back(std::move(section));
+}
+
+PageTable sensorsOfReport(const CoverageReport& report) {
+    PageTable table{"floor in square metres: seen, lost without the sensor, shared with others",
+                    "llr",
+                    {"sensor", "device", "sees", "alone", "shared"},
+                    {}};
+    const auto cell = [](const Metric& metric) {
+        const auto value = best(metric);
+        return value ? formatFixed(*value, 2) : "-";
+    };
+    for (const SensorMetrics& sensor : report.sensors)
+        table.rows.push_back(
+            {sensor.id, sensor.model.empty() ? std::string(sensor.kind->keyword) : sensor.model,
+             cell(sensor.area), cell(sensor.marginal), cell(sensor.overlap)});
+    return table;
+}
+
+void addInstallation(const CoveragePageInput& input, ReportPage& page) {
+    const std::vector<Installation> installations = installationsOf(input.scene);
+    PageSection section{"installation", "Installation", {}};
+    section.blocks.push_back(installationTable(input.scene, input.coverage, installations));
+    section.blocks.push_back(installationPlan(input.scene, installations));
+    page.sections.push_back(std::move(section));
+    PageSection pictures{"sensors", "Sensors", {}};
+    pictures.blocks.push_back(sensorsOfReport(input.coverage.report));
+    for (PageFigure& figure : sensorPictures(input.scene, input.coverage))
+        pictures.blocks.push_back(std::move(figure));
+    page.sections.push_back(std::move(pictures));
+    PageTable material = materialTable(input.scene);
+    page.sections.push_back({"material", "Material", {std::move(material)}});
+}
+
+void addAdvice(const CoveragePageInput& input, ReportPage& page) {
+    if (input.advice == nullptr) return;
+    PageSection section{"advice", "Suggestions", {}};
+    if (input.advice->suggestions.empty())
+        section.blocks.push_back(PageText{"No change of one sensor or piece of furniture helps."});
+    for (const Suggestion& suggestion : input.advice->suggestions) {
+        section.blocks.push_back(
+            PageText{printable(suggestion.text) + ": " + gainText(suggestion) + "."});
+        section.blocks.push_back(PageCode{commandOf(suggestion, input.advice->operands)});
+    }
+    page.sections.push_back(std::move(section));
+}
+
+PageSection methodsOf(const CoveragePageInput& input) {
+    const CoverageReport& report = input.coverage.report;
+    PageSection section{"methods", "Methods and limits", {}};
+    const auto add = [&](std::string text) { section.blocks.push_back(PageText{std::move(text)}); };
+    add("A level laser sees the floor in its slice, at its height; all other sensors see the plane "
+        "at " +
+        formatFixed(report.plane, 2) +
+        " m, within field of view and range, where no wall or thing hides it. Clear glass lets "
+        "light pass. Sensors, robots and people hide no floor.");
+    add("Shares are of the indoor floor, the region that the walls enclose" +
+        std::string(report.coverage.exact
+                        ? "; they are computed in closed form, without cells."
+                        : "; they are counted on " + cellsText(report.grid) + "."));
+    if (!report.exact_missing.empty())
+        add("Some figures are counted on cells: " + printable(report.exact_missing) + ".");
+    if (!report.densities.indoor.empty())
+        add("Pixels a metre are the focal length in pixels over the depth along the axis, in the "
+            "plane; light, motion and focus are not part of them.");
+    add("A layout is as good as its plan: measure the room before mounting, and keep the distances "
+        "to walls rather than the coordinates where the two differ.");
+    return section;
+}
+
+/// Returns the records of placed sensors, robots and people as text.
+std::string layoutText(const Scene& scene) {
+    Document layout;
+    layout.kind = DocumentKind::Layout;
+    for (const PlacedRecord& placed : scene.placed)
+        layout.records.push_back(scene.records[placed.record]);
+    return writeRecordText(layout);
+}
+
+PageSection recordsOf(const CoveragePageInput& input) {
+    PageSection section{"records", "Records", {}};
+    section.blocks.push_back(PageText{
+        "The layout, as a .3dm file holds it. Digest of the room: " + input.coverage.report.digest,
+        Tone::Small});
+    section.blocks.push_back(PageCode{layoutText(input.scene)});
+    section.blocks.push_back(PageText{"The command of this report:", Tone::Small});
+    section.blocks.push_back(PageCode{input.command});
+    return section;
+}
+
+}  // namespace
+
+ReportPage coveragePage(const CoveragePageInput& input) {
+    ReportPage page;
+    page.title = (input.name.empty() ? "Coverage" : input.name + ": coverage");
+    page.subtitle = sensorsText(input.scene) + " · " + areaText(input.coverage.report.indoor_area) +
+                    " · " + shareText(input.coverage.report.coverage);
+    page.sections.push_back(summaryOf(input));
+    page.sections.push_back(mapOf(input));
+    for (const PageSection& section : input.more) page.sections.push_back(section);
+    addRequirements(input, page);
+    addAdvice(input, page);
+    addInstallation(input, page);
+    if (input.run != nullptr)
+        page.sections.push_back({"run", "Recorded run", {PageCode{runText(*input.run)}}});
+    page.sections.push_back(methodsOf(input));
+    page.sections.push_back(recordsOf(input));
+    return page;
+}
+
+}  // namespace ispace

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coverage/coverage.h"
+#include "coverage/run_coverage.h"
+#include "report/page/page.h"
+#include "report/suggestion_report.h"
+#include "scene/scene.h"
+
+namespace ispace {
+
+/// A requirement with the outcome of its check.
+struct JudgedRequirement {
+    std::string requirement;  ///< as given, "free:95%"
+    bool is_met = false;
+    std::string finding;  ///< the clause of Verdict::text
+};
+
+struct CoveragePageInput {
+    const Scene& scene;
+    const Coverage& coverage;
+    std::string name;     ///< base name of ENV; "" from stdin
+    std::string command;  ///< as in histories
+    std::vector<JudgedRequirement> requirements = {};
+    const Advice* advice = nullptr;      ///< null: not requested
+    const RunCoverage* run = nullptr;    ///< null: no recorded run
+    std::vector<PageSection> more = {};  ///< of the tool that writes the page, after the map
+};
+
+/// Builds the report of a layout: summary, map, requirements, zones, the sheet of its installer,
+/// pictures, material, suggestions, methods and records.
+ReportPage coveragePage(const CoveragePageInput& input);
+
+}  // namespace ispace

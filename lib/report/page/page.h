@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lib/report/page: reports for people: pages of blocks, written as HTML or PDF.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "drawing/drawing.h"
+#include "geom/pose.h"
+#include "report/coverage_report.h"
+
+namespace ispace {
+
+/// The emphasis of a paragraph, or of a row of a table.
+enum class Tone { Plain, Good, Bad, Small };
+
+struct PageText {
+    std::string text;
+    Tone tone = Tone::Plain;
+};
+
+struct PageTable {
+    std::string caption;
+    std::string sides;  ///< as of aligned()
+    TextRow heads;
+    std::vector<TextRow> rows;
+    std::vector<Tone> tones = {};  ///< of the rows; missing ones are plain
+};
+
+/// Lines of text to copy: commands, records.
+struct PageCode {
+    std::string text;
+};
+
+/// A sensor as the script of a map needs it to tell how well it sees a spot.
+struct MapSensor {
+    std::string id, noun;
+    Pose3 pose;
+    double plane = 0;  ///< height of the floor that it covers
+    double focal = 0;  ///< of a camera, pixels; 0: no camera
+};
+
+/// A map that the script of an HTML page makes interactive: layers to switch, zoom, and a readout
+/// of the sensors that see a spot. The picture's layer `views` holds a group for each sensor, in
+/// order, with its region as the first path.
+struct MapIndex {
+    PageView view;
+    std::vector<MapSensor> sensors;
+    std::vector<std::string> hidden;  ///< layers that are off at first
+};
+
+struct PageFigure {
+    std::string caption;
+    Picture picture;
+    double width = 1;            ///< share of the column's width, on paper and on wide screens
+    bool is_for_screen = false;  ///< paper omits it
+};
+
+/// A figure for paper, and the one in its place on screens.
+struct PageMap {
+    PageFigure paper;
+    Picture screen;
+    MapIndex index;
+};
+
+using PageBlock = std::variant<PageText, PageTable, PageCode, PageFigure, PageMap>;
+
+struct PageSection {
+    std::string id;  ///< of the HTML element, unique on the page
+    std::string title;
+    std::vector<PageBlock> blocks = {};
+};
+
+struct ReportPage {
+    std::string title, subtitle;
+    std::vector<PageSection> sections = {};
+};
+
+/// Writes the page as one HTML file without references to others: styles, script and pictures are
+/// inside. It is well-formed XML, too. Equal pages give equal bytes.
+std::string htmlOf(const ReportPage& page);
+
+/// Writes the page as PDF on upright A4 sheets. Figures in millimetres keep their scale if they
+/// fit. Equal pages give equal bytes.
+std::string pdfOf(const ReportPage& page);
+
+}  // namespace ispace

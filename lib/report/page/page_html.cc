@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "base/json_writer.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "geom/pose.h"
+#include "report/page/page.h"
+
+// The assembler copies the files into the program; CMake passes their folder.
+// NOLINTBEGIN(hicpp-no-assembler,bugprone-macro-parentheses)
+#define ISPACE_PAGE_FILE(symbol, file)                                                       \
+    asm(".pushsection .rodata\n" #symbol ":\n.incbin \"" ISPACE_PAGE "/" file "\"\n" #symbol \
+        "End:\n.popsection\n");                                                              \
+    extern "C" const char symbol[], symbol##End[]
+// NOLINTEND(hicpp-no-assembler,bugprone-macro-parentheses)
+
+ISPACE_PAGE_FILE(kPageStyle, "page.css");
+ISPACE_PAGE_FILE(kPageScript, "page.js");
+
+namespace ispace {
+
+namespace {
+
+std::string escapedHtml(std::string_view text) {
+    std::string out;
+    for (const char c : printable(text)) {
+        switch (c) {
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            default:
+                out += c;
+        }
+    }
+    return out;
+}
+
+/// Escapes lines one by one, as control characters within a line are replaced.
+std::string escapedLines(std::string_view text) {
+    std::string out;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        out += escapedHtml(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (!text.empty()) out += '\n';
+    }
+    return out;
+}
+
+std::string_view classOf(Tone tone) {
+    switch (tone) {
+        case Tone::Good:
+            return " class=\"good\"";
+        case Tone::Bad:
+            return " class=\"bad\"";
+        case Tone::Small:
+            return " class=\"small\"";
+        case Tone::Plain:
+            break;
+    }
+    return "";
+}
+
+/// Writes what page.js reads.
+std::string indexJson(const MapIndex& index) {
+    constexpr double kMicro = 1e6;
+    const auto micro = [](double value) { return std::round(value * kMicro) / kMicro; };
+    JsonWriter json;
+    json.beginObject();
+    const PageView& view = index.view;
+    json.key("view").value(std::vector<double>{micro(view.scale), view.world_anchor.x,
+                                               view.world_anchor.y, micro(view.page_anchor.x),
+                                               micro(view.page_anchor.y)});
+    json.key("hidden").value(index.hidden);
+    json.key("sensors").beginArray();
+    for (const MapSensor& sensor : index.sensors) {
+        const Point3 at = sensor.pose.position;
+        const Vec3 axis = Frame3(sensor.pose).forward;
+        json.beginObject();
+        json.key("id").value(sensor.id);
+        json.key("noun").value(sensor.noun);
+        json.key("at").value(std::vector<double>{micro(at.x), micro(at.y), micro(at.z)});
+        json.key("plane").value(sensor.plane);
+        if (sensor.focal > 0) {
+            json.key("axis").value(
+                std::vector<double>{micro(axis.x), micro(axis.y), micro(axis.z)});
+            json.key("focal").value(micro(sensor.focal));
+        }
+        json.endObject();
+    }
+    json.endArray();
+    json.endObject();
+    return json.take();
+}
+
+class HtmlWriter {
+  public:
+    std::string write(const ReportPage& page) {
+        const auto between = [](const char* begin, const char* end) {
+            return std::string_view(begin, static_cast<std::size_t>(end - begin));
+        };
+        out_ =
+            "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n"
+            "<meta charset=\"utf-8\" />\n"
+            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n"
+            "<meta name=\"color-scheme\" content=\"light dark\" />\n<title>";
+        out_.append(escapedHtml(page.title)).append("</title>\n<style>\n");
+        out_.append(between(kPageStyle, kPageStyleEnd)).append("</style>\n</head>\n<body>\n");
+        out_.append("<header>\n<h1>").append(escapedHtml(page.title)).append("</h1>\n<p>");
+        out_.append(escapedHtml(page.subtitle)).append("</p>\n<nav aria-label=\"sections\">");
+        for (const PageSection& section : page.sections)
+            out_.append("<a href=\"#" + section.id + "\">" + escapedHtml(section.title) + "</a> ");
+        out_ += "</nav>\n</header>\n<main>\n";
+        for (const PageSection& section : page.sections) add(section);
+        out_.append("</main>\n<script>\n//<![CDATA[\n");
+        out_.append(between(kPageScript, kPageScriptEnd)).append("//]]>\n</script>\n");
+        out_ += "</body>\n</html>\n";
+        return std::move(out_);
+    }
+
+  private:
+    void add(const PageSection& section) {
+        out_.append("<section id=\"" + section.id + "\" aria-labelledby=\"" + section.id +
+                    "-title\">\n<h2 id=\"" + section.id + "-title\">");
+        out_.append(escapedHtml(section.title)).append("</h2>\n");
+        for (const PageBlock& block : section.blocks)
+            std::visit([this](const auto& one) { add(one); }, block);
+        out_ += "</section>\n";
+    }
+
+    void add(const PageText& text) {
+        out_.append("<p").append(classOf(text.tone)).append(">");
+        out_.append(escapedHtml(text.text)).append("</p>\n");
+    }
+
+    void add(const PageTable& table) {
+        const std::string caption = escapedHtml(table.caption);
+        out_.append("<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"" + caption +
+                    "\">\n<table>\n<caption>" + caption + "</caption>\n<thead><tr>");
+        for (std::size_t i = 0; i < table.heads.size(); ++i)
+            out_.append("<th scope=\"col\"")
+                .append(sideOf(table, i))
+                .append(">")
+                .append(escapedHtml(table.heads[i]) + "</th>");
+        out_ += "</tr></thead>\n<tbody>\n";
+        for (std::size_t k = 0; k < table.rows.size(); ++k) {
+            out_.append("<tr").append(
+                classOf(k < table.tones.size() ? table.tones[k] : Tone::Plain));
+            out_ += '>';
+            const TextRow& row = table.rows[k];
+            for (std::size_t i = 0; i < row.size(); ++i) {
+                out_.append(i == 0 ? "<th scope=\"row\"" : "<td").append(sideOf(table, i));
+                out_.append(">").append(escapedHtml(row[i])).append(i == 0 ? "</th>" : "</td>");
+            }
+            out_ += "</tr>\n";
+        }
+        out_ += "</tbody>\n</table>\n</div>\n";
+    }
+
+    static std::string_view sideOf(const PageTable& table, std::size_t column) {
+        const char side = column < table.sides.size() ? table.sides[column] : table.sides.back();
+        return side == 'r' ? " class=\"r\"" : "";
+    }
+
+    void add(const PageCode& code) {
+        out_.append("<pre tabindex=\"0\">").append(escapedLines(code.text)).append("</pre>\n");
+    }
+
+    void add(const PageFigure& figure) {
+        out_ += "<figure";
+        if (figure.is_for_screen) out_ += " class=\"legend\"";
+        if (figure.width < 1)
+            out_.append(" style=\"width:").append(formatDouble(100 * figure.width)).append("%\"");
+        out_.append(">\n").append(svgElement(figure.picture, nextPrefix()));
+        out_.append("<figcaption>").append(escapedHtml(figure.caption));
+        out_ += "</figcaption>\n</figure>\n";
+    }
+
+    void add(const PageMap& map) {
+        out_.append("<figure class=\"map\" data-index=\"")
+            .append(escapedHtml(indexJson(map.index)));
+        out_.append("\">\n").append(svgElement(map.screen, nextPrefix()));
+        out_.append("<figcaption>").append(escapedHtml(map.paper.caption));
+        out_ += "</figcaption>\n</figure>\n";
+    }
+
+    std::string nextPrefix() { return "f" + std::to_string(++figures_) + "-"; }
+
+    std::string out_;
+    int figures_ = 0;
+};
+
+}  // namespace
+
+std::string htmlOf(const ReportPage& page) { return HtmlWriter().write(page); }
+
+}  // namespace ispace

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "report/page/page.h"
+
+namespace ispace {
+
+namespace {
+
+// An A4 sheet, its margins and the sizes of text, in millimetres.
+constexpr double kWidth = 210, kHeight = 297, kMargin = 16, kColumn = kWidth - 2 * kMargin;
+constexpr double kBody = 3.5, kSmall = 3, kTitle = 6.2, kHeading = 4.7, kLeast = 2.3;
+constexpr double kLine = 1.42;  // of a text's size
+
+constexpr Color kGood = Color::rgb(0x116329), kBad = Color::rgb(0xA40E26);
+
+/// Breaks text into lines of this width, at blanks, or within words that are wider.
+std::vector<std::string> brokenLines(std::string_view text, double width, const TextStyle& style) {
+    std::vector<std::string> lines;
+    std::string line;
+    const auto fits = [&](const std::string& some) { return textWidth(some, style) <= width; };
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(' '), text.size());
+        std::string word(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+        std::string longer = line;
+        longer.append(" ").append(word);
+        if (!line.empty() && fits(longer)) {
+            line = std::move(longer);
+            continue;
+        }
+        if (!line.empty()) lines.push_back(std::exchange(line, {}));
+        while (!fits(word)) {
+            std::size_t count = word.size();
+            while (count > 1 && !fits(word.substr(0, count))) count = count * 9 / 10;
+            // Not within a character of several bytes.
+            while (count > 1 && count < word.size() &&
+                   (static_cast<unsigned char>(word[count]) & 0xC0U) == 0x80U)
+                --count;
+            if (count == word.size()) break;
+            lines.push_back(word.substr(0, count));
+            word.erase(0, count);
+        }
+        line = std::move(word);
+    }
+    if (!line.empty() || lines.empty()) lines.push_back(std::move(line));
+    return lines;
+}
+
+/// Sheets that fill from the top.
+class Sheets {
+  public:
+    explicit Sheets(std::string title) : title_(std::move(title)) { begin(); }
+
+    /// Begins a sheet unless this much height is left.
+    void need(double height) {
+        if (y_ + height > kHeight - kMargin && y_ > kMargin) begin();
+    }
+    void skip(double height) { y_ += height; }
+    [[nodiscard]] double y() const { return y_; }
+    [[nodiscard]] static constexpr double maxHeight() { return kHeight - 2 * kMargin; }
+    Picture& sheet() { return sheets_.back(); }
+
+    void text(std::string_view text, const TextStyle& style) {
+        for (const std::string& line : brokenLines(text, kColumn, style)) {
+            need(kLine * style.size);
+            sheet().text({kMargin, y_ + style.size}, line, style);
+            y_ += kLine * style.size;
+        }
+    }
+
+    std::vector<Picture> finish() {
+        const TextStyle style{kLeast, false, Align::Right, palette::kFaintInk, {}};
+        for (std::size_t i = 0; i < sheets_.size(); ++i)
+            sheets_[i].text({kWidth - kMargin, kHeight - kMargin / 2},
+                            fitText(title_, 0.7 * kColumn, style) + "  ·  " +
+                                std::to_string(i + 1) + " / " + std::to_string(sheets_.size()),
+                            style);
+        return std::move(sheets_);
+    }
+
+  private:
+    void begin() {
+        sheets_.emplace_back(kWidth, kHeight, PageUnit::Millimetre);
+        y_ = kMargin;
+    }
+
+    std::string title_;
+    std::vector<Picture> sheets_;
+    double y_ = 0;
+};
+
+/// Columns of a table in millimetres; one of them may be narrower than its text, which breaks.
+struct Columns {
+    double size = kSmall;  ///< of the text
+    double gap = 3;
+    std::vector<double> widths = {};
+    [[nodiscard]] double total() const {
+        double sum = gap * static_cast<double>(widths.size() - 1);
+        for (const double width : widths) sum += width;
+        return sum;
+    }
+};
+
+Columns columnsOf(const PageTable& table) {
+    Columns columns;
+    const auto measure = [&] {
+        const TextStyle style{columns.size, false, Align::Left, palette::kInk, {}};
+        columns.widths.assign(table.heads.size(), 0);
+        const auto add = [&](const TextRow& row) {
+            for (std::size_t i = 0; i < std::min(row.size(), columns.widths.size()); ++i)
+                columns.widths[i] = std::max(columns.widths[i], textWidth(row[i], style));
+        };
+        add(table.heads);
+        for (const TextRow& row : table.rows) add(row);
+    };
+    measure();
+    if (columns.total() <= kColumn) return columns;
+    columns.size = std::max(kLeast, columns.size * kColumn / columns.total());
+    columns.gap = 2;
+    measure();
+    const double excess = columns.total() - kColumn;
+    double& widest = *std::max_element(columns.widths.begin(), columns.widths.end());
+    if (excess > 0) widest = std::max(8 * columns.size, widest - excess);
+    return columns;
+}
+
+class PdfWriter {
+  public:
+    explicit PdfWriter(const ReportPage& page) : sheets_(page.title), page_(page) {}
+
+    std::string write() {
+        sheets_.text(page_.title, {kTitle, true, Align::Left, palette::kInk, {}});
+        sheets_.text(page_.subtitle, {kSmall, false, Align::Left, palette::kFaintInk, {}});
+        for (const PageSection& section : page_.sections) {
+            // A heading stays with the lines below it.
+            sheets_.need(5 * kHeading);
+            sheets_.skip(kHeading);
+            sheets_.text(section.title, {kHeading, true, Align::Left, palette::kInk, {}});
+            sheets_.skip(0.3 * kHeading);
+            for (const PageBlock& block : section.blocks)
+                std::visit(
+                    [this](const auto& one) {
+                        if constexpr (!std::is_same_v<decltype(one), const PageFigure&>) endRow();
+                        add(one);
+                    },
+                    block);
+            endRow();
+        }
+        const std::vector<Picture> sheets = sheets_.finish();
+        return writePdf(sheets);
+    }
+
+  private:
+    void add(const PageText& text) {
+        const bool is_small = text.tone == Tone::Small;
+        sheets_.text(text.text,
+                     {is_small ? kSmall : kBody, false, Align::Left, inkOf(text.tone), {}});
+        sheets_.skip(1);
+    }
+
+    static Color inkOf(Tone tone) {
+        switch (tone) {
+            case Tone::Good:
+                return kGood;
+            case Tone::Bad:
+                return kBad;
+            case Tone::Small:
+                return palette::kFaintInk;
+            case Tone::Plain:
+                break;
+        }
+        return palette::kInk;
+    }
+
+    void add(const PageTable& table) {
+        const Columns columns = columnsOf(table);
+        sheets_.need(4 * kLine * columns.size);
+        sheets_.text(table.caption, {kSmall, false, Align::Left, palette::kFaintInk, {}});
+        addRow(table, columns, table.heads, palette::kFaintInk);
+        for (std::size_t k = 0; k < table.rows.size(); ++k) {
+            if (sheets_.y() + 2 * kLine * columns.size > kHeight - kMargin) {
+                sheets_.need(kHeight);
+                addRow(table, columns, table.heads, palette::kFaintInk);
+            }
+            addRow(table, columns, table.rows[k],
+                   inkOf(k < table.tones.size() ? table.tones[k] : Tone::Plain));
+        }
+        sheets_.skip(2);
+    }
+
+    void addRow(const PageTable& table, const Columns& columns, const TextRow& row, Color ink) {
+        TextStyle style{columns.size, false, Align::Left, ink, {}};
+        std::vector<std::vector<std::string>> cells;
+        std::size_t lines = 1;
+        for (std::size_t i = 0; i < std::min(row.size(), columns.widths.size()); ++i) {
+            cells.push_back(brokenLines(row[i], columns.widths[i] + 0.01, style));
+            lines = std::max(lines, cells.back().size());
+        }
+        const double height = kLine * columns.size * static_cast<double>(lines);
+        sheets_.need(height);
+        double x = kMargin;
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const char side = i < table.sides.size() ? table.sides[i] : table.sides.back();
+            style.align = side == 'r' ? Align::Right : Align::Left;
+            double base = sheets_.y() + columns.size;
+            for (const std::string& line : cells[i]) {
+                sheets_.sheet().text({side == 'r' ? x + columns.widths[i] : x, base}, line, style);
+                base += kLine * columns.size;
+            }
+            x += columns.widths[i] + columns.gap;
+        }
+        sheets_.skip(height);
+        sheets_.sheet().line({kMargin, sheets_.y() - 0.1}, {kMargin + kColumn, sheets_.y() - 0.1},
+                             {palette::kObjectEdge.faded(0.5), 0.08});
+    }
+
+    void add(const PageCode& code) {
+        const TextStyle style{kLeast, false, Align::Left, palette::kInk, {}};
+        std::string_view text = code.text;
+        while (!text.empty()) {
+            const std::size_t end = std::min(text.find('\n'), text.size());
+            sheets_.text(text.substr(0, end), style);
+            text.remove_prefix(std::min(end + 1, text.size()));
+        }
+        sheets_.skip(1.5);
+    }
+
+    /// Figures stand beside each other as long as their widths fit.
+    void add(const PageFigure& figure) {
+        if (figure.is_for_screen) return;
+        const TextStyle style{kSmall, false, Align::Left, palette::kFaintInk, {}};
+        const double width = figure.width * kColumn;
+        const std::vector<std::string> caption = brokenLines(figure.caption, width, style);
+        const double below = kLine * kSmall * static_cast<double>(caption.size()) + 3;
+        const Picture& picture = figure.picture;
+        double scale =
+            std::min(width / picture.width(), (Sheets::maxHeight() - below) / picture.height());
+        if (picture.unit() == PageUnit::Millimetre) scale = std::min(1.0, scale);
+        const double height = scale * picture.height() + below;
+        if (row_.right + width > kColumn || sheets_.y() + height > kHeight - kMargin) endRow();
+        if (row_.height == 0) sheets_.need(height);
+        const Point2 corner{kMargin + row_.right, sheets_.y()};
+        sheets_.sheet().inset(picture, corner, scale);
+        double base = corner.y + scale * picture.height() + 1 + kSmall;
+        for (const std::string& line : caption) {
+            sheets_.sheet().text({corner.x, base}, line, style);
+            base += kLine * kSmall;
+        }
+        constexpr double kGap = 3;
+        row_ = {row_.right + width + kGap, std::max(row_.height, height)};
+    }
+
+    /// Continues below the figures of a row.
+    void endRow() {
+        sheets_.skip(row_.height);
+        row_ = {};
+    }
+
+    void add(const PageMap& map) { add(map.paper); }
+
+    /// The figures beside each other at the end of the sheet, in millimetres.
+    struct Row {
+        double right = 0, height = 0;
+    };
+
+    Sheets sheets_;
+    const ReportPage& page_;
+    Row row_;
+};
+
+}  // namespace
+
+std::string pdfOf(const ReportPage& page) { return PdfWriter(page).write(); }
+
+}  // namespace ispace

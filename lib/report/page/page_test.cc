@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/page/page.h"
+
+#include <gtest/gtest.h>
+
+#include "report/page/installation.h"
+#include "support/test_scenes.h"
+
+namespace ispace {
+namespace {
+
+bool holds(const std::string& text, std::string_view part) {
+    return text.find(part) != std::string::npos;
+}
+
+Picture pictureOf(double width, double height, PageUnit unit = PageUnit::Pixel) {
+    Picture picture(width, height, unit);
+    picture.pushLayer("views");
+    picture.pushGroup("view-l1", "field of view of l1");
+    picture.area(Polygon{{0, 0}, {10, 0}, {10, 10}}, {palette::kInk});
+    picture.pop();
+    picture.pop();
+    return picture;
+}
+
+ReportPage samplePage() {
+    ReportPage page{"a <room> & more", "two sensors", {}};
+    page.sections.push_back({"summary", "Summary", {PageText{"met & told", Tone::Good}}});
+    page.sections.push_back(
+        {"sheet",
+         "Sheet",
+         {PageTable{"in metres", "lr", {"sensor", "x"}, {{"l1", "1.25"}, {"l2", "-3"}}},
+          PageCode{"laser id=l1\nlaser id=l2\n"}, PageFigure{"a figure", pictureOf(40, 30)},
+          PageFigure{"another", pictureOf(40, 30), 0.3}}});
+    return page;
+}
+
+TEST(Page, HtmlEscapesTextAndNumbersIds) {
+    const std::string html = htmlOf(samplePage());
+    EXPECT_TRUE(holds(html, "<h1>a &lt;room&gt; &amp; more</h1>"));
+    EXPECT_TRUE(holds(html, "<p class=\"good\">met &amp; told</p>"));
+    EXPECT_TRUE(holds(html, "<th scope=\"row\">l1</th><td class=\"r\">1.25</td>"));
+    EXPECT_TRUE(holds(html, "laser id=l1\nlaser id=l2"));
+    // The ids of two pictures differ.
+    EXPECT_TRUE(holds(html, "id=\"f1-layer-views\""));
+    EXPECT_TRUE(holds(html, "id=\"f2-layer-views\""));
+    EXPECT_TRUE(holds(html, "data-layer=\"views\""));
+    EXPECT_FALSE(holds(html, "inkscape:"));
+    EXPECT_EQ(html, htmlOf(samplePage()));
+}
+
+TEST(Page, MapTellsTheScriptItsSensors) {
+    ReportPage page{"map", "", {}};
+    MapIndex index{{10, {0, 0}, {5, 5}}, {{"c1", "camera", {{1, 2, 2.5}, {}, {}, {}}, 0, 500}}, {}};
+    page.sections.push_back(
+        {"map", "Map", {PageMap{{"", pictureOf(40, 30)}, pictureOf(40, 30), index}}});
+    EXPECT_TRUE(holds(htmlOf(page),
+                      "data-index=\"{&quot;view&quot;:[10,0,0,5,5],&quot;hidden&quot;:[],"
+                      "&quot;sensors&quot;:[{&quot;id&quot;:&quot;c1&quot;,&quot;noun&quot;:"
+                      "&quot;camera&quot;,&quot;at&quot;:[1,2,2.5],&quot;plane&quot;:0,"
+                      "&quot;axis&quot;:[1,0,0],&quot;focal&quot;:500}]}\""));
+}
+
+std::size_t pagesOf(const std::string& pdf) {
+    std::size_t count = 0;
+    for (std::size_t at = pdf.find("/Type /Page %"); at != std::string::npos;
+         at = pdf.find("/Type /Page %", at + 1))
+        ++count;
+    return count;
+}
+
+TEST(Page, PdfFillsSheets) {
+    ReportPage page = samplePage();
+    const std::string one = pdfOf(page);
+    EXPECT_EQ(one.substr(0, 5), "%PDF-");
+    EXPECT_EQ(pagesOf(one), 1U);
+    EXPECT_EQ(one, pdfOf(page));
+    PageTable table{"rows", "lr", {"row", "number"}, {}};
+    for (int i = 0; i < 200; ++i) table.rows.push_back({"row", std::to_string(i)});
+    page.sections.push_back({"rows", "Rows", {table}});
+    EXPECT_EQ(pagesOf(pdfOf(page)), 5U);
+    // A word wider than the sheet breaks; a figure higher than it shrinks.
+    page.sections.push_back({"odd",
+                             "Odd",
+                             {PageText{std::string(2000, 'x')}, PageText{""},
+                              PageFigure{"high", pictureOf(100, 4000, PageUnit::Millimetre)}}});
+    EXPECT_EQ(pagesOf(pdfOf(page)), 6U);
+}
+
+TEST(Page, PicturesInPicturesKeepTheirShapes) {
+    Picture page(100, 100);
+    page.circle({50, 50}, 5, {palette::kInk});
+    page.inset(pictureOf(40, 30), {20, 10}, 2);
+    const DisplayList& list = page.list();
+    ASSERT_EQ(list.shapes.size(), 6U);
+    EXPECT_EQ(list.shapes[1].kind, DisplayList::Kind::Group);
+    ASSERT_EQ(list.shapes[3].kind, DisplayList::Kind::Area);
+    const auto curve = list.curve(list.shapes[3].first);
+    ASSERT_EQ(curve.size(), 3U);
+    EXPECT_EQ(curve[2], (Point2{40, 30}));
+}
+
+TEST(Installation, MeasuresToTheWallsThatTheSensorFaces) {
+    // Walls 0.2 m thick; the inner one hides the right wall of the upper half.
+    const Scene scene = sceneOf(
+        "#env 1\n"
+        "wall id=south from=0,0 to=6,0 height=2.5 thickness=0.2\n"
+        "wall id=east from=6,0 to=6,4 height=2.5 thickness=0.2\n"
+        "wall id=north from=6,4 to=0,4 height=2.5 thickness=0.2\n"
+        "wall id=west from=0,4 to=0,0 height=2.5 thickness=0.2\n"
+        "wall id=inner from=3,2 to=3,4 height=2.5 thickness=0.2\n"
+        "laser id=l1 at=2,3,1\n"
+        "laser id=l2 at=5.9,1,2.6 heading=180\n"
+        "robot id=r at=1,1\nlaser id=rider on=r\n");
+    const std::vector<Installation> all = installationsOf(scene);
+    ASSERT_EQ(all.size(), 2U);
+    ASSERT_EQ(all[0].walls.size(), 2U);
+    EXPECT_NEAR(all[0].walls[0].distance, 0.9, 1e-12);
+    EXPECT_NEAR(all[0].walls[1].distance, 0.9, 1e-12);
+    EXPECT_NE(all[0].walls[0].wall, all[0].walls[1].wall);
+    for (const WallDistance& wall : all[0].walls)
+        EXPECT_TRUE(wall.wall == "north" || wall.wall == "inner") << wall.wall;
+    // Above the walls, and on one.
+    ASSERT_EQ(all[1].walls.size(), 2U);
+    EXPECT_EQ(all[1].walls[0].wall, "east");
+    EXPECT_NEAR(all[1].walls[0].distance, 0, 1e-12);
+    EXPECT_EQ(all[1].walls[1].wall, "south");
+    EXPECT_NEAR(all[1].walls[1].distance, 0.9, 1e-12);
+}
+
+}  // namespace
+}  // namespace ispace

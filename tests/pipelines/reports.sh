@@ -1,0 +1,118 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# --report FILE.html and .pdf: pages without references to other files, the same bytes each time, from whose sheet the
+# sensors can be hung.
+. "$(dirname "$0")/common.sh"
+command -v python3 >/dev/null || skip "no python3 here"
+
+cat >room.env <<'EOF'
+#env 1
+ispace size=8,6,2.6
+zone id=desk at=2,1 size=2,2
+table id=t1 at=2,1 size=1 height=0.75
+EOF
+cat >layout.3dm <<'EOF'
+#3dm 1
+camera id=c1 at=-3.9,2.5,2.4 heading=-30 tilt=-35 fov=80 range=12 cost=200
+laser id=l1 model=urg-04lx at=3.5,-2.75 heading=135 cost=1000
+laser id=l2 model=urg-04lx at=-1,-2.75 heading=90 cost=1000
+robot id=r1 at=0,0
+laser id=rider on=r1
+EOF
+
+required="--require 60% --require zone:desk=100% --suggest 2"
+# shellcheck disable=SC2086
+expect_status 3 coverage -q room.env layout.3dm $required
+mv out alone
+# shellcheck disable=SC2086
+expect_status 3 coverage -q room.env layout.3dm $required --report page.html
+expect_same alone out "--report changes the report on stdout"
+
+if command -v xmllint >/dev/null; then xmllint --noout page.html || fail "page.html is not well-formed"; fi
+if grep -oE '(src|href|url)[=(]"?[^ )>]*' page.html | grep -vE '="#|="data:|\(#' >other; then
+    fail "page.html refers to others: $(cat other)"
+fi
+python3 - <<'EOF' || fail "the sheet of page.html differs from the layout"
+import html.parser, sys
+
+
+class Tables(html.parser.HTMLParser):
+    """Collects the tables as lists of rows, by the section that holds them."""
+    def __init__(self):
+        super().__init__()
+        self.section, self.cell, self.tables = None, None, {}
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        if tag == "section":
+            self.section = attributes["id"]
+        elif tag == "table":
+            self.tables.setdefault(self.section, []).append([])
+        elif tag == "tr":
+            self.tables[self.section][-1].append([])
+        elif tag in ("td", "th"):
+            self.cell = ""
+
+    def handle_data(self, data):
+        if self.cell is not None:
+            self.cell += data
+
+    def handle_endtag(self, tag):
+        if tag in ("td", "th"):
+            self.tables[self.section][-1][-1].append(self.cell)
+            self.cell = None
+
+
+page = Tables()
+page.feed(open("page.html", encoding="utf-8").read())
+sheet = page.tables["installation"][0]
+head, rows = sheet[0], {row[0]: row for row in sheet[1:]}
+column = {name: i for i, name in enumerate(head)}
+assert set(rows) == {"c1", "l1", "l2"}, rows  # the rider moves
+places = {"c1": (-3.9, 2.5, 2.4, -30, -35), "l1": (3.5, -2.75, 0.15, 135, 0), "l2": (-1, -2.75, 0.15, 90, 0)}
+for id, pose in places.items():
+    for name, wanted in zip(("x", "y", "height", "heading", "tilt"), pose):
+        assert abs(float(rows[id][column[name]]) - wanted) < 0.006, (id, name)
+    # The room's faces lie at x = -4, 4 and y = -3, 3: the sheet names the nearest of each direction.
+    x, y = pose[:2]
+    apart = sorted([min(x + 4, 4 - x), min(y + 3, 3 - y)])
+    told = [float(rows[id][column[name]].split()[0]) for name in ("nearest wall", "next wall")]
+    assert all(abs(a - b) < 0.006 for a, b in zip(apart, told)), (id, apart, told)
+assert "desk" in rows["c1"][column["sees"]], rows["c1"]
+assert page.tables["material"][0][1:] == [["camera", "1", "200"], ["laser", "1", "-"], ["urg-04lx", "2", "2000"],
+                                          ["together", "4", "2200"]], page.tables["material"]
+assert [row[1] for row in page.tables["requirements"][0][1:]] == ["met", "not met"], page.tables["requirements"]
+EOF
+
+# The same bytes on any number of threads, and each time.
+for kind in html pdf; do
+    coverage -q room.env layout.3dm --report "one.$kind" -j 1 >text
+    coverage -q room.env layout.3dm --report "two.$kind" -j 4 >text
+    expect_same "one.$kind" "two.$kind" "the $kind depends on the threads"
+done
+head -c 5 one.pdf | grep -q '%PDF-' || fail "no PDF"
+if command -v pdftotext >/dev/null; then
+    pdftotext -layout one.pdf - | grep -q 'c1 .*2.40 .*-35' || fail "the PDF lacks the sheet"
+fi
+
+# A scene without sensors, in a file whose name is markup.
+printf '#env 1\nispace size=4,4,2.5\n' >'a<b>&c.env'
+printf '#3dm 1\n' >none.3dm
+coverage -q 'a<b>&c.env' none.3dm --report odd.html >text
+grep -q '<h1>a&lt;b&gt;&amp;c.env' odd.html || fail "the name of a file is lost"
+if command -v xmllint >/dev/null; then xmllint --noout odd.html || fail "odd.html is not well-formed"; fi
+coverage -q 'a<b>&c.env' none.3dm --report odd.pdf >text
+
+# Real maps: thirty scanners on the map of a large building make a page of at most 3 MB.
+if [ -e "${ISPACE_TEST_DATA:-none}/willow-full.yaml" ]; then
+    arrange -q "$ISPACE_TEST_DATA/willow-full.yaml" --sensor urg-04lx:30 --optimize greedy -o willow.3dm
+    coverage -q "$ISPACE_TEST_DATA/willow-full.yaml" willow.3dm --report willow.html >text
+    [ "$(stat -c %s willow.html)" -lt 3000000 ] || fail "the page of a large map takes $(stat -c %s willow.html) bytes"
+fi
+
+expect_error 2 coverage coverage room.env layout.3dm --report page.txt
+ln -s /dev/full full.html
+status=0
+coverage -q room.env layout.3dm --report full.html >text 2>err || status=$?
+[ "$status" -eq 1 ] || fail "status $status on a full disk"
+one_error coverage "a full disk"
