@@ -111,7 +111,7 @@ diff -r map maps/near-far-0001 || fail "obstacle maps of a list"
 expect_error 2 arrange --batch list "${how[@]}"
 grep -q 'name a folder for them (-o DIR/)' err || fail "$(cat err)"
 expect_error 2 arrange --batch list near-far.env -o x/ "${how[@]}"
-for option in --trace=t --curve=c.csv --export-mps=m --share=starts --checkpoint-interval=1 -MD; do
+for option in --trace=t --curve=c.csv --report=r.html --export-mps=m --share=starts --checkpoint-interval=1 -MD; do
     expect_error 2 arrange --batch list -o x/ "${how[@]}" "$option"
     grep -q -e "error: ${option%%=*} is about one scene" err || fail "$option: $(cat err)"
 done

@@ -110,6 +110,23 @@ if [ -e "${ISPACE_TEST_DATA:-none}/willow-full.yaml" ]; then
     [ "$(stat -c %s willow.html)" -lt 3000000 ] || fail "the page of a large map takes $(stat -c %s willow.html) bytes"
 fi
 
+# arrange writes the page that coverage writes of its layout, and its result.
+arrange -q room.env --sensor urg-04lx:2 --curve curve.csv --report found.html -o found.3dm
+coverage -q room.env found.3dm --report measured.html >text
+grep -q 'Result of the search' found.html || fail "no result of the search"
+grep -q '<th scope="row" class="r">2</th>' found.html || fail "no curve"
+grep -A1 '<h2 id="installation-title">' found.html >one
+grep -A1 '<h2 id="installation-title">' measured.html >two
+expect_same one two "the sheets of arrange and coverage"
+arrange -q room.env --sensor urg-04lx:2 --report found.json -o found.3dm
+coverage -q room.env found.3dm --json >measured.json
+expect_same found.json measured.json "the reports of arrange and coverage"
+arrange -q room.env --sensor urg-04lx:2 --shard 1/2 -o one.part
+expect_error 2 arrange arrange -q room.env --sensor urg-04lx:2 --shard 1/2 --report found.html -o one.part
+arrange -q room.env --sensor urg-04lx:2 --shard 2/2 -o two.part
+arrange -q --merge one.part two.part --report merged.json -o merged.3dm
+expect_same found.json merged.json "the report of a merge"
+
 expect_error 2 coverage coverage room.env layout.3dm --report page.txt
 ln -s /dev/full full.html
 status=0

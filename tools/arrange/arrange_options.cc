@@ -301,6 +301,11 @@ void ArrangeCommand::addFileOptions() {
     line_.file("--trace", "FILE", options_.trace_file,
                "write every candidate with its value as JSONL, for coverage --trace",
                Enters::Nothing);
+    line_.file(
+        "--report", "FILE", options_.report_file,
+        "write a report of the layout for people, as a page with its map and the sheet of an "
+        "installer (.html, .pdf), or that of coverage --json (.json)",
+        Enters::Nothing);
     line_.file("--export-mps", "FILE", options_.mps_file,
                "write the model for solvers of mixed-integer programs (glpsol, cbc)",
                Enters::Nothing);
@@ -308,8 +313,8 @@ void ArrangeCommand::addFileOptions() {
 
 void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
-    constexpr const char* kSingle[] = {"--curve", "--trace", "--export-mps", "--share",
-                                       "--checkpoint-interval"};
+    constexpr const char* kSingle[] = {"--curve",      "--trace", "--report",
+                                       "--export-mps", "--share", "--checkpoint-interval"};
     checkBatchOptions(line_, options_.batch, options_.common, options_.operands, kSingle);
     if (!options_.batch.list.empty() && options_.places_file == "-")
         throw UsageError("--places: stdin is not read again for each line of LIST: give a file");
@@ -388,10 +393,13 @@ void ArrangeCommand::settleStrategy() {
 void ArrangeCommand::settleFiles() const {
     for (const auto& [name, file] : {std::pair("--curve", &options_.curve_file),
                                      {"--trace", &options_.trace_file},
+                                     {"--report", &options_.report_file},
                                      {"--export-mps", &options_.mps_file}})
         if (isStdout(*file))
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
     if (!options_.curve_file.empty()) (void)outputFormat({}, options_.curve_file, curveFormats());
+    if (!options_.report_file.empty())
+        (void)outputFormat({}, options_.report_file, {"json", "html", "pdf"});
 }
 
 void ArrangeCommand::addShareOptions() {
@@ -446,6 +454,7 @@ void ArrangeCommand::settleBatch() {
             "proof (--optimize exact) are of use when cut short");
     for (const auto& [name, file] : {std::pair("--curve", &options_.curve_file),
                                      {"--trace", &options_.trace_file},
+                                     {"--report", &options_.report_file},
                                      {"--export-mps", &options_.mps_file}})
         if (!file->empty())
             throw UsageError(std::string(name) + " needs all of the search: give it to --merge");
@@ -460,6 +469,7 @@ void ArrangeCommand::becomeMerge(const ArrangeToolOptions& merge, Shared what, i
     options_.trace_file = merge.trace_file;
     options_.curve_file = merge.curve_file;
     options_.mps_file = merge.mps_file;
+    options_.report_file = merge.report_file;
     options_.batch = BatchOptions();
     options_.time_limit.reset();
     options_.how.wants_curve = merge.how.wants_curve;

@@ -4,6 +4,7 @@
 #include "arrange/arrange.h"
 #include "arrange/arrange_batch.h"
 #include "arrange/arrange_options.h"
+#include "arrange/arrange_report.h"
 #include "arrange/arrange_run.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -39,6 +40,9 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
         layoutDocument(parts, input.layout ? &*input.layout : nullptr, work.groups, arrangement);
     if (!options.trace_file.empty())
         writeAll(options.trace_file, writeTrace({parts.history, arrangement.tried}));
+    if (!options.report_file.empty())
+        writeAll(options.report_file,
+                 reportFile(options, work, arrangement, layout, command.historyLine(input.named)));
     if (const std::string& file = options.curve_file; !file.empty())
         writeAll(file, curveFile(arrangement.curve, outputFormat({}, file, curveFormats())));
     writeAll(options.common.output, writeRecordText(layout));
@@ -91,9 +95,10 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     claimOutput(options.trace_file, "--trace");
     claimOutput(options.curve_file, "--curve");
     claimOutput(options.mps_file, "--export-mps");
+    claimOutput(options.report_file, "--report");
     ArrangeWork work = readWork(options);
-    for (const std::string* file :
-         {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file})
+    for (const std::string* file : {&options.common.output, &options.trace_file,
+                                    &options.curve_file, &options.mps_file, &options.report_file})
         mustBeWritable(*file);
     warnOfSearch(options, work);
     bool is_done = false;

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/arrange_report.h"
+
+#include <string_view>
+#include <utility>
+
+#include "base/file.h"
+#include "base/number.h"
+#include "cli/common_options.h"
+#include "report/page/coverage_page.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+namespace {
+
+/// Returns the lines that arrange prints, and the curve as a table.
+PageSection resultOf(const ArrangeWork& work, const Arrangement& arrangement) {
+    PageSection section{"result", "Result of the search", {}};
+    constexpr std::string_view kTool = "arrange: ";
+    Arrangement without_curve = arrangement;
+    without_curve.curve.clear();
+    std::string text = reportText(work.how, without_curve);
+    if (!arrangement.is_reached) text += shortfallText(work.how, arrangement) + '\n';
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        std::string_view line = std::string_view(text).substr(begin, end - begin);
+        if (line.starts_with(kTool)) line.remove_prefix(kTool.size());
+        if (!line.empty()) section.blocks.push_back(PageText{std::string(line)});
+        begin = end + 1;
+    }
+    if (arrangement.curve.empty()) return section;
+    PageTable table{
+        "coverage by the number of sensors", "rrr", {"sensors", "coverage", "at most"}, {}};
+    for (const CurvePoint& point : arrangement.curve)
+        table.rows.push_back(
+            {std::to_string(point.sensors), percentText(point.value), percentText(point.bound)});
+    section.blocks.push_back(std::move(table));
+    return section;
+}
+
+}  // namespace
+
+std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& work,
+                       const Arrangement& arrangement, const Document& layout,
+                       const std::string& command) {
+    const Scene scene = makeScene(work.input.environment, &layout, shippedDevices());
+    Worlds worlds(scene.environment);
+    const Coverage coverage = measureCoverage(
+        scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
+    if (suffixOf(options.report_file) == "json") return coverageJson(coverage.report);
+    CoveragePageInput page{scene, coverage, "", command};
+    if (work.input.environment_operand != "-") page.name = baseName(work.input.environment_operand);
+    page.more.push_back(resultOf(work, arrangement));
+    const ReportPage pages = coveragePage(page);
+    return suffixOf(options.report_file) == "pdf" ? pdfOf(pages) : htmlOf(pages);
+}
+
+}  // namespace ispace

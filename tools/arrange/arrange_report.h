@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page of --report.
+#pragma once
+
+#include <string>
+
+#include "arrange/arrange_run.h"
+
+namespace ispace {
+
+/// Returns the bytes of --report: the coverage of a layout that was found, as coverage --report
+/// writes it, with the result of the search.
+/// \param layout that was written \param command as in histories
+std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& work,
+                       const Arrangement& arrangement, const Document& layout,
+                       const std::string& command);
+
+}  // namespace ispace
