@@ -143,6 +143,15 @@ void claimOutput(const std::string& target, const std::string& role) {
     if (exists) at->second.old = regular(info);
 }
 
+void completeOutput(const std::string& target) {
+    const std::string resolved = followLinks(target);
+    const std::lock_guard lock(guard);
+    const auto place = placeOf(resolved);
+    if (!known || !place) return;
+    const auto at = known->outputs.find(*place);
+    if (at != known->outputs.end()) at->second.old.reset();
+}
+
 OpenOutput::OpenOutput(std::string target, std::string name)
     : target_(std::move(target)), name_(std::move(name)) {
     const std::lock_guard lock(guard);
@@ -160,12 +169,7 @@ OpenOutput::OpenOutput(std::string target, std::string name)
 
 void OpenOutput::done() {
     is_done_ = true;
-    if (!is_kept_) return;
-    const std::lock_guard lock(guard);
-    const auto place = placeOf(target_);
-    if (!known || !place) return;
-    const auto at = known->outputs.find(*place);
-    if (at != known->outputs.end()) at->second.old.reset();
+    if (is_kept_) completeOutput(target_);
 }
 
 OpenOutput::~OpenOutput() {

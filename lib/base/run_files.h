@@ -36,6 +36,9 @@ void noteInput(int descriptor);
 /// \throws UsageError if it is an input, or the target of another reservation
 void claimOutput(const std::string& target, const std::string& role);
 
+/// Records that a reserved output is complete, so that this command may read it.
+void completeOutput(const std::string& target);
+
 /// An output being written; OutputFile holds one.
 class OpenOutput {
   public:

@@ -90,9 +90,10 @@ for kind in html pdf; do
     coverage -q room.env layout.3dm --report "two.$kind" -j 4 >text
     expect_same "one.$kind" "two.$kind" "the $kind depends on the threads"
 done
-head -c 5 one.pdf | grep -q '%PDF-' || fail "no PDF"
+[ "$(head -c 5 one.pdf)" = "%PDF-" ] || fail "no PDF"
 if command -v pdftotext >/dev/null; then
-    pdftotext -layout one.pdf - | grep -q 'c1 .*2.40 .*-35' || fail "the PDF lacks the sheet"
+    pdftotext -layout one.pdf one.txt
+    grep -q 'c1 .*2.40 .*-35' one.txt || fail "the PDF lacks the sheet"
 fi
 
 # A scene without sensors, in a file whose name is markup.
@@ -126,6 +127,30 @@ expect_error 2 arrange arrange -q room.env --sensor urg-04lx:2 --shard 1/2 --rep
 arrange -q room.env --sensor urg-04lx:2 --shard 2/2 -o two.part
 arrange -q --merge one.part two.part --report merged.json -o merged.3dm
 expect_same found.json merged.json "the report of a merge"
+
+# envc writes the page of a room, alone or beside its product.
+envc room.env --report room.html
+[ "$(grep -c '<section ' room.html)" -eq 5 ] || fail "sections of a room: $(grep '<section ' room.html)"
+grep -q '48.00 m2' room.html || fail "the area of the room is missing"
+envc room.env --report room.pdf -o room.glb
+[ -s room.glb ] || fail "no product beside the report"
+expect_error 2 envc envc room.env --report room.json
+expect_error 2 envc envc room.env --report room.html --info
+expect_error 2 envc envc room.env --report -
+
+# simrun reports a recorded run, also if an expectation is not met.
+cp "$scenes/tracking.env" "$scenes/walkers.3dm" .
+expect_status 3 simrun tracking.env walkers.3dm --clock fast --until 20 --record run --report run.html \
+    --expect 'guest within 0.1 of -9,-9'
+grep -q 'not met' run.html || fail "the expectation is missing: $(cat err)"
+grep -q 'Ways of robots and people' run.html || fail "no ways"
+coverage -q tracking.env walkers.3dm --run run --json >measured.json
+simrun -q tracking.env walkers.3dm --clock fast --until 20 --record run --report run.json >out
+expect_same run.json measured.json "the reports of simrun and coverage --run"
+expect_error 2 simrun simrun tracking.env walkers.3dm --until 1 --report run.html
+for page in room.html run.html found.html; do
+    if command -v xmllint >/dev/null; then xmllint --noout "$page" || fail "$page is not well-formed"; fi
+done
 
 expect_error 2 coverage coverage room.env layout.3dm --report page.txt
 ln -s /dev/full full.html

@@ -112,6 +112,10 @@ void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to)
               Enters::Nothing);
     line.flag("--json", options.json, "the report of --info, or --rooms list, as JSON",
               Enters::Nothing);
+    line.file("--report", "FILE", options.report,
+              "write a report of the room for people, as a page with its plan (.html, .pdf); "
+              "without -o and --to this alone",
+              Enters::Nothing);
     line.flag("--check", options.check,
               "report errors and warnings about the environment and its objects", Enters::Nothing);
 }
@@ -250,6 +254,15 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
     if (options.check && (options.info || options.slice || line.given("--to") ||
                           line.given("--output") || options.common.dependencies.wanted))
         throw UsageError("--check writes nothing: leave --info, --slice, --to, -o and -MD out");
+    if (line.given("--report")) {
+        if (isStdout(options.report)) throw UsageError("give --report a file, such as room.html");
+        (void)outputFormat({}, options.report, {"html", "pdf"});
+        if (options.info || options.check || options.list_rooms ||
+            (options.format != nullptr && options.format->write == nullptr))
+            throw UsageError(
+                "--report is about a room that is compiled: leave --info, --check, "
+                "--rooms list and records (--to env) out");
+    }
     if (options.info && (options.slice || line.given("--to")))
         throw UsageError("--info is the product then: leave --slice and --to out");
     if (line.given("--closed") && !line.given("--fence"))
@@ -320,7 +333,9 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     if (options.rooms == "all") options.import.rooms = RoomChoice::All;
     for (Edit& edit : options.edits) edit.closed = closed && edit.kind == Edit::Kind::Fence;
     options.list_rooms = options.rooms == "list";
-    if (!options.info && !options.check && !options.list_rooms)
+    const bool is_report_alone =
+        line.given("--report") && !line.given("--output") && !line.given("--to") && !options.slice;
+    if (!options.info && !options.check && !options.list_rooms && !is_report_alone)
         options.format = productFormat(to, options);
     checkCombination(line, options);
     if ((options.info || options.list_rooms) && !options.json)

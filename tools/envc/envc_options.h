@@ -16,9 +16,11 @@ namespace ispace {
 
 struct EnvcOptions {
     CommonOptions common;
-    std::vector<std::string> inputs;       ///< "-" by default
-    const ExportFormat* format = nullptr;  ///< of the product; null with info, check or list
+    std::vector<std::string> inputs;  ///< "-" by default
+    const ExportFormat* format =
+        nullptr;  ///< of the product; null with info, check or list, or for a report alone
     bool info = false, json = false, check = false;
+    std::string report;              ///< file of the page for people; "": no file
     bool list_rooms = false;         ///< instead of writing the room; format is null then, too
     std::optional<double> slice;     ///< height of the obstacle map, which is the product then
     int width = 1200;                ///< pixels of a PNG

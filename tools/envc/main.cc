@@ -19,6 +19,7 @@
 #include "envc/envc_options.h"
 #include "io/exporters.h"
 #include "io/importers.h"
+#include "report/page/room_page.h"
 #include "scene/findings/findings.h"
 #include "scene/placement_schemas.h"
 
@@ -126,12 +127,19 @@ void compile(const EnvcOptions& options, Document document, const FoundRooms* fo
         talk(options.common, "envc", "nothing found");
         return;
     }
+    const std::vector<Diagnostic> warnings = document.warnings;
     const auto& [compiled, scene] = leftToExit(makeRoom(std::move(document), devices));
     const std::string& output = options.common.output;
+    if (!options.report.empty()) {
+        RoomPageInput page{scene, "", options.history_line, found, warnings};
+        if (options.inputs.front() != "-") page.name = baseName(options.inputs.front());
+        const ReportPage pages = roomPage(page);
+        writeAll(options.report, suffixOf(options.report) == "pdf" ? pdfOf(pages) : htmlOf(pages));
+    }
     if (options.info) {
         const EnvironmentInfo info = describe(scene.environment, scene.records, scene.digest());
         writeAll(output, options.json ? infoJson(info) : infoText(info));
-    } else {
+    } else if (options.format != nullptr) {
         writeProduct(options, scene, compiled, found);
         talk(options.common, "envc",
              std::to_string(scene.records.size()) + " records compiled, indoor area " +
@@ -152,10 +160,12 @@ void envc(const EnvcOptions& options) {
     limitThreads(options.common.threads);
     claimOutputs(options.common);
     if (format != nullptr) claimOutput(besideOf(options), std::string(format->beside_role));
+    claimOutput(options.report, "--report");
     keepMemory(options.inputs);
     FoundRooms found;
     found.all_storeys = options.list_rooms;
-    const bool wants_rooms = options.list_rooms || (format != nullptr && format->draws_rooms);
+    const bool wants_rooms =
+        options.list_rooms || !options.report.empty() || (format != nullptr && format->draws_rooms);
     ImportReport report;
     Document document = readModel(options, wants_rooms ? &found : nullptr, report);
     std::vector<std::string> files = options.inputs;

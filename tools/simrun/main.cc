@@ -14,6 +14,7 @@
 #include "server/server.h"
 #include "sim/world_state.h"
 #include "simrun/simrun_options.h"
+#include "simrun/simrun_report.h"
 #include "simrun/simrun_run.h"
 
 namespace {
@@ -25,6 +26,7 @@ void claimFiles(const SimrunOptions& options) {
     if (!options.drawing.format.empty()) claimOutputs(options.common);
     claimOutput(options.port_file, "--port-file");
     claimOutput(options.junit, "--junit");
+    claimOutput(options.report, "--report");
     if (options.record.empty()) return;
     for (const std::string& file : Recorder::filesIn(options.record))
         claimOutput(file, "a file of --record");
@@ -83,6 +85,9 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
         if (replay && replay->isCut())
             warn(options.common, "simrun",
                  "the record ends in the midst of a step, which is left out");
+        if (!options.report.empty())
+            writeAll(options.report,
+                     reportFile(options, input, judge, historyOf(command, input).back()));
         conclude(judge, options, input, junit);
     };
     endingAtOnce([&server] { return server.isBusy(); }, junit, options, serve_and_conclude);

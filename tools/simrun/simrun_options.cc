@@ -173,6 +173,11 @@ void SimrunCommand::declareRun() {
     line_.file("--record", "DIR", o.record,
                "write the run there: tables of robots, people and events, readings, pictures",
                Enters::Nothing);
+    line_.file("--report", "FILE", o.report,
+               "with --record: at the end of the run write a report for people, as a page with the "
+               "ways of robots and people and the floor that sensors see (.html, .pdf), or as JSON "
+               "(.json)",
+               Enters::Nothing);
     line_.parsed(
         "--record-frames", "RATE",
         [&o](const std::string& text) { o.recorded_frames = recordedRate(text, "frames"); },
@@ -235,6 +240,12 @@ void SimrunCommand::declareReplay() {
 
 void SimrunCommand::checkReplay() const {
     const SimrunOptions& o = options_;
+    if (line_.given("--report")) {
+        if (o.record.empty())
+            throw UsageError("--report is about a recorded run: give --record DIR");
+        if (isStdout(o.report)) throw UsageError("give --report a file, such as run.html");
+        (void)outputFormat({}, o.report, {"json", "html", "pdf"});
+    }
     if (o.replay.empty()) {
         for (const char* option : {"--from", "--hold"})
             if (line_.given(option))

@@ -62,6 +62,7 @@ struct SimrunOptions {
     std::optional<SimTime> until;
     bool noise = false;
     std::string script;                                     ///< "" without; "-" is stdin
+    std::string report;                                     ///< page for people; "" without
     std::string record;                                     ///< folder; "" without
     std::uint64_t max_recorded = std::uint64_t{16} << 30U;  ///< bytes
     std::string replay;                                     ///< folder; "" without

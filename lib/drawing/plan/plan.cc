@@ -171,7 +171,7 @@ void drawScene(Picture& picture, PlanDrawing& plan, const Page& page, const Foun
 
 }  // namespace
 
-std::string drawPlan(const Scene& scene, const PlanOptions& options) {
+Picture planPicture(const Scene& scene, const PlanOptions& options) {
     const bool on_paper = options.format != PictureFormat::Png;
     const FoundRooms* const found = options.slice ? nullptr : options.found;
     Box2 box = planBox(scene);
@@ -203,7 +203,11 @@ std::string drawPlan(const Scene& scene, const PlanOptions& options) {
         drawScene(picture, plan, page, found);
     }
     drawFrame(picture, page, options.title, notes);
-    return picture.write(options.format);
+    return picture;
+}
+
+std::string drawPlan(const Scene& scene, const PlanOptions& options) {
+    return planPicture(scene, options).write(options.format);
 }
 
 }  // namespace ispace

@@ -42,6 +42,8 @@ struct PlanOptions {
 /// O(n log n).
 /// \throws UsageError for a width outside 200 to 12000
 std::string drawPlan(const Scene& scene, const PlanOptions& options);
+/// Draws the same without writing it.
+Picture planPicture(const Scene& scene, const PlanOptions& options);
 
 /// Mark of a sensor: a body by its kind, and an arrow if it faces sideways.
 struct SensorMark {

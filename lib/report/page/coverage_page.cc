@@ -29,8 +29,6 @@ std::string shareText(const Metric& metric) {
     return percentText(*share) + (metric.exact ? "" : " (by cells)");
 }
 
-std::string areaText(double area) { return formatFixed(area, 2) + " m2"; }
-
 std::string pointText(Point2 p) {
     return "(" + formatFixed(p.x, 2) + ", " + formatFixed(p.y, 2) + ")";
 }
@@ -71,8 +69,8 @@ std::string identifiedText(const CoverageReport& report) {
 PageSection summaryOf(const CoveragePageInput& input) {
     const CoverageReport& report = input.coverage.report;
     PageSection section{"summary", "Summary", {}};
-    section.blocks.push_back(PageText{"The room has " + areaText(report.indoor_area) +
-                                      " of indoor floor, " + areaText(report.free_area) +
+    section.blocks.push_back(PageText{"The room has " + squareMetres(report.indoor_area) +
+                                      " of indoor floor, " + squareMetres(report.free_area) +
                                       " of it free at " + formatFixed(report.height, 2) +
                                       " m, and " + sensorsText(input.scene) + "."});
     std::string seen = "The sensors see " + shareText(report.coverage) + " of the indoor floor";
@@ -81,10 +79,21 @@ PageSection summaryOf(const CoveragePageInput& input) {
     seen += identifiedText(report) + ".";
     if (!report.unseen.empty())
         seen += " The largest spot of free floor that none sees has " +
-                areaText(report.unseen.front().area) + " around " +
+                squareMetres(report.unseen.front().area) + " around " +
                 pointText(report.unseen.front().place) + ".";
     section.blocks.push_back(PageText{std::move(seen)});
-    if (input.requirements.empty())
+    if (input.run != nullptr && !input.run->all.time_shares.empty())
+        section.blocks.push_back(PageText{
+            "In the run of " + formatFixed(input.run->end - input.run->begin, 2) +
+            " s robots and people were seen for " +
+            percentText(1 - input.run->all.time_shares.front()) + " of their time; " +
+            (input.run->all.longest_gap
+                 ? "the longest time without sight was " +
+                       formatFixed(
+                           input.run->all.longest_gap->end - input.run->all.longest_gap->begin, 2) +
+                       " s."
+                 : "sight was never lost.")});
+    if (input.requirements.empty() && input.run == nullptr)
         section.blocks.push_back(
             PageText{"No requirement was given; --require 90% checks one.", Tone::Small});
     for (const JudgedRequirement& one : input.requirements)
@@ -106,12 +115,10 @@ PageSection mapOf(const CoveragePageInput& input) {
                                  is_level ? view.pose.position.z : input.coverage.report.plane,
                                  camera == nullptr ? 0 : camera->fx});
     }
-    MapOptions options;
-    options.run = input.run;
     PageSection section{"map", "Map", {}};
     section.blocks.push_back(
         PageMap{{"Floor by the number of sensors that see it; coordinates in metres.",
-                 coverageMap(input.scene, input.coverage, options)},
+                 coverageMap(input.scene, input.coverage, {})},
                 std::move(screen.map),
                 std::move(index)});
     section.blocks.push_back(PageFigure{"", std::move(screen.legend), 1, true});
@@ -125,7 +132,7 @@ PageTable zonesOfReport(const CoverageReport& report) {
     if (has_cameras)
         for (const PixelDensity& one : pixelDensities()) table.heads.emplace_back(one.name);
     for (const ZoneMetrics& zone : report.zones) {
-        TextRow row = {zone.id, areaText(zone.area),
+        TextRow row = {zone.id, squareMetres(zone.area),
                        zone.area > 0 ? shareText(zone.coverage) : "outside the room"};
         for (const Metric& density : zone.densities) row.push_back(shareText(density));
         table.rows.push_back(std::move(row));
@@ -196,6 +203,17 @@ void addAdvice(const CoveragePageInput& input, ReportPage& page) {
     page.sections.push_back(std::move(section));
 }
 
+void addRun(const CoveragePageInput& input, ReportPage& page) {
+    MapOptions options;
+    options.run = input.run;
+    page.sections.push_back(
+        {"run",
+         "Recorded run",
+         {PageFigure{"Ways of robots and people by the number of sensors that saw them.",
+                     coverageMap(input.scene, input.coverage, options)},
+          PageCode{runText(*input.run)}}});
+}
+
 PageSection methodsOf(const CoveragePageInput& input) {
     const CoverageReport& report = input.coverage.report;
     PageSection section{"methods", "Methods and limits", {}};
@@ -243,17 +261,18 @@ PageSection recordsOf(const CoveragePageInput& input) {
 
 ReportPage coveragePage(const CoveragePageInput& input) {
     ReportPage page;
-    page.title = (input.name.empty() ? "Coverage" : input.name + ": coverage");
-    page.subtitle = sensorsText(input.scene) + " · " + areaText(input.coverage.report.indoor_area) +
-                    " · " + shareText(input.coverage.report.coverage);
+    const std::string_view subject = input.run == nullptr ? "coverage" : "run";
+    page.title = input.name + (input.name.empty() ? "" : ": ") + std::string(subject);
+    page.subtitle = sensorsText(input.scene) + " · " +
+                    squareMetres(input.coverage.report.indoor_area) + " · " +
+                    shareText(input.coverage.report.coverage);
     page.sections.push_back(summaryOf(input));
     page.sections.push_back(mapOf(input));
     for (const PageSection& section : input.more) page.sections.push_back(section);
     addRequirements(input, page);
     addAdvice(input, page);
     addInstallation(input, page);
-    if (input.run != nullptr)
-        page.sections.push_back({"run", "Recorded run", {PageCode{runText(*input.run)}}});
+    if (input.run != nullptr) addRun(input, page);
     page.sections.push_back(methodsOf(input));
     page.sections.push_back(recordsOf(input));
     return page;

@@ -8,11 +8,15 @@
 #include <variant>
 #include <vector>
 
+#include "base/number.h"
 #include "drawing/drawing.h"
 #include "geom/pose.h"
 #include "report/coverage_report.h"
 
 namespace ispace {
+
+/// Formats an area for people: "12.30 m2".
+inline std::string squareMetres(double area) { return formatFixed(area, 2) + " m2"; }
 
 /// The emphasis of a paragraph, or of a row of a table.
 enum class Tone { Plain, Good, Bad, Small };
