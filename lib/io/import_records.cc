@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 
 #include "base/error.h"
 #include "base/number.h"
+#include "env/environment.h"
 #include "env/walls.h"
 
 namespace ispace {
@@ -193,6 +195,16 @@ std::string_view trimmed(std::string_view text) {
     constexpr std::string_view kBlanks = " \t\r\n";
     text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
     return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
+std::optional<Vec2> wayFromSurvey(Point2 place) {
+    if (!(std::max(std::abs(place.x), std::abs(place.y)) >= kSurveyed)) return std::nullopt;
+    return Vec2{std::floor(place.x), std::floor(place.y)};
+}
+
+std::string surveyText(Vec2 moved, const std::string& thing) {
+    return "moved by " + placeText(Point2{} - moved) + " m: the " + thing +
+           " stands in surveyors' coordinates";
 }
 
 std::string countText(std::size_t count, const std::string& thing) {

@@ -130,6 +130,13 @@ std::string_view xmlRootName(std::string_view bytes);
 /// Returns the text without surrounding blanks and line breaks.
 std::string_view trimmed(std::string_view text);
 
+/// Coordinates further out are surveyors', in metres.
+constexpr double kSurveyed = 100'000;
+/// Returns whole metres to subtract from surveyors' coordinates of a place; nothing for others.
+std::optional<Vec2> wayFromSurvey(Point2 place);
+/// Returns "moved by (-450000, -5400000) m: the drawing stands in surveyors' coordinates".
+std::string surveyText(Vec2 moved, const std::string& thing);
+
 /// Returns "1 line", "3 lines".
 std::string countText(std::size_t count, const std::string& thing);
 

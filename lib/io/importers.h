@@ -171,7 +171,8 @@ bool isDxf(std::string_view bytes);
 /// doors with a width shut, solids by addDrawnThings().
 ///
 /// Document::notes counts the skipped elements.
-/// \throws FormatError: damaged, no unit, no line on the layers, coordinates beyond 900 km, more
+/// \throws FormatError: damaged, no unit, no line on the layers, coordinates beyond 900 km of the
+/// drawing's own origin (surveyors' coordinates move there), more
 /// than ImportOptions::max_work
 Document readDxf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas);

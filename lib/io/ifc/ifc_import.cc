@@ -140,7 +140,6 @@ std::string storeysText(const Building& building, std::size_t chosen) {
 
 namespace {
 
-constexpr double kFarOut = 100'000;  // metres: surveyors' coordinates
 /// Moves a building in surveyors' coordinates to the origin, by whole metres.
 std::optional<Vec2> movedHome(Building& building) {
     Box2 box;
@@ -164,10 +163,9 @@ std::optional<Vec2> movedHome(Building& building) {
     };
     each_point([&](const Point2& p) { box.add(p); });
     if (box.empty()) return std::nullopt;
-    const Point2 low{std::floor(box.low.x), std::floor(box.low.y)};
-    if (std::max(std::abs(low.x), std::abs(low.y)) < kFarOut) return std::nullopt;
-    each_point([&](Point2& p) { p = p - (low - Point2{}); });
-    return low - Point2{};
+    const auto way = wayFromSurvey(box.low);
+    if (way) each_point([&](Point2& p) { p = p - *way; });
+    return way;
 }
 
 std::string unreadText(const Building& building) {
@@ -226,9 +224,7 @@ Document readIfc(std::string_view bytes, const std::string& operand, const Impor
         const std::size_t storey = chosenStorey(building, options);
         out.tell(storeysText(building, storey));
         if (options.report != nullptr) options.report->has_storeys = true;
-        if (moved)
-            out.tell("moved by " + placeText(Point2{} - *moved) +
-                     " m: the building stands in surveyors' coordinates");
+        if (moved) out.tell(surveyText(*moved, "building"));
         if (!building.unread.empty()) out.warn(unreadText(building));
         listRooms(building, 0, storey, operand, options, schemas);
         out.setStorey(storeyWord(building, storey));

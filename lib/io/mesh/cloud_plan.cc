@@ -120,9 +120,14 @@ class CloudPlan {
         // The outermost walls lie in the middle of their cells.
         // A disc as wide as a gap must fit outside.
         const double rim = kRim + std::ceil(options_.close_gaps.value_or(kGaps.back()) / cell_);
-        corner_ = {band.low.x - (rim + 0.5) * cell_, band.low.y - (rim + 0.5) * cell_};
-        const double columns = std::ceil((band.high.x - corner_.x) / cell_) + rim;
-        const double rows = std::ceil((band.high.y - corner_.y) / cell_) + rim;
+        const Point2 low{band.low.x, band.low.y};
+        if (const auto way = wayFromSurvey(low)) {
+            survey_ = *way;
+            out_.tell(surveyText(survey_, "cloud"));
+        }
+        corner_ = low - survey_ - Vec2{(rim + 0.5) * cell_, (rim + 0.5) * cell_};
+        const double columns = std::ceil((band.high.x - survey_.x - corner_.x) / cell_) + rim;
+        const double rows = std::ceil((band.high.y - survey_.y - corner_.y) / cell_) + rim;
         const bool is_huge = columns * rows > kMostCells;
         const double units = std::min(columns * rows, kMostCells) / kCellsPerUnit;
         if (is_huge || !budget_.take(static_cast<std::uint64_t>(units)))
@@ -161,8 +166,8 @@ class CloudPlan {
     }
 
     [[nodiscard]] std::optional<std::size_t> cellOf(const Point3& p) const {
-        const double x = std::floor((p.x - corner_.x) / cell_);
-        const double y = std::floor((p.y - corner_.y) / cell_);
+        const double x = std::floor((p.x - survey_.x - corner_.x) / cell_);
+        const double y = std::floor((p.y - survey_.y - corner_.y) / cell_);
         if (x < 0 || y < 0 || x >= columns_ || y >= rows_) return std::nullopt;
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
                static_cast<std::size_t>(x);
@@ -325,6 +330,7 @@ class CloudPlan {
     Budget budget_;
     ImportRecords& out_;
     double cell_ = kCell, floor_ = 0;
+    Vec2 survey_;  // subtracted from the points of the file
     Point2 corner_;
     int columns_ = 0, rows_ = 0;
     std::vector<CountedCell> cells_;

@@ -202,6 +202,21 @@ TEST(CloudPlan, ARoomComesBackWithItsThings) {
         << warningsOf(document);
 }
 
+TEST(CloudPlan, SurveyorsCoordinatesMoveToTheOrigin) {
+    Points points = room();
+    for (auto& [x, y, z] : points) x += 450'000, y += 1'400'000;
+    ImportOptions options = between(0.5, 1.8);
+    ImportReport report;
+    options.report = &report;
+    const Document document = readPointCloud(las(points), "cloud", options, sceneSchemas());
+    EXPECT_NEAR(environmentOf(document).indoor().area(), 24, 0.02 * 24);
+    EXPECT_EQ(countOf(document, "cube"), 1U);
+    ASSERT_EQ(report.choices.size(), 1U);
+    EXPECT_NE(report.choices[0].message.find(" m: the cloud stands in surveyors' coordinates"),
+              std::string::npos)
+        << report.choices[0].message;
+}
+
 TEST(CloudPlan, SaysHow) {
     const std::string bytes = asciiPcd(room());
     EXPECT_NE(errorOf(bytes).find("--slice-walls 0.5..1.8 --resolution 5cm; its points reach from "

@@ -31,6 +31,9 @@ using MissingBlocks = std::map<std::string, std::size_t>;
 /// Beyond these a bulge is a straight line, or a full circle.
 constexpr double kMinBulge = 1e-9, kMaxBulge = 1e4;
 
+/// Metres: beyond all surveyors' coordinates.
+constexpr double kOffEarth = 1e8;
+
 constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
 
 /// The drawing in metres with all inserts of blocks expanded, entities on layer 0 of a block on the
@@ -49,9 +52,41 @@ class Expander {
         return std::move(shapes_);
     }
 
+    /// Moves a drawing of which most stands in surveyors' coordinates to the origin. \return by
+    /// what \throws FormatError: shapes beyond kFarthestPlan
+    std::optional<Vec2> moveHome(std::vector<PlanShape>& shapes) const {
+        std::vector<double> x, y;
+        for (const PlanShape& shape : shapes)
+            if (!shape.path.points.empty()) {
+                x.push_back(shape.path.points.front().x);
+                y.push_back(shape.path.points.front().y);
+            }
+        const auto way = wayFromSurvey({median(x), median(y)});
+        for (PlanShape& shape : shapes) {
+            if (way) move(shape, *way);
+            requireWithin(kFarthestPlan, shape);
+        }
+        return way;
+    }
+
   private:
     [[noreturn]] void fail(const DxfEntity& entity, const std::string& message) const {
         failFile(name_, message, entity.line);
+    }
+
+    static double median(std::vector<double>& values) {
+        if (values.empty()) return 0;
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    }
+
+    static void move(PlanShape& shape, Vec2 way) {
+        for (Point2& p : shape.path.points) p = p - way;
+        for (PlanChord& chord : shape.chords) {
+            chord.line = {chord.line.a - way, chord.line.b - way};
+            if (chord.center) chord.center = *chord.center - way;
+        }
     }
 
     void spend(const DxfEntity& entity, std::size_t units) {
@@ -144,11 +179,17 @@ class Expander {
             addEllipse(entity, *ellipse, frame);
         else if (const auto* spline = std::get_if<DxfSpline>(&entity.shape))
             addSpline(entity, *spline, frame);
-        for (const Point2 p : shape_.path.points)
-            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kFarthestPlan))
-                fail(entity, "lies more than " + formatDouble(kFarthestPlan / 1000) +
-                                 " km from the origin: are the units right (--units)?");
+        requireWithin(kOffEarth, shape_);
         if (shape_.path.points.size() >= 2) shapes_.push_back(std::move(shape_));
+    }
+
+    void requireWithin(double metres, const PlanShape& shape) const {
+        for (const Point2 p : shape.path.points)
+            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= metres))
+                failFile(name_,
+                         "lies more than " + formatDouble(kFarthestPlan / 1000) +
+                             " km from the origin: are the units right (--units)?",
+                         shape.path.line);
     }
 
     void addPolyline(const DxfEntity& entity, const DxfPolyline& polyline, const Affine& frame) {
@@ -284,9 +325,10 @@ class DxfImporter {
                              options.window_layers.empty() && isDrawnRoom(drawing_);
         const ImportOptions own = is_ours ? asDrawn(options) : options;
         LayerSorter sorter(drawing_.hidden_layers, own);
-        LayerSorter::Sorted shapes =
-            sorter.sort(Expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter)
-                            .expand(source.metres_per_unit));
+        Expander expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter);
+        std::vector<PlanShape> expanded = expander.expand(source.metres_per_unit);
+        if (const auto moved = expander.moveHome(expanded)) out.tell(surveyText(*moved, "drawing"));
+        LayerSorter::Sorted shapes = sorter.sort(std::move(expanded));
         sorter.note(out);
         if (!drawing_.left_out.empty())
             out.note("entities left out: " + listText(drawing_.left_out));

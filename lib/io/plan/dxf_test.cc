@@ -75,6 +75,39 @@ TEST(Dxf, Units) {
         std::string::npos);
 }
 
+TEST(Dxf, SurveyorsCoordinatesMoveToTheOrigin) {
+    // A room with a quarter circle, and a door in a block, in millimetres.
+    const auto room = [](double x, double y) {
+        return drawing(polyline("W", true,
+                                {{x, y},
+                                 {x + 4000, y},
+                                 {x + 4000, y + 3000, std::tan(std::numbers::pi / 8)},
+                                 {x, y + 3000}}) +
+                       line("D", x + 1000, y, x + 2000, y));
+    };
+    ImportOptions options;
+    options.door_layers = {"D"};
+    ImportReport report;
+    options.report = &report;
+    const double area = areaOf(room(0, 0), options);
+    EXPECT_TRUE(report.choices.empty());
+    const Document moved = read(room(450'000'250, 5'400'000'500), options);
+    EXPECT_NEAR(environmentOf(moved).indoor().area(), area, 1e-5);
+    ASSERT_EQ(report.choices.size(), 1U);
+    EXPECT_NE(report.choices[0].message.find("moved by (-450001.0, -5400000.0) m: the drawing "
+                                             "stands in surveyors' coordinates"),
+              std::string::npos)
+        << report.choices[0].message;
+    const std::string text = writeRecordText(moved);
+    EXPECT_NE(text.find("path=-0.75,0.5;3.25,0.5;"), std::string::npos) << text;
+    EXPECT_NE(text.find("\ndoor "), std::string::npos) << text;
+    // Stray entities decide nothing.
+    const std::string near = rectangle("W", 0, 0, 4, 3) + rectangle("W", 0, 0, 2, 3);
+    EXPECT_NE(errorOf(drawing(near + line("W", 2e6, 2e6, 2e6, 2e6 + 1), "", 6))
+                  .find("900 km from the origin"),
+              std::string::npos);
+}
+
 TEST(Dxf, ArcsAndCircles) {
     // A half disc of radius 1: an ARC and its chord.
     const std::string half = arc("W", 0, 0, 1, 0, 180) + line("W", -1, 0, 1, 0);
