@@ -214,6 +214,19 @@ TEST_F(SdfIncludes, MeshesLieBesideTheModel) {
               std::string::npos);
 }
 
+TEST_F(SdfIncludes, RoomsLackFurnitureThatIsMissing) {
+    std::string walls;
+    for (const char* wall : {"0 3 1 0 0 0</pose><geometry><box><size>6 0.2 2",
+                             "0 -3 1 0 0 0</pose><geometry><box><size>6 0.2 2",
+                             "3 0 1 0 0 0</pose><geometry><box><size>0.2 6.2 2",
+                             "-3 0 1 0 0 0</pose><geometry><box><size>0.2 6.2 2"})
+        walls += "<collision name='w" + std::to_string(walls.size()) + "'><pose>" +
+                 std::string(wall) + "</size></box></geometry></collision>";
+    walls = "<model name='walls'><link name='l'>" + walls + "</link></model>";
+    EXPECT_EQ(errorOf(walls + include("model://lost")), "no error");
+    EXPECT_NE(recordsOf(walls + include("model://lost")).find("wall "), std::string::npos);
+}
+
 TEST_F(SdfIncludes, WhatIsMissingIsNamedOnceWithItsPlace) {
     putModel("crate");
     EXPECT_EQ(errorOf(include("model://crate") + include("model://a") + include("model://b") +

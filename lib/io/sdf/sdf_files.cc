@@ -237,8 +237,6 @@ void SdfFiles::enter(pugi::xml_node include, std::span<const pugi::xml_node> aro
 }
 
 void SdfFiles::loadIncludes(pugi::xml_node parent) {
-    std::vector<std::string> missing;
-    pugi::xml_node first;
     for (const pugi::xml_node include : parent.children("include")) {
         if (included_.contains(include.hash_value())) continue;
         if (const std::optional<std::string>& file = includedFile(include)) {
@@ -249,21 +247,29 @@ void SdfFiles::loadIncludes(pugi::xml_node parent) {
         const std::string_view uri = uriOf(include);
         if (uri.empty()) fail(include, "`include` without `uri`");
         if (isSurrounding(uri)) continue;
-        if (missing.empty()) first = include;
-        if (const std::string name = excerpt(uri);
-            std::find(missing.begin(), missing.end(), name) == missing.end())
-            missing.push_back(name);
+        if (missing_.empty()) first_missing_ = include;
+        if (std::string name = excerpt(uri);
+            std::find(missing_.begin(), missing_.end(), name) == missing_.end())
+            missing_.push_back(std::move(name));
     }
-    if (missing.empty()) return;
+}
+
+std::optional<Diagnostic> SdfFiles::missing() const {
+    if (missing_.empty()) return std::nullopt;
     std::string names;
-    for (std::size_t i = 0; i < std::min(missing.size(), kMaxNamed); ++i)
-        names += (i == 0 ? "" : ", ") + missing[i];
-    if (missing.size() > kMaxNamed)
-        names += " and " + std::to_string(missing.size() - kMaxNamed) + " more";
-    fail(first, names + (missing.size() == 1 ? " is" : " are") +
-                    " not in the world's folder, in ../models or below: say with --models DIR (or "
-                    "GAZEBO_MODEL_PATH) which folder holds the models, write the world with "
-                    "everything in it (`gz sdf -p`), or delete the `include`");
+    for (std::size_t i = 0; i < std::min(missing_.size(), kMaxNamed); ++i)
+        names += (i == 0 ? "" : ", ") + missing_[i];
+    if (missing_.size() > kMaxNamed)
+        names += " and " + std::to_string(missing_.size() - kMaxNamed) + " more";
+    const XmlFile& xml = fileOf(first_missing_).xml;
+    return Diagnostic{.file = xml.name(),
+                      .line = xml.lineOf(first_missing_),
+                      .column = 1,
+                      .message = names + (missing_.size() == 1 ? " is" : " are") +
+                                 " not in the world's folder, in ../models or below: say with "
+                                 "--models DIR (or GAZEBO_MODEL_PATH) which folder holds the "
+                                 "models, write the world with everything in it (`gz sdf -p`), or "
+                                 "delete the `include`"};
 }
 
 pugi::xml_node SdfFiles::included(pugi::xml_node include) const {

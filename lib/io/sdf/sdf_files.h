@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/budget.h"
+#include "base/error.h"
 #include "geom/rotation.h"
 
 namespace ispace {
@@ -63,11 +64,13 @@ class SdfFiles {
     [[nodiscard]] pugi::xml_node root() const { return files_.front()->xml.root(); }
 
     /// Reads the files that a world or model includes, each once.
-    /// \throws FormatError with the line: missing files, which one error lists together, files
-    /// without a model, light or actor, and as spend()
+    /// \throws FormatError with the line: files without a model, light or actor, and as spend()
     void loadIncludes(pugi::xml_node parent);
-    /// Returns the included model, light or actor; all includes of a file share its nodes. Null for
-    /// Gazebo's sun and ground plane if they are missing: neither is part of a room.
+    /// Returns the message about all files so far that are missing, at the first `include` of one.
+    /// Gazebo's sun and ground plane are no part of a room and never missing.
+    [[nodiscard]] std::optional<Diagnostic> missing() const;
+    /// Returns the included model, light or actor; all includes of a file share its nodes. Null if
+    /// the file is missing.
     /// \pre loadIncludes(its parent)
     [[nodiscard]] pugi::xml_node included(pugi::xml_node include) const;
     /// Takes the work of visiting the nodes of an included file.
@@ -127,6 +130,8 @@ class SdfFiles {
     // The file that a URI means in a folder.
     std::map<std::pair<std::string, std::string>, std::optional<std::string>> found_;
     std::vector<std::string> sources_;
+    std::vector<std::string> missing_;  // as the first includes name them
+    pugi::xml_node first_missing_;
     Budget budget_;
 };
 

@@ -45,6 +45,8 @@ class SdfImporter {
         addMeshes();
         if (walls_.empty() && fences_.empty() && blocks_.empty() && meshes_ == 0) failEmpty();
         chooseRoom();
+        // The walls may be in a file that is missing.
+        if (world_.missing && regions_.empty()) throw FormatError(*world_.missing);
         for (const SdfBlock& block : blocks_)
             if (isOutside(block))
                 ++blocks_outside_;
@@ -55,6 +57,7 @@ class SdfImporter {
 
   private:
     [[noreturn]] void failEmpty() const {
+        if (world_.missing) throw FormatError(*world_.missing);
         failFile(name_, "no box, cylinder, polyline or mesh in it");
     }
 
@@ -315,6 +318,7 @@ class SdfImporter {
     }
 
     void note() {
+        if (world_.missing) out_.warn("left out: " + world_.missing->message);
         if (!missing_.empty())
             out_.warn(
                 "meshes left out that are not in the folders of models (--models DIR names "

@@ -35,6 +35,7 @@ class SdfReader {
         if (!world && !root.child("model")) files_.fail(root, "no `world` and no `model` in it");
         addModels(frames_.scopeOf(world ? world : root), Transform::Identity(), {});
         found_.sources = files_.sources();
+        found_.missing = files_.missing();
         return std::move(found_);
     }
 

@@ -47,6 +47,7 @@ struct SdfWorld {
     std::vector<SdfShape> shapes;
     std::map<std::string, std::size_t> left_out;  ///< by type or reason
     std::vector<std::string> sources;             ///< other files read, as opened
+    std::optional<Diagnostic> missing = {};       ///< included files that were not found
 };
 
 /// Reads the collision shapes of all links, or the visuals of links without any that every sensor
@@ -55,8 +56,8 @@ struct SdfWorld {
 /// \param name the world's file \param model_folders see SdfFiles
 /// \param max_work see Budget
 /// \throws FormatError with the line: bad XML, no world and no model, malformed numbers, frames
-/// that are missing or depend on each other, models nested too deep, includes that are missing or
-/// include themselves, more work than the budget has
+/// that are missing or depend on each other, models nested too deep, includes that include
+/// themselves, more work than the budget has
 SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
                        std::span<const std::string> model_folders,
                        std::optional<std::uint64_t> max_work);
