@@ -201,6 +201,33 @@ TEST(Dxf, EntitiesOnLayerZeroOfABlockAreOnThatOfTheInsert) {
         "(1)\n");
 }
 
+TEST(Dxf, FramesOfSheetsWarn) {
+    const auto warningsOf = [](const std::string& entities) {
+        ImportReport report;
+        ImportOptions options;
+        options.report = &report;
+        const Document document = read(drawing(entities, "", 6), options);
+        std::string text;
+        for (const Diagnostic& warning : document.warnings) text += warning.message + '\n';
+        for (const Diagnostic& doubt : report.doubts) text += doubt.message + '\n';
+        return text;
+    };
+    const std::string frame = rectangle("W", -3, -3, 11, 8);
+    EXPECT_EQ(
+        warningsOf(frame + rectangle("W", 0, 0, 8, 5)),
+        "the room is the rectangle around the whole drawing: if that is the frame of a sheet, "
+        "--inside X,Y chooses a room in it, the largest has 40.0 m2 about (4.0, 2.5)\n");
+    // An open plan, with a title block in the corner.
+    EXPECT_EQ(
+        warningsOf(frame + rectangle("W", 7, -3, 11, -1.5) + line("W", 0, 0, 8, 0) +
+                   line("W", 8, 0, 8, 5) + line("W", 8, 5, 0, 5)),
+        "the room is the rectangle around the whole drawing: if that is the frame of a sheet, "
+        "leave it out, for example with --wall-layer\n");
+    // Pillars and rooms at the walls are no drawing in a frame.
+    EXPECT_EQ(warningsOf(frame + rectangle("W", 0, 0, 1, 1) + rectangle("W", 6, 4, 7, 5)), "");
+    EXPECT_EQ(warningsOf(frame + line("W", -3, 2, 4, 2) + line("W", 4, 2, 4, 8)), "");
+}
+
 TEST(Dxf, BlocksInBlocksEnd) {
     const std::string loop =
         block("A", 0, 0, insert("B", "0", 0, 0)) + block("B", 0, 0, insert("A", "0", 1, 0));

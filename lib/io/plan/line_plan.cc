@@ -133,6 +133,7 @@ class LinePlan {
             if (!opening.is_window && !isShut(opening)) doorways.push_back(opening.line);
         const std::vector<Segment2> all = allPieces();
         PlanWalls plan{all, doorways, {}, {}, {}};
+        plan.is_drawing = drawing != nullptr;
         if (drawing != nullptr)
             plan.unit_hint = [&](double extent) {
                 return otherUnitHint(extent, *drawing, options);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -27,6 +28,11 @@ constexpr std::size_t kMaxLinesTried = 10'000, kMaxFacesTried = 1'000;
 /// A room below this share of the drawing's extent, or of the largest enclosable area, is
 /// uncertain.
 constexpr double kSmallShare = 0.5;
+
+/// A part of the drawing that takes this share of a rectangle around all is no furniture.
+constexpr double kFrameShare = 0.2;
+/// A frame encloses this share of its bounds.
+constexpr double kFrameFilled = 0.85;
 
 /// Wider gaps are doorways, between corners of thick walls, too.
 constexpr double kMinDoorway = 0.3;
@@ -368,6 +374,65 @@ class RoomChooser {
                       " are enclosed, the walls are open; with --close-gaps " +
                       formatDouble(wider_->first) + " it would be " + areaText(wider_->second));
         if (points_.empty() && !is_odd_ && !wider_) warnOfTheRest(taken, kept);
+        if (plan_.is_drawing && points_.empty() && rooms.regions.size() == 1)
+            warnOfFrame(taken, rooms.regions.front());
+    }
+
+    /// Warns if the room is a rectangle around the drawing with large parts of it inside.
+    void warnOfFrame(const Attempt& taken, const PlanRegion& region) {
+        const Box2 all = boundsOf(plan_.lines);
+        const Box2 rim{all.low + Vec2{kAtBorder, kAtBorder}, all.high - Vec2{kAtBorder, kAtBorder}};
+        const Polygon& outline = region.rooms.front().outline;
+        const auto is_inside = [&rim](Point2 p) { return rim.contains(p); };
+        const Box2 around = bounds(outline);
+        // A title block may take a corner.
+        const bool is_rectangle = !is_inside(around.low) && !is_inside(around.high) &&
+                                  std::abs(signedArea(outline)) > kFrameFilled * areaOf(all);
+        if (!is_rectangle || lines_.size() > kMaxLinesTried) return;
+        std::vector<Segment2> within;
+        for (const Segment2& line : lines_)
+            if (is_inside(line.a) && is_inside(line.b)) within.push_back(line);
+        double largest = 0;
+        for (const Box2& part : partsOf(within)) largest = std::max(largest, areaOf(part));
+        if (largest < kFrameShare * areaOf(all)) return;
+        std::string text =
+            "the room is the rectangle around the whole drawing: if that is the "
+            "frame of a sheet, ";
+        const auto other = std::find_if(taken.faces.groups().begin(), taken.faces.groups().end(),
+                                        [&](const PlanFaces::Group& group) {
+                                            return &group != taken.groups.front() &&
+                                                   group.area > kSmallShare * largest &&
+                                                   isRoom(taken.faces, group);
+                                        });
+        if (other == taken.faces.groups().end())
+            text += "leave it out, for example with --wall-layer";
+        else
+            text += "--inside X,Y chooses a room in it, the largest has " + areaText(other->area) +
+                    " about " + placeText(interiorPoint(taken.faces.faces()[other->faces.front()]));
+        out_.warn(std::move(text));
+    }
+
+    /// Returns the bounds of the lines that ends join.
+    static std::vector<Box2> partsOf(std::span<const Segment2> lines) {
+        std::vector<std::size_t> parent(lines.size());
+        std::iota(parent.begin(), parent.end(), std::size_t{0});
+        const auto root = [&parent](std::size_t i) {
+            while (parent[i] != i) i = parent[i] = parent[parent[i]];
+            return i;
+        };
+        std::map<std::pair<double, double>, std::size_t> at;
+        for (std::size_t i = 0; i < lines.size(); ++i)
+            for (const Point2 end : {lines[i].a, lines[i].b}) {
+                const Point2 p = wholeMicrometres(end);
+                parent[root(i)] = root(at.emplace(std::pair{p.x, p.y}, i).first->second);
+            }
+        std::map<std::size_t, Box2> boxes;
+        for (std::size_t i = 0; i < lines.size(); ++i)
+            for (const Point2 end : {lines[i].a, lines[i].b})
+                boxes.try_emplace(root(i), Box2{end, end}).first->second.add(end);
+        std::vector<Box2> parts;
+        for (const auto& [first, box] : boxes) parts.push_back(box);
+        return parts;
     }
 
     void warnOfTheRest(const Attempt& taken, const Box2& kept) {

@@ -112,6 +112,7 @@ struct PlanWalls {
     std::function<bool(Point2)> is_floor = {};
     /// Returns advice for a plan of an unlikely extent (metres); may be empty.
     std::function<std::string(double)> unit_hint = {};
+    bool is_drawing = false;  ///< the frame of a sheet may surround it
 };
 
 /// The imported rooms of a plan.
