@@ -431,6 +431,7 @@ class RoomChooser {
             for (const Point2 end : {lines[i].a, lines[i].b})
                 boxes.try_emplace(root(i), Box2{end, end}).first->second.add(end);
         std::vector<Box2> parts;
+        parts.reserve(boxes.size());
         for (const auto& [first, box] : boxes) parts.push_back(box);
         return parts;
     }
