@@ -256,14 +256,18 @@ void addDensityOption(CommandLine& line, double& pixels_per_metre) {
             return;
         }
         std::vector<std::string> names;
-        for (const PixelDensity& known : pixelDensities()) names.emplace_back(known.name);
+        for (const auto& known : {pixelDensities(), pixelLevels()})
+            for (const PixelDensity& one : known) names.emplace_back(one.name);
         throw UsageError(excerpt(text) + " is not a number of pixels a metre above 0, nor " +
                          listOf(names) + didYouMean(text, names));
     };
     line.parsed(
         "--density", "N|NAME", read,
         "pixels a metre that cameras require to cover floor: a number, or monitor (12.5), detect "
-        "(25), observe (62.5), recognise (125), identify (250) or inspect (1000) of EN 62676-4",
+        "(25), observe (62.5), recognise (125), identify (250) or inspect (1000) of EN "
+        "62676-4:2015, "
+        "or overview (20), outline (40), discern (80), perceive (125), characterise (250), "
+        "validate (500) or scrutinise (1500) of IEC 62676-4:2025",
         Enters::History);
 }
 

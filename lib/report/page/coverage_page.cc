@@ -125,12 +125,20 @@ PageSection mapOf(const CoveragePageInput& input) {
     return section;
 }
 
-/// Lists zones, and what cameras resolve in each.
+/// Returns the class of 2015, with the level of 2025 of the same density.
+std::string classText(const PixelDensity& one) {
+    std::string text(one.name);
+    for (const PixelDensity& level : pixelLevels())
+        if (level.pixels_per_metre == one.pixels_per_metre) text.append(" / ").append(level.name);
+    return text;
+}
+
+/// Lists zones with the shares of their floor by densities of cameras.
 PageTable zonesOfReport(const CoverageReport& report) {
     PageTable table{"share of each zone's floor", "lr", {"zone", "area", "seen"}, {}};
     const bool has_cameras = !report.densities.indoor.empty();
     if (has_cameras)
-        for (const PixelDensity& one : pixelDensities()) table.heads.emplace_back(one.name);
+        for (const PixelDensity& one : pixelDensities()) table.heads.push_back(classText(one));
     for (const ZoneMetrics& zone : report.zones) {
         TextRow row = {zone.id, squareMetres(zone.area),
                        zone.area > 0 ? shareText(zone.coverage) : "outside the room"};

@@ -228,10 +228,24 @@ std::span<const PixelDensity> pixelDensities() {
     return kClasses;
 }
 
+std::span<const PixelDensity> pixelLevels() {
+    static constexpr std::array<PixelDensity, 7> kLevels = {{{"overview", 20},
+                                                             {"outline", 40},
+                                                             {"discern", 80},
+                                                             {"perceive", 125},
+                                                             {"characterise", 250},
+                                                             {"validate", 500},
+                                                             {"scrutinise", 1500}}};
+    return kLevels;
+}
+
 std::optional<double> pixelDensityOf(std::string_view text) {
-    if (text == "recognize") text = "recognise";
-    for (const PixelDensity& density : pixelDensities())
-        if (density.name == text) return density.pixels_per_metre;
+    const std::string name = text.ends_with("ize")
+                                 ? std::string(text.substr(0, text.size() - 3)) + "ise"
+                                 : std::string(text);
+    for (const auto& names : {pixelDensities(), pixelLevels()})
+        for (const PixelDensity& density : names)
+            if (density.name == name) return density.pixels_per_metre;
     const auto number = parseDouble(text);
     return number && *number > 0 && std::isfinite(*number) ? number : std::nullopt;
 }

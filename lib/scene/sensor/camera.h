@@ -112,15 +112,17 @@ std::optional<Vec2> imageSensorSize(const std::string& text, int columns, int ro
 Camera cameraOf(const Record& record, const Record* device = nullptr);
 Camera withParameters(Camera base, const Record& record);
 
-/// Pixels per metre that a task requires on a person (EN 62676-4).
+/// Pixels per metre that a task requires on a person.
 struct PixelDensity {
     std::string_view name;
     double pixels_per_metre = 0;
 };
-/// The classes of the standard, the coarsest first.
+/// The classes of EN 62676-4:2015, the coarsest first.
 std::span<const PixelDensity> pixelDensities();
-/// Parses a number or a class, in either spelling of `recognise`; empty for other text. \see
-/// pixelDensities
+/// The levels of IEC 62676-4:2025, the coarsest first.
+std::span<const PixelDensity> pixelLevels();
+/// Parses a number, a class or a level, in either spelling of `recognise`, `characterise` and
+/// `scrutinise`; empty for other text. \see pixelDensities, pixelLevels
 std::optional<double> pixelDensityOf(std::string_view text);
 
 /// Computes the range at which a camera has this pixel density, as `max_range` counts: the focal

@@ -153,8 +153,16 @@ TEST(Camera, TakesItsFocalLengthFromWhatThereIs) {
 TEST(Camera, SeesAsFarAsThereArePixelsAMetre) {
     EXPECT_EQ(pixelDensityOf("recognise"), 125);
     EXPECT_EQ(pixelDensityOf("recognize"), 125);
+    EXPECT_EQ(pixelDensityOf("overview"), 20);
+    EXPECT_EQ(pixelDensityOf("outline"), 40);
+    EXPECT_EQ(pixelDensityOf("discern"), 80);
+    EXPECT_EQ(pixelDensityOf("perceive"), 125);
+    EXPECT_EQ(pixelDensityOf("characterise"), 250);
+    EXPECT_EQ(pixelDensityOf("characterize"), 250);
+    EXPECT_EQ(pixelDensityOf("validate"), 500);
+    EXPECT_EQ(pixelDensityOf("scrutinize"), 1500);
     EXPECT_EQ(pixelDensityOf("40.5"), 40.5);
-    for (const char* wrong : {"", "0", "-3", "inf", "nan", "identity", "25px"})
+    for (const char* wrong : {"", "0", "-3", "inf", "nan", "identity", "25px", "ize"})
         EXPECT_EQ(pixelDensityOf(wrong), std::nullopt) << wrong;
     Camera camera;
     camera.fx = camera.fy = 500;
