@@ -24,7 +24,8 @@ check_limit() {
             one_error "${command%% *}" "$command in $1 kB"
             ;;
         127)  # the system could not start it
-            grep -q "error while loading shared libraries" err || fail "$command: $(cat err)"
+            grep -qE "error while loading shared libraries|Fatal glibc error: cannot allocate" err ||
+                fail "$command: $(cat err)"
             ;;
         *) fail "status $status in $1 kB: $command: $(cat err)" ;;
     esac
