@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
 #include "base/error.h"
 #include "base/glob.h"
+#include "base/message.h"
 #include "base/number.h"
 #include "env/environment.h"
 
@@ -28,10 +30,14 @@ constexpr double kSameRoom = 0.01;
 /// Drawings with more lines of walls are not read again for a message.
 constexpr std::size_t kMaxLinesReadAgain = 100'000;
 
-constexpr std::array<std::string_view, 26> kWallWords{
-    "wall",  "walls",   "wand",   "wände",  "waende", "wande", "mauer", "mauern", "mauerwerk",
-    "mur",   "murs",    "muro",   "muros",  "muri",   "muur",  "muren", "parede", "paredes",
-    "pared", "paredes", "parete", "pareti", "vägg",   "vegg",  "stěna", "стена"};
+constexpr std::array<std::string_view, 63> kWallWords{
+    "wall",   "walls",   "wand",   "wände", "waende", "wande",  "mauer",    "mauern", "mauerwerk",
+    "mur",    "murs",    "mura",   "mury",  "muro",   "muros",  "muri",     "muur",   "muren",
+    "parede", "paredes", "pared",  "paret", "parets", "parete", "pareti",   "perete", "pereți",
+    "pereti", "vägg",    "väggar", "vegg",  "vegger", "væg",    "vægge",    "seinä",  "seinät",
+    "stěna",  "stěny",   "stena",  "steny", "zed",    "zdi",    "zid",      "zidovi", "ściana",
+    "ściany", "sciana",  "sciany", "fal",   "falak",  "duvar",  "duvarlar", "τοίχος", "τοίχοι",
+    "стена",  "стены",   "стіна",  "стіни", "墙",     "墙体",   "壁",       "벽",     "벽체"};
 /// Word endings, as in Innenwand and CURTAINWALL.
 constexpr std::array<std::string_view, 6> kWallEnds{"wall",  "walls",  "wand",
                                                     "wände", "waende", "mauer"};
@@ -41,21 +47,44 @@ constexpr std::array<std::string_view, 20> kOtherWords{
     "texts", "tag",   "tags",     "dim",     "dims",      "note",     "notes",
     "door",  "doors", "window",   "windows", "glaz",      "furniture"};
 
+/// Lower case of ASCII, Latin, Greek and Cyrillic letters below U+0460 in UTF-8, in any locale;
+/// lower case has as many bytes. Other bytes stay.
+std::string lowerCased(std::string_view text) {
+    const auto lower = [](unsigned code) {
+        const bool is_even_upper =
+            (code >= 0x100 && code < 0x138) || (code >= 0x14A && code < 0x178);
+        const bool is_odd_upper =
+            (code >= 0x139 && code < 0x149) || (code >= 0x179 && code < 0x17F);
+        if ((code >= 0xC0 && code <= 0xDE && code != 0xD7) || (code >= 0x391 && code <= 0x3A9) ||
+            (code >= 0x410 && code <= 0x42F))
+            return code + 0x20;
+        if (code >= 0x400 && code <= 0x40F) return code + 0x50;
+        return (is_even_upper && code % 2 == 0) || (is_odd_upper && code % 2 == 1) ? code + 1
+                                                                                   : code;
+    };
+    std::string result(text);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        char& c = result[i];
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        if (utf8Length(std::string_view(result).substr(i)) != 2) continue;
+        const auto lead = static_cast<unsigned char>(c),
+                   trail = static_cast<unsigned char>(result[i + 1]);
+        const unsigned code = lower((lead & 0x1FU) << 6U | (trail & 0x3FU));
+        c = static_cast<char>(0xC0U | code >> 6U);
+        result[++i] = static_cast<char>(0x80U | (code & 0x3FU));
+    }
+    return result;
+}
+
 /// Splits a name into words in lower case: letters of ASCII, and all characters beyond ASCII.
 std::vector<std::string> wordsOf(std::string_view name) {
     std::vector<std::string> words;
     bool inside = false;
-    for (std::size_t i = 0; i < name.size(); ++i) {
-        char c = name[i];
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    for (const char c : lowerCased(name)) {
         const bool is_letter = (c >= 'a' && c <= 'z') || static_cast<unsigned char>(c) >= 0x80;
         if (is_letter && !inside) words.emplace_back();
         inside = is_letter;
-        if (!is_letter) continue;
-        // Capital letters of Latin-1 in UTF-8: Ä is C3 84, ä C3 A4.
-        const bool is_capital =
-            i > 0 && name[i - 1] == '\xc3' && static_cast<unsigned char>(c) <= 0x9e;
-        words.back() += is_capital ? static_cast<char>(c + 0x20) : c;
+        if (is_letter) words.back() += c;
     }
     return words;
 }
@@ -130,15 +159,10 @@ void checkScale(double extent, const DrawingSource& drawing, const std::string& 
 }
 
 bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer) {
-    const auto folded = [](std::string_view text) {
-        std::string lower(text);
-        for (char& c : lower)
-            if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-        return lower;
-    };
-    const std::string name = folded(layer);
-    return std::any_of(globs.begin(), globs.end(),
-                       [&](const std::string& glob) { return Glob(folded(glob)).matches(name); });
+    const std::string name = lowerCased(layer);
+    return std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
+        return Glob(lowerCased(glob)).matches(name);
+    });
 }
 
 bool isWallName(std::string_view name) {

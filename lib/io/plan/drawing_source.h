@@ -17,9 +17,10 @@ namespace ispace {
 
 /// A drawing that can be imported again, so that messages can report the effect of other options.
 struct DrawingSource {
-    std::string unit;            ///< for messages: "mm"
-    double metres_per_unit = 1;  ///< of the drawing's coordinates
-    std::size_t bytes = 0;       ///< of the file
+    std::string unit;                                  ///< for messages: "mm"
+    double metres_per_unit = 1;                        ///< of the drawing's coordinates
+    std::size_t bytes = 0;                             ///< of the file
+    std::map<std::string, std::size_t> left_out = {};  ///< what draws no lines, by type or reason
     /// Computes the floor area of an import with other options, in square metres; null omits these
     /// messages. \throws FormatError as the import does
     std::function<double(const ImportOptions&)> area = {};
@@ -54,12 +55,11 @@ std::string otherUnitHint(double extent, const DrawingSource& drawing,
 void checkScale(double extent, const DrawingSource& drawing, const std::string& name,
                 const ImportOptions& options);
 
-/// Returns true if one of the globs matches the name of a layer; ASCII letters match in either
-/// case.
+/// Returns true if one of the globs matches the name of a layer; letters match in either case.
 bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer);
 
-/// Returns true if a word of the name of a layer, block or group means wall in one of a dozen
-/// languages (A-WALL, Außenwände, murs_ext, PAREDES), and no word means hatching, text, doors or
+/// Returns true if a word of the name of a layer, block or group means wall in one of two dozen
+/// languages (A-WALL, Außenwände, murs_ext, СТЕНЫ, 墙), and no word means hatching, text, doors or
 /// windows of them.
 bool isWallName(std::string_view name);
 

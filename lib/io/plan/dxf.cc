@@ -318,6 +318,7 @@ class DxfImporter {
     [[nodiscard]] DxfImport import(const ImportOptions& options, bool hints) const {
         ImportRecords out(schemas_, name_, options);
         DrawingSource source = scaleOf(options, out);
+        source.left_out = drawing_.left_out;
         if (hints)
             source.area = [this](const ImportOptions& other) { return import(other, false).area; };
         MissingBlocks missing;

@@ -17,6 +17,7 @@
 #include "base/number.h"
 #include "geom/tolerance.h"
 #include "io/importers.h"
+#include "io/plan/dxf_text.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -150,9 +151,15 @@ DxfShape splineOf(const Entity& entity) {
 }
 
 DxfShape insertOf(const Entity& entity) {
-    return DxfInsert{printable(*entity.name), entity.point(),    entity.number(41, 1),
-                     entity.number(42, 1),    entity.angle(50),  entity.integer(70, 1),
-                     entity.integer(71, 1),   entity.number(44), entity.number(45)};
+    return DxfInsert{{},
+                     entity.point(),
+                     entity.number(41, 1),
+                     entity.number(42, 1),
+                     entity.angle(50),
+                     entity.integer(70, 1),
+                     entity.integer(71, 1),
+                     entity.number(44),
+                     entity.number(45)};
 }
 
 const std::array<Kind, 11>& kinds() {
@@ -243,9 +250,10 @@ class DxfReader {
 
     void leaveOut(const std::string& what) { ++drawing_.left_out[what]; }
 
-    /// Reads $INSUNITS, the only header variable needed.
+    /// Reads the header variables needed: the unit and the code page.
     void readSetting(const Group& group) {
         if (group.code == 9) setting_ = group.value;
+        if (group.code == 3 && setting_ == "$DWGCODEPAGE") text_.setCodePage(group.value);
         if (group.code == 70 && setting_ == "$INSUNITS")
             drawing_.units = static_cast<int>(integer(group));
     }
@@ -360,7 +368,7 @@ class DxfReader {
     }
 
     void addLayer() {
-        const std::string name = printable(*entity_.name);
+        const std::string name = text_.decoded(*entity_.name);
         drawing_.layers.insert(name);
         if (entity_.number(62) < 0 || (entity_.flags() & kFrozen) != 0)
             drawing_.hidden_layers.insert(name);
@@ -368,7 +376,7 @@ class DxfReader {
 
     /// Of two blocks with one name the later wins.
     void beginBlock() {
-        block_ = &drawing_.blocks[printable(*entity_.name)];
+        block_ = &drawing_.blocks[text_.decoded(*entity_.name)];
         *block_ = {entity_.point(), {}};
     }
 
@@ -382,13 +390,16 @@ class DxfReader {
         const Kind& kind = *entity_.kind;
         checkVertices();
         DxfShape shape = kind.shape(entity_);
+        if (auto* const insert = std::get_if<DxfInsert>(&shape))
+            insert->block = text_.decoded(*entity_.name);
         if (const auto* spline = std::get_if<DxfSpline>(&shape))
             if (const std::string fault = splineFault(*spline); !fault.empty())
                 groups_.fail(entity_.line, "SPLINE: " + fault);
         in_polyline_ = kind.name == "POLYLINE";
         const bool is_3d = in_polyline_ && (entity_.flags() & kPolyline3d) != 0;
         const bool mirrored = kind.upright_only && !is_3d && *side() < 0;
-        entities().push_back({std::move(shape), printable(entity_.layer), mirrored, entity_.line});
+        entities().push_back(
+            {std::move(shape), text_.decoded(entity_.layer), mirrored, entity_.line});
     }
 
     /// A VERTEX belongs to the POLYLINE before it, unless that is left out.
@@ -409,6 +420,7 @@ class DxfReader {
     }
 
     GroupReader groups_;
+    DxfText text_;
     DxfDrawing drawing_;
     std::string_view section_, setting_;
     bool in_section_name_ = false;

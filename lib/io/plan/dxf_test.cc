@@ -346,6 +346,10 @@ TEST(Dxf, NamesWhatIsWrong) {
               "plan.dxf:18:1: error: a name of 300 characters, wanted at most 255\n");
     EXPECT_EQ(errorOf(drawing("", "", 6)),
               "plan.dxf: error: no line to make a wall of; layers with lines: none\n");
+    EXPECT_EQ(
+        errorOf(drawing(group(0, "SOLID") + line("OFF", 0, 0, 1, 0), "", 6, layer("OFF", -7, 0))),
+        "plan.dxf: error: no line to make a wall of; layers with lines: none; off or frozen: "
+        "OFF (1); left out: SOLID (1)\n");
     EXPECT_NE(
         errorOf(drawing("", group(0, "BLOCK") + group(2, "A"), 6)).find("a BLOCK without ENDBLK"),
         std::string::npos);

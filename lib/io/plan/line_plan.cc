@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -38,7 +39,8 @@ class LinePlan {
         pieces_ = pathPieces(paths_);
         check(name, options, drawing);
         std::vector<PlanShape> doors = std::move(shapes.doors);
-        doors.insert(doors.end(), drawn.swings.begin(), drawn.swings.end());
+        doors.insert(doors.end(), std::make_move_iterator(drawn.swings.begin()),
+                     std::make_move_iterator(drawn.swings.end()));
         PlanOpenings found = findOpenings(doors, shapes.windows, pieces_);
         if (options.simplify.value_or(0) > 0) {
             simplify(*options.simplify, found.openings);
@@ -290,10 +292,12 @@ void LayerSorter::note(ImportRecords& out) const {
 }
 
 std::string LayerSorter::all() const {
-    std::map<std::string, std::size_t> all;
-    for (const auto& counts : counts_)
-        for (const auto& [layer, count] : counts) all[layer] += count;
-    return all.empty() ? "none" : listText(all);
+    std::map<std::string, std::size_t> shown;
+    for (std::size_t use = 0; use < kUses; ++use)
+        for (const auto& [layer, count] : counts_[use])
+            if (use != Hidden) shown[layer] += count;
+    return (shown.empty() ? "none" : listText(shown)) +
+           (counts_[Hidden].empty() ? "" : "; off or frozen: " + listText(counts_[Hidden]));
 }
 
 std::map<std::string, std::size_t> LayerSorter::unusedWallNames() const {
@@ -309,7 +313,10 @@ double writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter, cons
     if (shapes.walls.empty())
         failFile(name, (options.wall_layers.empty() ? "no line to make a wall of"
                                                     : "no line on the layers of walls") +
-                           std::string("; layers with lines: ") + sorter.all());
+                           std::string("; layers with lines: ") + sorter.all() +
+                           (drawing == nullptr || drawing->left_out.empty()
+                                ? ""
+                                : "; left out: " + listText(drawing->left_out)));
     return withFileName(name, [&] {
         LinePlan plan(std::move(shapes), name, options, drawing, out);
         plan.write(out, options);

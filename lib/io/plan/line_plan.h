@@ -108,7 +108,7 @@ class LayerSorter {
     Sorted sort(std::vector<PlanShape> shapes);
     /// Notes the use of each layer.
     void note(ImportRecords& out) const;
-    /// Returns all layers with lines, for a message.
+    /// Returns all layers with lines, for a message, those that are hidden behind the others.
     [[nodiscard]] std::string all() const;
     /// Returns names of walls, with their numbers of lines, if lines without a name became walls,
     /// too, because no option says otherwise.

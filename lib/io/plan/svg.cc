@@ -122,6 +122,11 @@ class SvgReader {
         }
     }
 
+    /// True if the content fills its viewport in both directions.
+    static bool isStretched(pugi::xml_node node) {
+        return trimmed(node.attribute("preserveAspectRatio").value()).starts_with("none");
+    }
+
     /// From the drawing's coordinates to metres, y up, the page's lower left corner in the origin.
     Affine pageOf(pugi::xml_node root) {
         const auto metres_of = [root](const char* key) {
@@ -135,7 +140,7 @@ class SvgReader {
         page_ = box.value_or(SvgBox{0, 0, width.value_or(0) / pixel, height.value_or(0) / pixel});
         const bool has_width = width && isSvgPhysical(root.attribute("width").value());
         const bool has_height = height && isSvgPhysical(root.attribute("height").value());
-        double scale = 0;
+        double scale = 0, stretch = 1;  // of y
         if (asked_scale_) {
             scale = *asked_scale_;
         } else if (!options_.units.empty()) {
@@ -146,13 +151,19 @@ class SvgReader {
                            std::string(width || height ? "in pixels" : "not said") + ": " +
                            kScaleHint);
         } else {
+            const double x = has_width ? *width / page_.width : HUGE_VAL;
+            const double y = has_height ? *height / page_.height : HUGE_VAL;
             // As large as fits, where both do not agree.
-            scale = std::min(has_width ? *width / page_.width : HUGE_VAL,
-                             has_height ? *height / page_.height : HUGE_VAL);
+            scale = std::min(x, y);
+            if (has_width && has_height && isStretched(root)) {
+                scale = x;
+                stretch = y / x;
+            }
             drawing_.scale = unitText(scale) + ", as its size says";
         }
         drawing_.metres_per_unit = scale;
-        return {{scale, 0}, {0, -scale}, {-page_.x * scale, (page_.y + page_.height) * scale}};
+        const double up = stretch * scale;
+        return {{scale, 0}, {0, -up}, {-page_.x * scale, (page_.y + page_.height) * up}};
     }
 
     void addChildren(pugi::xml_node node, const Around& around) {
@@ -201,9 +212,11 @@ class SvgReader {
         if (!box) return corner;
         const double width = svgNumber(placed, "width", svgNumber(node, "width", box->width));
         const double height = svgNumber(placed, "height", svgNumber(node, "height", box->height));
-        const double scale = std::min(width / box->width, height / box->height);
-        const Vec2 rest{(width - scale * box->width) / 2, (height - scale * box->height) / 2};
-        return corner * Affine{{scale, 0}, {0, scale}, rest - scale * Vec2{box->x, box->y}};
+        Vec2 scale{width / box->width, height / box->height};
+        if (!isStretched(node)) scale.x = scale.y = std::min(scale.x, scale.y);
+        const Vec2 rest{(width - scale.x * box->width) / 2, (height - scale.y * box->height) / 2};
+        const Vec2 origin{scale.x * box->x, scale.y * box->y};
+        return corner * Affine{{scale.x, 0}, {0, scale.y}, rest - origin};
     }
 
     void addUse(pugi::xml_node node, Around around) {
@@ -358,10 +371,11 @@ SvgImport importSvg(std::string_view bytes, const std::string& name, const Impor
     out.note(drawing.scale);
     for (const auto& [what, count] : drawing.left_out)
         out.note("left out: " + what + " (" + std::to_string(count) + ')');
-    DrawingSource source{options.units.empty()
-                             ? "units of " + formatDouble(1000 * drawing.metres_per_unit) + " mm"
-                             : options.units,
-                         drawing.metres_per_unit, bytes.size()};
+    DrawingSource source{
+        options.units.empty()
+            ? "units of " + formatDouble(std::round(drawing.metres_per_unit * 1e9) / 1e6) + " mm"
+            : options.units,
+        drawing.metres_per_unit, bytes.size(), drawing.left_out};
     if (hints)
         source.area = [&](const ImportOptions& other) {
             return importSvg(bytes, name, other, schemas, false).area;

@@ -145,6 +145,14 @@ TEST(Svg, Scale) {
                 12 * 0.254 * 0.254, 1e-6);
     EXPECT_NEAR(areaOf("<svg width='1000px' height='1000mm' viewBox='0 0 1 1'>" + room), 12, 1e-9)
         << "paper wins over pixels";
+    // Both directions count where the drawing is stretched.
+    EXPECT_NEAR(areaOf("<svg width='1000mm' height='2000mm' viewBox='0 0 1 1' "
+                       "preserveAspectRatio='none'>" +
+                       room),
+                24, 1e-9);
+    EXPECT_NEAR(areaOf(page("<svg width='8' height='8' viewBox='0 0 4 8' "
+                            "preserveAspectRatio='none'><rect width='4' height='3'/></svg>")),
+                24, 1e-9);
     ImportOptions options;
     options.units = "foot";
     EXPECT_NEAR(areaOf("<svg width='1mm' height='1mm' viewBox='0 0 9 9'>" + room, options),
@@ -184,6 +192,10 @@ TEST(Svg, OfNoBuildingsSize) {
     EXPECT_EQ(errorOf("<svg width='900cm' viewBox='0 0 1 1'><rect width='400' height='400'/></svg>")
                   .find("plan.svg: error: the plan is 3600 m wide: is its unit right?"),
               0U);
+    EXPECT_NE(
+        errorOf("<svg width='60mm' viewBox='0 0 600 400'><rect width='400' height='300'/></svg>")
+            .find("It is read in units of 0.1 mm; "),
+        std::string::npos);
     ImportOptions options;
     options.units = "cm";
     EXPECT_NEAR(areaOf(paper + room, options), 0.004, 1e-9) << "said, it is believed";

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan/dxf_text.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/importers.h"
+#include "support/test_dxf.h"
+#include "support/test_import.h"
+
+namespace ispace {
+namespace {
+
+TEST(DxfText, EscapesAndCodePages) {
+    DxfText text;
+    EXPECT_EQ(text.decoded("A-WALL"), "A-WALL");
+    EXPECT_EQ(text.decoded(""), "");
+    EXPECT_EQ(text.decoded("\\U+0421\\U+5899x"), "С墙x");
+    for (const char* broken : {"\\U+", "\\U+12", "\\U+12G4", "\\", "a\\b"})
+        EXPECT_EQ(text.decoded(broken), broken);
+    EXPECT_EQ(text.decoded("\\U+D800"), "??");  // half a pair
+    EXPECT_EQ(text.decoded("a\tb"), "a?b");
+    EXPECT_EQ(text.decoded("M\xfcller"), "Müller");
+    text.setCodePage("ANSI_99999");
+    text.setCodePage("ANSI_12x");
+    text.setCodePage("UTF-7");
+    EXPECT_EQ(text.decoded("\xe4"), "ä");
+    text.setCodePage("ANSI_9999");  // of no character set
+    EXPECT_EQ(text.decoded("\xf6"), "?");
+}
+
+// Before 2007 AutoCAD wrote names in the code page of the drawing.
+TEST(DxfText, NamesAreDecoded) {
+    const auto read = [](const std::string& dxf, const ImportOptions& options = {}) {
+        return readDxf(dxf, "plan.dxf", options, sceneSchemas());
+    };
+    const auto named = [](const std::string& layer, const std::string& page) {
+        std::string dxf = drawing(rectangle(layer, 0, 0, 6, 4) + line("x", 3, 0, 3, 4), "", 6);
+        if (!page.empty())
+            dxf.insert(dxf.find("  0\nENDSEC"), group(9, "$DWGCODEPAGE") + group(3, page));
+        return dxf;
+    };
+    const std::string walls = "Wände";
+    for (const auto& [layer, page] :
+         std::vector<std::pair<std::string, std::string>>{{"Wände", "ANSI_1252"},
+                                                          {"W\xe4nde", "ANSI_1252"},
+                                                          {"W\xe4nde", ""},
+                                                          {"W\x84nde", "dos850"},
+                                                          {"W\\U+00E4nde", "ANSI_1252"}}) {
+        ImportOptions options;
+        options.wall_layers = {walls};
+        EXPECT_DOUBLE_EQ(environmentOf(read(named(layer, page), options)).indoor().area(), 24)
+            << page;
+        EXPECT_NE(warningsOf(read(named(layer, page))).find("--wall-layer Wände it would have"),
+                  std::string::npos)
+            << page;
+    }
+    for (const auto& [layer, page] : std::vector<std::pair<std::string, std::string>>{
+             {"\xd1\xd2\xc5\xcd\xdb", "ANSI_1251"}, {"\xc7\xbd\xcc\xe5", "GB2312"}})
+        EXPECT_NE(warningsOf(read(named(layer, page)))
+                      .find(page == "GB2312" ? "--wall-layer 墙体 it" : "--wall-layer СТЕНЫ it"),
+                  std::string::npos);
+    // Of no character set.
+    EXPECT_NE(notesOf(read(named("W\xff\xff", "ANSI_932"))).find("W??"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ispace
