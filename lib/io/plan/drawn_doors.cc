@@ -196,6 +196,9 @@ class DoorFinder {
 
     /// Removes closed outlines of leaves as a whole.
     void dropLeafOutlines() {
+        if (std::none_of(paths_.begin(), paths_.end(),
+                         [](const PlanPath& path) { return path.closed; }))
+            return;
         const NearSegments search(leaves_);
         std::size_t first = 0;
         for (const PlanPath& path : paths_) {

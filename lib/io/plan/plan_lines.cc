@@ -41,7 +41,9 @@ std::vector<std::size_t> NearSegments::near(Point2 p, double reach) const {
 
 std::vector<std::size_t> NearSegments::near(const Box2& box, double reach) const {
     const Vec2 margin{reach, reach};
+    constexpr std::size_t kMostOften = 8;
     std::vector<std::size_t> found;
+    found.reserve(kMostOften);
     tree_.search({box.low - margin, box.high + margin},
                  [&found](std::size_t i) { found.push_back(i); });
     if (found.size() > left_)

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <map>
-#include <numbers>
-#include <set>
 #include <utility>
 
 #include "geom/arrangement.h"
 #include "geom/planar_map.h"
+#include "geom/point_map.h"
 #include "geom/polygon.h"
 #include "geom/predicates.h"
 #include "io/plan/line_plan.h"
@@ -114,7 +111,9 @@ struct Swing {
 
 class Finder {
   public:
-    explicit Finder(std::span<const Segment2> walls) : walls_(walls) {}
+    /// \param has_lines whether a symbol has a straight piece, which may be the leaf of a swing
+    Finder(std::span<const Segment2> walls, bool has_lines)
+        : walls_(walls), has_lines_(has_lines) {}
 
     void find(std::span<const PlanShape> symbols, bool are_windows) {
         are_windows_ = are_windows;
@@ -205,12 +204,20 @@ class Finder {
             };
             if (std::any_of(others.begin(), others.end(), overlaps)) return;
             others.push_back(opening.line);
-        } else if (!across_gaps_
-                        .insert(lexLess(a, b) ? Ends{a.x, a.y, b.x, b.y} : Ends{b.x, b.y, a.x, a.y})
-                        .second) {
+        } else if (!(lexLess(a, b) ? isNewGap(a, b) : isNewGap(b, a))) {
             return;
         }
         found_.openings.push_back(opening);
+    }
+
+    /// Returns true for the first opening across a gap with these ends.
+    bool isNewGap(Point2 from, Point2 to) {
+        std::uint32_t& latest = latest_gap_[from];
+        for (std::uint32_t i = latest; i != 0; i = gaps_[i - 1].before)
+            if (gaps_[i - 1].to == to) return false;
+        gaps_.push_back({to, latest});
+        latest = static_cast<std::uint32_t>(gaps_.size());
+        return true;
     }
 
     bool add(const Segment2& line, int drawn_on) {
@@ -272,7 +279,9 @@ class Finder {
         return {static_cast<std::int64_t>(std::floor(p.x / kReach)),
                 static_cast<std::int64_t>(std::floor(p.y / kReach))};
     }
-    void addLeaf(const Segment2& leaf) { leaves_[cellOf(leaf.a)].push_back(leaf); }
+    void addLeaf(const Segment2& leaf) {
+        if (has_lines_) leaves_[cellOf(leaf.a)].push_back(leaf);
+    }
 
     [[nodiscard]] bool isLeaf(const Segment2& line) const {
         return isLeafFrom(line.a, line.b) || isLeafFrom(line.b, line.a);
@@ -292,12 +301,19 @@ class Finder {
         return false;
     }
 
-    using Ends = std::array<double, 4>;
+    /// An opening across a gap, by its other end and the number of an earlier one from the same
+    /// end, from 1; 0: none.
+    struct Gap {
+        Point2 to;
+        std::uint32_t before = 0;
+    };
 
     Walls walls_;
+    bool has_lines_;
     PlanOpenings found_;
     bool are_windows_ = false;
-    std::set<Ends> across_gaps_;
+    std::vector<Gap> gaps_;
+    PointMap<std::uint32_t> latest_gap_;  // numbers by the lower end
     std::map<std::size_t, std::vector<Segment2>> on_wall_;
     std::map<Cell, std::vector<Segment2>> leaves_;  // by hinge: from there to where it is drawn
     std::vector<Swing> open_swings_;
@@ -308,116 +324,19 @@ class Finder {
 PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
                           std::span<const Segment2> walls) {
     if (doors.empty() && windows.empty()) return {};
-    Finder finder(walls);
+    const auto has_lines = [](std::span<const PlanShape> symbols) {
+        return std::any_of(symbols.begin(), symbols.end(), [](const PlanShape& shape) {
+            return std::any_of(shape.chords.begin(), shape.chords.end(),
+                               [](const PlanChord& chord) { return !chord.center; });
+        });
+    };
+    Finder finder(walls, has_lines(doors) || has_lines(windows));
     finder.find(doors, false);
     if (std::any_of(doors.begin(), doors.end(),
                     [](const PlanShape& door) { return door.is_guess; }))
         finder.findJambs();
     finder.find(windows, true);
     return finder.take();
-}
-
-namespace {
-
-/// Number of chords to half a circle.
-constexpr int kChords = 16;
-
-/// The disc's radius is met within this share; half of it goes to chords and simpler outlines.
-constexpr double kTolerance = 0.01;
-
-/// Slivers that rounding leaves between a wall and an offset of it are thinner than this share of
-/// the radius.
-constexpr double kSliver = 0.01;
-
-/// Outlines may move by this, in metres.
-constexpr double kSimplify = 2e-5;
-
-/// Returns all points within the radius of the segment, arcs by chords.
-Polygon capsule(const Segment2& s, double radius) {
-    const Vec2 along = s.b - s.a;
-    const double start = along.x == 0 && along.y == 0 ? 0 : std::atan2(along.y, along.x);
-    Polygon outline;
-    const auto arc = [&](Point2 center, double from) {
-        for (int i = 0; i <= kChords; ++i) {
-            const double angle = from + std::numbers::pi * i / kChords;
-            outline.push_back(center + radius * Vec2{std::cos(angle), std::sin(angle)});
-        }
-    };
-    arc(s.b, start - std::numbers::pi / 2);
-    arc(s.a, start + std::numbers::pi / 2);
-    return outline;
-}
-
-/// Appends the region as triangles, which have no holes.
-void appendTriangles(const Region& region, std::vector<Polygon>& solids) {
-    const Triangulation all = triangulate(region);
-    for (const auto& [a, b, c] : all.triangles)
-        solids.push_back({all.vertices[a], all.vertices[b], all.vertices[c]});
-}
-
-bool isSliver(const Region& region, double radius) {
-    return 2 * region.area() < kSliver * radius * region.boundaryLength();
-}
-
-/// Removes corners, including the coinciding ones where arcs were cut.
-Region normalised(const Region& region, double tolerance) {
-    std::vector<Polygon> curves = simplified(curvesOf(region), tolerance);
-    const auto are_one = [](Point2 a, Point2 b) { return distance(a, b) <= kSimplify; };
-    for (Polygon& curve : curves) {
-        curve.erase(std::unique(curve.begin(), curve.end(), are_one), curve.end());
-        while (curve.size() > 1 && are_one(curve.front(), curve.back())) curve.pop_back();
-    }
-    Region result;
-    result.outline = std::move(curves.front());
-    result.holes.assign(std::make_move_iterator(curves.begin() + 1),
-                        std::make_move_iterator(curves.end()));
-    return result;
-}
-
-/// Returns the positions that the disc's centre can reach.
-std::vector<Region> centres(std::span<const Region> rooms, std::span<const Segment2> walls,
-                            double radius) {
-    Box2 box;
-    for (const Region& room : rooms) {
-        box.add(bounds(room.outline).low);
-        box.add(bounds(room.outline).high);
-    }
-    const Vec2 margin{radius, radius};
-    const Point2 low = box.low - margin, high = box.high + margin;
-    std::vector<Polygon> blocked;
-    blocked.reserve(walls.size());
-    for (const Segment2& wall : walls) blocked.push_back(capsule(wall, radius));
-    return difference({{low, {high.x, low.y}, high, {low.x, high.y}}, {}}, blocked);
-}
-
-}  // namespace
-
-std::vector<Region> reachedFloor(std::span<const Region> rooms, std::span<const Segment2> walls,
-                                 Point2 start, double radius) {
-    const std::vector<Region> pieces = centres(rooms, walls, radius);
-    const auto home = std::find_if(pieces.begin(), pieces.end(), [start](const Region& piece) {
-        return piece.locate(start) != Side::Outside;
-    });
-    if (home == pieces.end()) return {};
-    // Arcs keep only the corners that the tolerance needs; the sweep makes up for that.
-    const Region centre = normalised(*home, kTolerance / 2 * radius);
-    const double sweep = (1 + kTolerance) * radius;
-    std::vector<Polygon> swept;
-    appendTriangles(centre, swept);
-    centre.forEachEdge([&](const Segment2& edge) { swept.push_back(capsule(edge, sweep)); });
-    std::vector<Region> reached;
-    for (const Region& room : rooms) {
-        std::vector<Polygon> unreached;
-        for (const Region& piece : difference(room, swept))
-            if (!isSliver(piece, radius)) appendTriangles(piece, unreached);
-        if (unreached.empty()) {
-            reached.push_back(room);
-            continue;
-        }
-        for (Region& piece : difference(room, unreached))
-            if (!isSliver(piece, radius)) reached.push_back(normalised(piece, kSimplify));
-    }
-    return reached;
 }
 
 std::vector<Segment2> withoutPassages(std::span<const Segment2> lines,

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <utility>
+
+#include "geom/arrangement.h"
+#include "geom/polygon.h"
+#include "io/plan/plan_rooms.h"
+
+namespace ispace {
+
+namespace {
+
+/// Number of chords to half a circle.
+constexpr int kChords = 16;
+
+/// The disc's radius is met within this share; half of it goes to chords and simpler outlines.
+constexpr double kTolerance = 0.01;
+
+/// Slivers that rounding leaves between a wall and an offset of it are thinner than this share of
+/// the radius.
+constexpr double kSliver = 0.01;
+
+/// Outlines may move by this, in metres.
+constexpr double kSimplify = 2e-5;
+
+/// Returns all points within the radius of the segment, arcs by chords.
+Polygon capsule(const Segment2& s, double radius) {
+    const Vec2 along = s.b - s.a;
+    const double start = along.x == 0 && along.y == 0 ? 0 : std::atan2(along.y, along.x);
+    Polygon outline;
+    const auto arc = [&](Point2 center, double from) {
+        for (int i = 0; i <= kChords; ++i) {
+            const double angle = from + std::numbers::pi * i / kChords;
+            outline.push_back(center + radius * Vec2{std::cos(angle), std::sin(angle)});
+        }
+    };
+    arc(s.b, start - std::numbers::pi / 2);
+    arc(s.a, start + std::numbers::pi / 2);
+    return outline;
+}
+
+/// Appends the region as triangles, which have no holes.
+void appendTriangles(const Region& region, std::vector<Polygon>& solids) {
+    const Triangulation all = triangulate(region);
+    for (const auto& [a, b, c] : all.triangles)
+        solids.push_back({all.vertices[a], all.vertices[b], all.vertices[c]});
+}
+
+bool isSliver(const Region& region, double radius) {
+    return 2 * region.area() < kSliver * radius * region.boundaryLength();
+}
+
+/// Removes corners, including the coinciding ones where arcs were cut.
+Region normalised(const Region& region, double tolerance) {
+    std::vector<Polygon> curves = simplified(curvesOf(region), tolerance);
+    const auto are_one = [](Point2 a, Point2 b) { return distance(a, b) <= kSimplify; };
+    for (Polygon& curve : curves) {
+        curve.erase(std::unique(curve.begin(), curve.end(), are_one), curve.end());
+        while (curve.size() > 1 && are_one(curve.front(), curve.back())) curve.pop_back();
+    }
+    Region result;
+    result.outline = std::move(curves.front());
+    result.holes.assign(std::make_move_iterator(curves.begin() + 1),
+                        std::make_move_iterator(curves.end()));
+    return result;
+}
+
+/// Returns the positions that the disc's centre can reach.
+std::vector<Region> centres(std::span<const Region> rooms, std::span<const Segment2> walls,
+                            double radius) {
+    Box2 box;
+    for (const Region& room : rooms) {
+        box.add(bounds(room.outline).low);
+        box.add(bounds(room.outline).high);
+    }
+    const Vec2 margin{radius, radius};
+    const Point2 low = box.low - margin, high = box.high + margin;
+    std::vector<Polygon> blocked;
+    blocked.reserve(walls.size());
+    for (const Segment2& wall : walls) blocked.push_back(capsule(wall, radius));
+    return difference({{low, {high.x, low.y}, high, {low.x, high.y}}, {}}, blocked);
+}
+
+}  // namespace
+
+std::vector<Region> reachedFloor(std::span<const Region> rooms, std::span<const Segment2> walls,
+                                 Point2 start, double radius) {
+    const std::vector<Region> pieces = centres(rooms, walls, radius);
+    const auto home = std::find_if(pieces.begin(), pieces.end(), [start](const Region& piece) {
+        return piece.locate(start) != Side::Outside;
+    });
+    if (home == pieces.end()) return {};
+    // Arcs keep only the corners that the tolerance needs; the sweep makes up for that.
+    const Region centre = normalised(*home, kTolerance / 2 * radius);
+    const double sweep = (1 + kTolerance) * radius;
+    std::vector<Polygon> swept;
+    appendTriangles(centre, swept);
+    centre.forEachEdge([&](const Segment2& edge) { swept.push_back(capsule(edge, sweep)); });
+    std::vector<Region> reached;
+    for (const Region& room : rooms) {
+        std::vector<Polygon> unreached;
+        for (const Region& piece : difference(room, swept))
+            if (!isSliver(piece, radius)) appendTriangles(piece, unreached);
+        if (unreached.empty()) {
+            reached.push_back(room);
+            continue;
+        }
+        for (Region& piece : difference(room, unreached))
+            if (!isSliver(piece, radius)) reached.push_back(normalised(piece, kSimplify));
+    }
+    return reached;
+}
+
+}  // namespace ispace
