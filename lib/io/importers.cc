@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
+#include "base/number.h"
 #include "io/calibration.h"
 #include "io/glb/glb_read.h"
 #include "io/import_records.h"
@@ -88,6 +89,8 @@ constexpr std::pair<std::string_view, const char*> kForeign[] = {
      "a zip archive: unpack it; of a drawing of Visio or LibreOffice export SVG"},
     {"ASTM-E57", "an E57 point cloud: convert it to PCD or PLY, for example with CloudCompare"},
     {"BLENDER", "a Blender scene: export it as glTF or COLLADA"},
+    {std::string_view("\xff\xfe<\0", 4),
+     "XML in UTF-16: convert it, for example with `iconv -f UTF-16 -t UTF-8 FILE`"},
     {"\x1f\x8b", "compressed with gzip: unpack it with `gunzip` (a .svgz becomes .svg)"},
 };
 
@@ -100,6 +103,41 @@ std::string foreignFile(std::string_view bytes) {
     for (const auto& [magic, what] : kForeign)
         if (bytes.starts_with(magic)) return what;
     return "";
+}
+
+/// Names foreign XML; "" for other bytes.
+std::string foreignXml(std::string_view bytes) {
+    const std::string root(xmlRootName(bytes));
+    if (root.empty()) return "";
+    return "XML of a kind that is not read (" + excerpt(root) + "): SVG, SDF and COLLADA are" +
+           (root == "robot" ? "; `gz sdf -p FILE` converts URDF to SDF" : "");
+}
+
+/// Returns true for lines of three numbers or more, as clouds of points in text have them, after a
+/// line with a title or their number.
+bool isPointText(std::string_view bytes) {
+    constexpr int kEnough = 3;
+    int found = 0;
+    bool is_first = true;
+    for (LineReader lines(bytes); found < kEnough;) {
+        const auto line = lines.next();
+        if (!line) return false;
+        std::string_view rest = trimmed(*line);
+        if (rest.empty() || rest.front() == '#') continue;
+        std::size_t numbers = 0;
+        while (!rest.empty()) {
+            const std::string_view word = rest.substr(0, rest.find_first_of(" \t,;"));
+            if (!parseDouble(word)) break;
+            ++numbers;
+            rest.remove_prefix(word.size());
+            rest.remove_prefix(std::min(rest.find_first_not_of(" \t,;"), rest.size()));
+        }
+        const bool is_point = numbers >= 3 && rest.empty();
+        if (!is_point && !is_first) return false;
+        is_first = false;
+        found += is_point ? 1 : 0;
+    }
+    return true;
 }
 
 /// Names foreign JSON, which would parse as YAML.
@@ -226,6 +264,13 @@ const InputFormat* formatOf(const Source& source, Refuse refuse) {
     if (isJson(bytes) && !isHouseExpo(source))
         if (const std::string what = foreignJson(bytes); !what.empty())
             return refuse(0, "not an environment or layout but " + what), nullptr;
+    if (const std::string what = foreignXml(bytes); !what.empty())
+        return refuse(0, "not an environment or layout but " + what), nullptr;
+    if (isPointText(bytes))
+        return refuse(0,
+                      "not an environment or layout but points as text: convert them to PCD or "
+                      "PLY, for example with CloudCompare"),
+               nullptr;
     const Line line = firstLine(bytes);
     if (isRecordLine(line.text, source.schemas))
         return refuse(line.number,

@@ -112,11 +112,24 @@ TEST(Input, FormatsThatAreNotReadAreNamed) {
         {"ISO-10303-21;\nFILE_SCHEMA(('AP214'));", "but a STEP file without a building"},
         {"BLENDER-v293", "but a Blender scene: export it"},
         {"\x1f\x8b\x08", "but compressed with gzip: unpack it"},
+        {"\xff\xfe<\0s\0"s, "but XML in UTF-16: convert it"},
+        {"<?xml version='1.0'?>\n<robot name='r'/>",
+         "but XML of a kind that is not read (`robot`): SVG, SDF and COLLADA are; `gz sdf -p"},
+        {"<launch/>", "but XML of a kind that is not read (`launch`)"},
+        {"# scanned\n1 2 3\n4 5 6 255\n7,8,-9e1\n", "but points as text: convert them to PCD"},
+        {"3\n1 2 3\n4 5 6\n7 8 9\n", "but points as text"},
+        {"x;y;z\n1;2;3\n4;5;6\n7;8;9\n", "but points as text"},
     };
     for (const auto& [bytes, wanted] : files)
         EXPECT_NE(errorOf(bytes).find("room: error: not an environment or layout " + wanted),
                   std::string::npos)
             << errorOf(bytes);
+}
+
+TEST(Input, OtherLinesAreNoPoints) {
+    for (const std::string text : {"1 2 3\n4 5 6\n", "1 2 3\na b c\n1 2 3\n4 5 6\n",
+                                   "1 2\n3 4\n5 6\n", "a\nb\n1 2 3\n4 5 6\n7 8 9\n"})
+        EXPECT_EQ(errorOf(text).find("points as text"), std::string::npos) << text;
 }
 
 TEST(Input, RecordsWithoutMagicLine) {

@@ -204,11 +204,11 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
     line.choice("--unknown", import.unknown, {"unknown", "free"},
                 "meaning of shade 205 of a map, which robots write for unknown (default unknown)",
                 Enters::History);
-    line.choice("--units", import.units, kUnits, "unit of a drawing or a mesh", Enters::History);
+    line.choice("--units", import.units, kUnits, "unit of a drawing, a mesh or a cloud", Enters::History);
     line.meters("--width-is", import.width_is, 0.01, 100'000,
                 "width of a drawing, from its leftmost to its rightmost wall, instead of its unit",
                 Enters::History);
-    line.choice("--up", import.up, {"auto", "x", "y", "z"}, "upward axis of a mesh",
+    line.choice("--up", import.up, {"auto", "x", "y", "z"}, "upward axis of a mesh or a cloud",
                 Enters::History);
     const auto take_cut = [&import](const std::string& text) {
         const std::size_t dots = text.find("..");

@@ -17,12 +17,20 @@ bool isPointCloud(std::string_view bytes);
 
 /// The points of a file that isPointCloud(): PCD 0.7 (ascii, binary, binary_compressed), PLY 1.0
 /// (ascii, either byte order, no lists before or among the vertices) and LAS 1.0 to 1.4.
-/// Coordinates are those of the file, as doubles. The bytes must outlive it.
+/// Coordinates are those of the file, as doubles, unless setFrame() changes them. The bytes must
+/// outlive it.
 class CloudFile {
   public:
     /// Reads the header and decompresses the points if necessary. \param name for messages
     /// \throws FormatError: damaged, cut off, no x y z, compressed LAS (LAZ)
     CloudFile(std::string_view bytes, const std::string& name);
+
+    /// Scales the points to metres and turns them upright. \param up the axis of the file that
+    /// points up: x, y or z
+    void setFrame(double metres_per_unit, char up) {
+        metres_per_unit_ = metres_per_unit;
+        up_ = up;
+    }
 
     /// Calls visit(Point3) for each point but those with a coordinate that is not finite or no
     /// number. O(points)
@@ -31,7 +39,8 @@ class CloudFile {
     void forEach(Visit visit) const {
         TextPlace at;
         for (std::size_t i = 0; i < count_; ++i)
-            if (const std::optional<Point3> p = is_text_ ? textPoint(at) : point(i)) visit(*p);
+            if (const std::optional<Point3> p = is_text_ ? textPoint(at) : point(i))
+                visit(upright(*p));
     }
 
   private:
@@ -46,6 +55,13 @@ class CloudFile {
         std::size_t byte = 0;
         int line = 0;
     };
+    /// Turns a point as meshes are turned.
+    [[nodiscard]] Point3 upright(const Point3& p) const {
+        const double scale = metres_per_unit_;
+        if (up_ == 'x') return {scale * p.y, scale * p.z, scale * p.x};
+        if (up_ == 'y') return {scale * p.x, -scale * p.z, scale * p.y};
+        return {scale * p.x, scale * p.y, scale * p.z};
+    }
     [[noreturn]] void fail(const std::string& message, int line = 0) const;
     void readPcd();
     void readPly();
@@ -64,6 +80,8 @@ class CloudFile {
     std::size_t count_ = 0;
     int line_ = 0;  // of the header
     bool is_text_ = false, is_big_endian_ = false;
+    double metres_per_unit_ = 1;
+    char up_ = 'z';
 };
 
 }  // namespace ispace

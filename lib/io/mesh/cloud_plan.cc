@@ -73,7 +73,13 @@ class CloudPlan {
           name_(name),
           options_(options),
           budget_(bytes.size(), options.max_work),
-          out_(out) {}
+          out_(out) {
+        const auto* const unit =
+            std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
+                         [&](const LengthUnit& known) { return known.name == options.units; });
+        file_.setFrame(unit == kLengthUnits.end() ? 1 : unit->metres,
+                       options.up == "auto" ? 'z' : options.up.front());
+    }
 
     void write() {
         measure();
@@ -115,7 +121,8 @@ class CloudPlan {
                      "0.5..1.8 --resolution 5cm; " +
                          reach);
         if (in_band == 0)
-            failFile(name_, "no point lies between the heights of --slice-walls: " + reach);
+            failFile(name_, "no point lies between the heights of --slice-walls: " + reach +
+                                "; are --units and --up right?");
         cell_ = options_.resolution.value_or(kCell);
         // The outermost walls lie in the middle of their cells.
         // A disc as wide as a gap must fit outside.

@@ -217,6 +217,30 @@ TEST(CloudPlan, SurveyorsCoordinatesMoveToTheOrigin) {
         << report.choices[0].message;
 }
 
+TEST(CloudPlan, UnitsAndUpwardAxisAreThoseOfTheOptions) {
+    Points lying = room();  // millimetres, y up, as cameras have it
+    for (auto& [x, y, z] : lying) {
+        const double height = z;
+        x *= 1000;
+        z = -1000 * y;
+        y = 1000 * height;
+    }
+    ImportOptions options = between(0.5, 1.8);
+    EXPECT_NE(errorOf(asciiPcd(lying), options).find("are --units and --up right?"),
+              std::string::npos);
+    options.units = "mm";
+    options.up = "y";
+    const auto records = [](const Points& points, const ImportOptions& how) {
+        return writeRecordText(readPointCloud(asciiPcd(points), "cloud", how, sceneSchemas()));
+    };
+    EXPECT_EQ(records(lying, options), records(room(), between(0.5, 1.8)));
+    Points on_side = room();
+    for (auto& p : on_side) p = {p[2], p[0], p[1]};
+    ImportOptions sideways = between(0.5, 1.8);
+    sideways.up = "x";
+    EXPECT_EQ(records(on_side, sideways), records(room(), between(0.5, 1.8)));
+}
+
 TEST(CloudPlan, SaysHow) {
     const std::string bytes = asciiPcd(room());
     EXPECT_NE(errorOf(bytes).find("--slice-walls 0.5..1.8 --resolution 5cm; its points reach from "
