@@ -179,6 +179,12 @@ TEST_F(SdfPackages, ModelsLieBesideTheWorldsFolderAndWhereTheUserSays) {
     EXPECT_THROW((void)idsOf(include("model://crate")), FormatError);
 }
 
+// As Gazebo finds it with the package among its resources.
+TEST_F(SdfPackages, FilesMayBeNamedFromThePackageOn) {
+    putModel("models/shelf");
+    EXPECT_EQ(idsOf(include("file://models/shelf")), "models-shelf ");
+}
+
 TEST_F(SdfPackages, TheWorldsOwnFolderComesFirstAndNoOtherIsOpen) {
     putModel("models/crate", "<link name='m'/>");
     put("worlds/crate/model.sdf",

@@ -241,8 +241,35 @@ class BuildingReader {
     }
 
     void addOpening(StepId id, BuildingOpening::Kind kind, bool has_hole, Vec2 axis) {
-        const auto box = boxAround(productOf(id).shape, axis);
+        auto box = boxAround(productOf(id).shape, axis);
+        if (!box && !has_hole) box = statedBox(id);
         if (box) out_.openings.push_back({kind, has_hole, *box});
+    }
+
+    /// The box of a door or window without a body, e.g. one of plates, by its height and width: its
+    /// placement is the lower corner, with x along the width.
+    [[nodiscard]] std::optional<BuildingBox> statedBox(StepId id) {
+        constexpr double kMost = 20, kThin = 0.05;  // metres
+        const StepInstance door = file_.read(id);
+        const double height = door[8].number().value_or(0) * frames_.units().length;
+        const double width = door[9].number().value_or(0) * frames_.units().length;
+        if (door[5].isNull() || !(height > 0 && height < kMost && width > 0 && width < kMost))
+            return std::nullopt;
+        try {
+            const IfcFrame frame = frames_.placement(door[5].reference());
+            const Vec2 along{frame.x.x, frame.x.y};
+            if (!(length(along) > 0.5)) return std::nullopt;
+            BuildingBox box;
+            box.along = 1 / length(along) * along;
+            box.center = Point2{frame.origin.x, frame.origin.y} + width / 2 * box.along;
+            box.length = width;
+            box.width = kThin;
+            box.bottom = frame.origin.z;
+            box.top = box.bottom + height;
+            return box;
+        } catch (const UnreadGeometry&) {
+            return std::nullopt;
+        }
     }
 
     static BuildingOpening::Kind kindOf(std::string_view type) {

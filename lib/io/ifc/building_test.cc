@@ -123,6 +123,24 @@ TEST(Building, BrokenPartsAreCounted) {
               "curves in a loop 1\nplacements in a loop 1\nshapes in a loop 2\n");
 }
 
+// A wall whose placement is missing does not stand in the origin.
+TEST(Building, MissingPlacementsAndShapesAreCounted) {
+    const std::string whole = ifcBytes("broken-4-m.ifc");
+    const std::size_t walls = readBuilding(whole, std::nullopt).walls.size();
+    const std::string south = "'south',$,$,#34,#43";
+    const auto unread_with = [&](const std::string& references, const char* what) {
+        std::string bytes = whole;
+        bytes.replace(bytes.find(south), south.size(), "'south',$,$," + references);
+        const Building building = readBuilding(bytes, std::nullopt);
+        EXPECT_LT(building.walls.size(), walls) << references;
+        const auto found = building.unread.find(what);
+        return found == building.unread.end() ? 0 : found->second;
+    };
+    EXPECT_EQ(unread_with("#9999,#43", "a missing placement"), 1U);
+    EXPECT_EQ(unread_with("#34,#9999", "a missing shape"), 1U);
+    EXPECT_EQ(unread_with("#3,#43", "IFCSIUNIT"), 1U);
+}
+
 TEST(Building, WithoutStoreysItsDoorsStandOnTheFloor) {
     std::string bytes = ifcBytes("cabin-2x3-mm.ifc");
     for (std::size_t at = 0; (at = bytes.find("IFCBUILDINGSTOREY", at)) != std::string::npos;)

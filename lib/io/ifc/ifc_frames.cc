@@ -144,7 +144,8 @@ IfcFrame IfcFrames::placement(StepId id, int depth) {
     if (depth > kMaxIfcDepth) throw UnreadGeometry("placements in a loop");
     if (const auto known = placements_.find(id); known != placements_.end()) return known->second;
     const StepInstance local = file_.read(id);
-    if (local.type != "IFCLOCALPLACEMENT") return {};
+    if (local.type.empty()) throw UnreadGeometry("a missing placement");
+    if (local.type != "IFCLOCALPLACEMENT") throw UnreadGeometry(std::string(local.type));
     const IfcFrame frame = placement(local[0].reference(), depth + 1) * axes(local[1].reference());
     placements_.emplace(id, frame);
     return frame;

@@ -138,6 +138,16 @@ std::string storeysText(const Building& building, std::size_t chosen) {
     return text + "; others: " + listOf(building, chosen) + "; --storey NAME chooses";
 }
 
+std::string unreadText(const Building& building) {
+    std::string text;
+    std::size_t all = 0;
+    for (const auto& [type, count] : building.unread) {
+        text += (text.empty() ? "" : ", ") + type + " (" + std::to_string(count) + ')';
+        all += count;
+    }
+    return countText(all, "part") + " of its geometry cannot be read: " + text;
+}
+
 namespace {
 
 /// Moves a building in surveyors' coordinates to the origin, by whole metres.
@@ -166,16 +176,6 @@ std::optional<Vec2> movedHome(Building& building) {
     const auto way = wayFromSurvey(box.low);
     if (way) each_point([&](Point2& p) { p = p - *way; });
     return way;
-}
-
-std::string unreadText(const Building& building) {
-    std::string text;
-    std::size_t all = 0;
-    for (const auto& [type, count] : building.unread) {
-        text += (text.empty() ? "" : ", ") + type + " (" + std::to_string(count) + ')';
-        all += count;
-    }
-    return countText(all, "part") + " of its geometry cannot be read: " + text;
 }
 
 /// Lists the rooms of the storeys that are not imported.

@@ -23,6 +23,10 @@ std::string storeysText(const Building& building, std::size_t chosen);
 /// missing or ambiguous.
 std::string storeyWord(const Building& building, std::size_t storey);
 
+/// Returns "3 parts of its geometry cannot be read: IFCSWEPTDISKSOLID (2), a missing shape (1)".
+/// \pre there are such parts
+std::string unreadText(const Building& building);
+
 /// Computes the area of a section in square metres.
 double areaOfSection(const BuildingSection& section);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 
 #include "geom/arrangement.h"
 #include "io/ifc/storey_plan.h"
@@ -184,6 +185,48 @@ TEST(Ifc, AStoreyWithoutWallsIsRefused) {
     const std::string errors = errorsOf([&] { readIfc(bytes, "bare.ifc", {}, sceneSchemas()); });
     EXPECT_EQ(errors.find("bare.ifc: error: read storey 2 \"Ground floor\""), 0U) << errors;
     EXPECT_NE(errors.find("it has neither walls nor spaces to enclose a room"), std::string::npos);
+}
+
+// Some programs do not say which hole a door or window fills.
+TEST_P(Cabin, DoorsAndWindowsStandInHolesWithoutARelation) {
+    const auto openings = [](const Document& document) {
+        std::map<std::string, int> found;
+        for (const Record& record : document.records)
+            if (record.keyword() == "door" || record.keyword() == "window")
+                ++found[record.keyword() + (record.has("glass") ? " " + record.text("glass") : "")];
+        return found;
+    };
+    std::string bytes = ifcBytes(GetParam());
+    const auto related = openings(readIfc(bytes, "cabin.ifc", {}, sceneSchemas()));
+    for (std::size_t at = 0; (at = bytes.find("IFCRELFILLSELEMENT", at)) != std::string::npos;)
+        bytes.replace(at, 18, "IFCRELOFANOTHERONE");
+    EXPECT_EQ(openings(readIfc(bytes, "cabin.ifc", {}, sceneSchemas())), related);
+}
+
+TEST(Ifc, RefusalsNameUnreadGeometry) {
+    std::string bytes = ifcBytes("cabin-2x3-mm.ifc");
+    // The placement of the site hangs on itself, and all others on it.
+    const std::size_t root = bytes.find("=IFCLOCALPLACEMENT($,");
+    ASSERT_NE(root, std::string::npos);
+    const std::size_t id = bytes.rfind('#', root);
+    bytes.replace(root + 19, 1, bytes.substr(id, root - id));
+    const std::string errors = errorsOf([&] { readIfc(bytes, "loop.ifc", {}, sceneSchemas()); });
+    EXPECT_NE(errors.find("placements in a loop ("), std::string::npos) << errors;
+}
+
+// The inside of a wall is no room.
+TEST(Ifc, WallsThatEncloseNoRoomAreReported) {
+    std::string bytes = ifcBytes("cabin-2x3-mm.ifc");
+    for (std::size_t at = 0; (at = bytes.find("IFCSPACE(", at)) != std::string::npos;)
+        bytes.replace(at, 6, "IFCNOT");
+    const std::size_t north = bytes.find("'north'");
+    ASSERT_NE(north, std::string::npos);
+    const std::size_t type = bytes.rfind("IFCWALL", north);
+    bytes.replace(type, 7, "IFCBEAM");
+    ImportOptions options;
+    options.close_gaps = 0;
+    const std::string warnings = warningsOf(readIfc(bytes, "open.ifc", options, sceneSchemas()));
+    EXPECT_NE(warnings.find("enclose no room"), std::string::npos) << warnings;
 }
 
 TEST(Ifc, SurveyorsCoordinatesComeHome) {

@@ -80,8 +80,14 @@ void IfcShapes::append(IfcShape& shape, const IfcShape& part, const IfcFrame& fr
 
 IfcShape IfcShapes::shapeOf(StepId definition) {
     std::vector<std::pair<int, StepInstance>> ranked;
-    for (const StepValue& value : frames_.file().read(definition)[2].list()) {
+    const StepInstance all = frames_.file().read(definition);
+    const auto check = [this](StepId id, const StepInstance& read) {
+        if (id != 0 && read.type.empty()) ++unread_["a missing shape"];
+    };
+    check(definition, all);
+    for (const StepValue& value : all[2].list()) {
         StepInstance representation = frames_.file().read(value.reference());
+        check(value.reference(), representation);
         if (const int rank = rankOf(representation); rank > 0)
             ranked.emplace_back(rank, std::move(representation));
     }

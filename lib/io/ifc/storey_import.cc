@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <span>
 #include <utility>
 
@@ -70,7 +71,8 @@ class StoreyImport {
         }
         if (walls_.solids.empty() && walls_.sheets.empty() && spaces_.empty())
             failFile("", storeysText(building_, storey_) +
-                             "; it has neither walls nor spaces to enclose a room");
+                             "; it has neither walls nor spaces to enclose a room" +
+                             (building_.unread.empty() ? "" : "; " + unreadText(building_)));
     }
 
     /// Adds the outlines of spaces that no walls enclose as walls, e.g. under a roof.
@@ -121,17 +123,27 @@ class StoreyImport {
                 continue;
             }
             found->opening = i;
-            if (!overlapsOther(*found)) openings_.push_back(*std::move(found));
+            const auto other = overlapping(*found);
+            if (other == openings_.end())
+                openings_.push_back(*std::move(found));
+            else if (kindOf(*other) == BuildingOpening::Kind::Hole)
+                fillers_[other->opening] = opening.kind;
         }
     }
 
-    /// Returns true if another opening removes the same part of a wall, e.g. two leaves of one
-    /// door.
-    [[nodiscard]] bool overlapsOther(const StoreyOpening& opening) const {
+    /// The kind of an opening, or of the door or window that stands in a hole without a relation.
+    [[nodiscard]] BuildingOpening::Kind kindOf(const StoreyOpening& opening) const {
+        const auto filler = fillers_.find(opening.opening);
+        return filler == fillers_.end() ? building_.openings[opening.opening].kind : filler->second;
+    }
+
+    /// Finds another opening that removes the same part of a wall, e.g. for two leaves of one door.
+    [[nodiscard]] std::vector<StoreyOpening>::const_iterator overlapping(
+        const StoreyOpening& opening) const {
         const Vec2 along = opening.line.b - opening.line.a;
         const double l = length(along);
         const BuildingBox& box = building_.openings[opening.opening].box;
-        return std::any_of(openings_.begin(), openings_.end(), [&](const StoreyOpening& other) {
+        return std::find_if(openings_.begin(), openings_.end(), [&](const StoreyOpening& other) {
             const BuildingBox& beside = building_.openings[other.opening].box;
             if (box.bottom >= beside.top - kThinnestThing ||
                 beside.bottom >= box.top - kThinnestThing)
@@ -147,8 +159,9 @@ class StoreyImport {
 
     [[nodiscard]] bool isPassage(const StoreyOpening& opening) const {
         const BuildingOpening& one = building_.openings[opening.opening];
-        return one.kind == BuildingOpening::Kind::Door ||
-               (one.kind == BuildingOpening::Kind::Hole && one.box.bottom <= floor_ + kBelowFloor);
+        return kindOf(opening) == BuildingOpening::Kind::Door ||
+               (kindOf(opening) == BuildingOpening::Kind::Hole &&
+                one.box.bottom <= floor_ + kBelowFloor);
     }
 
     void chooseTheRooms() {
@@ -176,6 +189,11 @@ class StoreyImport {
                                 [p](const Region& r) { return r.locate(p) != Side::Outside; });
         };
         rooms_ = chooseRooms(plan, chosen, out_);
+        if (rooms_.regions.empty())
+            out_.warn(
+                "the walls of the storey enclose no room, and what is inside of them may count as "
+                "one: try another height with --slice-walls, wider gaps with --close-gaps, or "
+                "another --storey");
     }
 
     [[nodiscard]] bool isKept(Point2 p) const {
@@ -236,7 +254,7 @@ class StoreyImport {
                 record.set("open", true);
             else
                 record.set("sill", wholeMicrometres(sill));
-            if (one.kind == BuildingOpening::Kind::Hole && !is_door)
+            if (kindOf(opening) == BuildingOpening::Kind::Hole && !is_door)
                 record.set("glass", std::string("none"));
         }
         if (not_in_walls_ > 0)
@@ -317,6 +335,7 @@ class StoreyImport {
     double height_ = 0;  // of the walls
     std::vector<Room> spaces_;
     std::vector<StoreyOpening> openings_;
+    std::map<std::size_t, BuildingOpening::Kind> fillers_;  // by opening: what stands in holes
     std::vector<Segment2> lines_;   // of all walls, in the order of their curves; then sheets
     std::vector<std::string> ids_;  // of the curves; "": left out
     PlanRooms rooms_;

@@ -36,11 +36,13 @@ std::string joined(const std::string& folder, std::string_view path) {
     return (fs::path(folder) / path).lexically_normal().string();
 }
 
-/// Returns the path below a folder of models: the part after the last `/models/`.
+/// Returns the path below a folder of models: the part after the last folder `models`.
 std::string_view behindModels(std::string_view uri) {
     constexpr std::string_view kModels = "/models/";
     const std::size_t at = uri.rfind(kModels);
-    return at == std::string_view::npos ? std::string_view() : uri.substr(at + kModels.size());
+    if (at != std::string_view::npos) return uri.substr(at + kModels.size());
+    const std::string_view first = kModels.substr(1);
+    return uri.starts_with(first) ? uri.substr(first.size()) : std::string_view();
 }
 
 /// Returns the same for a model on Fuel, without its version: NAME/2, or NAME/tip/files/PATH.

@@ -58,7 +58,12 @@ class SdfImporter {
   private:
     [[noreturn]] void failEmpty() const {
         if (world_.missing) throw FormatError(*world_.missing);
-        failFile(name_, "no box, cylinder, polyline or mesh in it");
+        std::string text = "no box, cylinder, polyline or mesh in it";
+        if (!missing_.empty())
+            text += "; meshes that are not in the folders of models (--models DIR names more): " +
+                    listText(missing_);
+        if (!world_.left_out.empty()) text += "; left out: " + listText(world_.left_out);
+        failFile(name_, text);
     }
 
     void sortShapes() {
@@ -317,8 +322,21 @@ class SdfImporter {
                                  wholeMicrometres(block.top - bottom)});
     }
 
+    /// True if enough boxes look like walls, at any height, to enclose a room.
+    [[nodiscard]] bool hasWalls() const {
+        constexpr std::size_t kFewest = 3;
+        const auto boxes = std::count_if(blocks_.begin(), blocks_.end(), [](const SdfBlock& block) {
+            return isWall(block, block.bottom + (block.top - block.bottom) / 2);
+        });
+        return walls_.size() + fences_.size() + static_cast<std::size_t>(boxes) >= kFewest;
+    }
+
     void note() {
         if (world_.missing) out_.warn("left out: " + world_.missing->message);
+        if (regions_.empty() && hasWalls())
+            out_.warn(
+                "the walls enclose no room: --close-gaps M closes wider gaps, and --slice-walls M "
+                "takes boxes and meshes at another height as walls");
         if (!missing_.empty())
             out_.warn(
                 "meshes left out that are not in the folders of models (--models DIR names "

@@ -146,6 +146,26 @@ TEST(SdfImport, ErrorsNameTheLine) {
               std::string::npos);
 }
 
+TEST(SdfImport, WhatIsMissingOrEnclosesNoRoomIsNamed) {
+    const std::string mesh =
+        "<model name='m'><link name='l'><collision name='c'><geometry><mesh><uri>model://m/m.obj"
+        "</uri></mesh></geometry></collision></link></model>";
+    EXPECT_NE(errorOf(worldOf(mesh)).find("meshes that are not in the folders of models"),
+              std::string::npos)
+        << errorOf(worldOf(mesh));
+    // Walls 0.4 m above the floor, which only another height takes as walls.
+    std::string raised;
+    for (const auto& [pose, size] : {std::pair{"0 2 1.4 0 0 0", "6 0.1 2"},
+                                     {"0 -2 1.4 0 0 0", "6 0.1 2"},
+                                     {"3 0 1.4 0 0 0", "0.1 4 2"},
+                                     {"-3 0 1.4 0 0 0", "0.1 4 2"}})
+        raised += boxModel("w", pose, size);
+    const std::string warnings =
+        warningsOf(readSdf(worldOf(raised), "test.sdf", {}, sceneSchemas()));
+    EXPECT_NE(warnings.find("the walls enclose no room"), std::string::npos) << warnings;
+    EXPECT_NE(warnings.find("--slice-walls M"), std::string::npos) << warnings;
+}
+
 TEST(SdfImport, HostileWorldsAreRefused) {
     const std::string loop =
         "<model name='a'><pose relative_to='b'>1 0 0 0 0 0</pose><link name='l'/></model>\n"

@@ -138,7 +138,8 @@ std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfCylinder& cylind
 }
 
 bool isWall(const SdfBlock& block, std::optional<double> cut) {
-    const bool reaches = cut ? block.bottom <= *cut && *cut <= block.top : block.bottom <= kMaxFoot;
+    const bool reaches = cut ? block.bottom <= *cut && *cut <= block.top
+                             : block.bottom <= kMaxFoot + kCornerTolerance;
     return !block.is_round && reaches && block.width <= kThickestWall &&
            block.length >= kMinLength * block.width &&
            block.top - block.bottom >= kMinHeight * block.width;
