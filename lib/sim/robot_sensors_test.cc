@@ -67,11 +67,13 @@ TEST(Sonar, HearsGlass) {
     }
 }
 
-/// Rays are cast only for sonars that point at a surface or a body.
+/// Rays are cast only if they may meet the nearest surface or body. One robot begins under the rim
+/// of a table.
 TEST(Sonar, AllAtOnceReadAsOneByOne) {
     std::string lines =
         "cube at=3,2 size=0.5,0.8,0.1\ncube at=-3,-2 heading=30 size=1,0.1,2\n"
-        "table at=-1,2\ndesk at=2,-3 heading=20\npillar at=5,5 kind=round size=0.4,0.4,3\n"
+        "table at=-1,2\ntable at=-5.9,-5.4 size=2,2,0.72\ndesk at=2,-3 heading=20\npillar at=5,5 "
+        "kind=round size=0.4,0.4,3\n"
         "wall from=-6,3 to=-4,5 height=0.3\nchair at=0,-4 heading=70\n";
     const std::string ring =
         " sonar=0.1,0.1,90;0.2,0.1,50;0.2,0,10;0.2,0,-10;0.2,-0.1,-50;-0.1,-0.1,-90;-0.2,0,-150;"

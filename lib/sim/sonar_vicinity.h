@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "env/environment.h"
@@ -28,13 +27,21 @@ Slice echoBand(const Environment& environment, double top);
 
 /// Surfaces of an echoBand() and moving bodies within sonarReach() of a robot.
 struct SonarVicinity {
-    bool is_within_solid = false;  ///< surfaces are in all directions
+    /// A rectangle that holds a body, as seen from above.
+    struct Body {
+        Point2 middle;
+        Vec2 ahead;  ///< unit vector along its length
+        double half_length, half_width;
+        double radius;  ///< of a circle that holds the body, too
+    };
+
+    bool is_within_solid = false;  ///< a sonar may be: surfaces are in all directions
     std::vector<Segment2> lines;
-    std::vector<std::pair<Point2, double>> bodies;  ///< middles, and radii that hold them
+    std::vector<Body> bodies;
 };
 
-/// Computes the same as sonarRanges(), with rays only for sonars that point at one of them. Without
-/// a vicinity it casts all.
+/// Computes the same as sonarRanges(), with only those rays that may meet the nearest of them.
+/// Without a vicinity it casts all.
 std::vector<float> sonarRangesNear(const SonarVicinity* vicinity, const RobotModel& model,
                                    const Pose2& pose, const RayWorld& environment,
                                    const MovingBodies& bodies, std::uint32_t own);

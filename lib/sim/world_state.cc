@@ -203,14 +203,20 @@ SonarVicinity World::Data::sonarVicinity(std::size_t robot, const FloorGrid& gri
     if (state.echoes == nullptr) return near;
     const Point2 place = motions[robot].pose.position;
     const double reach = sonarReach(movers[robot].model) + kEchoSlack;
-    near.is_within_solid = state.echoes->overlap(place, kEchoSlack).has_value();
+    const double ring = reach - movers[robot].model.sonar.max_range;
+    near.is_within_solid = state.echoes->overlap(place, ring).has_value();
     state.echoes_near.forEachWithin(
         *state.echoes, place, reach,
         [&near](const Segment2& line, double) { near.lines.push_back(line); });
     const Vec2 margin{reach, reach};
     grid.forEachNear({place - margin, place + margin}, [&](std::size_t k) {
-        if (bodies[k].owner != robot)
-            near.bodies.emplace_back(bodies[k].pose.position, bodies[k].reach() + bodies[k].sway());
+        const MovingBody& body = bodies[k];
+        if (body.owner == robot) return;
+        const double radius = body.reach() + body.sway();
+        const bool is_box = body.radius <= 0;
+        near.bodies.push_back({body.pose.position, unitVector(body.pose.heading),
+                               is_box ? body.half_length : radius,
+                               is_box ? body.half_width : radius, radius});
     });
     return near;
 }
