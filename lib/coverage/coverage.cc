@@ -365,7 +365,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     if (options.exact)
         tryExactMetrics(coverage, environment, std::move(floor), zones, options.keep_depths);
     addCellMetrics(coverage, zones);
-    addDensities(coverage, environment, level->freeFloor(), zones);
+    addDensities(coverage, environment, level->freeFloor(), zones, options.whole_densities);
     if (options.parallax) addParallax(coverage, environment, *options.parallax);
     return coverage;
 }

@@ -41,6 +41,9 @@ struct CoverageOptions {
     /// Stores the number of sensors in Coverage::overlay; else only whether any sensor sees the
     /// floor (count 0 or 1), which takes much less memory where many views overlap.
     bool keep_depths = true;
+    /// Coverage::density_overlays hold the floor away from all cameras, too, in which requirements
+    /// of densities find the largest gap.
+    bool whole_densities = true;
     std::optional<ParallaxChoice> parallax = {};
 };
 
@@ -180,6 +183,7 @@ struct Coverage {
     /// the floor with the pixels of each of pixelDensities() (classMark), and some zones each
     /// (densityZoneMark). Empty without cameras, or if the region of one is unknown.
     std::vector<Overlay> density_overlays;
+    bool are_densities_whole = false;  ///< see CoverageOptions::whole_densities
 };
 
 /// Marks in Coverage::density_overlays: of a class, by its index; of a zone, in the overlay with

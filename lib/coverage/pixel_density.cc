@@ -15,6 +15,7 @@
 #include "coverage/shadow_footprint.h"
 #include "geom/arrangement.h"
 #include "geom/predicates.h"
+#include "geom/spatial_index.h"
 #include "geom/tolerance.h"
 
 namespace ispace {
@@ -196,15 +197,47 @@ std::vector<const SensorView*> camerasOf(const Coverage& coverage) {
     return cameras;
 }
 
-/// Builds the overlay of as many zones from `first` on as fit.
+/// Finds curves and walls that may bound floor seen by a camera.
+class SeenBoxes {
+  public:
+    explicit SeenBoxes(const std::vector<const SensorView*>& cameras) {
+        const Vec2 margin{1e-3, 1e-3};  // above the rounding of an overlay
+        std::vector<Box2> boxes;
+        for (const SensorView* view : cameras) {
+            std::vector<const std::vector<Curve>*> regions = {&*view->region};
+            for (const CoveredSet& set : view->classes) regions.push_back(&*set.region);
+            for (const std::vector<Curve>* region : regions) {
+                const Box2 box = boundsOfAll(*region);
+                if (!box.empty()) boxes.push_back({box.low - margin, box.high + margin});
+            }
+        }
+        tree_ = BoxTree(boxes);
+    }
+    [[nodiscard]] bool meet(const Box2& box) const {
+        bool is_met = false;
+        tree_.search(box, [&is_met](std::size_t) { is_met = true; });
+        return is_met;
+    }
+
+  private:
+    BoxTree tree_;
+};
+
+/// Builds the overlay of as many zones from `first` on as fit. Floor away from all cameras may lack
+/// its marks unless `is_whole`: it is no part of any metric of densities.
 Overlay densityOverlay(const Coverage& coverage, const Environment& environment,
-                       const std::vector<Region>& free_floor, std::span<const Zone> zones) {
+                       const std::vector<Region>& free_floor, std::span<const Zone> zones,
+                       bool is_whole) {
+    const std::vector<const SensorView*> cameras = camerasOf(coverage);
+    const SeenBoxes seen(cameras);
+    const auto is_kept = [&](const Box2& box) { return is_whole || seen.meet(box); };
     std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoorMark)};
     std::vector<Curve> free;
     for (const Region& piece : free_floor)
-        for (Curve& curve : curvesWithArcs(piece)) free.push_back(std::move(curve));
+        for (Curve& curve : curvesWithArcs(piece))
+            if (is_kept(bounds(curve))) free.push_back(std::move(curve));
     layers.push_back(markLayer(std::move(free), kFreeMark));
-    for (const SensorView* view : camerasOf(coverage)) {
+    for (const SensorView* view : cameras) {
         layers.push_back(markLayer(*view->region, kCameraMark));
         for (std::size_t i = 0; i < view->classes.size(); ++i)
             layers.push_back(markLayer(*view->classes[i].region, classMark(i)));
@@ -214,7 +247,9 @@ Overlay densityOverlay(const Coverage& coverage, const Environment& environment,
         if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
         layers.push_back(markLayer({curveOf(outline)}, densityZoneMark(i)));
     }
-    return Overlay(layers, environment.slice(coverage.target.height).sheets);
+    std::vector<Segment2> walls = environment.slice(coverage.target.height).sheets;
+    std::erase_if(walls, [&](const Segment2& wall) { return !is_kept(bounds(wall)); });
+    return Overlay(layers, walls);
 }
 
 /// Sets the exact shares of the indoor region, the free floor, and the zones from `first` on.
@@ -253,7 +288,8 @@ CellSet cellsOfClass(const Coverage& coverage, std::size_t index) {
 }
 
 void addDensities(Coverage& coverage, const Environment& environment,
-                  const std::vector<Region>& free_floor, const std::vector<Zone>& zones) {
+                  const std::vector<Region>& free_floor, const std::vector<Zone>& zones,
+                  bool is_whole) {
     const std::vector<const SensorView*> cameras = camerasOf(coverage);
     if (cameras.empty()) return;
     CoverageReport& report = coverage.report;
@@ -283,8 +319,10 @@ void addDensities(Coverage& coverage, const Environment& environment,
         for (std::size_t first = 0; first == 0 || first < zones.size(); first += kDensityZones)
             overlays.push_back(densityOverlay(
                 coverage, environment, free_floor,
-                std::span(zones).subspan(first, std::min(kDensityZones, zones.size() - first))));
+                std::span(zones).subspan(first, std::min(kDensityZones, zones.size() - first)),
+                is_whole));
         coverage.density_overlays = std::move(overlays);
+        coverage.are_densities_whole = is_whole;
     } catch (const FormatError&) {
         return;  // too many crossings for an overlay: by cells only
     }

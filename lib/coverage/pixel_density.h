@@ -47,9 +47,10 @@ PictureMetrics pictureMetricsOf(const FloorDensity& density, const Grid& grid, P
                                 const SensorView& view);
 
 /// Sets report.densities, those of its zones, and the overlays. Does not change a report without
-/// cameras.
+/// cameras. \param is_whole see CoverageOptions::whole_densities
 void addDensities(Coverage& coverage, const Environment& environment,
-                  const std::vector<Region>& free_floor, const std::vector<Zone>& zones);
+                  const std::vector<Region>& free_floor, const std::vector<Zone>& zones,
+                  bool is_whole);
 
 /// Sets report.parallax and its coverage. Exact for up to 60 cameras with known regions.
 void addParallax(Coverage& coverage, const Environment& environment, const ParallaxChoice& choice);

@@ -65,7 +65,7 @@ Subject densitySubject(const Requirement& requirement, const CoverageReport& rep
 /// if unknown.
 std::optional<UncoveredSpot> largestWithout(const Requirement& requirement,
                                             const Coverage& coverage) {
-    if (coverage.density_overlays.empty()) return std::nullopt;
+    if (coverage.density_overlays.empty() || !coverage.are_densities_whole) return std::nullopt;
     std::uint64_t wanted = requirement.of == Requirement::Of::Free ? kFreeMark : kIndoorMark;
     std::size_t pass = 0;
     if (requirement.of == Requirement::Of::Zone) {

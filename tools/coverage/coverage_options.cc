@@ -222,6 +222,9 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     o.requirements.reserve(words.requirements.size());
     for (const std::string& text : words.requirements)
         o.requirements.push_back(parseRequirement(text));
+    o.measure.whole_densities =
+        std::any_of(o.requirements.begin(), o.requirements.end(),
+                    [](const Requirement& requirement) { return requirement.density; });
     if (line.given("--junit") && o.requirements.empty())
         throw UsageError("--junit writes what became of requirements: give --require");
     // The reports of a list may go to a file.
