@@ -13,21 +13,35 @@
 /// ms. Time is the room's (sim_aria/clock.h): with `--clock real:20` all goes twenty times as fast,
 /// and with `--clock step` the world advances while the program sleeps, the same way each time.
 ///
-/// Supports programs that use direct motion: Aria, ArRobot, ArPose, ArSonarDevice, ArBumpers,
-/// ArSerialConnection, ArTcpConnection, ArSimpleConnector, ArRobotConnector, ArArgumentParser,
-/// ArSignalHandler, ArCommands, ArUtil, ArMath, ArTime, ArLog and functors. Actions, ARIA's lasers
-/// and ArNetworking are missing.
+/// Supports direct motion, tasks, callbacks, actions and their groups, sonars, bumpers, lasers,
+/// keys, configurations, functors and threads; ispace-wire(7) lists AriaCoda's examples by name.
+/// Devices that a robot of simrun does not have (sim_aria/hardware.h) are missing at run time.
+/// ArNetworking is not supported.
 #ifndef SIM_ARIA_H
 #define SIM_ARIA_H
 
+#include <sim_aria/action_groups.h>
+#include <sim_aria/action_triangle.h>
+#include <sim_aria/arguments.h>
 #include <sim_aria/bumpers.h>
 #include <sim_aria/commands.h>
+#include <sim_aria/config.h>
 #include <sim_aria/connection.h>
 #include <sim_aria/connector.h>
+#include <sim_aria/data_logger.h>
+#include <sim_aria/functor_kinds.h>
+#include <sim_aria/hardware.h>
+#include <sim_aria/keys.h>
+#include <sim_aria/laser_connector.h>
+#include <sim_aria/laser_logger.h>
+#include <sim_aria/line_finder.h>
 #include <sim_aria/math.h>
 #include <sim_aria/process.h>
 #include <sim_aria/range_device.h>
 #include <sim_aria/robot.h>
+#include <sim_aria/sounds.h>
+#include <sim_aria/tcp_socket.h>
+#include <sim_aria/thread.h>
 #include <sim_aria/util.h>
 
 #endif  // SIM_ARIA_H

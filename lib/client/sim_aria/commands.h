@@ -68,7 +68,10 @@ class ArCommands {
         SIM_CTRL = 236,
         SIM_STAT = 237,
         SIM_MESSAGE = 238,
-        SIM_EXIT = 239
+        SIM_EXIT = 239,
+        // Of later robots: these numbers are ours, as the commands have no effect.
+        WHEEL_LIGHT = 240,
+        MARCDEBUG = 241
     };
 };
 

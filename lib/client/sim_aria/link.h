@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <ispace_client/robot.h>
+#include <ispace_client/sensor.h>
 #include <ispace_client/world.h>
 #include <sim_aria/math.h>
 #include <sim_aria/util.h>
@@ -19,6 +20,7 @@ namespace sim_aria {
 
 /// Contents of a status packet, in ARIA's units.
 struct Packet {
+    double time = 0;     ///< simulated seconds
     ArPose pose;         ///< odometry since the connection, mm and degrees
     double vel = 0;      ///< whole mm/s
     double rot_vel = 0;  ///< degrees/s
@@ -32,8 +34,8 @@ class Link {
   public:
     /// Takes the first robot that no other client drives: of the variable ISPACE_ROBOT ("r1,r2"),
     /// or else of the whole world.
-    Link(const std::string& server, double timeout) {
-        ispace::client::Options options;
+    Link(const std::string& server, double timeout) : server_(server) {
+        ispace::client::Options& options = options_;
         options.timeout = timeout;
         const char* const wanted = std::getenv("ISPACE_ROBOT");
         const std::vector<std::string> ids =
@@ -69,6 +71,7 @@ class Link {
     Packet read(bool sonar) {
         const ispace::client::Odometry odometry = robot_->odometry();
         Packet packet;
+        packet.time = odometry.time;
         const double c = ArMath::cos(-start_.heading), s = ArMath::sin(-start_.heading);
         const double x = 1000 * (odometry.pose.x - start_.x),
                      y = 1000 * (odometry.pose.y - start_.y);
@@ -84,6 +87,37 @@ class Link {
                                                        : 5000);
         }
         return packet;
+    }
+
+    /// Ids of the lasers on the robot.
+    std::vector<std::string> lasers() {
+        std::vector<std::string> ids;
+        const std::vector<std::string> all =
+            ispace::client::World(server_, options_).list()["lasers"];
+        for (const std::string& id : all) {
+            try {
+                scan(id);
+                ids.push_back(id);
+            } catch (const ispace::client::Refused&) {
+                // in the room, or on another robot
+            }
+        }
+        return ids;
+    }
+    /// Newest scan of a laser on the robot, m and degrees.
+    ispace::client::Scan scan(const std::string& laser) { return robot_->scan(laser); }
+    /// Figures of a laser, see the role LASER.
+    ispace::client::Fields laser(const std::string& id) {
+        return ispace::client::LaserSensor(server_, id, options_).info();
+    }
+
+    /// Pose of a laser on the robot, mm and degrees.
+    ArPose mount(const std::string& id) {
+        const ispace::client::Fields figures = laser(id);
+        if (!figures.has("mount")) return ArPose();
+        const std::vector<double> at = figures.numbers("mount");
+        if (at.size() != 6) throw ispace::client::ProtocolError("a mount of other than 6 numbers");
+        return ArPose(1000 * at[0], 1000 * at[1], at[3]);
     }
 
     /// mm/s
@@ -150,6 +184,8 @@ class Link {
         return bits;
     }
 
+    std::string server_;
+    ispace::client::Options options_;
     std::unique_ptr<ispace::client::Robot> robot_;
     ispace::client::Pose start_;
     std::vector<ArPose> sonars_;

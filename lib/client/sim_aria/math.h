@@ -2,7 +2,9 @@
 #ifndef SIM_ARIA_MATH_H
 #define SIM_ARIA_MATH_H
 
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
 /// Angles of ARIA: degrees, counter-clockwise, in (-180, 180].
@@ -37,6 +39,22 @@ class ArMath {
     static int roundInt(double value) { return static_cast<int>(std::lround(value)); }
     static short roundShort(double value) { return static_cast<short>(std::lround(value)); }
     static double fabs(double value) { return std::fabs(value); }
+    static int ceilInt(double value) { return static_cast<int>(std::ceil(value)); }
+    static int floorInt(double value) { return static_cast<int>(std::floor(value)); }
+    static bool isNan(double value) { return std::isnan(value); }
+    static bool compareFloats(double a, double b, double epsilon = 1e-6) {
+        return std::fabs(a - b) <= epsilon;
+    }
+    /// A whole number from `low` to `high`; the same sequence in each run.
+    static long randomInRange(long low, long high) {
+        if (high <= low) return low;
+        const std::uint64_t span = static_cast<std::uint64_t>(high - low) + 1;
+        return low + static_cast<long>(random() % span);
+    }
+    static std::uint32_t random() {
+        static std::atomic<std::uint32_t> state{1};
+        return state = state * 1664525U + 1013904223U;
+    }
 
   private:
     static double pi() { return 3.14159265358979323846; }

@@ -39,6 +39,13 @@ class Motion {
     }
     /// Removes both goals.
     void clear() { move_ = turn_ = None; }
+    /// Bounds the speeds of this cycle: forward and rotation from 0, backward up to 0.
+    void limit(double forward, double backward, double rotation) {
+        forward_limit_ = std::floor(forward);
+        backward_limit_ = std::ceil(backward);
+        rot_limit_ = std::floor(rotation);
+    }
+    void unlimited() { limit(kNoLimit, -kNoLimit, kNoLimit); }
 
     bool isMoveDone(const ArPose& at, double delta) const {
         if (move_ != Goal) return true;
@@ -52,17 +59,24 @@ class Motion {
 
     /// Computes the current speed.
     double vel(const ArPose& at) const {
-        if (move_ != Goal) return move_ == Vel ? rounded(vel_, max_vel) : 0;
-        const double rest = std::fabs(distance_) - travelled(at);
-        return std::copysign(1.0, distance_) * approach(rest, max_vel, accel);
+        return std::max(backward_limit_, std::min(forward_limit_, wantedVel(at)));
     }
     double rotVel(const ArPose& at) const {
-        if (turn_ != Goal) return turn_ == Vel ? rounded(rot_vel_, max_rot_vel) : 0;
-        return approach(ArMath::subAngle(heading_, at.getTh()), max_rot_vel, rot_accel);
+        return std::max(-rot_limit_, std::min(rot_limit_, wantedRotVel(at)));
     }
 
   private:
     enum Wanted { None, Vel, Goal };
+
+    double wantedVel(const ArPose& at) const {
+        if (move_ != Goal) return move_ == Vel ? rounded(vel_, max_vel) : 0;
+        const double rest = std::fabs(distance_) - travelled(at);
+        return std::copysign(1.0, distance_) * approach(rest, max_vel, accel);
+    }
+    double wantedRotVel(const ArPose& at) const {
+        if (turn_ != Goal) return turn_ == Vel ? rounded(rot_vel_, max_rot_vel) : 0;
+        return approach(ArMath::subAngle(heading_, at.getTh()), max_rot_vel, rot_accel);
+    }
 
     static double rounded(double value, double most) {
         return std::round(std::max(-most, std::min(most, value)));
@@ -82,10 +96,12 @@ class Motion {
         return turn_ == None ? std::copysign(1.0, distance_) * ahead : distance;
     }
 
+    static constexpr double kNoLimit = 1e9;
     static constexpr double kSettle = 0.3;  // s to cover the remainder
     static constexpr double kStill = 0.5;   // mm or degrees below which no motion starts
 
     Wanted move_ = None, turn_ = None;
+    double forward_limit_ = kNoLimit, backward_limit_ = -kNoLimit, rot_limit_ = kNoLimit;
     double vel_ = 0, rot_vel_ = 0, distance_ = 0, heading_ = 0;
     ArPose from_;
 };

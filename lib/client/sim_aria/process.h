@@ -9,62 +9,43 @@
 #include <cstdlib>
 #include <functional>
 #include <list>
-#include <map>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
-/// A function to call, as ARIA passes them.
-class ArFunctor {
-  public:
-    virtual ~ArFunctor() {}
-    virtual void invoke() = 0;
-};
-template <class P1>
-class ArFunctor1 : public ArFunctor {
-  public:
-    using ArFunctor::invoke;
-    virtual void invoke(P1 p1) = 0;
-};
-class ArGlobalFunctor : public ArFunctor {
-  public:
-    explicit ArGlobalFunctor(void (*function)()) : myFunction(function) {}
-    void invoke() override { myFunction(); }
-
-  private:
-    void (*myFunction)();
-};
-template <class P1>
-class ArGlobalFunctor1 : public ArFunctor1<P1> {
-  public:
-    explicit ArGlobalFunctor1(void (*function)(P1), P1 p1 = P1())
-        : myFunction(function), myP1(p1) {}
-    void invoke() override { myFunction(myP1); }
-    void invoke(P1 p1) override { myFunction(p1); }
-
-  private:
-    void (*myFunction)(P1);
-    P1 myP1;
-};
-template <class T>
-class ArFunctorC : public ArFunctor {
-  public:
-    ArFunctorC(T& object, void (T::*function)()) : myObject(&object), myFunction(function) {}
-    ArFunctorC(T* object, void (T::*function)()) : myObject(object), myFunction(function) {}
-    void invoke() override { (myObject->*myFunction)(); }
-
-  private:
-    T* myObject;
-    void (T::*myFunction)();
-};
-
-class ArListPos {
-  public:
-    enum Pos { FIRST = 1, LAST = 2 };
-};
+#include <sim_aria/functor.h>
+#include <sim_aria/typedefs.h>
 
 namespace sim_aria {
+
+/// Functions in descending order of their positions, the older first.
+template <class Call>
+class Ordered {
+  public:
+    struct Item {
+        const void* owner;
+        int position;
+        Call call;
+        std::string name;
+    };
+    void add(const void* owner, int position, Call call, const std::string& name = "") {
+        auto at = items_.begin();
+        while (at != items_.end() && at->position >= position) ++at;
+        items_.insert(at, Item{owner, position, std::move(call), name});
+    }
+    void remove(const void* owner) {
+        items_.remove_if([&](const Item& item) { return item.owner == owner; });
+    }
+    void removeNamed(const std::string& name) {
+        items_.remove_if([&](const Item& item) { return item.name == name; });
+    }
+    void dropFront() { items_.pop_front(); }
+    const std::list<Item>& items() const { return items_; }
+
+  private:
+    std::list<Item> items_;
+};
 
 /// State of the process shared by all robots: the robots to stop and disconnect at its end, and a
 /// thread that waits for signals, since a signal handler may do neither.
@@ -76,27 +57,35 @@ class Process {
         return *process;
     }
 
-    void add(const void* owner, std::function<void()> at_exit) {
+    /// Adds a function to call at the end: those of higher positions first.
+    void add(const void* owner, std::function<void()> at_exit, int position = 50) {
         const std::lock_guard<std::mutex> lock(mutex_);
-        at_exit_.push_back(std::make_pair(owner, std::move(at_exit)));
+        at_exit_.add(owner, position, std::move(at_exit));
     }
     void remove(const void* owner) {
         const std::lock_guard<std::mutex> lock(mutex_);
-        at_exit_.remove_if([&](const Callback& callback) { return callback.first == owner; });
+        at_exit_.remove(owner);
     }
     void runExitCallbacks() {
         for (;;) {
-            Callback callback;
+            std::function<void()> callback;
             {
                 const std::lock_guard<std::mutex> lock(mutex_);
-                if (at_exit_.empty()) return;
-                callback = at_exit_.front();
-                at_exit_.pop_front();
+                if (at_exit_.items().empty()) return;
+                callback = at_exit_.items().front().call;
+                at_exit_.dropFront();
             }
-            callback.second();
+            callback();
         }
     }
 
+    /// True for the first thread that ends the process.
+    bool mayEnd() {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        const std::thread::id self = std::this_thread::get_id();
+        if (ender_ == std::thread::id()) ender_ = self;
+        return ender_ == self;
+    }
     void setRunning(bool running) {
         const std::lock_guard<std::mutex> lock(mutex_);
         running_ = running;
@@ -134,8 +123,6 @@ class Process {
     }
 
   private:
-    using Callback = std::pair<const void*, std::function<void()>>;
-
     static int& writeEnd() {
         static int fd = -1;
         return fd;
@@ -157,45 +144,14 @@ class Process {
     }
 
     std::mutex mutex_;
-    std::list<Callback> at_exit_;
+    Ordered<std::function<void()>> at_exit_;
     std::list<ArFunctor1<int>*> callbacks_;
     bool running_ = false;
+    std::thread::id ender_;
     int pipe_[2] = {-1, -1};
 };
 
 }  // namespace sim_aria
-
-/// The library as a whole.
-class Aria {
-  public:
-    enum SigHandleMethod { SIGHANDLE_SINGLE, SIGHANDLE_THREAD, SIGHANDLE_NONE };
-
-    /// Call it first. On HUP, INT, QUIT and TERM robots are stopped and the process ends.
-    static void init(SigHandleMethod method = SIGHANDLE_THREAD, bool /*initSockets*/ = true,
-                     bool /*sigHandleExitNotShutdown*/ = true) {
-        if (sim_aria::Process::get().running()) return;
-        sim_aria::Process::get().setRunning(true);
-        if (method == SIGHANDLE_NONE) return;
-        for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM})
-            sim_aria::Process::get().handle(signal);
-    }
-    /// Stops all robots; returns when their threads have ended.
-    static void shutdown() {
-        sim_aria::Process::get().runExitCallbacks();
-        sim_aria::Process::get().setRunning(false);
-    }
-    /// Stops all robots and ends the process.
-    static void exit(int code = 0) {
-        shutdown();
-        std::exit(code);
-    }
-    static void uninit() { shutdown(); }
-    static bool getRunning() { return sim_aria::Process::get().running(); }
-    static void addExitCallback(ArFunctor* functor, int /*position*/ = 50) {
-        sim_aria::Process::get().add(functor, [functor] { functor->invoke(); });
-    }
-    static void remExitCallback(ArFunctor* functor) { sim_aria::Process::get().remove(functor); }
-};
 
 /// Signals that end the process in order; Aria::init() sets the usual ones.
 class ArSignalHandler {

@@ -4,21 +4,24 @@
 
 #include <cstddef>
 #include <list>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include <sim_aria/geometry.h>
+#include <sim_aria/range_buffer.h>
 #include <sim_aria/util.h>
 
 class ArRobot;
 
-/// Last measurement of one sonar.
+/// Last measurement of one sonar, or of one beam.
 class ArSensorReading {
   public:
     /// \param x, y, th pose of the sonar on the robot, mm and degrees
     ArSensorReading(double x = 0, double y = 0, double th = 0) : mySensor(x, y, th) {}
 
-    /// mm from the sonar; 5000 if there was no echo.
+    /// mm from the sonar; 5000 if a sonar had no echo.
     int getRange() const { return myRange; }
     /// Position of the echo in the frame of the robot's odometry, mm.
     double getX() const { return myHit.getX(); }
@@ -27,31 +30,86 @@ class ArSensorReading {
     /// The same in the robot's frame.
     double getLocalX() const { return myLocal.getX(); }
     double getLocalY() const { return myLocal.getY(); }
+    ArPose getLocalPose() const { return myLocal; }
     double getSensorX() const { return mySensor.getX(); }
     double getSensorY() const { return mySensor.getY(); }
     double getSensorTh() const { return mySensor.getTh(); }
+    ArPose getSensorPosition() const { return mySensor; }
     /// Pose of the robot at that time.
     ArPose getPoseTaken() const { return myTaken; }
+    ArPose getEncoderPoseTaken() const { return myEncoderTaken; }
+    ArTime getTimeTaken() const { return myTime; }
     bool isNew(unsigned int counter) const { return counter == myCounter; }
     unsigned int getCounterTaken() const { return myCounter; }
+    void resetSensorPosition(double x, double y, double th) { mySensor = ArPose(x, y, th); }
+    /// A reading that holds no obstacle.
+    void setIgnoreThisReading(bool ignore) { myIgnored = ignore; }
+    bool getIgnoreThisReading() const { return myIgnored; }
+    int getExtraInt() const { return myExtra; }
+    void setExtraInt(int extra) { myExtra = extra; }
 
-    /// For ArRobot: stores a range, measured at this pose of the robot in this cycle.
-    void newData(int range, ArPose robot, unsigned int counter) {
-        myRange = range;
+    /// Stores a range, measured at these poses of the robot in this cycle.
+    void newData(double range, ArPose robot, ArPose encoder, ArTransform toGlobal,
+                 unsigned int counter, ArTime time, bool ignore = false, int extra = 0) {
+        myRange = ArMath::roundInt(range);
         myTaken = robot;
+        myEncoderTaken = encoder;
         myCounter = counter;
+        myTime = time;
+        myIgnored = ignore;
+        myExtra = extra;
         const double th = mySensor.getTh();
         myLocal.setPose(mySensor.getX() + range * ArMath::cos(th),
                         mySensor.getY() + range * ArMath::sin(th));
-        const double c = ArMath::cos(robot.getTh()), s = ArMath::sin(robot.getTh());
-        myHit.setPose(robot.getX() + c * myLocal.getX() - s * myLocal.getY(),
-                      robot.getY() + s * myLocal.getX() + c * myLocal.getY());
+        myHit = toGlobal.doTransform(myLocal);
+    }
+    void newData(int range, ArPose robot, unsigned int counter) {
+        newData(range, robot, robot, ArTransform(robot), counter, ArTime());
     }
 
   private:
-    ArPose mySensor, myHit, myLocal, myTaken;
-    int myRange = 5000;
+    ArPose mySensor, myHit, myLocal, myTaken, myEncoderTaken;
+    int myRange = 5000, myExtra = 0;
     unsigned int myCounter = 0;
+    bool myIgnored = false;
+    ArTime myTime;
+};
+
+class ArColor {
+  public:
+    explicit ArColor(unsigned char red = 255, unsigned char green = 255, unsigned char blue = 255)
+        : myRed(red), myGreen(green), myBlue(blue) {}
+    unsigned char getRed() const { return myRed; }
+    unsigned char getGreen() const { return myGreen; }
+    unsigned char getBlue() const { return myBlue; }
+
+  private:
+    unsigned char myRed, myGreen, myBlue;
+};
+
+/// How a viewer of ARIA's would draw points; stored alone, as no viewer connects.
+class ArDrawingData {
+  public:
+    ArDrawingData(const char* shape, ArColor primary, int size, int layer,
+                  unsigned int refreshTime = 200, ArColor secondary = ArColor())
+        : myShape(shape),
+          myPrimary(primary),
+          mySecondary(secondary),
+          mySize(size),
+          myLayer(layer),
+          myRefreshTime(refreshTime) {}
+    const char* getShape() const { return myShape.c_str(); }
+    ArColor getPrimaryColor() const { return myPrimary; }
+    ArColor getSecondaryColor() const { return mySecondary; }
+    int getSize() const { return mySize; }
+    int getLayer() const { return myLayer; }
+    unsigned int getDefaultRefreshTime() const { return myRefreshTime; }
+
+  private:
+    std::string myShape;
+    ArColor myPrimary, mySecondary;
+    int mySize, myLayer;
+    unsigned int myRefreshTime;
 };
 
 /// A device on a robot that measures distances: stores recent points in the frame of the robot's
@@ -60,23 +118,28 @@ class ArRangeDevice {
   public:
     ArRangeDevice(std::size_t currentBufferSize, std::size_t cumulativeBufferSize, const char* name,
                   unsigned int maxRange, int maxSecondsToKeepCurrent = 0,
-                  int maxSecondsToKeepCumulative = 0, double maxDistToKeepCumulative = 0)
-        : myName(name),
+                  int maxSecondsToKeepCumulative = 0, double maxDistToKeepCumulative = 0,
+                  bool locationDependent = false)
+        : myCurrentBuffer(currentBufferSize),
+          myCumulativeBuffer(cumulativeBufferSize),
+          myName(name),
           myMaxRange(maxRange),
-          myCurrent{currentBufferSize, maxSecondsToKeepCurrent, 0, {}},
-          myCumulative{
-              cumulativeBufferSize, maxSecondsToKeepCumulative, maxDistToKeepCumulative, {}} {}
-    virtual ~ArRangeDevice() {
-        clear(myCurrent);
-        clear(myCumulative);
-    }
+          myCurrentSeconds(maxSecondsToKeepCurrent),
+          myCumulativeSeconds(maxSecondsToKeepCumulative),
+          myCumulativeDistance(maxDistToKeepCumulative),
+          myLocationDependent(locationDependent) {}
+    /// Removes itself from its robot.
+    virtual ~ArRangeDevice();
     ArRangeDevice(const ArRangeDevice&) = delete;
     ArRangeDevice& operator=(const ArRangeDevice&) = delete;
 
     const char* getName() const { return myName.c_str(); }
+    void setName(const char* name) { myName = name; }
     unsigned int getMaxRange() const { return myMaxRange; }
     void setMaxRange(unsigned int mm) { myMaxRange = mm; }
+    bool isLocationDependent() const { return myLocationDependent; }
     ArRobot* getRobot() { return myRobot; }
+    /// Called by ArRobot::addRangeDevice().
     virtual void setRobot(ArRobot* robot) { myRobot = robot; }
 
     int lockDevice() {
@@ -91,103 +154,78 @@ class ArRangeDevice {
 
     /// Distance from the robot's centre to the nearest point between the directions `startAngle`
     /// and, counter-clockwise, `endAngle` of the robot, mm; the maximum range if there is none.
-    double currentReadingPolar(double startAngle, double endAngle, double* angle = nullptr) const {
-        return nearestPolar(myCurrent, startAngle, endAngle, angle);
+    virtual double currentReadingPolar(double startAngle, double endAngle,
+                                       double* angle = nullptr) const {
+        return myCurrentBuffer.getClosestPolar(startAngle, endAngle, myPose, myMaxRange, angle);
     }
-    double cumulativeReadingPolar(double startAngle, double endAngle,
-                                  double* angle = nullptr) const {
-        return nearestPolar(myCumulative, startAngle, endAngle, angle);
+    virtual double cumulativeReadingPolar(double startAngle, double endAngle,
+                                          double* angle = nullptr) const {
+        return myCumulativeBuffer.getClosestPolar(startAngle, endAngle, myPose, myMaxRange, angle);
     }
     /// The same of the points in a rectangle of the robot's frame.
-    double currentReadingBox(double x1, double y1, double x2, double y2,
-                             ArPose* reading = nullptr) const {
-        return nearestBox(myCurrent, x1, y1, x2, y2, reading);
+    virtual double currentReadingBox(double x1, double y1, double x2, double y2,
+                                     ArPose* reading = nullptr) const {
+        return myCurrentBuffer.getClosestBox(x1, y1, x2, y2, myPose, myMaxRange, reading);
     }
-    double cumulativeReadingBox(double x1, double y1, double x2, double y2,
-                                ArPose* reading = nullptr) const {
-        return nearestBox(myCumulative, x1, y1, x2, y2, reading);
+    virtual double cumulativeReadingBox(double x1, double y1, double x2, double y2,
+                                        ArPose* reading = nullptr) const {
+        return myCumulativeBuffer.getClosestBox(x1, y1, x2, y2, myPose, myMaxRange, reading);
     }
-    const std::list<ArPoseWithTime*>* getCurrentBuffer() const { return &myCurrent.points; }
-    const std::list<ArPoseWithTime*>* getCumulativeBuffer() const { return &myCumulative.points; }
+    std::list<ArPoseWithTime*>* getCurrentBuffer() { return myCurrentBuffer.getBuffer(); }
+    std::list<ArPoseWithTime*>* getCumulativeBuffer() { return myCumulativeBuffer.getBuffer(); }
+    std::vector<ArPoseWithTime> getCurrentBufferAsVector() const {
+        return myCurrentBuffer.getBufferAsVector();
+    }
+    std::vector<ArPoseWithTime> getCumulativeBufferAsVector() const {
+        return myCumulativeBuffer.getBufferAsVector();
+    }
+    void setCurrentBufferSize(std::size_t size) { myCurrentBuffer.setSize(size); }
+    void setCumulativeBufferSize(std::size_t size) { myCumulativeBuffer.setSize(size); }
+    void clearCurrentReadings() { myCurrentBuffer.clear(); }
+    void clearCumulativeReadings() { myCumulativeBuffer.clear(); }
     virtual void addReading(double x, double y) {
-        add(myCurrent, x, y);
-        add(myCumulative, x, y);
+        myCurrentBuffer.addReading(x, y);
+        myCumulativeBuffer.addReading(x, y);
     }
+    /// Readings of all beams in the last sweep; null for a device without.
+    virtual const std::list<ArSensorReading*>* getRawReadings() const { return nullptr; }
+
+    void setCurrentDrawingData(ArDrawingData* data, bool takeOwnership) {
+        myCurrentDrawing = Drawing(data, takeOwnership ? destroy : keep);
+    }
+    void setCumulativeDrawingData(ArDrawingData* data, bool takeOwnership) {
+        myCumulativeDrawing = Drawing(data, takeOwnership ? destroy : keep);
+    }
+    ArDrawingData* getCurrentDrawingData() { return myCurrentDrawing.get(); }
+    ArDrawingData* getCumulativeDrawingData() { return myCumulativeDrawing.get(); }
 
     /// Called by ArRobot in each cycle.
     virtual void processReadings(const std::vector<ArSensorReading>&, const ArPose& robot) {
         myPose = robot;
-        forget(myCurrent);
-        forget(myCumulative);
+        if (myCurrentSeconds > 0) myCurrentBuffer.clearOlderThanSeconds(myCurrentSeconds);
+        if (myCumulativeSeconds > 0) myCumulativeBuffer.clearOlderThanSeconds(myCumulativeSeconds);
+        if (myCumulativeDistance > 0)
+            myCumulativeBuffer.clearFartherThan(myCumulativeDistance, myPose);
     }
 
   protected:
+    ArRangeBuffer myCurrentBuffer, myCumulativeBuffer;
     std::recursive_mutex myMutex;
 
   private:
-    struct Buffer {
-        std::size_t size;
-        int seconds;      // 0: no limit
-        double distance;  // mm from the robot; 0: no limit
-        std::list<ArPoseWithTime*> points;
-    };
-
-    static void clear(Buffer& buffer) {
-        for (ArPoseWithTime* point : buffer.points) delete point;
-        buffer.points.clear();
-    }
-    static void add(Buffer& buffer, double x, double y) {
-        buffer.points.push_front(new ArPoseWithTime(x, y));
-        while (buffer.points.size() > buffer.size) {
-            delete buffer.points.back();
-            buffer.points.pop_back();
-        }
-    }
-    void forget(Buffer& buffer) const {
-        for (auto at = buffer.points.begin(); at != buffer.points.end();) {
-            const bool old =
-                buffer.seconds > 0 && (*at)->getTime().mSecSince() > 1000L * buffer.seconds;
-            const bool far = buffer.distance > 0 && myPose.findDistanceTo(**at) > buffer.distance;
-            if (old || far) {
-                delete *at;
-                at = buffer.points.erase(at);
-            } else {
-                ++at;
-            }
-        }
-    }
-    double nearestPolar(const Buffer& buffer, double start, double end, double* angle) const {
-        double nearest = myMaxRange;
-        for (const ArPoseWithTime* point : buffer.points) {
-            const double bearing = ArMath::subAngle(myPose.findAngleTo(*point), myPose.getTh());
-            const double distance = myPose.findDistanceTo(*point);
-            if (distance >= nearest || !ArMath::angleBetween(bearing, start, end)) continue;
-            nearest = distance;
-            if (angle) *angle = bearing;
-        }
-        return nearest;
-    }
-    double nearestBox(const Buffer& buffer, double x1, double y1, double x2, double y2,
-                      ArPose* reading) const {
-        double nearest = myMaxRange;
-        for (const ArPoseWithTime* point : buffer.points) {
-            const double bearing = ArMath::subAngle(myPose.findAngleTo(*point), myPose.getTh());
-            const double distance = myPose.findDistanceTo(*point);
-            const double x = distance * ArMath::cos(bearing), y = distance * ArMath::sin(bearing);
-            const bool inside = x >= ArUtil::findMin(x1, x2) && x <= ArUtil::findMax(x1, x2) &&
-                                y >= ArUtil::findMin(y1, y2) && y <= ArUtil::findMax(y1, y2);
-            if (!inside || distance >= nearest) continue;
-            nearest = distance;
-            if (reading) *reading = *point;
-        }
-        return nearest;
-    }
+    friend class ArRobot;
+    using Drawing = std::unique_ptr<ArDrawingData, void (*)(ArDrawingData*)>;
+    static void destroy(ArDrawingData* data) { delete data; }
+    static void keep(ArDrawingData*) {}
 
     std::string myName;
     unsigned int myMaxRange;
+    int myCurrentSeconds, myCumulativeSeconds;  // 0: no limit
+    double myCumulativeDistance;                // mm; 0: no limit
+    bool myLocationDependent;
     ArRobot* myRobot = nullptr;
     ArPose myPose;  // of the robot in the last cycle
-    Buffer myCurrent, myCumulative;
+    Drawing myCurrentDrawing{nullptr, keep}, myCumulativeDrawing{nullptr, keep};
 };
 
 /// The ring of sonars: points for 5 s (24 of them) and 15 s (64 within 3 m).

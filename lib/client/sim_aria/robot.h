@@ -3,26 +3,29 @@
 #define SIM_ARIA_ROBOT_H
 
 #include <atomic>
+#include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
+#include <sim_aria/action.h>
+#include <sim_aria/aria.h>
 #include <sim_aria/commands.h>
 #include <sim_aria/connection.h>
-#include <sim_aria/link.h>
 #include <sim_aria/motion.h>
-#include <sim_aria/process.h>
-#include <sim_aria/range_device.h>
+#include <sim_aria/robot_state.h>
+
+class ArLaser;
 
 /// A robot of simrun as ARIA's: mm, degrees, mm/s, degrees/s. Takes the first free robot, of those
 /// in the variable ISPACE_ROBOT ("r1,r2") if set. Its pose is its odometry since the connection.
-/// Commands take effect and getters are updated in cycles of 100 ms; hold the lock around both.
-/// Supports direct motion, not actions.
-class ArRobot {
+/// Commands take effect and getters are updated in cycles of 100 ms: packets, tasks of sensor
+/// interpretation, actions, commands, user tasks. Hold the lock around commands and getters.
+class ArRobot : public sim_aria::RobotState {
   public:
     enum WaitState {
         WAIT_CONNECTED,
@@ -37,12 +40,12 @@ class ArRobot {
                      bool /*doSigHandle*/ = true, bool /*normalInit*/ = true,
                      bool addAriaExitCallback = true)
         : myName(name ? name : "robot") {
-        if (addAriaExitCallback) sim_aria::Process::get().add(this, [this] { end(); });
+        Aria::addRobot(this);
+        if (addAriaExitCallback)
+            sim_aria::Process::get().add(
+                this, [this] { end(); }, kLastAtExit);
     }
-    virtual ~ArRobot() {
-        sim_aria::Process::get().remove(this);
-        end();
-    }
+    virtual ~ArRobot();
     ArRobot(const ArRobot&) = delete;
     ArRobot& operator=(const ArRobot&) = delete;
 
@@ -51,20 +54,42 @@ class ArRobot {
     ArDeviceConnection* getDeviceConnection() const { return myConnection; }
     /// Opens the device if it is closed.
     bool blockingConnect(bool tryHarder = true);
+    /// Lets the next cycle connect. \return false if the cycle does not run
+    bool asyncConnect();
     bool disconnect();
     bool isConnected() const { return myConnected; }
     void setConnectionTimeoutTime(int ms) { myTimeout = ms; }
     int getConnectionTimeoutTime() const { return myTimeout; }
+    void setAsyncConnectSyncPacketRetries(int) {}
+    /// Functions to call after a connection, after its failure, its end, its loss, and after run().
+    void addConnectCB(ArFunctor* f, ArListPos::Pos at = ArListPos::LAST) { add(Connect, f, at); }
+    void addFailedConnectCB(ArFunctor* f, ArListPos::Pos at = ArListPos::LAST) {
+        add(FailedConnect, f, at);
+    }
+    void addDisconnectNormallyCB(ArFunctor* f, ArListPos::Pos at = ArListPos::LAST) {
+        add(Disconnect, f, at);
+    }
+    void addDisconnectOnErrorCB(ArFunctor* f, ArListPos::Pos at = ArListPos::LAST) {
+        add(Loss, f, at);
+    }
+    void addRunExitCB(ArFunctor* f, ArListPos::Pos at = ArListPos::LAST) { add(RunExit, f, at); }
+    void remConnectCB(ArFunctor* f) { remove(Connect, f); }
+    void remFailedConnectCB(ArFunctor* f) { remove(FailedConnect, f); }
+    void remDisconnectNormallyCB(ArFunctor* f) { remove(Disconnect, f); }
+    void remDisconnectOnErrorCB(ArFunctor* f) { remove(Loss, f); }
+    void remRunExitCB(ArFunctor* f) { remove(RunExit, f); }
 
     // The cycle.
     void runAsync(bool stopRunIfNotConnected, bool runNonThreadedPacketReader = false);
     void run(bool stopRunIfNotConnected, bool runNonThreadedPacketReader = false);
+    /// One cycle, in a loop of the program.
+    void loopOnce() { cycle(); }
     void stopRunning(bool doDisconnect = true);
     bool isRunning() const { return myRunning; }
     WaitState waitForRunExit(unsigned int msecs = 0);
+    WaitState waitForConnect(unsigned int msecs = 0);
     unsigned int getCycleTime() const { return myCycleTime; }
     void setCycleTime(unsigned int ms) { myCycleTime = ms; }
-    unsigned int getCounter() const { return myCounter; }
     int lock() {
         myMutex.lock();
         return 0;
@@ -74,8 +99,22 @@ class ArRobot {
         myMutex.unlock();
         return 0;
     }
+    /// Tasks of each cycle, those of higher positions first: before and after the actions.
+    bool addSensorInterpTask(const char* name, int position, ArFunctor* functor);
     bool addUserTask(const char* name, int position, ArFunctor* functor);
+    void remSensorInterpTask(ArFunctor* functor);
+    void remSensorInterpTask(const char* name);
     void remUserTask(ArFunctor* functor);
+    void remUserTask(const char* name);
+    /// Functions that read the robot's packets, until one returns true; each cycle has a status
+    /// packet.
+    void addPacketHandler(ArRetFunctor1<bool, ArRobotPacket*>* functor,
+                          ArListPos::Pos position = ArListPos::LAST);
+    void remPacketHandler(ArRetFunctor1<bool, ArRobotPacket*>* functor);
+    /// Reads the keyboard in each cycle; Escape ends the program.
+    void attachKeyHandler(ArKeyHandler* handler, bool exitOnEscape = true,
+                          bool useExitNotShutdown = true);
+    ArKeyHandler* getKeyHandler() const { return myKeys; }
 
     // Commands of the firmware; true: connected.
     bool com(unsigned char command) { return comInt(command, 0); }
@@ -83,28 +122,54 @@ class ArRobot {
     bool com2Bytes(unsigned char command, char high, char low);
     bool comStr(unsigned char, const char*) { return myConnected; }
     bool comStrN(unsigned char, const char*, int) { return myConnected; }
+    bool comDataN(unsigned char, const char*, int) { return myConnected; }
     void enableMotors() { comInt(ArCommands::ENABLE, 1); }
     void disableMotors() { comInt(ArCommands::ENABLE, 0); }
     void enableSonar() { comInt(ArCommands::SONAR, 1); }
     void disableSonar() { comInt(ArCommands::SONAR, 0); }
+    void requestEncoderPackets() {}
+    void stopEncoderPackets() {}
 
-    // Direct motion: stays in effect until changed.
-    void setVel(double mmPerSec) { myMotion.setVel(mmPerSec); }
-    void setRotVel(double degPerSec) { myMotion.setRotVel(degPerSec); }
+    // Direct motion: stays in effect until changed, and suspends actions until
+    // clearDirectMotion().
+    void setVel(double mmPerSec) {
+        takeOver();
+        myMotion.setVel(mmPerSec);
+    }
+    void setRotVel(double degPerSec) {
+        takeOver();
+        myMotion.setRotVel(degPerSec);
+    }
     void setVel2(double left, double right) {
         setVel((left + right) / 2);
         setRotVel(ArMath::radToDeg((right - left) / 2 * kRadiansPerMm));
     }
-    void move(double mm) { myMotion.move(mm, myPose); }
-    void setHeading(double deg) { myMotion.setHeading(deg); }
+    void move(double mm) {
+        takeOver();
+        myMotion.move(mm, myPose);
+    }
+    void setHeading(double deg) {
+        takeOver();
+        myMotion.setHeading(deg);
+    }
     void setDeltaHeading(double deg) { setHeading(ArMath::addAngle(getTh(), deg)); }
     void stop();
-    void clearDirectMotion() { myMotion.clear(); }
-    void setDirectMotionPrecedenceTime(int) {}
+    void clearDirectMotion() {
+        myMotion.clear();
+        myDirect = false;
+    }
+    bool isDirectMotion() const { return myDirect; }
+    /// Lets actions continue this long after the last direct motion; 0: never.
+    void setDirectMotionPrecedenceTime(int ms) { myPrecedence = ms; }
+    unsigned int getDirectMotionPrecedenceTime() const {
+        return static_cast<unsigned int>(myPrecedence);
+    }
     bool isMoveDone(double delta = 0) const { return myMotion.isMoveDone(myPose, delta); }
     bool isHeadingDone(double delta = 0) const { return myMotion.isHeadingDone(myPose, delta); }
     bool setTransVelMax(double value) { return set(myMotion.max_vel, value); }
     bool setRotVelMax(double value) { return set(myMotion.max_rot_vel, value); }
+    bool setAbsoluteMaxTransVel(double value) { return setTransVelMax(value); }
+    bool setAbsoluteMaxRotVel(double value) { return setRotVelMax(value); }
     /// Used for move() and headings; speeds change as the simulated robot's motors do.
     bool setTransAccel(double value) { return set(myMotion.accel, value); }
     bool setTransDecel(double value) { return set(myMotion.accel, value); }
@@ -112,78 +177,66 @@ class ArRobot {
     bool setRotDecel(double value) { return set(myMotion.rot_accel, value); }
     double getTransVelMax() const { return myMotion.max_vel; }
     double getRotVelMax() const { return myMotion.max_rot_vel; }
+    double getAbsoluteMaxTransVel() const { return myMotion.max_vel; }
+    double getAbsoluteMaxRotVel() const { return myMotion.max_rot_vel; }
     double getTransAccel() const { return myMotion.accel; }
     double getTransDecel() const { return myMotion.accel; }
     double getRotAccel() const { return myMotion.rot_accel; }
     double getRotDecel() const { return myMotion.rot_accel; }
-
-    // State.
-    double getVel() const { return myPacket.vel; }
-    double getRotVel() const { return myPacket.rot_vel; }
-    double getLeftVel() const { return myPacket.vel - wheelVel(); }
-    double getRightVel() const { return myPacket.vel + wheelVel(); }
-    ArPose getPose() const { return myPose; }
-    double getX() const { return myPose.getX(); }
-    double getY() const { return myPose.getY(); }
-    double getTh() const { return myPose.getTh(); }
     /// Sets the pose that the program sees.
     void moveTo(ArPose pose);
-    /// A simulated robot stalls as a whole.
-    bool isLeftMotorStalled() const { return myPacket.stalled; }
-    bool isRightMotorStalled() const { return myPacket.stalled; }
-    /// Bits 0 and 8: the motors; bumpers clockwise, front ones from bit 9 on, rear ones from bit 1
-    /// on.
-    int getStallValue() const {
-        return myPacket.bumpers | (myPacket.stalled ? ArUtil::BIT0 | ArUtil::BIT8 : 0);
-    }
-    bool hasFrontBumpers() const { return myFrontBumpers > 0; }
-    bool hasRearBumpers() const { return myRearBumpers > 0; }
-    unsigned int getNumFrontBumpers() const { return static_cast<unsigned int>(myFrontBumpers); }
-    unsigned int getNumRearBumpers() const { return static_cast<unsigned int>(myRearBumpers); }
-    int getFlags() const { return myMotorsEnabled ? ArUtil::BIT0 : 0; }
-    bool areMotorsEnabled() const { return myMotorsEnabled; }
-    /// Voltage of a full battery.
-    double getBatteryVoltage() const { return 13; }
-    double getRealBatteryVoltage() const { return 13; }
 
-    // Sonars and other range devices.
+    // Actions: move the robot while it has no direct motion.
+    bool addAction(ArAction* action, int priority);
+    bool remAction(ArAction* action);
+    bool remAction(const char* name);
+    ArAction* findAction(const char* name) const;
+    ArResolver::ActionMap* getActionMap() { return &myActions; }
+    void deactivateActions();
+    void logActions(bool logDeactivated = false) const;
+    ArResolver* getResolver() { return myResolver; }
+    void setResolver(ArResolver* resolver) { myResolver = resolver; }
+
+    // Sonars, lasers and other range devices.
     void addRangeDevice(ArRangeDevice* device);
     bool remRangeDevice(ArRangeDevice* device);
     bool remRangeDevice(const char* name);
-    const std::list<ArRangeDevice*>* getRangeDeviceList() const { return &myDevices; }
-    int getNumSonar() const { return static_cast<int>(mySonars.size()); }
-    /// mm; -1 for an unknown number.
-    int getSonarRange(int number) const {
-        const ArSensorReading* const sonar = getSonarReading(number);
-        return sonar ? sonar->getRange() : -1;
-    }
-    bool isSonarNew(int number) const {
-        const ArSensorReading* const sonar = getSonarReading(number);
-        return sonar && sonar->isNew(myCounter);
-    }
-    ArSensorReading* getSonarReading(int number) const {
-        if (number < 0 || number >= getNumSonar()) return nullptr;
-        return const_cast<ArSensorReading*>(&mySonars[static_cast<std::size_t>(number)]);
-    }
-    /// Minimum range of the sonars that face these directions, mm; -1 without such sonars.
-    int getClosestSonarRange(double startDeg, double endDeg) const;
+    ArRangeDevice* findRangeDevice(const char* name) const;
+    bool hasRangeDevice(ArRangeDevice* device) const;
+    std::list<ArRangeDevice*>* getRangeDeviceList() { return &myDevices; }
+    /// Nearest current reading of all range devices, see ArRangeDevice.
+    double checkRangeDevicesCurrentPolar(double startAngle, double endAngle,
+                                         double* angle = nullptr,
+                                         const ArRangeDevice** device = nullptr) const;
+    double checkRangeDevicesCumulativePolar(double startAngle, double endAngle,
+                                            double* angle = nullptr,
+                                            const ArRangeDevice** device = nullptr) const;
+    double checkRangeDevicesCurrentBox(double x1, double y1, double x2, double y2,
+                                       ArPose* reading = nullptr,
+                                       const ArRangeDevice** device = nullptr) const;
+    double checkRangeDevicesCumulativeBox(double x1, double y1, double x2, double y2,
+                                          ArPose* reading = nullptr,
+                                          const ArRangeDevice** device = nullptr) const;
+    /// Lasers by their numbers, which begin with 1.
+    bool addLaser(ArLaser* laser, int number, bool addAsRangeDevice = true);
+    bool remLaser(int number);
+    ArLaser* findLaser(int number);
+    const ArLaser* findLaser(int number) const;
+    std::map<int, ArLaser*>* getLaserMap() { return &myLasers; }
+    int getNumLasers() const { return static_cast<int>(myLasers.size()); }
+    bool hasLaser(int number) const { return findLaser(number) != nullptr; }
 
-    // Identity and dimensions.
     const char* getName() const { return myName.c_str(); }
     void setName(const char* name) { myName = name; }
-    const char* getRobotName() const { return myRobotName.c_str(); }
-    const char* getRobotType() const { return "Pioneer"; }
-    const char* getRobotSubType() const { return mySubType.c_str(); }
-    double getRobotRadius() const { return myRadius; }
-    /// Diameter of its circle.
-    double getRobotLength() const { return 2 * myRadius; }
-    double getRobotWidth() const { return 2 * myRadius; }
+
+    /// The connection to simrun, null if not connected. Hold the lock.
+    sim_aria::Link* link() { return myLink.get(); }
 
   private:
-    /// Rotation by wheels that turn by a mm each, in opposite directions: of a Pioneer 2 and 3 DX.
-    static constexpr double kRadiansPerMm = 0.0056;
+    static constexpr int kLastAtExit = -100;
+    enum Occasion { Connect, FailedConnect, Disconnect, Loss, RunExit, kOccasions };
+    using Tasks = sim_aria::Ordered<ArFunctor*>;
 
-    double wheelVel() const { return ArMath::degToRad(myPacket.rot_vel) / kRadiansPerMm; }
     static bool set(double& where, double value) {
         if (!(value > 0)) return false;
         where = value;
@@ -195,38 +248,61 @@ class ArRobot {
                                                           : model;
     }
 
+    void add(Occasion occasion, ArFunctor* functor, ArListPos::Pos position);
+    void remove(Occasion occasion, ArFunctor* functor);
+    void call(Occasion occasion);
+    bool connect();
+    void adoptFigures();
     bool cycle();
+    void think();
     void read();
+    void handlePackets();
+    void resolveActions();
     void send();
     void lose();
     void loop(bool stop_if_not_connected);
     void runBySteps(bool stop_if_not_connected);
+    void ended();
     void end();
+    /// Direct motion begins.
+    void takeOver() {
+        myDirect = true;
+        myDirectSince.setToNow();
+        myMotion.unlimited();
+    }
+    template <class Nearest>
+    double nearest(const Nearest& of_device, const ArRangeDevice** device) const;
 
-    std::string myName, myRobotName, mySubType;
+    std::string myName;
     ArDeviceConnection* myConnection = nullptr;
     std::unique_ptr<sim_aria::Link> myLink;
     std::recursive_mutex myMutex;
     std::thread myThread;
-    std::atomic<bool> myRunning{false}, myConnected{false};
-    std::atomic<unsigned int> myCounter{0};
+    std::atomic<bool> myRunning{false}, myConnected{false}, myConnectSoon{false}, myInThread{false};
     unsigned int myCycleTime = 100;
     int myTimeout = 8000;
-    double myRadius = 250;
-    int myFrontBumpers = 0, myRearBumpers = 0;
 
     sim_aria::Motion myMotion;
-    sim_aria::Packet myPacket;
-    ArPose myPose, myMoved,
-        myMovedFrom;  // a packet's pose at myMovedFrom is reported as myMoved
-    bool myMotorsEnabled = false, mySonarEnabled = true;
+    ArPose myMoved, myMovedFrom;  // a packet's pose at myMovedFrom is reported as myMoved
     double mySentVel = 0, mySentRotVel = 0;
-    ArTime mySent;
-    std::vector<ArSensorReading> mySonars;
+    ArTime mySent, myDirectSince;
+    bool myDirect = false;
+    int myPrecedence = 0;
+
+    Tasks mySensorTasks, myUserTasks;
+    std::list<ArFunctor*> myCallbacks[kOccasions];
+    std::list<ArRetFunctor1<bool, ArRobotPacket*>*> myHandlers;
+    ArKeyHandler* myKeys = nullptr;
+    ArPriorityResolver myOwnResolver;
+    ArResolver* myResolver = &myOwnResolver;
+    ArResolver::ActionMap myActions;
     std::list<ArRangeDevice*> myDevices;
-    std::list<ArFunctor*> myTasks;
+    std::map<int, ArLaser*> myLasers;
 };
 
 #include <sim_aria/robot_cycle.h>
+#include <sim_aria/robot_parts.h>
+
+#include <sim_aria/laser_scan.h>
 
 #endif  // SIM_ARIA_ROBOT_H

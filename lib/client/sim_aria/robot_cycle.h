@@ -3,30 +3,33 @@
 #ifndef SIM_ARIA_ROBOT_CYCLE_H
 #define SIM_ARIA_ROBOT_CYCLE_H
 
+#include <sim_aria/keys.h>
 #include <sim_aria/robot.h>
 
 inline bool ArRobot::blockingConnect(bool /*tryHarder*/) {
+    const bool connected = connect();
+    call(connected ? Connect : FailedConnect);
+    return connected;
+}
+
+inline bool ArRobot::asyncConnect() {
+    if (!myRunning) return false;
+    myConnectSoon = true;
+    return true;
+}
+
+inline bool ArRobot::connect() {
     if (!myConnection || !myConnection->openSimple()) return false;
     const std::lock_guard<std::recursive_mutex> hold(myMutex);
     try {
         myLink.reset(new sim_aria::Link(myConnection->simulator(), myTimeout / 1000.0));
-        myRobotName = myLink->id();
-        mySubType = subTypeOf(myLink->model());
-        myRadius = myLink->radius();
-        myFrontBumpers = myLink->frontBumpers();
-        myRearBumpers = myLink->rearBumpers();
-        myMotion = sim_aria::Motion();
-        myMotion.max_vel = myLink->maxVel();
-        myMotion.max_rot_vel = myLink->maxRotVel();
-        myMotion.accel = myLink->accel();
-        myMotion.rot_accel = myLink->rotAccel();
+        adoptFigures();
+        resetState();
         myMotorsEnabled = false;
         mySonarEnabled = true;
+        myDirect = false;
         mySentVel = mySentRotVel = 0;
         myMoved = myMovedFrom = ArPose();
-        mySonars.clear();
-        for (const ArPose& at : myLink->sonars())
-            mySonars.push_back(ArSensorReading(at.getX(), at.getY(), at.getTh()));
         read();
     } catch (const ispace::client::Error& error) {
         ArLog::log(ArLog::Terse, "Could not connect to the robot: %s", error.what());
@@ -37,16 +40,42 @@ inline bool ArRobot::blockingConnect(bool /*tryHarder*/) {
     return true;
 }
 
+inline void ArRobot::adoptFigures() {
+    myConfig.myName = myLink->id();
+    myConfig.mySubType = myParams.mySubClass = subTypeOf(myLink->model());
+    myConfig.myVel = myLink->maxVel();
+    myConfig.myRotVel = myLink->maxRotVel();
+    myConfig.myAccel = myLink->accel();
+    myConfig.myRotAccel = myLink->rotAccel();
+    myParams.myRadius = myLink->radius();
+    myParams.myFrontBumpers = myLink->frontBumpers();
+    myParams.myRearBumpers = myLink->rearBumpers();
+    mySonars.clear();
+    for (const ArPose& at : myLink->sonars())
+        mySonars.push_back(ArSensorReading(at.getX(), at.getY(), at.getTh()));
+    myParams.myNumSonar = getNumSonar();
+    myParams.myLasers.clear();
+    for (const std::string& id : myLink->lasers()) myParams.myLasers.push_back(myLink->mount(id));
+    myMotion = sim_aria::Motion();
+    myMotion.max_vel = myLink->maxVel();
+    myMotion.max_rot_vel = myLink->maxRotVel();
+    myMotion.accel = myLink->accel();
+    myMotion.rot_accel = myLink->rotAccel();
+}
+
 inline bool ArRobot::disconnect() {
-    const std::lock_guard<std::recursive_mutex> hold(myMutex);
-    if (!myLink) return true;
-    try {
-        myLink->close();
-    } catch (const ispace::client::Error&) {
-        // Already gone.
+    {
+        const std::lock_guard<std::recursive_mutex> hold(myMutex);
+        if (!myLink) return true;
+        try {
+            myLink->close();
+        } catch (const ispace::client::Error&) {
+            // Already gone.
+        }
+        lose();
+        if (myConnection) myConnection->close();
     }
-    lose();
-    if (myConnection) myConnection->close();
+    call(Disconnect);
     return true;
 }
 
@@ -58,18 +87,19 @@ inline void ArRobot::lose() {
 }
 
 inline void ArRobot::read() {
-    myPacket = myLink->read(mySonarEnabled);
+    const sim_aria::Packet packet = myLink->read(mySonarEnabled);
     const double turn = ArMath::subAngle(myMoved.getTh(), myMovedFrom.getTh());
-    const double dx = myPacket.pose.getX() - myMovedFrom.getX();
-    const double dy = myPacket.pose.getY() - myMovedFrom.getY();
+    const double dx = packet.pose.getX() - myMovedFrom.getX();
+    const double dy = packet.pose.getY() - myMovedFrom.getY();
     const double c = ArMath::cos(turn), s = ArMath::sin(turn);
-    myPose.setPose(myMoved.getX() + c * dx - s * dy, myMoved.getY() + s * dx + c * dy,
-                   myPacket.pose.getTh() + turn);
-    for (std::size_t i = 0; i < mySonars.size() && i < myPacket.sonar.size(); ++i)
-        mySonars[i].newData(myPacket.sonar[i], myPose, myCounter);
+    adopt(packet, ArPose(myMoved.getX() + c * dx - s * dy, myMoved.getY() + s * dx + c * dy,
+                         packet.pose.getTh() + turn));
+    for (std::size_t i = 0; i < mySonars.size() && i < packet.sonar.size(); ++i)
+        mySonars[i].newData(packet.sonar[i], myPose, myPacket.pose, getToGlobalTransform(),
+                            myCounter, ArTime());
     for (ArRangeDevice* device : myDevices) {
         device->lockDevice();
-        device->processReadings(myPacket.sonar.empty() ? std::vector<ArSensorReading>() : mySonars,
+        device->processReadings(packet.sonar.empty() ? std::vector<ArSensorReading>() : mySonars,
                                 myPose);
         device->unlockDevice();
     }
@@ -93,26 +123,67 @@ inline void ArRobot::send() {
 
 /// \return false if the connection was lost
 inline bool ArRobot::cycle() {
+    if (!myConnected && myConnectSoon.exchange(false)) blockingConnect();
     // Do not wait for ever if the program stops the robot while it holds the lock, or sleeps.
     const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     while (!myMutex.try_lock()) {
         if (!myRunning || std::chrono::steady_clock::now() > patience) return true;
         std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
-    const std::lock_guard<std::recursive_mutex> hold(myMutex, std::adopt_lock);
-    if (!myLink) return myConnected;
-    try {
-        ++myCounter;
-        read();
-        for (ArFunctor* task : std::list<ArFunctor*>(myTasks)) task->invoke();
-        if (myLink) send();
-    } catch (const ispace::client::Error& error) {
-        ArLog::log(ArLog::Terse, "Lost the robot: %s", error.what());
-        lose();
-        if (myConnection) myConnection->setStatus(ArDeviceConnection::STATUS_CLOSED_ERROR);
-        return false;
+    {
+        const std::lock_guard<std::recursive_mutex> hold(myMutex, std::adopt_lock);
+        if (!myLink) return myConnected;
+        try {
+            ++myCounter;
+            read();
+            think();
+            return true;
+        } catch (const ispace::client::Error& error) {
+            ArLog::log(ArLog::Terse, "Lost the robot: %s", error.what());
+            lose();
+            if (myConnection) myConnection->setStatus(ArDeviceConnection::STATUS_CLOSED_ERROR);
+        }
     }
-    return true;
+    call(Loss);
+    return false;
+}
+
+/// The tasks of a cycle; each may end the connection.
+inline void ArRobot::think() {
+    handlePackets();
+    for (const auto& task : std::list<Tasks::Item>(mySensorTasks.items())) task.call->invoke();
+    if (myLink) resolveActions();
+    if (myLink) send();
+    if (myKeys) myKeys->checkKeys();
+    for (const auto& task : std::list<Tasks::Item>(myUserTasks.items())) task.call->invoke();
+}
+
+inline void ArRobot::handlePackets() {
+    if (myHandlers.empty()) return;
+    ArRobotPacket packet = statusPacket();
+    for (auto* handler : std::list<ArRetFunctor1<bool, ArRobotPacket*>*>(myHandlers)) {
+        packet.resetRead();
+        if (handler->invokeR(&packet)) break;
+    }
+}
+
+/// Lets the actions move the robot, unless the program does.
+inline void ArRobot::resolveActions() {
+    if (myDirect && myPrecedence > 0 && myDirectSince.mSecSince() >= myPrecedence)
+        clearDirectMotion();
+    if (myDirect || myActions.empty()) return;
+    const ArActionDesired* const wish = myResolver->resolve(&myActions, this);
+    if (!wish) return;
+    constexpr double kMin = ArActionDesired::MIN_STRENGTH, kNoLimit = 1e9;
+    myMotion.limit(
+        wish->getMaxVelStrength() >= kMin ? std::max(0.0, wish->getMaxVel()) : kNoLimit,
+        wish->getMaxNegVelStrength() >= kMin ? -std::fabs(wish->getMaxNegVel()) : -kNoLimit,
+        wish->getMaxRotVelStrength() >= kMin ? std::fabs(wish->getMaxRotVel()) : kNoLimit);
+    if (wish->getVelStrength() >= kMin) myMotion.setVel(wish->getVel());
+    if (wish->getDeltaHeadingStrength() >= kMin)
+        myMotion.setHeading(ArMath::addAngle(getTh(), wish->getDeltaHeading()));
+    else if (wish->getRotVelStrength() >= kMin)
+        myMotion.setRotVel(wish->getRotVel());
 }
 
 inline void ArRobot::loop(bool stop_if_not_connected) {
@@ -130,7 +201,7 @@ inline void ArRobot::loop(bool stop_if_not_connected) {
         }
     }
     if (myRunning && clock.bySteps()) return runBySteps(stop_if_not_connected);
-    myRunning = false;
+    ended();
 }
 
 /// The world advances while the program sleeps, and so does the robot.
@@ -139,9 +210,13 @@ inline void ArRobot::runBySteps(bool stop_if_not_connected) {
         if (!myRunning) return;
         cycle();
         if (!stop_if_not_connected || myConnected) return;
-        myRunning = false;
         sim_aria::Clock::get().remove(this);
+        ended();
     });
+}
+
+inline void ArRobot::ended() {
+    if (myRunning.exchange(false)) call(RunExit);
 }
 
 inline void ArRobot::runAsync(bool stopRunIfNotConnected, bool) {
@@ -149,7 +224,11 @@ inline void ArRobot::runAsync(bool stopRunIfNotConnected, bool) {
     if (myThread.joinable()) myThread.join();
     myRunning = true;
     if (sim_aria::Clock::get().bySteps()) return runBySteps(stopRunIfNotConnected);
-    myThread = std::thread([this, stopRunIfNotConnected] { loop(stopRunIfNotConnected); });
+    myInThread = true;
+    myThread = std::thread([this, stopRunIfNotConnected] {
+        loop(stopRunIfNotConnected);
+        myInThread = false;
+    });
 }
 
 inline void ArRobot::run(bool stopRunIfNotConnected, bool) {
@@ -164,16 +243,32 @@ inline void ArRobot::run(bool stopRunIfNotConnected, bool) {
 }
 
 inline void ArRobot::stopRunning(bool doDisconnect) {
-    myRunning = false;
     sim_aria::Clock::get().remove(this);
+    ended();
     if (myThread.joinable() && myThread.get_id() != std::this_thread::get_id()) myThread.join();
     if (doDisconnect) disconnect();
 }
 
+/// At the end of the process or of the object: a thread that waits for this end cannot be joined.
 inline void ArRobot::end() {
-    stopRunning(true);
-    // A robot destroyed within its own cycle cannot be joined.
+    sim_aria::Clock::get().remove(this);
+    ended();
+    const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+    const auto wait = [&] {
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+        return std::chrono::steady_clock::now() < patience;
+    };
+    const bool self = myThread.get_id() == std::this_thread::get_id();
+    while (!self && myInThread && wait()) {
+    }
+    if (myThread.joinable() && !self && !myInThread) myThread.join();
     if (myThread.joinable()) myThread.detach();
+    bool locked = false;
+    while (!(locked = myMutex.try_lock()) && wait()) {
+    }
+    if (!locked) return;
+    const std::lock_guard<std::recursive_mutex> hold(myMutex, std::adopt_lock);
+    disconnect();
 }
 
 inline ArRobot::WaitState ArRobot::waitForRunExit(unsigned int msecs) {
@@ -185,15 +280,14 @@ inline ArRobot::WaitState ArRobot::waitForRunExit(unsigned int msecs) {
     return WAIT_RUN_EXIT;
 }
 
-inline bool ArRobot::addUserTask(const char*, int, ArFunctor* functor) {
-    const std::lock_guard<std::recursive_mutex> hold(myMutex);
-    myTasks.push_back(functor);
-    return true;
-}
-
-inline void ArRobot::remUserTask(ArFunctor* functor) {
-    const std::lock_guard<std::recursive_mutex> hold(myMutex);
-    myTasks.remove(functor);
+inline ArRobot::WaitState ArRobot::waitForConnect(unsigned int msecs) {
+    const ArTime begun;
+    while (!myConnected) {
+        if (!myRunning) return WAIT_RUN_EXIT;
+        if (msecs > 0 && begun.mSecSince() >= static_cast<long>(msecs)) return WAIT_TIMEDOUT;
+        ArUtil::sleep(10);
+    }
+    return WAIT_CONNECTED;
 }
 
 inline bool ArRobot::comInt(unsigned char command, short argument) {
@@ -260,35 +354,6 @@ inline void ArRobot::moveTo(ArPose pose) {
     myMoved = pose;
     myMovedFrom = myPacket.pose;
     myPose = pose;
-}
-
-inline void ArRobot::addRangeDevice(ArRangeDevice* device) {
-    const std::lock_guard<std::recursive_mutex> hold(myMutex);
-    device->setRobot(this);
-    myDevices.push_back(device);
-}
-
-inline bool ArRobot::remRangeDevice(ArRangeDevice* device) {
-    const std::lock_guard<std::recursive_mutex> hold(myMutex);
-    const std::size_t before = myDevices.size();
-    myDevices.remove(device);
-    return myDevices.size() < before;
-}
-
-inline bool ArRobot::remRangeDevice(const char* name) {
-    const std::lock_guard<std::recursive_mutex> hold(myMutex);
-    for (ArRangeDevice* device : myDevices)
-        if (std::string(device->getName()) == name) return remRangeDevice(device);
-    return false;
-}
-
-inline int ArRobot::getClosestSonarRange(double startDeg, double endDeg) const {
-    int nearest = -1;
-    for (const ArSensorReading& sonar : mySonars) {
-        if (!ArMath::angleBetween(sonar.getSensorTh(), startDeg, endDeg)) continue;
-        if (nearest < 0 || sonar.getRange() < nearest) nearest = sonar.getRange();
-    }
-    return nearest;
 }
 
 #endif  // SIM_ARIA_ROBOT_CYCLE_H

@@ -4,11 +4,16 @@
 
 #include <strings.h>
 
+#include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstdarg>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <mutex>
 #include <string>
 
 #include <sim_aria/clock.h>
@@ -69,6 +74,24 @@ class ArUtil {
     static int strcasecmp(const std::string& a, const std::string& b) {
         return ::strcasecmp(a.c_str(), b.c_str());
     }
+    static bool strcasequal(const std::string& a, const std::string& b) {
+        return strcasecmp(a, b) == 0;
+    }
+    static bool isStrEmpty(const char* text) { return !text || *text == 0; }
+    static bool isOnlyNumeric(const char* text) { return isAll(text, std::isdigit); }
+    static bool isOnlyAlphaNumeric(const char* text) { return isAll(text, std::isalnum); }
+    static bool findFile(const char* name) { return static_cast<bool>(std::ifstream(name)); }
+    static double atof(const char* text) { return std::atof(text); }
+    static int atoi(const char* text) { return std::atoi(text); }
+    static const char* convertBool(int value) { return value ? "true" : "false"; }
+
+  private:
+    static bool isAll(const char* text, int (*test)(int)) {
+        if (isStrEmpty(text)) return false;
+        for (; *text != 0; ++text)
+            if (!test(static_cast<unsigned char>(*text))) return false;
+        return true;
+    }
 };
 
 /// A time stamp in milliseconds.
@@ -86,6 +109,16 @@ class ArTime {
         myTime += static_cast<double>(ms);
         return true;
     }
+    bool addSec(long s) { return addMSec(1000 * s); }
+    unsigned long getSec() const { return static_cast<unsigned long>(myTime / 1000); }
+    unsigned long getMSec() const { return static_cast<unsigned long>(std::fmod(myTime, 1000)); }
+    void setSec(unsigned long s) {
+        myTime = 1000 * static_cast<double>(s) + std::fmod(myTime, 1000);
+    }
+    void setMSec(unsigned long ms) {
+        myTime = 1000 * static_cast<double>(getSec()) + static_cast<double>(ms);
+    }
+    bool isAt(ArTime other) const { return myTime == other.myTime; }
     bool isBefore(ArTime other) const { return myTime < other.myTime; }
     bool isAfter(ArTime other) const { return myTime > other.myTime; }
 
@@ -107,37 +140,66 @@ class ArPoseWithTime : public ArPose {
     ArTime myTime;
 };
 
-/// Writes messages to standard output.
+/// Writes messages, by default to standard output.
 class ArLog {
   public:
     enum LogLevel { Terse, Normal, Verbose };
     enum LogType { StdOut, StdErr, File, Colbert, None };
 
-    static bool init(LogType type, LogLevel level, const char* = "", bool = false, bool = false,
-                     bool = false) {
-        settings().type = type;
-        settings().level = level;
-        return true;
+    /// \return false if the file cannot be opened
+    static bool init(LogType type, LogLevel level, const char* fileName = "", bool logTime = false,
+                     bool /*alsoPrint*/ = false, bool /*printThisCall*/ = true) {
+        Settings& now = settings();
+        const std::lock_guard<std::mutex> lock(now.mutex);
+        now.type = type;
+        now.level = level;
+        now.times = logTime;
+        if (now.file) std::fclose(now.file);
+        now.file = type == File ? std::fopen(fileName, "w") : nullptr;
+        if (type == File && !now.file) now.type = StdOut;
+        return type != File || now.file;
     }
+    static void close() { init(StdOut, Normal); }
+    static void setLogLevel(LogLevel level) { settings().level = level; }
     static void log(LogLevel level, const char* text, ...) __attribute__((format(printf, 2, 3))) {
-        if (level > settings().level || settings().type == None) return;
-        std::FILE* const out = settings().type == StdErr ? stderr : stdout;
         va_list values;
         va_start(values, text);
-        std::vfprintf(out, text, values);
+        write(level, text, values, "");
         va_end(values);
-        std::fputc('\n', out);
-        std::fflush(out);
     }
+    /// The same with the message of errno.
+    static void logErrorFromOS(LogLevel level, const char* text, ...)
+        __attribute__((format(printf, 2, 3))) {
+        const std::string error = std::string(": ") + std::strerror(errno);
+        va_list values;
+        va_start(values, text);
+        write(level, text, values, error.c_str());
+        va_end(values);
+    }
+    static void logPlain(LogLevel level, const char* text) { log(level, "%s", text); }
 
   private:
     struct Settings {
+        std::mutex mutex;
         LogType type = StdOut;
         LogLevel level = Normal;
+        bool times = false;
+        std::FILE* file = nullptr;
     };
     static Settings& settings() {
-        static Settings settings;
-        return settings;
+        // Never destroyed: threads may still write while the process ends.
+        static Settings* const settings = new Settings;
+        return *settings;
+    }
+    static void write(LogLevel level, const char* text, va_list values, const char* end) {
+        Settings& now = settings();
+        const std::lock_guard<std::mutex> lock(now.mutex);
+        if (level > now.level || now.type == None) return;
+        std::FILE* const out = now.file ? now.file : now.type == StdErr ? stderr : stdout;
+        if (now.times) std::fprintf(out, "%.3f ", sim_aria::Clock::get().now() / 1000);
+        std::vfprintf(out, text, values);
+        std::fprintf(out, "%s\n", end);
+        std::fflush(out);
     }
 };
 

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef SIM_ARIA_LASER_H
+#define SIM_ARIA_LASER_H
+
+#include <list>
+#include <string>
+#include <vector>
+
+#include <ispace_client/reading.h>
+#include <sim_aria/functor_kinds.h>
+#include <sim_aria/range_device.h>
+#include <sim_aria/typedefs.h>
+
+/// A laser on a robot of simrun: its current buffer holds the points of the newest scan.
+class ArLaser : public ArRangeDevice {
+  public:
+    /// \param id the laser in simrun
+    ArLaser(int number, const std::string& id)
+        : ArRangeDevice(0, 0, ("sim_lms_" + std::to_string(number)).c_str(), 0),
+          myNumber(number),
+          myId(id),
+          myTask(this, &ArLaser::update) {}
+    ~ArLaser() override { disconnect(); }
+
+    int getLaserNumber() const { return myNumber; }
+    const char* getSimId() const { return myId.c_str(); }
+    virtual bool isConnected() { return myConnected; }
+    bool isTryingToConnect() const { return false; }
+    /// Begins to read scans in the cycles of the robot.
+    virtual bool blockingConnect();
+    virtual bool asyncConnect() { return blockingConnect(); }
+    virtual bool disconnect();
+
+    /// Bearings of the first and last beam, degrees.
+    double getStartDegrees() const { return myStart; }
+    double getEndDegrees() const { return myEnd; }
+    double getDegrees() const { return myEnd - myStart; }
+    double getIncrement() const { return myStep; }
+    double getIncrementDouble() const { return myStep; }
+    bool isFlipped() const { return false; }
+    ArPose getSensorPosition() const { return mySensor; }
+    bool hasSensorPosition() const { return true; }
+    double getAbsoluteMaxRange() const { return getMaxRange(); }
+    /// Scans read in total.
+    int getReadingCount() const { return myCount; }
+
+    /// One reading for each beam, clockwise if the laser turns so; beams without a return have the
+    /// maximum range and are to ignore.
+    const std::list<ArSensorReading*>* getRawReadings() const override { return &myPointers; }
+    const std::list<ArSensorReading*>* getAdjustedRawReadings() const { return &myPointers; }
+    std::vector<ArSensorReading> getRawReadingsAsVector() const { return myReadings; }
+
+    /// Functions to call after each new scan, in the robot's cycle.
+    void addReadingCB(ArFunctor* functor, ArListPos::Pos position = ArListPos::LAST) {
+        myCallbacks.insert(position == ArListPos::FIRST ? myCallbacks.begin() : myCallbacks.end(),
+                           functor);
+    }
+    void remReadingCB(ArFunctor* functor) { myCallbacks.remove(functor); }
+
+  private:
+    friend class ArRobot;
+    void update();
+    void adopt(const ispace::client::Scan& scan);
+
+    int myNumber;
+    std::string myId;
+    ArFunctorC<ArLaser> myTask;
+    ArRobot* myReader = nullptr;  // robot whose cycle runs the task
+    bool myConnected = false;
+    ArPose mySensor;
+    double myStart = 0, myEnd = 0, myStep = 1;
+    int myCount = 0;
+    long mySeq = -1;
+    std::vector<ArSensorReading> myReadings;
+    std::list<ArSensorReading*> myPointers;
+    std::list<ArFunctor*> myCallbacks;
+};
+
+/// Names of the kinds of lasers that programs refer to.
+using ArSick = ArLaser;
+using ArLMS1XX = ArLaser;
+using ArLMS2xx = ArLaser;
+using ArUrg = ArLaser;
+
+#include <sim_aria/robot.h>
+
+#endif  // SIM_ARIA_LASER_H

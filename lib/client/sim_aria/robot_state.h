@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef SIM_ARIA_ROBOT_STATE_H
+#define SIM_ARIA_ROBOT_STATE_H
+
+#include <atomic>
+#include <cstddef>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include <sim_aria/link.h>
+#include <sim_aria/packet.h>
+#include <sim_aria/range_device.h>
+#include <sim_aria/robot_params.h>
+
+namespace sim_aria {
+
+/// State of a robot as of its last status packet; base of ArRobot.
+class RobotState {
+  public:
+    enum ChargeState {
+        CHARGING_UNKNOWN = -1,
+        CHARGING_NOT = 0,
+        CHARGING_BULK = 1,
+        CHARGING_OVERCHARGE = 2,
+        CHARGING_FLOAT = 3,
+        CHARGING_BALANCE = 4
+    };
+
+    double getVel() const { return myPacket.vel; }
+    double getRotVel() const { return myPacket.rot_vel; }
+    double getLeftVel() const { return myPacket.vel - wheelVel(); }
+    double getRightVel() const { return myPacket.vel + wheelVel(); }
+    bool hasLatVel() const { return false; }
+    double getLatVel() const { return 0; }
+    ArPose getPose() const { return myPose; }
+    double getX() const { return myPose.getX(); }
+    double getY() const { return myPose.getY(); }
+    double getTh() const { return myPose.getTh(); }
+    /// Pose by the wheels since the connection, independent of moveTo().
+    ArPose getEncoderPose() const { return myPacket.pose; }
+    ArPose getRawEncoderPose() const { return myPacket.pose; }
+    /// From the frame of the robot to that of its pose.
+    ArTransform getToGlobalTransform() const { return ArTransform(myPose); }
+    ArTransform getEncoderTransform() const { return ArTransform(myPacket.pose, myPose); }
+    /// mm and degrees driven since the connection or the last reset.
+    double getOdometerDistance() const { return myDistance; }
+    double getOdometerDegrees() const { return myTurn; }
+    void resetOdometer() { myDistance = myTurn = 0; }
+    /// Travel of the wheels since the connection, 128 to a mm.
+    long getLeftEncoder() const { return std::lround(kTicks * (myTravel - myWheelTurn)); }
+    long getRightEncoder() const { return std::lround(kTicks * (myTravel + myWheelTurn)); }
+
+    /// A simulated robot stalls as a whole.
+    bool isLeftMotorStalled() const { return myPacket.stalled; }
+    bool isRightMotorStalled() const { return myPacket.stalled; }
+    /// Bits 0 and 8: the motors; bumpers clockwise, front ones from bit 9 on, rear ones from bit 1
+    /// on.
+    int getStallValue() const {
+        return myPacket.bumpers | (myPacket.stalled ? ArUtil::BIT0 | ArUtil::BIT8 : 0);
+    }
+    bool hasFrontBumpers() const { return getNumFrontBumpers() > 0; }
+    bool hasRearBumpers() const { return getNumRearBumpers() > 0; }
+    unsigned int getNumFrontBumpers() const {
+        return static_cast<unsigned int>(myParams.numFrontBumpers());
+    }
+    unsigned int getNumRearBumpers() const {
+        return static_cast<unsigned int>(myParams.numRearBumpers());
+    }
+    bool hasTableSensingIR() const { return false; }
+    bool isLeftTableSensingIRTriggered() const { return false; }
+    bool isRightTableSensingIRTriggered() const { return false; }
+    bool isLeftBreakBeamTriggered() const { return false; }
+    bool isRightBreakBeamTriggered() const { return false; }
+    bool isEStopPressed() const { return false; }
+    bool getEstop() const { return false; }
+    int getFlags() const { return myMotorsEnabled ? ArUtil::BIT0 : 0; }
+    bool areMotorsEnabled() const { return myMotorsEnabled; }
+    bool areSonarsEnabled() const { return mySonarEnabled; }
+    /// Voltage of a full battery; its charge is not simulated.
+    double getBatteryVoltage() const { return 13; }
+    double getBatteryVoltageNow() const { return 13; }
+    double getRealBatteryVoltage() const { return 13; }
+    double getRealBatteryVoltageNow() const { return 13; }
+    bool hasStateOfCharge() const { return false; }
+    double getStateOfCharge() const { return 100; }
+    ChargeState getChargeState() const { return CHARGING_NOT; }
+    bool isChargerPowerGood() const { return false; }
+    bool hasTemperature() const { return false; }
+    int getTemperature() const { return -128; }
+    /// The inputs and outputs of the controller are not connected.
+    unsigned char getDigIn() const { return 0; }
+    unsigned char getDigOut() const { return 0; }
+    int getAnalog() const { return 0; }
+    int getAnalogPortSelected() const { return 0; }
+    int getIOAnalogSize() const { return 0; }
+    int getIODigInSize() const { return 0; }
+    int getIODigOutSize() const { return 0; }
+    int getCompass() const { return 0; }
+    /// Packets in the last second.
+    int getMotorPacCount() const { return packets(); }
+    int getSonarPacCount() const { return mySonars.empty() || !mySonarEnabled ? 0 : packets(); }
+    unsigned int getCounter() const { return myCounter; }
+
+    int getNumSonar() const { return static_cast<int>(mySonars.size()); }
+    /// mm; -1 for an unknown number.
+    int getSonarRange(int number) const {
+        const ArSensorReading* const sonar = getSonarReading(number);
+        return sonar ? sonar->getRange() : -1;
+    }
+    bool isSonarNew(int number) const {
+        const ArSensorReading* const sonar = getSonarReading(number);
+        return sonar && sonar->isNew(myCounter);
+    }
+    ArSensorReading* getSonarReading(int number) const {
+        if (number < 0 || number >= getNumSonar()) return nullptr;
+        return const_cast<ArSensorReading*>(&mySonars[static_cast<std::size_t>(number)]);
+    }
+    /// Minimum range of the sonars that face these directions, mm; -1 without such sonars.
+    int getClosestSonarRange(double startDeg, double endDeg) const {
+        int nearest = -1;
+        for (const ArSensorReading& sonar : mySonars) {
+            if (!ArMath::angleBetween(sonar.getSensorTh(), startDeg, endDeg)) continue;
+            if (nearest < 0 || sonar.getRange() < nearest) nearest = sonar.getRange();
+        }
+        return nearest;
+    }
+
+    const char* getRobotName() const { return myConfig.getName(); }
+    const char* getRobotType() const { return "Pioneer"; }
+    const char* getRobotSubType() const { return myConfig.getSubType(); }
+    double getRobotRadius() const { return myParams.getRobotRadius(); }
+    double getRobotDiagonal() const { return myParams.getRobotDiagonal(); }
+    /// Diameter of its circle.
+    double getRobotLength() const { return myParams.getRobotLength(); }
+    double getRobotWidth() const { return myParams.getRobotWidth(); }
+    const ArRobotParams* getRobotParams() const { return &myParams; }
+    const ArRobotConfigPacketReader* getOrigRobotConfig() const { return &myConfig; }
+
+    /// Pose at this simulated time (s) in the last two seconds, for readings that are older than
+    /// the last packet; the nearest known one beyond.
+    ArPose poseAt(double time) const {
+        if (myHistory.empty()) return myPose;
+        if (time >= myHistory.back().time) return myHistory.back().pose;
+        std::size_t i = myHistory.size() - 1;
+        while (i > 0 && myHistory[i - 1].time > time) --i;
+        if (i == 0) return myHistory.front().pose;
+        const Past &a = myHistory[i - 1], &b = myHistory[i];
+        const double t = (time - a.time) / (b.time - a.time);
+        return ArPose(a.pose.getX() + t * (b.pose.getX() - a.pose.getX()),
+                      a.pose.getY() + t * (b.pose.getY() - a.pose.getY()),
+                      a.pose.getTh() + t * ArMath::subAngle(b.pose.getTh(), a.pose.getTh()));
+    }
+
+    /// The state as a status packet of a Pioneer.
+    ArRobotPacket statusPacket() const {
+        ArRobotPacket packet;
+        const bool moves = myPacket.vel != 0 || myPacket.rot_vel != 0;
+        packet.setID(moves ? 0x33 : 0x32);
+        for (const double value : {myPacket.pose.getX(), myPacket.pose.getY(),
+                                   4096 * myPacket.pose.getTh() / 360, getLeftVel(), getRightVel()})
+            packet.byte2ToBuf(static_cast<ArTypes::Byte2>(std::lround(value)));
+        packet.uByteToBuf(static_cast<ArTypes::UByte>(10 * getBatteryVoltage()));
+        packet.uByte2ToBuf(static_cast<ArTypes::UByte2>(getStallValue()));
+        packet.byte2ToBuf(0);  // control: the heading to reach
+        packet.uByte2ToBuf(static_cast<ArTypes::UByte2>(getFlags()));
+        packet.byteToBuf(0);  // compass
+        packet.uByteToBuf(static_cast<ArTypes::UByte>(mySonars.size()));
+        for (std::size_t i = 0; i < mySonars.size(); ++i) {
+            packet.uByteToBuf(static_cast<ArTypes::UByte>(i));
+            packet.uByte2ToBuf(static_cast<ArTypes::UByte2>(mySonars[i].getRange()));
+        }
+        for (int i = 0; i < 5; ++i) packet.uByteToBuf(0);  // gripper, inputs and outputs
+        packet.uByte2ToBuf(static_cast<ArTypes::UByte2>(10 * getRealBatteryVoltage()));
+        packet.uByteToBuf(CHARGING_NOT);
+        packet.finalizePacket();
+        return packet;
+    }
+
+  protected:
+    RobotState() {}
+    ~RobotState() {}
+
+    /// Rotation by wheels that turn by a mm each, in opposite directions: of a Pioneer 2 and 3 DX.
+    static constexpr double kRadiansPerMm = 0.0056;
+
+    /// Adopts a packet. \param pose the same pose after moveTo()
+    void adopt(const Packet& packet, const ArPose& pose) {
+        const ArPose& before = myPacket.pose;
+        const double turn = ArMath::subAngle(packet.pose.getTh(), before.getTh());
+        const double way = before.findDistanceTo(packet.pose);
+        myDistance += way;
+        myTurn += std::fabs(turn);
+        const double ahead = ArMath::subAngle(before.findAngleTo(packet.pose), before.getTh());
+        myTravel += std::fabs(ahead) > 90 ? -way : way;
+        myWheelTurn += ArMath::degToRad(turn) / kRadiansPerMm;
+        myPacket = packet;
+        myPose = pose;
+        myHistory.push_back(Past{packet.time, pose});
+        while (myHistory.front().time < packet.time - 2) myHistory.pop_front();
+    }
+    void resetState() {
+        myPacket = Packet();
+        myPose = ArPose();
+        myHistory.clear();
+        myDistance = myTurn = myTravel = myWheelTurn = 0;
+    }
+
+    Packet myPacket;
+    ArPose myPose;
+    std::vector<ArSensorReading> mySonars;
+    std::atomic<unsigned int> myCounter{0};
+    bool myMotorsEnabled = false, mySonarEnabled = true;
+    ArRobotParams myParams;
+    ArRobotConfigPacketReader myConfig;
+
+  private:
+    static constexpr double kTicks = 128;
+    struct Past {
+        double time;
+        ArPose pose;
+    };
+
+    double wheelVel() const { return ArMath::degToRad(myPacket.rot_vel) / kRadiansPerMm; }
+    int packets() const {
+        int count = 0;
+        for (const Past& past : myHistory) count += past.time > myPacket.time - 1 ? 1 : 0;
+        return count;
+    }
+
+    double myDistance = 0, myTurn = 0, myTravel = 0, myWheelTurn = 0;
+    std::deque<Past> myHistory;
+};
+
+}  // namespace sim_aria
+
+inline void ArRobotConfigPacketReader::log() const {
+    ArLog::log(ArLog::Terse, "%s %s: at most %d mm/s, %d deg/s, accelerations %d mm/s2, %d deg/s2",
+               getName(), getSubType(), getTransVelTop(), getRotVelTop(), getTransAccelTop(),
+               getRotAccelTop());
+}
+
+#endif  // SIM_ARIA_ROBOT_STATE_H

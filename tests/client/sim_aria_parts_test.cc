@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parts of ARIA's classes that need no server: functors, resolver, packets, threads,
+// configurations, arguments, sockets.
+#include <Sim_Aria.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+#include <thread>
+
+namespace {
+
+struct Callee {
+    int sum = 0;
+    void none() { sum += 1; }
+    void one(int a) { sum += a; }
+    void two(int a, double b) { sum += a + static_cast<int>(b); }
+    bool three(const std::string& text, int n, int m) {
+        return static_cast<int>(text.size()) == n + m;
+    }
+    int constant() const { return 23; }
+};
+int product(int a, int b) { return a * b; }
+
+TEST(SimAriaFunctors, StoredAndGivenParameters) {
+    Callee callee;
+    ArFunctorC<Callee> none(callee, &Callee::none);
+    ArFunctor1C<Callee, int> one(&callee, &Callee::one, 10);
+    ArFunctor2C<Callee, int, double> two(&callee, &Callee::two, 100, 200.5);
+    ArRetFunctor3C<bool, Callee, const std::string&, int, int> three(callee, &Callee::three, "abcd",
+                                                                     1, 3);
+    for (ArFunctor* functor : {static_cast<ArFunctor*>(&none), static_cast<ArFunctor*>(&one),
+                               static_cast<ArFunctor*>(&two)})
+        functor->invoke();
+    EXPECT_EQ(callee.sum, 1 + 10 + 300);
+    one.invoke(5);
+    two.invoke(7);
+    two.invoke(7, 8);
+    EXPECT_EQ(callee.sum, 311 + 5 + 207 + 15);
+    one.setP1(20);
+    one.invoke();
+    EXPECT_EQ(callee.sum, 558);
+    EXPECT_TRUE(three.invokeR());
+    EXPECT_FALSE(three.invokeR("abc"));
+    EXPECT_TRUE(three.invokeR("abc", 0));
+    EXPECT_TRUE(three.invokeR("abc", 2, 1));
+    const Callee fixed{};
+    ArConstRetFunctorC<int, Callee> constant(fixed, &Callee::constant);
+    ArRetFunctor<int>* const as_base = &constant;
+    EXPECT_EQ(as_base->invokeR(), 23);
+    ArGlobalRetFunctor2<int, int, int> global(&product, 6, 7);
+    EXPECT_EQ(global.invokeR(), 42);
+    EXPECT_EQ(global.invokeR(2), 14);
+    none.setName("%s %d", "task", 1);
+    EXPECT_STREQ(none.getName(), "task 1");
+}
+
+/// An action with a fixed wish.
+class Wish : public ArAction {
+  public:
+    Wish() : ArAction("wish") {}
+    ArActionDesired* fire(ArActionDesired current) override {
+        seen = current.getVel();
+        return &desired;
+    }
+    ArActionDesired desired;
+    double seen = 0;
+};
+
+TEST(SimAriaResolver, SharesStrengthByPriority) {
+    ArRobot robot;
+    Wish high, middle, low, other;
+    robot.addAction(&low, 10);
+    robot.addAction(&high, 90);
+    robot.addAction(&middle, 50);
+    ArResolver* const resolver = robot.getResolver();
+    const auto resolve = [&] { return resolver->resolve(robot.getActionMap(), &robot); };
+    high.desired.setVel(100, 0.25);
+    middle.desired.setVel(300, 0.5);
+    low.desired.setVel(1000);
+    EXPECT_NEAR(resolve()->getVel(), 0.25 * 100 + 0.5 * 300 + 0.25 * 1000, 1e-9);
+    EXPECT_EQ(resolve()->getVelStrength(), 1);
+    EXPECT_NEAR(middle.seen, 100, 1e-9);
+    // A full wish leaves no share.
+    high.desired.setVel(100);
+    EXPECT_EQ(resolve()->getVel(), 100);
+    // The lowest limit holds, of any priority; of one with no strength, none.
+    high.desired.setMaxVel(500);
+    low.desired.setMaxVel(200);
+    middle.desired.setMaxVel(10, 0);
+    EXPECT_EQ(resolve()->getMaxVel(), 200);
+    // Equal priorities are averaged by strength.
+    high.desired.reset();
+    middle.desired.reset();
+    robot.addAction(&other, 50);
+    middle.desired.setDeltaHeading(30, 0.25);
+    other.desired.setDeltaHeading(-10, 0.75);
+    EXPECT_NEAR(resolve()->getDeltaHeading(), 0, 1e-9);
+    // A rotation of lower priority does not mix with a heading.
+    low.desired.setRotVel(50);
+    EXPECT_EQ(resolve()->getRotVelStrength(), 0);
+    middle.deactivate();
+    other.deactivate();
+    EXPECT_EQ(resolve()->getRotVel(), 50);
+    // A heading becomes a change of heading.
+    low.desired.setHeading(170);
+    EXPECT_NEAR(resolve()->getDeltaHeading(), 170, 1e-9);
+}
+
+TEST(SimAriaPackets, ReadWhatWasWritten) {
+    ArRobotPacket packet;
+    packet.setID(0xb0);
+    packet.byteToBuf(-3);
+    packet.uByteToBuf(200);
+    packet.byte2ToBuf(-12345);
+    packet.uByte4ToBuf(4000000000U);
+    packet.strToBuf("text");
+    packet.finalizePacket();
+    EXPECT_TRUE(packet.verifyCheckSum());
+    EXPECT_EQ(packet.getID(), 0xb0);
+    EXPECT_EQ(packet.getLength(), 4 + 1 + 1 + 2 + 4 + 5 + 2);
+    EXPECT_EQ(packet.bufToByte(), -3);
+    EXPECT_EQ(packet.bufToUByte(), 200);
+    EXPECT_EQ(packet.bufToByte2(), -12345);
+    EXPECT_EQ(packet.bufToUByte4(), 4000000000U);
+    EXPECT_EQ(packet.bufToString(), "text");
+    EXPECT_EQ(packet.getReadLength(), packet.getLength() - 2);
+    EXPECT_TRUE(packet.isValid());
+    packet.bufToUByte4();
+    EXPECT_FALSE(packet.isValid());
+}
+
+class Counter : public ArASyncTask {
+  public:
+    void* runThread(void*) override {
+        while (getRunningWithLock()) {
+            mutex.lock();
+            ++count;
+            mutex.unlock();
+            condition.signal();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return nullptr;
+    }
+    ArMutex mutex;
+    ArCondition condition;
+    int count = 0;
+};
+
+TEST(SimAriaThreads, AConditionWakesTheWaiter) {
+    Counter counter;
+    EXPECT_EQ(counter.condition.timedWait(1), ArCondition::STATUS_WAIT_TIMEDOUT);
+    counter.runAsync();
+    EXPECT_EQ(counter.condition.wait(), 0);
+    counter.stopRunning();
+    EXPECT_EQ(counter.join(), 0);
+    EXPECT_GT(counter.count, 0);
+    EXPECT_EQ(counter.join(), ArThread::STATUS_NO_SUCH_THREAD);
+}
+
+TEST(SimAriaConfig, RoundTripAndErrors) {
+    const std::string file = ::testing::TempDir() + "aria_config.cfg";
+    int whole = 3;
+    double share = 0.25;
+    bool on = true;
+    char name[8] = "robot";
+    ArConfig config;
+    config.addParam(ArConfigArg("Whole", &whole, "a number", -10, 10), "First");
+    config.addParam(ArConfigArg("Share", &share, "a share", 0.0, 1.0), "First");
+    config.addParam(ArConfigArg("On", &on, "a switch"), "Second");
+    config.addParam(ArConfigArg("Name", name, "a name", sizeof name), "Second");
+    EXPECT_FALSE(config.addParam(ArConfigArg("whole", &whole, ""), "First"));
+    ASSERT_TRUE(config.writeFile(file.c_str()));
+    whole = 0, share = 0, on = false, name[0] = 0;
+    char error[200];
+    ASSERT_TRUE(config.parseFile(file.c_str(), false, false, error, sizeof error)) << error;
+    EXPECT_EQ(whole, 3);
+    EXPECT_EQ(share, 0.25);
+    EXPECT_TRUE(on);
+    EXPECT_STREQ(name, "robot");
+    std::FILE* const bad = std::fopen(file.c_str(), "w");
+    std::fputs("Section First\nWhole 11\nUnknown 5\nShare 1\n", bad);
+    std::fclose(bad);
+    EXPECT_FALSE(config.parseFile(file.c_str(), true, true, error, sizeof error));
+    EXPECT_NE(std::string(error).find(":2: bad value in `Whole 11`"), std::string::npos) << error;
+    EXPECT_EQ(whole, 3);
+    EXPECT_EQ(share, 1);
+    std::remove(file.c_str());
+    EXPECT_FALSE(config.parseFile(file.c_str(), true, true, error, sizeof error));
+}
+
+TEST(SimAriaArguments, ValuesDefaultsAndTheRest) {
+    ArArgumentBuilder builder;
+    builder.add("-speed %d -name \"two words\" -wrong x -on true rest", 42);
+    ArArgumentParser parser(&builder);
+    int speed = 0, wrong = 7, none = 5;
+    bool set = true, on = false;
+    const char* name = "";
+    EXPECT_TRUE(parser.checkParameterArgumentInteger("-speed", &speed, &set));
+    EXPECT_TRUE(set);
+    EXPECT_EQ(speed, 42);
+    EXPECT_TRUE(parser.checkParameterArgumentString("-name", &name));
+    EXPECT_STREQ(name, "two words");
+    EXPECT_FALSE(parser.checkParameterArgumentInteger("-wrong", &wrong, &set));
+    EXPECT_FALSE(set);
+    EXPECT_EQ(wrong, 7);
+    EXPECT_TRUE(parser.checkParameterArgumentInteger("-none", &none, &set));
+    EXPECT_FALSE(set);
+    EXPECT_TRUE(parser.checkParameterArgumentBool("-on", &on));
+    EXPECT_TRUE(on);
+    parser.addDefaultArgument("-connectLaser -laserDegrees 180");
+    EXPECT_TRUE(parser.checkArgument("-connectLaser"));
+    EXPECT_FALSE(parser.checkArgument("-connectLaser"));
+    EXPECT_STREQ(parser.checkParameterArgument("-laserDegrees"), "180");
+    ASSERT_EQ(parser.getArgc(), 1U);
+    EXPECT_STREQ(parser.getArg(0), "rest");
+    EXPECT_FALSE(parser.checkHelpAndWarnUnparsed());
+    EXPECT_TRUE(parser.checkHelpAndWarnUnparsed(1));
+}
+
+TEST(SimAriaSockets, ALineEachWay) {
+    ArSocket server, client, accepted;
+    ASSERT_TRUE(server.open(0, ArSocket::TCP, "127.0.0.1"));
+    ASSERT_TRUE(client.connect("127.0.0.1", server.getPortNumber()));
+    ASSERT_TRUE(server.accept(&accepted));
+    EXPECT_STREQ(accepted.getIPString(), "127.0.0.1");
+    EXPECT_GT(accepted.writeString("%d words", 2), 0);
+    EXPECT_EQ(client.readString(), "2 words");
+    EXPECT_EQ(client.write("ok", 2), 2);
+    char buffer[8];
+    EXPECT_EQ(accepted.read(buffer, sizeof buffer, 1000), 2);
+    EXPECT_EQ(accepted.read(buffer, sizeof buffer, 1), 0);
+    const int port = server.getPortNumber();
+    server.close();
+    EXPECT_FALSE(client.connect("127.0.0.1", port));
+    EXPECT_EQ(client.getError(), ArSocket::ConRefused);
+}
+
+std::string played;
+bool play(const char* file, const char*) {
+    played += file;
+    return true;
+}
+bool never() { return false; }
+
+TEST(SimAriaSounds, TheQueuePlaysInOrder) {
+    played.clear();
+    ArGlobalRetFunctor2<bool, const char*, const char*> player(&play);
+    ArGlobalRetFunctor<bool> condition(&never);
+    ArSoundsQueue queue;
+    queue.setPlayWavFileCallback(&player);
+    queue.pause();
+    queue.play("a");
+    ArSoundsQueue::Item skipped = queue.createDefaultFileItem("x");
+    skipped.playbackConditionCallbacks.push_back(&condition);
+    queue.addItem(skipped);
+    queue.play("b");
+    EXPECT_EQ(queue.getCurrentQueueSize(), 3U);
+    queue.runAsync();
+    queue.resume();
+    while (queue.getCurrentQueueSize() > 0 || queue.isPlaying())
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    queue.stop();
+    queue.join();
+    EXPECT_EQ(played, "ab");
+}
+
+TEST(SimAriaGeometry, TransformsInvert) {
+    const ArTransform to_room(ArPose(1000, 500, 90));
+    const ArPose moved = to_room.doTransform(ArPose(200, 100, 10));
+    EXPECT_NEAR(moved.getX(), 900, 1e-9);
+    EXPECT_NEAR(moved.getY(), 700, 1e-9);
+    EXPECT_NEAR(moved.getTh(), 100, 1e-9);
+    const ArPose back = to_room.doInvTransform(moved);
+    EXPECT_NEAR(back.getX(), 200, 1e-9);
+    EXPECT_NEAR(back.getY(), 100, 1e-9);
+    const ArTransform between(ArPose(1, 2, 30), ArPose(7, -2, -60));
+    const ArPose there = between.doTransform(ArPose(1, 2, 30));
+    EXPECT_NEAR(there.findDistanceTo(ArPose(7, -2)), 0, 1e-9);
+    EXPECT_NEAR(there.getTh(), -60, 1e-9);
+    EXPECT_EQ(ArLineSegment(0, 0, 10, 0).getDistToLine(ArPose(13, 4)), 5);
+}
+
+}  // namespace
