@@ -37,6 +37,15 @@ void addFormats(std::string& out, const Sensor& sensor) {
     add(out, "formats", all);
 }
 
+/// Adds the pose of a sensor in its robot's frame, metres and degrees.
+void addMount(std::string& out, const Pose3& pose) {
+    std::string all;
+    for (const double value : {pose.position.x, pose.position.y, pose.position.z,
+                               pose.heading.degrees(), pose.tilt.degrees(), pose.roll.degrees()})
+        all.append(all.empty() ? "" : ",").append(formatDouble(value));
+    add(out, "mount", all);
+}
+
 }  // namespace
 
 // Descriptions of sensors.
@@ -118,6 +127,7 @@ struct LineFields {
 std::string figuresOf(const Sensor& sensor) {
     std::string out;
     LineFields{out}.addAll({.sensor = sensor}, kInInfo);
+    if (sensor.mount) addMount(out, sensor.mount->robot_from_sensor);
     if (!formatsOf(sensor).empty()) addFormats(out, sensor);
     return out;
 }

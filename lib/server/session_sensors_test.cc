@@ -244,6 +244,20 @@ TEST(SessionSensors, ALaserIsReadAsByTheRoleLaser) {
     EXPECT_EQ(talk.ask(laser, "SCAN"), talk.ask(sensor, "SCAN"));
 }
 
+TEST(SessionSensors, ASensorOnARobotTellsItsPoseThere) {
+    const Scene scene = testing::scene("ispace size=8,6\n",
+                                       "robot id=r1 model=pioneer-2dx at=1,1 heading=90\n"
+                                       "laser id=l1 on=r1 at=0.1,-0.05,0.3 heading=180 tilt=-10 "
+                                       "step=90\nlaser id=l2 at=0,0 step=90\n");
+    World world(scene, std::chrono::milliseconds(100));
+    Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
+    ServerState state(simulation);
+    Session laser(state), sensor(state), in_room(state);
+    EXPECT_TRUE(SensorTalk::ask(laser, "LASER l1").ends_with(" mount=0.1,-0.05,0.3,180,-10,0\n"));
+    EXPECT_TRUE(SensorTalk::ask(sensor, "SENSOR l1").ends_with(" mount=0.1,-0.05,0.3,180,-10,0\n"));
+    EXPECT_EQ(SensorTalk::ask(in_room, "LASER l2").find("mount="), std::string::npos);
+}
+
 TEST(SessionSensors, AMatIsStreamed) {
     SensorTalk talk;
     Session& client = talk.client("SENSOR m1");
