@@ -341,6 +341,23 @@ TEST_F(SimAriaActions, LasersOnTheRobotConnect) {
     EXPECT_EQ(robot.getNumLasers(), 0);
 }
 
+TEST_F(SimAriaActions, ALaserBesideTheCentreSeesTheSameWalls) {
+    ispace::client::World world(server->address());
+    world.remove("r2");
+    world.remove("l2");
+    world.add("laser id=l9 on=r1 at=0.2,0.1,0.2 heading=90 fov=180 step=15 range=8");
+    ArLaserConnector lasers(nullptr, &robot);
+    ASSERT_TRUE(lasers.connectLasers());
+    ArLaser* const laser = robot.findLaser(1);
+    EXPECT_NEAR(laser->getSensorPosition().getX(), 200, 1e-9);
+    EXPECT_NEAR(laser->getSensorPosition().getY(), 100, 1e-9);
+    EXPECT_NEAR(laser->getSensorPosition().getTh(), 90, 1e-9);
+    ArUtil::sleep(300);
+    ASSERT_EQ(laser->getCurrentBuffer()->size(), 13U);
+    for (const ArPoseWithTime* point : *laser->getCurrentBuffer())
+        EXPECT_NEAR(std::max(std::fabs(point->getX() - 1000), std::fabs(point->getY())), 2000, 2);
+}
+
 TEST_F(SimAriaActions, LinesAndACornerAreFoundInAScan) {
     ispace::client::World world(server->address());
     // A corner of 135 degrees that points to the robot, 2 m ahead of it.
