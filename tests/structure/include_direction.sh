@@ -58,8 +58,8 @@ violations() {
         if (FILENAME ~ /\.h$/ && target ~ heavy) report("keep " target " out of headers")
         # Its headers are copied and installed without the library; tests have GoogleTest besides.
         if (folder == "client" && in_lib && !in_test && FILENAME !~ /^lib\/client\/aria\// &&
-            (index($0, "\"") || (target ~ /\// && target !~ /^(ispace_client|sim_aria|sys|netinet)\//) ||
-             (target ~ /\.h$/ && target !~ /\// && target !~ /^(fcntl|netdb|poll|unistd|signal|strings)\.h$/)))
+            (index($0, "\"") || (target ~ /\// && target !~ /^(ispace_client|sim_aria|arpa|sys|netinet)\//) ||
+             (target ~ /\.h$/ && target !~ /\// && target !~ /^(fcntl|netdb|poll|unistd|signal|strings|termios)\.h$/)))
             report("lib/client stands by itself: " target)
         if (target ~ /^(ispace_client|sim_aria)[\/.]/ && folder != "client")
             report("lib/client is for other programs: " target)
