@@ -51,6 +51,9 @@ violations() {
         # Rooms inside of folders have fences of their own.
         if (!in_test && FILENAME ~ /^lib\/arrange\/search\// && index($0, "\"") && target !~ /^(base|arrange\/search)\//)
             report("lib/arrange/search knows sets of cells alone: " target)
+        if (!in_test && FILENAME ~ /^lib\/arrange\/gallery\// && index($0, "\"") &&
+            target !~ /^(base|geom|arrange\/search|arrange\/gallery)\//)
+            report("lib/arrange/gallery knows floors alone: " target)
         if (FILENAME ~ /^lib\/trace\/[^\/]*$/ && target ~ /^trace\/render\//)
             report("lib/trace must not include " target)
         # One private header hides the versions of Embree from the sources beside it.
@@ -106,6 +109,8 @@ expect lib/base/a.cc '#include <geom/pose.h>' yes
 expect lib/arrange/a.cc '#include "server/server.h"' yes
 expect lib/arrange/search/a.cc '#include "geom/point.h"' yes
 expect lib/arrange/search/a.cc '#include "base/error.h"' no
+expect lib/arrange/gallery/a.cc '#include "scene/scene.h"' yes
+expect lib/arrange/gallery/a.cc '#include "arrange/search/set_cover.h"' no
 expect lib/trace/a.cc '#include "trace/render/render.h"' yes
 expect lib/sim/a.cc '#include "server/server.h"' yes
 expect lib/nowhere/a.cc '#include <vector>' yes

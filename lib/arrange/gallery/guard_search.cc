@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/gallery/guard_search.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "arrange/gallery/gallery.h"
+#include "arrange/search/set_cover.h"
+#include "geom/arrangement.h"
+
+namespace ispace::gallery {
+
+namespace {
+
+constexpr std::uint64_t kSearchSteps = 2000;  // of local search, for each cover
+
+/// Regions thinner than this, as area over half of the outline, are slivers: rounding alone leaves
+/// them.
+constexpr double kSliverWidth = 0x1p-20;
+
+GuardCandidate candidateAt(const Floor& floor, const WindowVertex& vertex) {
+    const VisibleRegion region = floor.viewFrom(vertex.at);
+    return {StarView(region, floor.walls()), vertex.error, Floor::outlineOf(region)};
+}
+
+}  // namespace
+
+void GuardSearch::addCandidates(std::span<const WindowVertex> points) {
+    const auto less = [](Point2 a, Point2 b) { return lexLess(a, b); };
+    std::set<Point2, decltype(less)> known(less);
+    for (const GuardCandidate& candidate : candidates_) known.insert(candidate.view.viewpoint());
+    std::vector<WindowVertex> fresh;
+    for (const WindowVertex& vertex : points)
+        if (known.insert(vertex.at).second) fresh.push_back(vertex);
+    std::vector<std::optional<GuardCandidate>> made(fresh.size());
+    std::vector<std::vector<std::uint32_t>> seen(fresh.size());
+    tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
+        made[i] = candidateAt(floor_, fresh[i]);
+        for (std::uint32_t row = 0; row < rows_.size(); ++row)
+            if (sees(*made[i], rows_[row])) seen[i].push_back(row);
+    });
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+        candidates_.push_back(std::move(*made[i]));
+        seen_.push_back(std::move(seen[i]));
+    }
+}
+
+bool GuardSearch::sees(const GuardCandidate& candidate, const Row& row) {
+    return row.witness
+               ? row.witness->mayHold(candidate.view.viewpoint(), candidate.error + kOneLine)
+               : candidate.view.mayHold(row.at, 0);
+}
+
+void GuardSearch::addRow(Point2 p) { add({p, std::nullopt}); }
+void GuardSearch::addRow(const StarView& witness) { add({witness.viewpoint(), witness}); }
+
+void GuardSearch::add(Row row) {
+    const auto number = static_cast<std::uint32_t>(rows_.size());
+    for (std::size_t i = 0; i < candidates_.size(); ++i)
+        if (sees(candidates_[i], row)) seen_[i].push_back(number);
+    rows_.push_back(std::move(row));
+}
+
+GuardSearch::Found GuardSearch::coverRows(Progress& progress) const {
+    SetCover cover;
+    cover.rows = rows_.size();
+    cover.columns = seen_;
+    cover.costs.assign(seen_.size(), 1);
+    const SetCoverResult result =
+        minimumSetCover(cover, {.steps = kSearchSteps, .tries = 1}, progress);
+    Found found;
+    if (!result.is_coverable) return found;
+    found.guards = result.chosen;
+    found.bound = result.bound;
+    measure(found);
+    return found;
+}
+
+void GuardSearch::measure(Found& found) const {
+    std::vector<Polygon> solids;
+    solids.reserve(found.guards.size());
+    for (const std::uint32_t guard : found.guards) solids.push_back(candidates_[guard].outline);
+    found.missed.clear();
+    found.missed_area = 0;
+    for (const Region& region : floor_.regions())
+        for (Region& missed : difference(region, solids)) {
+            const double area = missed.area();
+            found.missed_area += area;
+            if (area > kSliverWidth * missed.boundaryLength() / 2)
+                found.missed.push_back(std::move(missed));
+        }
+}
+
+bool GuardSearch::isCovered(const Found& found) const {
+    return !found.guards.empty() && found.missed_area <= kMissedShare * floor_.area();
+}
+
+void GuardSearch::complete(Found& found) {
+    double before = 2 * floor_.area();
+    while (!isCovered(found) && !found.missed.empty() && found.missed_area < before) {
+        before = found.missed_area;
+        std::vector<Point2> open;
+        for (const Region& region : found.missed) open.push_back(interiorPoint(region));
+        std::vector<WindowVertex> here;
+        here.reserve(open.size());
+        for (const Point2 p : open) here.push_back({p, 0});
+        addCandidates(here);
+        while (!open.empty()) {
+            std::size_t best = 0, most = 0;
+            for (std::size_t i = 0; i < candidates_.size(); ++i) {
+                const auto count =
+                    static_cast<std::size_t>(std::count_if(open.begin(), open.end(), [&](Point2 p) {
+                        return candidates_[i].view.mayHold(p, 0);
+                    }));
+                if (count > most) {
+                    most = count;
+                    best = i;
+                }
+            }
+            if (most == 0) break;
+            found.guards.push_back(static_cast<std::uint32_t>(best));
+            std::erase_if(open, [&](Point2 p) { return candidates_[best].view.mayHold(p, 0); });
+        }
+        measure(found);
+    }
+    std::sort(found.guards.begin(), found.guards.end());
+    found.guards.erase(std::unique(found.guards.begin(), found.guards.end()), found.guards.end());
+}
+
+}  // namespace ispace::gallery
