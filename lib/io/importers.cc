@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* kWanted =
     "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, a picture, HouseExpo JSON, an ARIA or "
-    "MovingAI map, DXF, SVG, SDF, IFC, a mesh or a point cloud";
+    "MovingAI map, an art gallery, DXF, SVG, SDF, IFC, a mesh or a point cloud";
 constexpr std::string_view kBlanks = " \t\r\n";
 
 /// UTF-8 without control characters other than those of plain text.
@@ -223,6 +223,7 @@ constexpr InputFormat kFormatsByMagic[] = {
     {true, holdsBytes<isAriaMap>, importPlan<readAriaMap>},
     {true, holdsBytes<isDxf>, importPlan<readDxf>},
     {true, holdsBytes<isGridMap>, importPlan<readGridMap>},
+    {false, holdsBytes<isGalleryFile>, importPlan<readGalleryFile>},
     {true, holdsBytes<isSvg>, importPlan<readSvg>},
     {true, holdsBytes<isSdf>, importPlan<readSdf>},
     {true, holdsBytes<isIfc>, importPlan<readIfc>},

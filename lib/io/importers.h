@@ -75,11 +75,11 @@ struct ImportOptions {
 };
 
 /// Reads any environment or layout, recognised by content: GLB, `#env`, `#3dm`, YAML, ROS map YAML,
-/// pictures, HouseExpo JSON, ARIA and MovingAI maps, ASCII DXF, SVG, IFC, and meshes, also GLB
-/// without our records, which become a `mesh` record. Content that fits no format is a mesh if its
-/// suffix says so. `operand` is a file name or "-". Loads the files that records name unless
-/// ImportOptions::load_files is false.
-/// \throws FormatError (also: empty input, or an unknown format, with a hint), std::system_error
+/// pictures, HouseExpo JSON, ARIA and MovingAI maps, art galleries, ASCII DXF, SVG, IFC, and
+/// meshes, also GLB without our records, which become a `mesh` record. Content that fits no format
+/// is a mesh if its suffix says so. `operand` is a file name or "-". Loads the files that records
+/// name unless ImportOptions::load_files is false. \throws FormatError (also: empty input, or an
+/// unknown format, with a hint), std::system_error
 Document readDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
 
@@ -131,6 +131,17 @@ bool isGridMap(std::string_view bytes);
 /// \throws FormatError with the line
 Document readGridMap(std::string_view bytes, const std::string& name, const ImportOptions& options,
                      const Schemas& schemas);
+
+/// Returns true for an instance of the art gallery problem: a number of corners and a fraction p/q.
+bool isGalleryFile(std::string_view bytes);
+
+/// Reads an instance of the art gallery problem (`.pol` of AGPLIB): the number of corners of a
+/// simple polygon and their x and y, each a number or a fraction p/q, in metres; then, if it has
+/// holes, their number and each in the same way. They become closed fences, with coordinates
+/// rounded to doubles alone, and an `inside` point. Linear time. \throws FormatError: no number
+/// where one is due, a polygon that crosses itself or has no area
+Document readGalleryFile(std::string_view bytes, const std::string& name,
+                         const ImportOptions& options, const Schemas& schemas);
 
 /// Returns true if the bytes begin like a JSON object or list.
 bool isJson(std::string_view bytes);

@@ -40,7 +40,7 @@ TEST(Input, ToldApartByContent) {
 TEST(Input, SaysWhatItWanted) {
     const std::string wanted =
         "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, a picture, HouseExpo JSON, an ARIA or "
-        "MovingAI map, DXF, SVG, SDF, IFC, a mesh or a point cloud";
+        "MovingAI map, an art gallery, DXF, SVG, SDF, IFC, a mesh or a point cloud";
     EXPECT_EQ(errorOf(""), "room: error: empty input: " + wanted);
     EXPECT_EQ(errorOf(" \n\r\n"), "room: error: empty input: " + wanted);
     for (const std::string& junk :

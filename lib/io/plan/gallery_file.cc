@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/message.h"
+#include "base/number.h"
+#include "env/walls.h"
+#include "geom/polygon.h"
+#include "io/import_records.h"
+#include "io/importers.h"
+
+namespace ispace {
+
+namespace {
+
+/// Splits text at blanks and line breaks.
+class GalleryWords {
+  public:
+    explicit GalleryWords(std::string_view text) : text_(text) {}
+
+    /// Returns the next word; "" at the end.
+    std::string_view next() {
+        constexpr std::string_view kSpaces = " \t\r\n";
+        text_.remove_prefix(std::min(text_.find_first_not_of(kSpaces), text_.size()));
+        const std::string_view word = text_.substr(0, text_.find_first_of(kSpaces));
+        text_.remove_prefix(word.size());
+        return word;
+    }
+
+  private:
+    std::string_view text_;
+};
+
+/// Parses a number or a fraction p/q, rounded to a double.
+std::optional<double> fractionOf(std::string_view word) {
+    const std::size_t slash = word.find('/');
+    if (slash == std::string_view::npos) return parseDouble(word);
+    const auto above = parseDouble(word.substr(0, slash));
+    const auto below = parseDouble(word.substr(slash + 1));
+    if (!above || !below || *below == 0) return std::nullopt;
+    return *above / *below;
+}
+
+class GalleryReader {
+  public:
+    GalleryReader(std::string_view bytes, const std::string& name) : words_(bytes), name_(name) {}
+
+    Region read() {
+        Region region;
+        region.outline = ring("the outline");
+        const std::string_view word = words_.next();
+        if (word.empty()) return region;
+        const std::int64_t holes = count(word, "holes", 0);
+        for (std::int64_t i = 1; i <= holes; ++i)
+            region.holes.push_back(ring("hole " + std::to_string(i)));
+        if (const std::string_view rest = words_.next(); !rest.empty())
+            fail("found " + excerpt(rest) + " after the last hole");
+        return region;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& message) const { failFile(name_, message); }
+
+    std::int64_t count(std::string_view word, const std::string& things, std::int64_t least) const {
+        const auto number = parseInteger(word);
+        if (!number || *number < least)
+            fail("found " + (word.empty() ? "the end" : excerpt(word)) + ", wanted the number of " +
+                 things);
+        return *number;
+    }
+
+    double coordinate(const std::string& of) {
+        const std::string_view word = words_.next();
+        const auto number = fractionOf(word);
+        if (!number)
+            fail(of + ": found " + (word.empty() ? "the end" : excerpt(word)) +
+                 ", wanted a coordinate, a number or a fraction p/q");
+        if (!(std::abs(*number) <= kFarthestPlan))
+            fail(of + ": " + excerpt(word) + " is too far away, wanted metres up to " +
+                 formatDouble(kFarthestPlan));
+        return *number;
+    }
+
+    Polygon ring(const std::string& name) {
+        const std::int64_t corners = count(words_.next(), "corners of " + name, 3);
+        Polygon curve;
+        for (std::int64_t i = 0; i < corners; ++i) {
+            const double x = coordinate(name), y = coordinate(name);
+            if (curve.empty() || curve.back() != Point2{x, y}) curve.push_back({x, y});
+        }
+        while (curve.size() > 1 && curve.front() == curve.back()) curve.pop_back();
+        if (curve.size() < 3 || signedArea(curve) == 0) fail(name + " encloses no area");
+        if (selfCrossing(curve)) fail(name + " crosses itself");
+        return curve;
+    }
+
+    GalleryWords words_;
+    const std::string& name_;
+};
+
+/// Adds a closed fence with the coordinates as they are: a proof is about this polygon, and whole
+/// micrometres would make another of it.
+void addExactFence(const Polygon& curve, const ImportOptions& options, ImportRecords& out) {
+    Record& record = out.add("fence", 0);
+    TupleList points;
+    points.reserve(curve.size());
+    for (const Point2 p : curve) points.push_back({p.x, p.y});
+    record.set("path", std::move(points));
+    record.set("closed", true);
+    record.set("height", options.wall_height);
+    record.set("thickness", options.wall_thickness);
+}
+
+}  // namespace
+
+bool isGalleryFile(std::string_view bytes) {
+    GalleryWords words(bytes.substr(0, 4096));
+    const auto corners = parseInteger(words.next());
+    const std::string_view first = words.next();
+    return corners && *corners >= 3 && first.find('/') != std::string_view::npos &&
+           fractionOf(first).has_value();
+}
+
+Document readGalleryFile(std::string_view bytes, const std::string& name,
+                         const ImportOptions& options, const Schemas& schemas) {
+    Region region = GalleryReader(bytes, name).read();
+    if (signedArea(region.outline) < 0) std::reverse(region.outline.begin(), region.outline.end());
+    ImportRecords out(schemas, name, options);
+    for (const Polygon& curve : curvesOf(region)) addExactFence(curve, options, out);
+    for (const Point2 p : options.inside) out.inside(p);
+    if (options.inside.empty() && options.known_inside.empty()) {
+        for (Polygon& hole : region.holes)
+            if (signedArea(hole) > 0) std::reverse(hole.begin(), hole.end());
+        const Point2 inside = interiorPoint(region);
+        out.add("inside", 0).set("at", Tuple{inside.x, inside.y});
+    }
+    return out.take();
+}
+
+}  // namespace ispace
