@@ -5,8 +5,10 @@
 #include <set>
 #include <span>
 
+#include "arrange/gallery/gallery.h"
 #include "arrange/measured_scene.h"
 #include "arrange/objective.h"
+#include "arrange/over_poses.h"
 #include "arrange/refine.h"
 #include "arrange/search/greedy_search.h"
 #include "arrange/search/problem.h"
@@ -100,12 +102,17 @@ void refineIn(Arrangement& result, MeasuredScene& model, std::uint64_t before, P
 
 void measure(Arrangement& result, MeasuredScene& model) {
     const ArrangeOptions& options = model.options();
-    const CoverageOptions usual{.plane = options.plane, .exact = false};
+    const bool is_whole_floor = options.target == 1 && options.weights.isUniform() &&
+                                options.redundancy == 1 && options.judges_inside &&
+                                !options.beam_step;
+    const CoverageOptions usual{.plane = options.plane, .exact = is_whole_floor};
     const Scene whole = withPlaced(model.scene(), model.groups(), result.sensors);
     const Coverage measured = measureCoverage(whole, model.worlds(), usual);
     const CoverageReport& report = measured.report;
     result.coverage = report.coverage.grid.value_or(0);
     result.area = report.total_effective_area.grid.value_or(0);
+    if (is_whole_floor) result.exact_share = report.coverage.exact;
+    if (result.exact_share && *result.exact_share < 1 - kMissedShare) result.is_reached = false;
     const std::vector<CountedView> views =
         model.viewsOf(std::span(whole.sensors).subspan(model.scene().sensors.size()));
     if (!options.judges_inside || !(model.target().grid == measured.target.grid))
@@ -250,6 +257,7 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
     for (Sensor& sensor : limited.sensors) limitCovered(sensor.model, options);
     std::vector<SensorGroup> limited_groups = groups;
     for (SensorGroup& group : limited_groups) limitCovered(group.model, options);
+    if (options.over_poses) return arrangeOverPoses(limited, limited_groups, options, progress);
     return arrangeLimited(limited, limited_groups, options, progress, mps);
 }
 
@@ -267,6 +275,12 @@ Record resultRecord(const LayoutParts& parts, const Arrangement& arrangement) {
     result.set("optimize", Value(parts.optimize));
     result.set("candidates", Value(static_cast<double>(arrangement.candidates)));
     if (arrangement.least) result.set("least", Value(*arrangement.least));
+    if (arrangement.over_poses) {
+        result.set("proof", Value("poses"));
+        TupleList witnesses;
+        for (const Point2 p : arrangement.over_poses->witnesses) witnesses.push_back({p.x, p.y});
+        if (!witnesses.empty()) result.set("witnesses", Value(std::move(witnesses)));
+    }
     if (!arrangement.is_complete) result.set("complete", Value(false));
     return result;
 }

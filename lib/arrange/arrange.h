@@ -82,6 +82,7 @@ struct ArrangeOptions {
     int redundancy = 1;  ///< a cell is covered if this many sensors see it
     bool is_connected = false;
     std::optional<double> target;  ///< share to reach at minimum cost
+    bool over_poses = false;       ///< prove the number of sensors over all poses
     std::optional<double> budget;
     bool wants_curve = false, wants_trace = false;
 
@@ -114,6 +115,17 @@ struct CurvePoint {
     double bound = 1;  ///< upper bound for layouts of these candidates
 };
 
+/// A proof of the least number of sensors over all poses.
+struct PosesProof {
+    std::size_t cover = 0;  ///< number of sensors that see the floor but for `missed`; 0: unknown
+    std::size_t bound = 0;  ///< fewer sensors, in any poses, do not see all witnesses
+    double missed = 0;      ///< m2, by an exact union
+    double floor = 0;       ///< m2
+    std::vector<Point2> witnesses;
+
+    [[nodiscard]] bool isProven() const { return cover > 0 && cover == bound; }
+};
+
 /// Poses of the sensors and their coverage.
 struct Arrangement {
     std::vector<Placement> sensors;  ///< by group
@@ -140,6 +152,11 @@ struct Arrangement {
     bool is_reached = true;
     std::optional<double> least;
     bool is_exhausted = false;  ///< even all candidates together do not reach the target
+    /// With a target of 100 % of the floor: the exact area covered, as a share of the indoor area;
+    /// empty if no closed form is known. Less than all of it misses the target, though all cells
+    /// are covered.
+    std::optional<double> exact_share;
+    std::optional<PosesProof> over_poses;  ///< with ArrangeOptions::over_poses
 
     /// Ids of sensors that can all be removed without loss of value.
     std::vector<std::string> idle;

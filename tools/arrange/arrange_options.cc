@@ -244,6 +244,11 @@ void ArrangeCommand::addGoalOptions() {
         "find the fewest sensors (or the cheapest, cost=) that cover this share, e.g. 95%; COUNT "
         "is then a maximum; exit with 3 if it cannot be reached",
         Enters::History);
+    line_.choice("--proof", words_.proof, {"candidates", "poses"},
+                 "with --target 100%: prove how few sensors see all of the floor over the "
+                 "candidates (default), or over all poses: of lasers that see all around, farther "
+                 "than the room is wide",
+                 Enters::History);
     line_.parsed(
         "--budget", "COST",
         [&how](const std::string& text) {
@@ -345,12 +350,32 @@ void ArrangeCommand::settle() {
         throw UsageError(
             "--refine measures what is in view of the indoor floor: leave out --reso and "
             "--judge no");
+    settleProof();
     how.wants_curve = !options_.curve_file.empty();
     how.wants_trace = !options_.trace_file.empty();
     how.seed = options_.common.seed;
     how.search.swap.seed = options_.common.seed;
     settleFiles();
     settleBatch();
+}
+
+void ArrangeCommand::settleProof() {
+    ArrangeOptions& how = options_.how;
+    how.over_poses = words_.proof == "poses";
+    if (!how.over_poses) return;
+    if (how.target != 1) throw UsageError("--proof poses is about --target 100%: give both");
+    constexpr const char* kOfCandidates[] = {
+        "--effort",   "--strategy", "--deg",  "--mount",  "--tilt",       "--clearance",
+        "--keep-out", "--keep-in",  "--zone", "--weight", "--redundancy", "--connected",
+        "--optimize", "--starts",   "--gap",  "--refine", "--curve",      "--trace",
+        "--judge",    "--reso",     "--grid", "--cell",   "--export-mps", "--candidates",
+        "--shard",    "--resume"};
+    for (const char* option : kOfCandidates)
+        if (line_.given(option))
+            throw UsageError(
+                "--proof poses tries no candidates, and all of the floor counts: leave out " +
+                std::string(option));
+    if (how.mount.heights.size() > 1) throw UsageError("--proof poses: give one height with --z");
 }
 
 void ArrangeCommand::checkStrategyOption(const StrategyRow& row,

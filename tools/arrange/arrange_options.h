@@ -53,13 +53,14 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void addShareOptions();
     void settle();
     void settleStrategy();
+    void settleProof();
     void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;
     void settleFiles() const;
     void settleBatch();
 
     /// Words of options that are converted once all options are known.
     struct Words {
-        std::string effort, strategy, optimize, mount, judge, share;
+        std::string effort, strategy, optimize, mount, judge, share, proof;
         CellWords cells;
     };
     Words words_;

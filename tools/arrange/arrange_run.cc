@@ -224,6 +224,11 @@ double gapOf(const Arrangement& arrangement) {
     return bound > 0 ? std::max(0.0, (bound - arrangement.candidate_value) / bound) : 0;
 }
 
+/// Returns true if all cells are covered, but not all of the exact area between their centres.
+bool isShort(const Arrangement& arrangement) {
+    return !arrangement.is_reached && arrangement.exact_share && arrangement.least;
+}
+
 /// Returns the step that a signal or the time limit ended after the candidates were chosen.
 std::string unfinishedText(const ArrangeOptions& how) {
     return how.target ? "the search for fewer sensors" : how.refine ? "refining" : "the curve";
@@ -247,9 +252,27 @@ std::string cellsGapText(const Arrangement& arrangement) {
            " (--cell M sets the size of cells)\n";
 }
 
+/// Reports a proof over all poses.
+std::string posesText(const Arrangement& arrangement) {
+    constexpr int kDigits = 3;
+    const PosesProof& proof = *arrangement.over_poses;
+    std::string text = "arrange: ";
+    if (proof.cover > 0)
+        text += counted(proof.cover, "sensor sees ", "sensors see ") + "the floor of " +
+                formatFixed(proof.floor, 2) + " m2 but for " +
+                formatDouble(roundSignificant(proof.missed, kDigits)) + " m2";
+    else
+        text += "no cover of the floor was found";
+    text += "; over all poses at least " + std::to_string(proof.bound) +
+            (proof.bound == 1 ? " is" : " are") + " needed";
+    if (proof.isProven()) return text + ": proven fewest\n";
+    return text + (arrangement.is_complete ? "\n" : ", cut short\n");
+}
+
 }  // namespace
 
 std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    if (arrangement.over_poses) return posesText(arrangement);
     std::string text = "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") +
                        ", coverage " + percentText(arrangement.coverage);
     // The bound holds for the objective before refinement.
@@ -259,8 +282,10 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
         text += "; before it was refined " + percentText(arrangement.candidate_value);
     const double gap = gapOf(arrangement);
     text += ", bound " + percentText(arrangement.candidate_bound) + " (" +
-            (gap > 0 ? "gap " + percentText(gap) : "proven best") + ") " +
-            overText(how, arrangement);
+            (gap > 0                ? "gap " + percentText(gap)
+             : isShort(arrangement) ? "all cells, not all of the area"
+                                    : "proven best") +
+            ") " + overText(how, arrangement);
     if (!arrangement.is_complete && gap > 0) text += ", cut short";
     text += '\n' + cellsGapText(arrangement);
     if (!arrangement.is_complete && gap <= 0)
@@ -278,7 +303,9 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
                 formatFixed(arrangement.refined_before, 3) + " m2 by exact area\n";
     }
     if (arrangement.least) {
-        text += "arrange: target " + percentText(*how.target) + " reached " +
+        text += "arrange: " +
+                (isShort(arrangement) ? std::string("all cells covered ")
+                                      : "target " + percentText(*how.target) + " reached ") +
                 (arrangement.has_costs
                      ? "at a cost of " + formatDouble(arrangement.cost) +
                            "; nothing cheaper than " + formatDouble(*arrangement.least)
@@ -294,6 +321,17 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
 }
 
 std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    if (arrangement.over_poses)
+        return "the target of 100% is not reached: " +
+               (arrangement.over_poses->cover > arrangement.sensors.size()
+                    ? counted(arrangement.over_poses->cover, "sensor", "sensors") +
+                          " would reach it; allow more (:COUNT)"
+                    : "no cover was found");
+    if (isShort(arrangement))
+        return "the target of 100% is not reached: " +
+               counted(arrangement.sensors.size(), "sensor covers", "sensors cover") +
+               " all cells, but " + formatPercent(roundSignificant(*arrangement.exact_share)) +
+               " of the exact area; --target 99.9% asks for less, --proof poses for all";
     std::string text = "the target of " + formatPercent(how.target.value_or(1)) +
                        " is not reached: " +
                        counted(arrangement.sensors.size(), "sensor covers ", "sensors cover ") +

@@ -31,10 +31,11 @@ bool endsWithoutProduct(const ArrangeToolOptions& options) {
 void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& options,
                  const ArrangeWork& work, const Arrangement& arrangement) {
     const SceneInput& input = work.input;
-    LayoutParts parts{input.layout ? input.layout->history : History(),
-                      environmentFileFor(options.common.output, input.environment_operand),
-                      input.scene.digest(), std::string(nameOf(work.how.strategy)),
-                      std::string(nameOf(work.how.search.optimizer))};
+    LayoutParts parts{
+        input.layout ? input.layout->history : History(),
+        environmentFileFor(options.common.output, input.environment_operand), input.scene.digest(),
+        work.how.over_poses ? "poses" : std::string(nameOf(work.how.strategy)),
+        std::string(nameOf(work.how.over_poses ? Optimizer::Exact : work.how.search.optimizer))};
     parts.history.push_back(command.historyLine(input.named));
     const Document layout =
         layoutDocument(parts, input.layout ? &*input.layout : nullptr, work.groups, arrangement);

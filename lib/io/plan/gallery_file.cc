@@ -65,7 +65,8 @@ class GalleryReader {
   private:
     [[noreturn]] void fail(const std::string& message) const { failFile(name_, message); }
 
-    std::int64_t count(std::string_view word, const std::string& things, std::int64_t least) const {
+    [[nodiscard]] std::int64_t count(std::string_view word, const std::string& things,
+                                     std::int64_t least) const {
         const auto number = parseInteger(word);
         if (!number || *number < least)
             fail("found " + (word.empty() ? "the end" : excerpt(word)) + ", wanted the number of " +

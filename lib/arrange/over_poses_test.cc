@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/over_poses.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "scene/placement_schemas.h"
+#include "support/test_arrange.h"
+
+namespace ispace {
+namespace {
+
+ArrangeOptions provenOverPoses() {
+    ArrangeOptions options;
+    options.target = 1;
+    options.over_poses = true;
+    return options;
+}
+
+Arrangement overPoses(const std::string& room, const char* sensor = "laser,range=99,fov=360") {
+    const Scene scene = roomScene(room);
+    return arranged(scene, groupsOf(scene, {sensor}, true), provenOverPoses());
+}
+
+std::string refusalOf(const std::string& room, const char* sensor = "laser,range=99,fov=360") {
+    try {
+        overPoses(room, sensor);
+    } catch (const UsageError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(OverPoses, ABoxInTheRoomTakesTwo) {
+    const Arrangement found = overPoses("#env 1\nispace size=8,6\ncube at=0,0 size=2,2,2\n");
+    ASSERT_TRUE(found.over_poses);
+    EXPECT_TRUE(found.over_poses->isProven());
+    EXPECT_EQ(found.sensors.size(), 2U);
+    EXPECT_EQ(found.least, 2);
+    EXPECT_TRUE(found.is_reached);
+    EXPECT_NEAR(found.over_poses->floor, 44, 1e-9);
+    EXPECT_LE(found.over_poses->missed, 44e-9);
+    EXPECT_GE(found.over_poses->witnesses.size(), 2U);
+}
+
+TEST(OverPoses, FewerThanNeededMissTheTarget) {
+    const Arrangement found =
+        overPoses("#env 1\nispace size=8,6\ncube at=0,0 size=2,2,2\n", "laser,range=99,fov=360:1");
+    EXPECT_FALSE(found.is_reached);
+    EXPECT_EQ(found.sensors.size(), 1U);
+    EXPECT_EQ(found.over_poses->cover, 2U);
+}
+
+TEST(OverPoses, TheResultHoldsTheWitnesses) {
+    const Scene scene = roomScene("#env 1\nispace size=8,6\n");
+    const auto groups = groupsOf(scene, {"laser,range=99,fov=360"}, true);
+    const Arrangement found = arranged(scene, groups, provenOverPoses());
+    const Document layout =
+        layoutDocument({{}, "", scene.digest(), "poses", "exact"}, nullptr, groups, found);
+    const Record& result = layout.records.back();
+    EXPECT_EQ(result.text("proof"), "poses");
+    EXPECT_EQ(result.number("least"), 1);
+    EXPECT_EQ(writeRecordText(readRecordText(writeRecordText(layout), "a.3dm", sceneSchemas())),
+              writeRecordText(layout));
+}
+
+TEST(OverPoses, RefusesRoomsAndSensorsThatAreNoGallery) {
+    const std::string room = "#env 1\nispace size=8,6\n";
+    EXPECT_NE(refusalOf(room, "laser,range=9,fov=360").find("ends within the room of 10.0 m"),
+              std::string::npos);
+    EXPECT_NE(refusalOf(room, "laser,range=99,fov=180").find("see all around"), std::string::npos);
+    EXPECT_NE(refusalOf(room, "camera").find("see all around"), std::string::npos);
+    EXPECT_NE(refusalOf(room + "cylinder at=0,0 size=1,1,1\n").find("round bodies"),
+              std::string::npos);
+    EXPECT_NE(refusalOf(room + "wall from=0,0 to=1,0 thickness=0\n").find("without thickness"),
+              std::string::npos);
+    EXPECT_NE(refusalOf(room + "laser at=1,1\n").find("stand in the room"), std::string::npos);
+    EXPECT_EQ(refusalOf(room + "wall from=0,0 to=1,0 thickness=0.1\n"), "");
+}
+
+TEST(OverPoses, AllCellsAreNotAllOfTheFloor) {
+    // A corridor of half a cell's width off the room: no centre of a cell lies in it.
+    const Scene scene = roomScene(
+        "#env 1\nfence path=0,0;4,0;4,4;1,4;1,6;0.98,6;0.98,4;0,4 closed=yes\ninside at=2,2\n");
+    ArrangeOptions options = coarse();
+    options.target = 1;
+    const Arrangement found =
+        arranged(scene, groupsOf(scene, {"laser,range=99,fov=360"}, true), options);
+    ASSERT_TRUE(found.exact_share);
+    EXPECT_EQ(found.candidate_value, 1);
+    EXPECT_LT(*found.exact_share, 1 - 1e-6);
+    EXPECT_FALSE(found.is_reached);
+    options.target = 0.99;
+    EXPECT_TRUE(
+        arranged(scene, groupsOf(scene, {"laser,range=99,fov=360"}, true), options).is_reached);
+}
+
+}  // namespace
+}  // namespace ispace
