@@ -22,7 +22,9 @@ enum class Purpose : std::uint32_t {
     Wander = 7,
     Motion = 8,
     Odometry = 9,
-    Start = 10
+    Start = 10,
+    Mounting = 11,
+    Crowd = 12
 };
 
 /// A 64-bit hash of an id (FNV-1a), the same on every machine.

@@ -105,6 +105,15 @@ void addPieces(Coverage& coverage, const CellSet& covered) {
 
 }  // namespace
 
+void addZoneLayers(std::span<const Zone> zones, std::vector<Layer>& layers) {
+    for (std::size_t i = 0; i < zones.size(); ++i) {
+        Polygon outline = zones[i].outline;
+        if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
+        layers.push_back(
+            markLayer({curveOf(outline)}, std::uint64_t{1} << (kFirstZoneBit + i % kZonesAtOnce)));
+    }
+}
+
 std::vector<Zone> zonesOf(const Environment& environment) {
     std::vector<Zone> zones;
     for (const Element& element : environment.elements())
@@ -140,29 +149,6 @@ void addCellMetrics(Coverage& coverage, const std::vector<Zone>& zones) {
 }
 
 namespace {
-
-/// Zones take the bits from here on; further zones require further passes.
-constexpr std::size_t kFirstZoneBit = 2, kZonesAtOnce = 62;
-
-std::uint64_t zoneMark(std::size_t zone) {
-    return std::uint64_t{1} << (kFirstZoneBit + zone % kZonesAtOnce);
-}
-
-void addZoneLayers(std::span<const Zone> zones, std::vector<Layer>& layers) {
-    for (std::size_t i = 0; i < zones.size(); ++i) {
-        Polygon outline = zones[i].outline;
-        if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
-        layers.push_back(markLayer({curveOf(outline)}, zoneMark(i)));
-    }
-}
-
-/// Calls visit(zone) for each zone that holds an indoor face.
-template <typename Visit>
-void forEachIndoorZone(const LayerLabel& label, Visit visit) {
-    if ((label.marks & kIndoorMark) == 0) return;
-    for (std::uint64_t bits = label.marks >> kFirstZoneBit; bits != 0; bits &= bits - 1)
-        visit(static_cast<std::size_t>(std::countr_zero(bits)));
-}
 
 /// Returns the layers of all sets, the indoor region, the free floor and some zones.
 std::vector<Layer> layersOf(const Coverage& coverage, FloorCurves floor,

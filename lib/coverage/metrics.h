@@ -2,11 +2,16 @@
 // Private to lib/coverage: steps that measureCoverage() shares between its sources.
 #pragma once
 
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "coverage/coverage.h"
+#include "coverage/requirement.h"
 #include "env/environment.h"
 
 namespace ispace {
@@ -21,6 +26,18 @@ struct Zone {
     Polygon outline;
 };
 std::vector<Zone> zonesOf(const Environment& environment);
+/// Zones take the bits from here on; further zones require further passes.
+constexpr std::size_t kFirstZoneBit = 2, kZonesAtOnce = 62;
+/// Adds layers that mark these zones. \pre at most kZonesAtOnce
+void addZoneLayers(std::span<const Zone> zones, std::vector<Layer>& layers);
+/// Calls visit(zone) for each zone of a pass that holds an indoor face.
+template <typename Visit>
+void forEachIndoorZone(const LayerLabel& label, Visit visit) {
+    if ((label.marks & kIndoorMark) == 0) return;
+    for (std::uint64_t bits = label.marks >> kFirstZoneBit; bits != 0; bits &= bits - 1)
+        visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
 /// Computes the zones' exact indoor areas.
 std::vector<ZoneMetrics> zoneMetricsOf(const Environment& environment,
                                        const std::vector<Zone>& zones);
@@ -38,6 +55,11 @@ FloorCurves floorCurvesOf(const Environment& environment, const std::vector<Regi
 /// regions are known
 void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCurves floor,
                      const std::vector<Zone>& zones, bool keep_depths);
+
+/// Returns the figures that robustness is told of: coverage, free coverage, that of each zone, and
+/// those of the requirements, each once, as requirements of 0.
+std::vector<Requirement> figuresOf(const CoverageReport& report,
+                                   std::span<const Requirement> requirements);
 
 /// Returns part / whole, clamped to [0, 1] against rounding; 0 if `whole` is 0
 double shareOf(double part, double whole);

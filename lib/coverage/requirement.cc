@@ -26,22 +26,7 @@ std::string percent(double share, double required) {
                                                   : text + "%";
 }
 
-/// The metric that a requirement compares.
-struct Subject {
-    std::string what;
-    Metric share;
-    double area = 0;
-};
-
-/// Finds the zone. \pre the report has it
-std::size_t zoneIndex(const Requirement& requirement, const CoverageReport& report) {
-    const auto found =
-        std::find_if(report.zones.begin(), report.zones.end(),
-                     [&requirement](const ZoneMetrics& one) { return one.id == requirement.zone; });
-    return static_cast<std::size_t>(found - report.zones.begin());
-}
-
-Subject densitySubject(const Requirement& requirement, const CoverageReport& report) {
+RequiredFigure densityFigure(const Requirement& requirement, const CoverageReport& report) {
     const std::size_t index = *requirement.density;
     const auto of = [index](const std::vector<Metric>& metrics) {
         return metrics.empty() ? Metric{.grid = 0, .exact = 0} : metrics[index];
@@ -83,21 +68,6 @@ std::optional<UncoveredSpot> largestWithout(const Requirement& requirement,
     const auto largest =
         static_cast<std::size_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
     return UncoveredSpot{interiorPoint(pieces[largest]), areas[largest]};
-}
-
-Subject subjectOf(const Requirement& requirement, const CoverageReport& report) {
-    if (requirement.density) return densitySubject(requirement, report);
-    switch (requirement.of) {
-        case Requirement::Of::Free:
-            return {"free coverage", report.free_coverage, report.free_area};
-        case Requirement::Of::Zone: {
-            const ZoneMetrics& zone = report.zones[zoneIndex(requirement, report)];
-            return {"coverage of zone " + printable(zone.id), zone.coverage, zone.area};
-        }
-        case Requirement::Of::Indoor:
-            break;
-    }
-    return {"coverage", report.coverage, report.indoor_area};
 }
 
 /// Finds an index by a name of pixelDensities().
@@ -156,10 +126,31 @@ void mustHaveZone(const Requirement& requirement, const Environment& environment
                      didYouMean(requirement.zone, known));
 }
 
+std::size_t zoneIndex(const Requirement& requirement, const CoverageReport& report) {
+    const auto found =
+        std::find_if(report.zones.begin(), report.zones.end(),
+                     [&requirement](const ZoneMetrics& one) { return one.id == requirement.zone; });
+    return static_cast<std::size_t>(found - report.zones.begin());
+}
+
+RequiredFigure figureOf(const Requirement& requirement, const CoverageReport& report) {
+    if (requirement.density) return densityFigure(requirement, report);
+    switch (requirement.of) {
+        case Requirement::Of::Free:
+            return {"free coverage", report.free_coverage, report.free_area};
+        case Requirement::Of::Zone: {
+            const ZoneMetrics& zone = report.zones[zoneIndex(requirement, report)];
+            return {"coverage of zone " + printable(zone.id), zone.coverage, zone.area};
+        }
+        case Requirement::Of::Indoor:
+            break;
+    }
+    return {"coverage", report.coverage, report.indoor_area};
+}
+
 Verdict checkRequirement(const Requirement& requirement, const Coverage& coverage) {
     const CoverageReport& report = coverage.report;
-    constexpr double kExactError = 1e-7;
-    const auto [what, metric, area] = subjectOf(requirement, report);
+    const auto [what, metric, area] = figureOf(requirement, report);
     if (!metric.exact && !metric.grid)
         return {false, what +
                            " is not known: no centre of a cell lies there, and exact figures are "

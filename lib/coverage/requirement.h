@@ -16,7 +16,7 @@ namespace ispace {
 struct Requirement {
     enum class Of { Indoor, Free, Zone };
     Of of = Of::Indoor;
-    std::string zone;
+    std::string zone = {};
     double share = 0;
     std::optional<std::size_t> density = {};  ///< index in pixelDensities()
     friend bool operator==(const Requirement&, const Requirement&) = default;
@@ -32,6 +32,23 @@ std::string requirementText(const Requirement& requirement);
 /// nearest name
 void mustHaveZone(const Requirement& requirement, const Environment& environment);
 
+/// A figure of a report that requirements compare.
+struct RequiredFigure {
+    std::string name;  ///< "free coverage to identify"
+    Metric share;
+    double area = 0;  ///< of the floor that it is a share of, m2
+};
+
+/// Returns the figure of a requirement, for any share. Without cameras, density classes have
+/// coverage 0. \pre mustHaveZone()
+RequiredFigure figureOf(const Requirement& requirement, const CoverageReport& report);
+
+/// Returns the index of the requirement's zone in CoverageReport::zones. \pre mustHaveZone()
+std::size_t zoneIndex(const Requirement& requirement, const CoverageReport& report);
+
+/// An exact metric may be lower than required by this much, for rounding.
+constexpr double kExactError = 1e-7;
+
 /// Result of a check, and a clause that names the metric: "coverage is 50.00% (exact), as required
 /// (40%)", or with the missing area: "coverage is 50.00% (by cells), below the required 95%: 7.20
 /// m2 are missing; the largest unseen spot has 4.10 m2 around (1.00, 2.00)".
@@ -42,8 +59,7 @@ struct Verdict {
 };
 
 /// Compares with the exact metric if it is known, else with the one by cells; if both are unknown,
-/// the requirement is not met. Without cameras, density classes have coverage 0. An exact metric
-/// may be lower by 1e-7, for rounding. \pre mustHaveZone()
+/// the requirement is not met. \pre mustHaveZone()
 Verdict checkRequirement(const Requirement& requirement, const Coverage& coverage);
 
 }  // namespace ispace

@@ -112,8 +112,7 @@ void writeList(JsonWriter& json, const char* key, const std::vector<Item>& items
 
 }  // namespace
 
-std::string coverageJson(const CoverageReport& report, const RunCoverage* run,
-                         const Advice* advice) {
+std::string coverageJson(const CoverageReport& report, const ReportParts& parts) {
     const Box2& limits = report.limits;
     JsonWriter json;
     beginReport(json, "ispace-coverage/1", "coverage");
@@ -161,8 +160,9 @@ std::string coverageJson(const CoverageReport& report, const RunCoverage* run,
         json.endObject();
     }
     if (report.comparison) write(json, *report.comparison);
-    if (run != nullptr) writeRun(json, *run);
-    if (advice != nullptr) writeSuggestions(json, *advice);
+    if (parts.robustness != nullptr) writeRobustness(json, *parts.robustness);
+    if (parts.run != nullptr) writeRun(json, *parts.run);
+    if (parts.advice != nullptr) writeSuggestions(json, *parts.advice);
     json.endObject();
     return json.take() + "\n";
 }

@@ -6,14 +6,20 @@
 
 #include "coverage/coverage.h"
 #include "coverage/run_coverage.h"
+#include "report/robustness_report.h"
 #include "report/suggestion_report.h"
 
 namespace ispace {
 
-/// Writes one JSON object and a newline, schema ispace-coverage/1; with the members `run` and
-/// `suggestions` unless these are null.
-std::string coverageJson(const CoverageReport& report, const RunCoverage* run = nullptr,
-                         const Advice* advice = nullptr);
+/// Parts of a report besides coverage; null: not requested.
+struct ReportParts {
+    const RunCoverage* run = nullptr;
+    const Advice* advice = nullptr;
+    const Robustness* robustness = nullptr;
+};
+
+/// Writes one JSON object and a newline, schema ispace-coverage/1, with a member for each part.
+std::string coverageJson(const CoverageReport& report, const ReportParts& parts = {});
 /// Writes the report as aligned lines of text.
 std::string coverageText(const CoverageReport& report);
 

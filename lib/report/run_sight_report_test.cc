@@ -28,7 +28,7 @@ TEST(RunSightReport, HasTextAndJson) {
     EXPECT_NE(text.find("run drive, t=0.00 to 6.00 s"), std::string::npos) << text;
     EXPECT_NE(text.find("robot r1"), std::string::npos);
     EXPECT_NE(text.find("where sight was lost:"), std::string::npos);
-    const std::string json = coverageJson({}, &run);
+    const std::string json = coverageJson({}, {.run = &run});
     EXPECT_NE(
         json.find(
             R"("run":{"record":"drive","begin":0,"end":6,"members":[{"id":"r1","kind":"robot")"),

@@ -30,6 +30,8 @@ for layout in ultrasound ranger; do
 done
 coverage "$data/zones.env" "$data/domes.3dm" --density 500 --parallax 45 --json >cameras.json
 coverage "$data/square.env" "$data/half.3dm" --compare "$data/whole.3dm" --json >compared.json
+coverage "$data/square.env" "$data/half.3dm" --perturb 1cm,1deg --failures 1 --crowd 1 --require 1% --cell 0.5 --json \
+    >robust.json
 arrange "$data/square.env" --sensor laser,range=2:2 --sensor ranger:1 --strategy grid -X 3 -Y 3 -q \
     --trace tried.jsonl -o best.3dm
 printf '%s\n' "$data/square.env" missing.env | arrange --batch - --sensor laser --strategy grid -X 2 -Y 2 -o by/ \

@@ -22,6 +22,7 @@ std::vector<std::string> formatNames() {
 }
 
 constexpr int kSuggestions = 5, kMaxSuggestions = 7;  // one of each kind
+constexpr int kMaxFailures = 8;
 
 /// Options that apply to the map alone.
 constexpr const char* kMapOptions[] = {"--to",   "--width", "--color",
@@ -63,6 +64,18 @@ std::vector<double> parseSpeeds(const std::string& text) {
     }
     if (speeds.empty()) throw UsageError("no speeds, wanted such as 30%,60%,100%");
     return speeds;
+}
+
+/// Parses `N`, `scene` or `run`.
+CrowdChoice parseCrowd(const std::string& text) {
+    constexpr int kMostPeople = 10'000;
+    if (text == "scene") return {Robustness::CrowdOf::Scene};
+    if (text == "run") return {Robustness::CrowdOf::Run};
+    const auto people = parseInteger(text);
+    if (!people || *people < 0 || *people > kMostPeople)
+        throw UsageError('`' + text + "` is not a number of people up to " +
+                         std::to_string(kMostPeople) + ", scene or run");
+    return {Robustness::CrowdOf::Random, static_cast<int>(*people)};
 }
 
 void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words) {
@@ -119,7 +132,8 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    std::vector<const char*> single = {"--report", "--suggest", "--compare", "--run"};
+    std::vector<const char*> single = {"--report",  "--suggest",  "--compare", "--run",
+                                       "--perturb", "--failures", "--crowd"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
     static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
@@ -129,6 +143,8 @@ void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string
     for (const char* option : {"--shard", "--resume"})
         if (line.given(option))
             throw UsageError(std::string(option) + " is about many scenes: give --batch LIST");
+    if (o.crowd && o.crowd->of == Robustness::CrowdOf::Run && o.run.empty())
+        throw UsageError("--crowd run takes people of a record: give --run DIR");
     checkProduct(line, o, to);
 }
 
@@ -187,6 +203,19 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         "report up to N changes that would help: a sensor to add, turn, move, replace or "
         "remove, furniture to move, and with --require the changes that meet it; each with "
         "its gain and its command",
+        Enters::Nothing);
+    line.parsed(
+        "--perturb", "M,DEG", [&o](const std::string& text) { o.perturb = parseTolerance(text); },
+        "report how coverage and requirements fall if sensors are mounted up to M and DEG off "
+        "their poses, as in 5cm,3deg: 100 random mountings",
+        Enters::Nothing);
+    line.count("--failures", "K", o.failures, 1, kMaxFailures,
+               "report coverage and requirements without the K sensors that cost most",
+               Enters::Nothing);
+    line.parsed(
+        "--crowd", "N|scene|run", [&o](const std::string& text) { o.crowd = parseCrowd(text); },
+        "report coverage and requirements with people in the way of sight: N at random positions, "
+        "100 times; those of the scene; those of --run DIR at 100 moments",
         Enters::Nothing);
     line.group("The map");
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",

@@ -8,10 +8,18 @@
 #include "cli/batch.h"
 #include "cli/common_options.h"
 #include "coverage/requirement.h"
+#include "coverage/robustness.h"
 #include "report/coverage_formats.h"
 #include "report/map/map.h"
+#include "report/robustness_report.h"
 
 namespace ispace {
+
+/// People among whom coverage is reported, too.
+struct CrowdChoice {
+    Robustness::CrowdOf of = Robustness::CrowdOf::Random;
+    int people = 0;  ///< of Random
+};
 
 struct CoverageToolOptions {
     CommonOptions common;
@@ -26,6 +34,9 @@ struct CoverageToolOptions {
     bool json = false;
     std::string report;              ///< file for the report as JSON besides stdout; "": no file
     std::optional<int> suggestions;  ///< number of changes to suggest
+    std::optional<MountingTolerance> perturb;  ///< of mounting
+    int failures = 0;                          ///< number of sensors that fail; 0: not told
+    std::optional<CrowdChoice> crowd;
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of tried poses of a search, for the map; "" without
     std::string run;    ///< folder of a record of robots and people; "" without

@@ -18,6 +18,7 @@
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
+#include "coverage/crowd.h"
 #include "record/text.h"
 #include "report/coverage_formats.h"
 #include "report/coverage_report.h"
@@ -90,6 +91,50 @@ std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInp
     const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
     return Advice{suggestChanges(input.scene, coverage, wanted, shippedDevices(), *progress),
                   input.named};
+}
+
+namespace {
+
+constexpr int kSamples = 100;
+
+std::vector<Crowd> crowdsOf(const CoverageToolOptions& options, const Scene& scene) {
+    switch (options.crowd->of) {
+        case Robustness::CrowdOf::Scene:
+            return {crowdOf(scene)};
+        case Robustness::CrowdOf::Run:
+            return crowdsOfRun(options.run, scene, kSamples);
+        case Robustness::CrowdOf::Random:
+            break;
+    }
+    const CrowdFloor floor(scene);
+    std::vector<Crowd> crowds;
+    for (std::uint64_t frame = 0; frame < kSamples; ++frame)
+        crowds.push_back(floor.draw(static_cast<std::size_t>(options.crowd->people),
+                                    {.seed = options.common.seed, .frame = frame}));
+    return crowds;
+}
+
+}  // namespace
+
+std::optional<Robustness> robustnessOf(const CoverageToolOptions& options, const Scene& scene,
+                                       const Coverage& coverage) {
+    if (!options.perturb && options.failures == 0 && !options.crowd) return std::nullopt;
+    Robustness robustness{.requirements = options.requirements, .failures = options.failures};
+    if (options.failures > 0)
+        robustness.losses = worstFailures(scene, coverage, options.failures, options.requirements);
+    const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
+    if (options.crowd) {
+        robustness.crowd_of = options.crowd->of;
+        robustness.people = options.crowd->people;
+        robustness.crowd = measureCrowds(scene, coverage.report, options.measure,
+                                         crowdsOf(options, scene), options.requirements, *progress);
+    }
+    if (!options.perturb) return robustness;
+    robustness.tolerance = *options.perturb;
+    robustness.mounting =
+        perturbMounting(scene, coverage.report, options.measure, *options.perturb, kSamples,
+                        options.common.seed, options.requirements, *progress);
+    return robustness;
 }
 
 void writeProduct(const CoverageToolOptions& options, const SceneInput& input,

@@ -14,6 +14,7 @@
 #include "coverage/coverage_options.h"
 #include "coverage/requirement.h"
 #include "coverage/run_coverage.h"
+#include "report/robustness_report.h"
 #include "report/suggestion_report.h"
 
 namespace ispace {
@@ -34,6 +35,11 @@ std::optional<RunCoverage> lookAtRun(const CoverageToolOptions& options, const S
 /// Finds the changes of --suggest; nullopt without it. \param coverage of the scene
 std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInput& input,
                               const Coverage& coverage);
+
+/// Computes the results of --perturb, --failures and --crowd; nullopt without all. \param coverage
+/// of the scene \throws UsageError as worstFailures() UnmetError as CrowdFloor
+std::optional<Robustness> robustnessOf(const CoverageToolOptions& options, const Scene& scene,
+                                       const Coverage& coverage);
 
 /// Writes the map to -o, with its accompanying file. \pre there is a format
 void writeProduct(const CoverageToolOptions& options, const SceneInput& input,

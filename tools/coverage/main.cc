@@ -56,24 +56,25 @@ void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
 }
 
 std::string reportText(const CoverageToolOptions& options, const CoverageReport& report,
-                       const RunCoverage* run, const Advice* advice) {
-    if (options.json) return coverageJson(report, run, advice);
-    return coverageText(report) + (run == nullptr ? "" : "\n" + runText(*run)) +
-           (advice == nullptr ? "" : suggestionsText(*advice));
+                       const ReportParts& parts) {
+    if (options.json) return coverageJson(report, parts);
+    return coverageText(report) +
+           (parts.robustness == nullptr ? "" : robustnessText(*parts.robustness)) +
+           (parts.run == nullptr ? "" : "\n" + runText(*parts.run)) +
+           (parts.advice == nullptr ? "" : suggestionsText(*parts.advice));
 }
 
 /// Returns the bytes of --report.
 std::string reportFile(const CoverageToolOptions& options, const SceneInput& input,
-                       const Coverage& coverage, const Advice* advice) {
+                       const Coverage& coverage, const ReportParts& parts) {
     const std::string suffix = suffixOf(options.report);
-    if (suffix == "json") return coverageJson(coverage.report, options.map.run, advice);
+    if (suffix == "json") return coverageJson(coverage.report, parts);
     CoveragePageInput page{input.scene, coverage, "", options.history_line};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     for (const JunitCase& verdict : judge(options.requirements, coverage))
         page.requirements.push_back(
             {verdict.name, verdict.outcome == JunitCase::Outcome::Met, verdict.message});
-    page.advice = advice;
-    page.run = options.map.run;
+    page.parts = parts;
     const ReportPage pages = coveragePage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }
@@ -106,10 +107,13 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
         writeDependencies(options.common, files);
     }
     const std::optional<Advice> advice = suggest(options, input, measured.coverage);
-    const Advice* told = advice ? &*advice : nullptr;
+    const std::optional<Robustness> robustness =
+        robustnessOf(options, input.scene, measured.coverage);
+    const ReportParts parts{options.map.run, advice ? &*advice : nullptr,
+                            robustness ? &*robustness : nullptr};
     if (!options.report.empty())
-        writeAll(options.report, reportFile(options, input, measured.coverage, told));
-    writeAll("-", reportText(options, report, options.map.run, told));
+        writeAll(options.report, reportFile(options, input, measured.coverage, parts));
+    writeAll("-", reportText(options, report, parts));
     talk(options.common, "coverage",
          std::to_string(report.sensors.size()) + " sensors measured on " +
              std::to_string(measured.coverage.target.grid.size()) + " cells");

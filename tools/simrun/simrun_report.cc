@@ -25,9 +25,9 @@ std::string reportFile(const SimrunOptions& options, const SceneInput& input,
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     for (const RunVerdict& verdict : judge.verdicts())
         page.requirements.push_back({verdict.expectation, verdict.is_met, verdict.reason});
-    page.run = &run;
+    page.parts.run = &run;
     const std::string suffix = suffixOf(options.report);
-    if (suffix == "json") return coverageJson(coverage.report, &run);
+    if (suffix == "json") return coverageJson(coverage.report, {.run = &run});
     const ReportPage pages = coveragePage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }

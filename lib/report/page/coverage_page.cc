@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
@@ -82,18 +83,19 @@ PageSection summaryOf(const CoveragePageInput& input) {
                 squareMetres(report.unseen.front().area) + " around " +
                 pointText(report.unseen.front().place) + ".";
     section.blocks.push_back(PageText{std::move(seen)});
-    if (input.run != nullptr && !input.run->all.time_shares.empty())
+    if (input.parts.run != nullptr && !input.parts.run->all.time_shares.empty())
         section.blocks.push_back(PageText{
-            "In the run of " + formatFixed(input.run->end - input.run->begin, 2) +
+            "In the run of " + formatFixed(input.parts.run->end - input.parts.run->begin, 2) +
             " s robots and people were seen for " +
-            percentText(1 - input.run->all.time_shares.front()) + " of their time; " +
-            (input.run->all.longest_gap
+            percentText(1 - input.parts.run->all.time_shares.front()) + " of their time; " +
+            (input.parts.run->all.longest_gap
                  ? "the longest time without sight was " +
-                       formatFixed(
-                           input.run->all.longest_gap->end - input.run->all.longest_gap->begin, 2) +
+                       formatFixed(input.parts.run->all.longest_gap->end -
+                                       input.parts.run->all.longest_gap->begin,
+                                   2) +
                        " s."
                  : "sight was never lost.")});
-    if (input.requirements.empty() && input.run == nullptr)
+    if (input.requirements.empty() && input.parts.run == nullptr)
         section.blocks.push_back(
             PageText{"No requirement was given; --require 90% checks one.", Tone::Small});
     for (const JudgedRequirement& one : input.requirements)
@@ -199,27 +201,54 @@ void addInstallation(const CoveragePageInput& input, ReportPage& page) {
 }
 
 void addAdvice(const CoveragePageInput& input, ReportPage& page) {
-    if (input.advice == nullptr) return;
+    if (input.parts.advice == nullptr) return;
     PageSection section{"advice", "Suggestions", {}};
-    if (input.advice->suggestions.empty())
+    if (input.parts.advice->suggestions.empty())
         section.blocks.push_back(PageText{"No change of one sensor or piece of furniture helps."});
-    for (const Suggestion& suggestion : input.advice->suggestions) {
+    for (const Suggestion& suggestion : input.parts.advice->suggestions) {
         section.blocks.push_back(
             PageText{printable(suggestion.text) + ": " + gainText(suggestion) + "."});
-        section.blocks.push_back(PageCode{commandOf(suggestion, input.advice->operands)});
+        section.blocks.push_back(PageCode{commandOf(suggestion, input.parts.advice->operands)});
     }
+    page.sections.push_back(std::move(section));
+}
+
+/// Makes a table of rows with their heads.
+PageTable tableOf(std::string caption, std::string sides, std::vector<TextRow> rows) {
+    PageTable table{std::move(caption), std::move(sides), std::move(rows.front()), {}};
+    table.rows.assign(std::make_move_iterator(rows.begin() + 1),
+                      std::make_move_iterator(rows.end()));
+    return table;
+}
+
+void addRobustness(const CoveragePageInput& input, ReportPage& page) {
+    if (input.parts.robustness == nullptr) return;
+    const Robustness& robustness = *input.parts.robustness;
+    PageSection section{"robustness", "Robustness", {}};
+    if (robustness.mounting)
+        section.blocks.push_back(tableOf("sensors " + mountingText(robustness) + ", at random",
+                                         "lr", spreadRows(*robustness.mounting)));
+    if (robustness.crowd)
+        section.blocks.push_back(tableOf(
+            crowdText(robustness), "lr",
+            spreadRows(*robustness.crowd, robustness.crowd_of == Robustness::CrowdOf::Random)));
+    if (robustness.failures > 0)
+        section.blocks.push_back(
+            tableOf("if " + failuresText(robustness.failures), "lrrl", failureRows(robustness)));
+    for (const std::string& sentence : robustRequirements(robustness))
+        section.blocks.push_back(PageText{"Required " + sentence + "."});
     page.sections.push_back(std::move(section));
 }
 
 void addRun(const CoveragePageInput& input, ReportPage& page) {
     MapOptions options;
-    options.run = input.run;
+    options.run = input.parts.run;
     page.sections.push_back(
         {"run",
          "Recorded run",
          {PageFigure{"Ways of robots and people by the number of sensors that saw them.",
                      coverageMap(input.scene, input.coverage, options)},
-          PageCode{runText(*input.run)}}});
+          PageCode{runText(*input.parts.run)}}});
 }
 
 PageSection methodsOf(const CoveragePageInput& input) {
@@ -269,7 +298,7 @@ PageSection recordsOf(const CoveragePageInput& input) {
 
 ReportPage coveragePage(const CoveragePageInput& input) {
     ReportPage page;
-    const std::string_view subject = input.run == nullptr ? "coverage" : "run";
+    const std::string_view subject = input.parts.run == nullptr ? "coverage" : "run";
     page.title = input.name + (input.name.empty() ? "" : ": ") + std::string(subject);
     page.subtitle = sensorsText(input.scene) + " · " +
                     squareMetres(input.coverage.report.indoor_area) + " · " +
@@ -278,9 +307,10 @@ ReportPage coveragePage(const CoveragePageInput& input) {
     page.sections.push_back(mapOf(input));
     for (const PageSection& section : input.more) page.sections.push_back(section);
     addRequirements(input, page);
+    addRobustness(input, page);
     addAdvice(input, page);
     addInstallation(input, page);
-    if (input.run != nullptr) addRun(input, page);
+    if (input.parts.run != nullptr) addRun(input, page);
     page.sections.push_back(methodsOf(input));
     page.sections.push_back(recordsOf(input));
     return page;

@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "coverage/coverage.h"
-#include "coverage/run_coverage.h"
+#include "report/coverage_report.h"
 #include "report/page/page.h"
-#include "report/suggestion_report.h"
 #include "scene/scene.h"
 
 namespace ispace {
@@ -25,8 +24,7 @@ struct CoveragePageInput {
     std::string name;     ///< base name of ENV; "" from stdin
     std::string command;  ///< as in histories
     std::vector<JudgedRequirement> requirements = {};
-    const Advice* advice = nullptr;      ///< null: not requested
-    const RunCoverage* run = nullptr;    ///< null: no recorded run
+    ReportParts parts = {};
     std::vector<PageSection> more = {};  ///< of the tool that writes the page, after the map
 };
 
