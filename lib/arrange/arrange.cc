@@ -2,6 +2,7 @@
 #include "arrange/arrange.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <span>
 
@@ -10,6 +11,7 @@
 #include "arrange/objective.h"
 #include "arrange/over_poses.h"
 #include "arrange/refine.h"
+#include "arrange/search/alternatives.h"
 #include "arrange/search/greedy_search.h"
 #include "arrange/search/problem.h"
 #include "base/error.h"
@@ -209,6 +211,45 @@ std::vector<CurvePoint> curveTo(const SearchResult& found, const MeasuredScene& 
     return curve;
 }
 
+/// Returns true if sensors on both candidates count as the same, see kApart. Headings of round
+/// views do not count.
+bool areNear(const MeasuredScene& model, const Choice& a, const Choice& b) {
+    if (!(model.kinds()[a.kind].model == model.kinds()[b.kind].model)) return false;
+    const Pose3 one = model.poseOf(a), other = model.poseOf(b);
+    if (length(one.position - other.position) >= kApart) return false;
+    const auto is_round = [&model](const Choice& choice) {
+        const CandidateSet& set = *model.problem().kinds[choice.kind].candidates;
+        return set.rangeOf(choice.candidate).count ==
+               set.directedParts(set.siteOf(choice.candidate));
+    };
+    const auto apart = [](Angle angle) { return std::abs(wrapped(angle).degrees()); };
+    return apart(one.tilt - other.tilt) < kTurnedApart.degrees() &&
+           (apart(one.heading - other.heading) < kTurnedApart.degrees() ||
+            (is_round(a) && is_round(b)));
+}
+
+void addAlternatives(Arrangement& result, MeasuredScene& model, const Solution& best,
+                     Progress& progress) {
+    const NearChoices are_near = [&model](const Choice& a, const Choice& b) {
+        return areNear(model, a, b);
+    };
+    SearchOptions options = model.searchOptions();
+    options.share = SearchShare();  // stored steps are those of the first search
+    for (Solution& solution : alternativesTo(model.problem(), best, are_near,
+                                             static_cast<std::size_t>(model.options().alternatives),
+                                             options, progress)) {
+        takeEachOnce(solution.chosen);
+        Arrangement& other = result.alternatives.emplace_back();
+        other.candidates = result.candidates;
+        other.grid = result.grid;
+        other.is_complete = model.isComplete() && !progress.stopped();
+        other.candidate_value = model.share(solution.value);
+        other.bound = other.candidate_bound = result.candidate_bound;
+        other.sensors = model.placementsOf(solution.chosen);
+        measure(other, model);
+    }
+}
+
 Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& groups,
                            const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
     MeasuredScene model(scene, groups, options, progress);
@@ -245,6 +286,8 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
         result.is_complete = result.is_complete && !progress.stopped();
     }
     if (options.wants_trace) result.tried = model.triedPoses(chosen);
+    if (options.wants_gains) result.gains = model.gainMaps(chosen);
+    if (options.alternatives > 0) addAlternatives(result, model, found.best, progress);
     return result;
 }
 

@@ -84,7 +84,8 @@ struct ArrangeOptions {
     std::optional<double> target;  ///< share to reach at minimum cost
     bool over_poses = false;       ///< prove the number of sensors over all poses
     std::optional<double> budget;
-    bool wants_curve = false, wants_trace = false;
+    bool wants_curve = false, wants_trace = false, wants_gains = false;
+    int alternatives = 0;  ///< number of further layouts, see Arrangement::alternatives
 
     double plane = 0;                 ///< height at which all sensors but level lasers cover
     double pixel_density = 0;         ///< least pixels per metre where a camera covers; 0: no limit
@@ -126,6 +127,19 @@ struct PosesProof {
     [[nodiscard]] bool isProven() const { return cover > 0 && cover == bound; }
 };
 
+/// The gain of the candidates of one sensor of a layout.
+struct GainMap {
+    std::string sensor;                  ///< its id
+    std::vector<Placement> before = {};  ///< sensors that are placed already
+    /// The candidates of its kind, each with the share of the total weight that it would add to
+    /// those, and to the standing sensors.
+    std::vector<TriedPose> poses = {};
+};
+
+/// Sensors of one model nearer than both count as the same in alternatives.
+constexpr double kApart = 1;  ///< metres
+constexpr Angle kTurnedApart = Angle::degrees(30);
+
 /// Poses of the sensors and their coverage.
 struct Arrangement {
     std::vector<Placement> sensors;  ///< by group
@@ -163,6 +177,11 @@ struct Arrangement {
 
     std::vector<CurvePoint> curve;
     std::vector<TriedPose> tried;
+    /// One for each sensor, on its candidate, in the order of greedy search among the sensors.
+    std::vector<GainMap> gains;
+    /// Further layouts of candidates, the best first, each without a sensor within kApart and
+    /// kTurnedApart of some sensor of every layout before it. `bound` is that of all layouts.
+    std::vector<Arrangement> alternatives;
     /// Exact weighted area, m2. Equal if refining found no improvement: all sensors then stand on
     /// candidates.
     double refined_before = 0, refined_after = 0;

@@ -264,6 +264,47 @@ std::vector<TriedPose> MeasuredScene::triedPoses(const std::vector<Choice>& chos
     return all;
 }
 
+std::vector<GainMap> MeasuredScene::gainMaps(std::vector<Choice> chosen) const {
+    std::vector<Placement> placements = placementsOf(chosen);
+    std::vector<std::uint32_t> times(problem_.cells());
+    for (std::size_t i = 0; i < times.size(); ++i) times[i] = problem_.achieved[i];
+    std::vector<GainMap> maps;
+    std::vector<Placement> before;
+    while (!chosen.empty()) {
+        std::vector<std::uint32_t> left = problem_.weights;
+        for (std::size_t i = 0; i < left.size(); ++i)
+            if (times[i] >= static_cast<std::uint32_t>(problem_.required)) left[i] = 0;
+        const WeightSums weights(left);
+        const auto gain_of = [&](const Choice& choice) {
+            return problem_.kinds[choice.kind].candidates->weigh(choice.candidate, weights);
+        };
+        const auto next = std::max_element(
+            chosen.begin(), chosen.end(),
+            [&](const Choice& a, const Choice& b) { return gain_of(a) < gain_of(b); });
+        const auto [kind, candidate] = *next;
+        const Pose3 pose = poseOf(*next);
+        const auto placed = std::find_if(
+            placements.begin(), placements.end(), [&, kind = kind](const Placement& placement) {
+                return placement.kind == kind && placement.pose == pose;
+            });
+        GainMap& map = maps.emplace_back(GainMap{placed->sensor, before});
+        const CandidateSet& set = *problem_.kinds[kind].candidates;
+        std::vector<std::uint32_t> values(set.size());
+        set.weighAll(weights, values);
+        const double part =
+            static_cast<double>(problem_.kinds[kind].multiplicity) / problem_.required;
+        for (std::size_t i = 0; i < set.size(); ++i)
+            map.poses.push_back(
+                {map.sensor, poseOf({kind, i}), part * share(values[i]), i == candidate});
+        const auto added = static_cast<std::uint32_t>(problem_.kinds[kind].multiplicity);
+        set.cellsOf(candidate).forEach([&](std::size_t cell) { times[cell] += added; });
+        before.push_back(*placed);
+        placements.erase(placed);
+        chosen.erase(next);
+    }
+    return maps;
+}
+
 namespace {
 
 constexpr double kPi = std::numbers::pi;

@@ -91,6 +91,9 @@ class MeasuredScene {
     /// Returns every candidate with the share of the total weight that it would add to the standing
     /// coverage and, for a laser, its slice area (eq. 4.4) by the thesis' scan of the pose.
     [[nodiscard]] std::vector<TriedPose> triedPoses(const std::vector<Choice>& chosen);
+    /// Orders chosen sensors, the one that adds most to those before it first, and returns the gain
+    /// of the candidates for each of them.
+    [[nodiscard]] std::vector<GainMap> gainMaps(std::vector<Choice> chosen) const;
     /// Returns an upper bound of the value of these numbers of sensors at any poses; `most` by
     /// kind.
     [[nodiscard]] std::uint64_t maxFromAnyPlace(const std::vector<int>& most) const;

@@ -303,6 +303,15 @@ void ArrangeCommand::addFileOptions() {
                "also report the coverage of 1, 2, ... sensors, and write it to FILE (.csv, .png, "
                ".svg or .pdf)",
                Enters::Nothing);
+    constexpr int kMostAlternatives = 20;
+    line_.count("--alternatives", "N", options_.how.alternatives, 1, kMostAlternatives,
+                "also find N good layouts that differ by a metre or 30 degrees in some sensor, and "
+                "write them beside -o FILE.3dm as FILE-2.3dm, FILE-3.3dm, ...",
+                Enters::Nothing);
+    line_.file("--heat", "FILE", options_.heat_file,
+               "draw the floor that a sensor adds at each candidate site (.png, .svg, .pdf): for "
+               "the first sensor of the layout, in FILE-2, ... for the next ones",
+               Enters::Nothing);
     line_.file("--trace", "FILE", options_.trace_file,
                "write every candidate with its value as JSONL, for coverage --trace",
                Enters::Nothing);
@@ -318,8 +327,9 @@ void ArrangeCommand::addFileOptions() {
 
 void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
-    constexpr const char* kSingle[] = {"--curve",      "--trace", "--report",
-                                       "--export-mps", "--share", "--checkpoint-interval"};
+    constexpr const char* kSingle[] = {"--curve",        "--trace", "--report",
+                                       "--export-mps",   "--share", "--checkpoint-interval",
+                                       "--alternatives", "--heat"};
     checkBatchOptions(line_, options_.batch, options_.common, options_.operands, kSingle);
     if (!options_.batch.list.empty() && options_.places_file == "-")
         throw UsageError("--places: stdin is not read again for each line of LIST: give a file");
@@ -353,6 +363,7 @@ void ArrangeCommand::settle() {
     settleProof();
     how.wants_curve = !options_.curve_file.empty();
     how.wants_trace = !options_.trace_file.empty();
+    how.wants_gains = !options_.heat_file.empty();
     how.seed = options_.common.seed;
     how.search.swap.seed = options_.common.seed;
     settleFiles();
@@ -416,15 +427,26 @@ void ArrangeCommand::settleStrategy() {
 }
 
 void ArrangeCommand::settleFiles() const {
+    if (line_.given("--alternatives")) {
+        if (options_.how.target)
+            throw UsageError("--alternatives: with --target layouts differ in cost, not in value");
+        if (isStdout(options_.common.output))
+            throw UsageError("--alternatives writes files beside the layout: give -o FILE");
+        if (options_.batch.shard)
+            throw UsageError("--alternatives needs all of the search: give it to --merge");
+    }
     for (const auto& [name, file] : {std::pair("--curve", &options_.curve_file),
                                      {"--trace", &options_.trace_file},
                                      {"--report", &options_.report_file},
+                                     {"--heat", &options_.heat_file},
                                      {"--export-mps", &options_.mps_file}})
         if (isStdout(*file))
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
     if (!options_.curve_file.empty()) (void)outputFormat({}, options_.curve_file, curveFormats());
     if (!options_.report_file.empty())
         (void)outputFormat({}, options_.report_file, {"json", "html", "pdf"});
+    if (!options_.heat_file.empty())
+        (void)outputFormat({}, options_.heat_file, {"png", "svg", "pdf"});
 }
 
 void ArrangeCommand::addShareOptions() {
@@ -480,6 +502,7 @@ void ArrangeCommand::settleBatch() {
     for (const auto& [name, file] : {std::pair("--curve", &options_.curve_file),
                                      {"--trace", &options_.trace_file},
                                      {"--report", &options_.report_file},
+                                     {"--heat", &options_.heat_file},
                                      {"--export-mps", &options_.mps_file}})
         if (!file->empty())
             throw UsageError(std::string(name) + " needs all of the search: give it to --merge");
@@ -495,9 +518,12 @@ void ArrangeCommand::becomeMerge(const ArrangeToolOptions& merge, Shared what, i
     options_.curve_file = merge.curve_file;
     options_.mps_file = merge.mps_file;
     options_.report_file = merge.report_file;
+    options_.heat_file = merge.heat_file;
+    options_.how.wants_gains = merge.how.wants_gains;
     options_.batch = BatchOptions();
     options_.time_limit.reset();
     options_.how.wants_curve = merge.how.wants_curve;
+    options_.how.alternatives = merge.how.alternatives;
     options_.how.wants_trace = merge.how.wants_trace;
     options_.how.max_bytes = merge.how.max_bytes;
     options_.how.search.share.what = what;

@@ -27,7 +27,7 @@ struct ArrangeToolOptions {
     ArrangeOptions how;
     ZoneWords zones;
     std::string places_file;
-    std::string trace_file, curve_file, mps_file, report_file;
+    std::string trace_file, curve_file, mps_file, report_file, heat_file;
     std::optional<double> time_limit;  ///< seconds
     BatchOptions batch;
     double checkpoint_interval = 5;  ///< seconds, of --resume

@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "base/file.h"
+#include "base/message.h"
 #include "base/number.h"
 #include "cli/common_options.h"
+#include "report/map/map.h"
 #include "report/page/coverage_page.h"
 #include "trace/ray_world.h"
 
@@ -15,7 +17,8 @@ namespace ispace {
 namespace {
 
 /// Returns the lines that arrange prints, and the curve as a table.
-PageSection resultOf(const ArrangeWork& work, const Arrangement& arrangement) {
+PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
+                     const Arrangement& arrangement) {
     PageSection section{"result", "Result of the search", {}};
     constexpr std::string_view kTool = "arrange: ";
     Arrangement without_curve = arrangement;
@@ -29,6 +32,19 @@ PageSection resultOf(const ArrangeWork& work, const Arrangement& arrangement) {
         if (!line.empty()) section.blocks.push_back(PageText{std::string(line)});
         begin = end + 1;
     }
+    if (!arrangement.alternatives.empty()) {
+        PageTable others{"layouts that differ by a metre or 30 degrees in some sensor",
+                         "lrrr",
+                         {"layout", "value", "gap", "coverage"},
+                         {}};
+        for (std::size_t i = 0; i < arrangement.alternatives.size(); ++i) {
+            const Arrangement& other = arrangement.alternatives[i];
+            others.rows.push_back({baseName(numberedFile(options.common.output, i + 2)),
+                                   percentText(other.candidate_value), percentText(gapOf(other)),
+                                   percentText(other.coverage)});
+        }
+        section.blocks.push_back(std::move(others));
+    }
     if (arrangement.curve.empty()) return section;
     PageTable table{
         "coverage by the number of sensors", "rrr", {"sensors", "coverage", "at most"}, {}};
@@ -41,6 +57,27 @@ PageSection resultOf(const ArrangeWork& work, const Arrangement& arrangement) {
 
 }  // namespace
 
+void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
+               const Arrangement& arrangement) {
+    const std::string& file = options.heat_file;
+    const std::string suffix = suffixOf(file);
+    for (std::size_t i = 0; i < arrangement.gains.size(); ++i) {
+        const GainMap& gains = arrangement.gains[i];
+        const Scene scene = withPlaced(work.input.scene, work.groups, gains.before);
+        Worlds worlds(scene.environment);
+        const Coverage coverage = measureCoverage(
+            scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
+        MapOptions map;
+        map.format = suffix == "svg"   ? PictureFormat::Svg
+                     : suffix == "pdf" ? PictureFormat::Pdf
+                                       : PictureFormat::Png;
+        map.title = "gain of " + printable(gains.sensor) + ", after " +
+                    std::to_string(gains.before.size()) + " placed";
+        map.trace = gains.poses;
+        writeAll(i == 0 ? file : numberedFile(file, i + 1), drawCoverageMap(scene, coverage, map));
+    }
+}
+
 std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& work,
                        const Arrangement& arrangement, const Document& layout,
                        const std::string& command) {
@@ -51,7 +88,7 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
     if (suffixOf(options.report_file) == "json") return coverageJson(coverage.report);
     CoveragePageInput page{scene, coverage, "", command};
     if (work.input.environment_operand != "-") page.name = baseName(work.input.environment_operand);
-    page.more.push_back(resultOf(work, arrangement));
+    page.more.push_back(resultOf(options, work, arrangement));
     const ReportPage pages = coveragePage(page);
     return suffixOf(options.report_file) == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }

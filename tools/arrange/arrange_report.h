@@ -8,6 +8,10 @@
 
 namespace ispace {
 
+/// Draws Arrangement::gains, a picture for each sensor, to the files of --heat.
+void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
+               const Arrangement& arrangement);
+
 /// Returns the bytes of --report: the coverage of a layout that was found, as coverage --report
 /// writes it, with the result of the search.
 /// \param layout that was written \param command as in histories

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -218,12 +219,6 @@ std::string counted(std::size_t count, const char* one, const char* many) {
     return std::to_string(count) + ' ' + (count == 1 ? one : many);
 }
 
-/// Returns the gap as a share of the bound; 0 for a layout that is proven optimal.
-double gapOf(const Arrangement& arrangement) {
-    const double bound = arrangement.candidate_bound;
-    return bound > 0 ? std::max(0.0, (bound - arrangement.candidate_value) / bound) : 0;
-}
-
 /// Returns true if all cells are covered, but not all of the exact area between their centres.
 bool isShort(const Arrangement& arrangement) {
     return !arrangement.is_reached && arrangement.exact_share && arrangement.least;
@@ -317,6 +312,29 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
         text += "arrange: cost " + formatDouble(arrangement.cost) + " of a budget of " +
                 formatDouble(*how.budget) + '\n';
     if (!arrangement.curve.empty()) text += curveText(arrangement.curve);
+    return text;
+}
+
+double gapOf(const Arrangement& arrangement) {
+    const double bound = arrangement.candidate_bound;
+    return bound > 0 ? std::max(0.0, (bound - arrangement.candidate_value) / bound) : 0;
+}
+
+std::string numberedFile(const std::string& output, std::size_t number) {
+    const std::filesystem::path path(output);
+    const std::string name =
+        path.stem().string() + '-' + std::to_string(number) + path.extension().string();
+    return (path.parent_path() / name).string();
+}
+
+std::string alternativesText(const std::string& output, const Arrangement& arrangement) {
+    std::string text;
+    for (std::size_t i = 0; i < arrangement.alternatives.size(); ++i) {
+        const Arrangement& other = arrangement.alternatives[i];
+        text += "arrange: " + printable(numberedFile(output, i + 2)) + ": value " +
+                percentText(other.candidate_value) + ", gap " + percentText(gapOf(other)) +
+                ", coverage " + percentText(other.coverage) + '\n';
+    }
     return text;
 }
 

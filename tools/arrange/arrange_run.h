@@ -36,6 +36,14 @@ void checkGoals(const ArrangeToolOptions& options, const ArrangeWork& work,
 std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement);
 
 /// Returns the reason why a target was not reached, as a sentence without full stop.
+/// Returns the name of one of several outputs: "best-2.3dm".
+std::string numberedFile(const std::string& output, std::size_t number);
+/// Returns a line for each alternative, with its value and gap; "" without.
+std::string alternativesText(const std::string& output, const Arrangement& arrangement);
+/// Returns the gap between candidate value and bound as a share of the bound; 0 for a layout that
+/// is proven optimal.
+double gapOf(const Arrangement& arrangement);
+
 std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement);
 
 /// Lists redundant sensors as a sentence without full stop; "" without any.

@@ -44,8 +44,13 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
     if (!options.report_file.empty())
         writeAll(options.report_file,
                  reportFile(options, work, arrangement, layout, command.historyLine(input.named)));
+    if (!options.heat_file.empty()) writeHeat(options, work, arrangement);
     if (const std::string& file = options.curve_file; !file.empty())
         writeAll(file, curveFile(arrangement.curve, outputFormat({}, file, curveFormats())));
+    for (std::size_t i = 0; i < arrangement.alternatives.size(); ++i)
+        writeAll(numberedFile(options.common.output, i + 2),
+                 writeRecordText(layoutDocument(parts, input.layout ? &*input.layout : nullptr,
+                                                work.groups, arrangement.alternatives[i])));
     writeAll(options.common.output, writeRecordText(layout));
     writeDependencies(options.common, work.files);
 }
@@ -53,7 +58,14 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
 /// Reports the layout, and unmet requests.
 void report(const ArrangeToolOptions& options, const ArrangeWork& work,
             const Arrangement& arrangement) {
-    if (!options.common.quiet) writeLines("arrange", reportText(work.how, arrangement));
+    if (!options.common.quiet)
+        writeLines("arrange", reportText(work.how, arrangement) +
+                                  alternativesText(options.common.output, arrangement));
+    const auto asked = static_cast<std::size_t>(work.how.alternatives);
+    if (const std::size_t count = arrangement.alternatives.size(); count < asked)
+        tell(options.common, "arrange",
+             std::to_string(count) + " of " + std::to_string(asked) +
+                 " alternatives were found: the candidates have no more layouts that differ");
     talk(options.common, "arrange",
          "total effective area " + formatFixed(arrangement.area, 2) + " m2, cost " +
              formatDouble(arrangement.cost));
@@ -97,9 +109,17 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     claimOutput(options.curve_file, "--curve");
     claimOutput(options.mps_file, "--export-mps");
     claimOutput(options.report_file, "--report");
+    claimOutput(options.heat_file, "--heat");
     ArrangeWork work = readWork(options);
-    for (const std::string* file : {&options.common.output, &options.trace_file,
-                                    &options.curve_file, &options.mps_file, &options.report_file})
+    for (int i = 0; i < options.how.alternatives; ++i) {
+        const std::string file =
+            numberedFile(options.common.output, static_cast<std::size_t>(i) + 2);
+        claimOutput(file, "an alternative");
+        mustBeWritable(file);
+    }
+    for (const std::string* file :
+         {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file,
+          &options.report_file, &options.heat_file})
         mustBeWritable(*file);
     warnOfSearch(options, work);
     bool is_done = false;
