@@ -210,7 +210,7 @@ int GlbBuilder::addMesh(std::string_view name, const std::vector<Primitive>& pri
     return meshes_++;
 }
 
-void GlbBuilder::addNode(const GlbNode& node) {
+JsonWriter& GlbBuilder::beginNode(const GlbNode& node) {
     JsonWriter& json = item(nodes_json_.json, nodes_++).beginObject();
     json.key("name").value(node.name);
     if (node.mesh >= 0) json.key("mesh").value(node.mesh);
@@ -223,10 +223,28 @@ void GlbBuilder::addNode(const GlbNode& node) {
         if (const double scale = node.frame->scale; scale != 1)
             writeList(json.key("scale"), std::array{scale, scale, scale});
     }
+    return json;
+}
+
+void GlbBuilder::endNode(JsonWriter& json, const GlbNode& node) {
     if (!node.keyword.empty())
         json.key("extras").beginObject().key("keyword").value(node.keyword).endObject();
     json.endObject();
     nodes_json_.putAside();
+}
+
+void GlbBuilder::addNode(const GlbNode& node) { endNode(beginNode(node), node); }
+
+void GlbBuilder::addGroup(const GlbNode& node, int first) {
+    const int end = nodes_;
+    JsonWriter& json = beginNode(node);
+    if (first < end) {
+        json.key("children").beginArray();
+        for (int child = first; child < end; ++child) json.value(child);
+        json.endArray();
+    }
+    endNode(json, node);
+    groups_.push_back(end);
 }
 
 void GlbBuilder::writeExtras(JsonWriter& json) const {
@@ -270,11 +288,14 @@ std::vector<std::string_view> GlbBuilder::writeViews(JsonWriter& json,
     return parts;
 }
 
-void GlbBuilder::writeScene(JsonWriter& json, const std::array<double, 3>& origin) {
-    JsonWriter& nodes = item(nodes_json_.json, nodes_).beginObject().key("name").value("room");
+void GlbBuilder::writeScene(JsonWriter& json, const std::array<double, 3>& origin,
+                            std::string_view root) {
+    JsonWriter& nodes = item(nodes_json_.json, nodes_).beginObject().key("name").value(root);
     if (origin != std::array<double, 3>{}) writeList(nodes.key("translation"), origin);
     nodes.key("children").beginArray();
-    for (int child = 0; child < nodes_; ++child) nodes.value(child);
+    if (groups_.empty())
+        for (int child = 0; child < nodes_; ++child) nodes.value(child);
+    for (const int group : groups_) nodes.value(group);
     nodes.endArray().endObject();
     json.key("scene").value(0).key("scenes").beginArray().beginObject().key("nodes");
     json.beginArray().value(nodes_).endArray().endObject().endArray();
@@ -304,7 +325,7 @@ void GlbBuilder::Section::putAside() {
 }
 
 void GlbBuilder::finish(std::string_view records, const std::array<double, 3>& origin,
-                        const ByteSink& sink) {
+                        const ByteSink& sink, std::string_view root) {
     constexpr int kStride = sizeof(Vector);
     if (indices_.bytes() == 0) {  // a view has at least one byte
         positions_.append({Vector{}});
@@ -321,7 +342,7 @@ void GlbBuilder::finish(std::string_view records, const std::array<double, 3>& o
     json.key("generator").value("ispace").endObject();
     writeExtras(json);
     const std::vector<std::string_view> parts = writeViews(json, views);
-    writeScene(json, origin);
+    writeScene(json, origin, root);
     std::vector<std::string> text = {json.take()};
     const auto append = [&text](std::string_view key, Section& section) {
         if (section.isEmpty()) return;  // glTF has no empty lists

@@ -126,11 +126,16 @@ class GlbBuilder {
     /// \return its index \pre there are primitives
     int addMesh(std::string_view name, const std::vector<Primitive>& primitives);
     void addNode(const GlbNode& node);
+    /// Returns the number of nodes so far.
+    [[nodiscard]] int nodes() const { return nodes_; }
+    /// Adds a node without mesh whose children are the nodes from this number on.
+    void addGroup(const GlbNode& node, int first);
 
-    /// Writes the whole file. All nodes are children of a node `room` at `origin`, in glTF's axes.
+    /// Writes the whole file. All nodes, or all groups if there are any, are children of a node
+    /// `root` at `origin`, in glTF's axes.
     /// \throws FormatError as writeGlbContainer does
-    void finish(std::string_view records, const std::array<double, 3>& origin,
-                const ByteSink& sink);
+    void finish(std::string_view records, const std::array<double, 3>& origin, const ByteSink& sink,
+                std::string_view root = "room");
 
   private:
     // Accessors name views before the later ones are known: those of files follow the four.
@@ -162,7 +167,9 @@ class GlbBuilder {
     void writeExtras(JsonWriter& json) const;
     static std::vector<std::string_view> writeViews(JsonWriter& json,
                                                     const std::vector<ViewSpec>& views);
-    void writeScene(JsonWriter& json, const std::array<double, 3>& origin);
+    JsonWriter& beginNode(const GlbNode& node);
+    void endNode(JsonWriter& json, const GlbNode& node);
+    void writeScene(JsonWriter& json, const std::array<double, 3>& origin, std::string_view root);
 
     Blocks<GlbSurface::Vector> positions_, normals_;
     Blocks<std::uint32_t> indices_;
@@ -171,6 +178,7 @@ class GlbBuilder {
     std::map<std::pair<Material, bool>, int> materials_;
     Section materials_json_, meshes_json_, accessors_json_, nodes_json_;
     int material_count_ = 0, meshes_ = 0, accessors_ = 0, nodes_ = 0;
+    std::vector<int> groups_;
     int picture_view_ = -1;  ///< buffer view of the picture; -1: no picture
 };
 

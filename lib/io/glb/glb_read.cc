@@ -353,7 +353,10 @@ Document readGlb(std::string_view bytes, const std::string& name, const Schemas&
     return documentOf(glb, name, schemas);
 }
 
-std::optional<Document> readGlbFile(const std::string& file, const Schemas& schemas) {
+namespace {
+
+/// Opens a compiled file of records. \param file outlives the result
+std::optional<Glb> openRoom(const std::string& file) {
     std::error_code ignored;
     if (!mayBeRead(file) || !std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
     FileRanges ranges(openRegular(file), file);
@@ -367,8 +370,35 @@ std::optional<Document> readGlbFile(const std::string& file, const Schemas& sche
         std::string_view(head).substr(kGlbHead, span->json_end - kGlbHead);
     Glb glb(json, std::make_unique<DataInFile>(std::move(ranges), span->binary, span->binary_size),
             file);
-    if (!glb.isSound() || !glb.hasRecords()) return std::nullopt;
-    return documentOf(glb, file, schemas);
+    if (!glb.isSound() || !glb.hasRecords() || !isRecordText(glb.records())) return std::nullopt;
+    return glb;
+}
+
+}  // namespace
+
+std::optional<Document> readGlbFile(const std::string& file, const Schemas& schemas) {
+    auto glb = openRoom(file);
+    if (!glb) return std::nullopt;
+    return documentOf(*glb, file, schemas);
+}
+
+bool isGlbRoom(const std::string& file) { return openRoom(file).has_value(); }
+
+std::optional<std::string> glbOtherText(std::string_view bytes) {
+    if (!isGlb(bytes)) return std::nullopt;
+    const std::string name;
+    try {
+        Glb glb = glbOf(bytes, name);
+        if (!glb.hasRecords() || isRecordText(glb.records())) return std::nullopt;
+        return std::string(glb.records());
+    } catch (const FormatError&) {
+        return std::nullopt;  // readGlb() reports the error
+    }
+}
+
+void attachGlbMeshes(std::string_view bytes, const std::string& name,
+                     std::vector<Record>& records) {
+    glbOf(bytes, name).attachMeshes(records);
 }
 
 }  // namespace ispace

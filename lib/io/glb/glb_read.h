@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/glb/glb_write.h"
 #include "record/record.h"
@@ -25,8 +26,19 @@ Document readGlb(std::string_view bytes, const std::string& name, const Schemas&
 
 /// Reads the same from a file, but only its beginning and the views of the records and of the
 /// meshes that they name. Returns std::nullopt if it is not a regular file, not a sound binary glTF
-/// file or has no records of ours; readGlb() reports the reason.
+/// file, or has no records of one room; readGlb() reports the reason.
 /// \throws FormatError as readGlb; std::system_error
 std::optional<Document> readGlbFile(const std::string& file, const Schemas& schemas);
+
+/// Returns true for a file that readGlbFile() reads. Reads no meshes. \throws std::system_error
+bool isGlbRoom(const std::string& file);
+
+/// Returns the text in a compiled file that is not in the language of records, such as that of
+/// several scenes; std::nullopt for one of records, for other files and for damaged ones.
+std::optional<std::string> glbOtherText(std::string_view bytes);
+
+/// Sets the content of mesh records from the meshes stored in a compiled file.
+/// \throws FormatError as readGlb
+void attachGlbMeshes(std::string_view bytes, const std::string& name, std::vector<Record>& records);
 
 }  // namespace ispace

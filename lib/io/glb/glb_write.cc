@@ -333,4 +333,22 @@ void writeGlb(const Scene& scene, const Document& document, const ByteSink& sink
     builder.finish(records, gltfAxes(origin - Point3()), sink);
 }
 
+void writeGlb(std::span<const GlbPart> parts, std::string_view text, std::string_view root,
+              const ByteSink& sink) {
+    GlbBuilder builder;
+    for (const GlbPart& part : parts) {
+        const Point3 origin = meshOrigin(part.scene->environment.limits());
+        const int first = builder.nodes();
+        GlbScene nodes(builder, origin, nullptr);
+        addElements(part.scene->environment.elements(), origin, nodes);
+        for (const ModelNode& node : placedNodes(*part.scene, true)) nodes.add(node);
+        const Point3 placed = inWorld(Frame3(part.pose), origin);
+        builder.addGroup({part.name, part.keyword, -1,
+                          std::make_unique<const GlbNode::Frame>(
+                              GlbNode::Frame{gltfAxes(placed - Point3()), rotationOf(part.pose)})},
+                         first);
+    }
+    builder.finish(text, {}, sink, root);
+}
+
 }  // namespace ispace

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/file.h"
@@ -71,5 +73,16 @@ std::string writeGlb(const Scene& scene, const Document& document,
 /// Writes the same file piece by piece, without holding it in memory.
 void writeGlb(const Scene& scene, const Document& document, const ByteSink& sink,
               const FloorPicture* picture = nullptr);
+
+/// One of several scenes in a file.
+struct GlbPart {
+    std::string name, keyword;  ///< of its node
+    Pose3 pose;                 ///< of its frame; level
+    const Scene* scene = nullptr;
+};
+/// Writes several scenes to a file, each below a node of its own, which are children of the node
+/// `root`. \param text is stored where writeGlb() stores records \throws as that
+void writeGlb(std::span<const GlbPart> parts, std::string_view text, std::string_view root,
+              const ByteSink& sink);
 
 }  // namespace ispace

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "record/yaml/yaml.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,6 +34,10 @@ class YamlReader {
     /// \throws FormatError with the findings if the operand is invalid YAML or empty, if aliases
     ///         expand beyond the limit, or if there are too many includes
     YamlScene read(std::string_view bytes);
+    /// Reads the items below a node of the operand, with parts and defaults that hold below it.
+    YamlScene read(const YamlNode& node);
+    /// Raises the limits of aliases for the operand's size.
+    void grant(std::size_t bytes) { values_.grant(bytes); }
     /// Returns the included files, each once, as opened.
     [[nodiscard]] const std::vector<std::string>& files() const { return includes_.files(); }
 
@@ -97,22 +104,17 @@ void checkIndentation(std::string_view bytes, const std::string& name) {
     findings.throwIfAny();
 }
 
-/// Parses the nodes of a YAML file that is not empty.
-std::unique_ptr<const YamlTree> parse(std::string_view bytes, const std::string& name) {
-    checkTextBytes(bytes, name);
-    checkIndentation(bytes, name);
-    auto tree = std::make_unique<const YamlTree>(bytes, name);
-    if (tree->top().kind == Kind::Null)
-        throw FormatError({name, 0, 0, "no records found, wanted a list or map of records"});
-    return tree;
+YamlScene YamlReader::read(std::string_view bytes) {
+    values_.grant(bytes.size());
+    const auto tree = parseYaml(bytes, *collector_->file().file);
+    return read(tree->top());
 }
 
-YamlScene YamlReader::read(std::string_view bytes) {
-    file_.place = collector_->file();
-    values_.grant(bytes.size());
-    const auto tree = parse(withoutBom(bytes), *file_.place.file);
-    readTop(tree->top(), scene_.items);
-    return std::move(scene_);
+YamlScene YamlReader::read(const YamlNode& node) {
+    file_ = {collector_->file(), {}, {}, {}};
+    item_reader_.defaults().clear();
+    readTop(node, scene_.items);
+    return std::exchange(scene_, {});
 }
 
 void YamlReader::readTop(const YamlNode& top, Items& items) {
@@ -260,7 +262,7 @@ void YamlReader::readIncluded(std::string_view bytes, Items& items) {
     try {
         if (isRecordText(bytes))
             return addRecords(readRecordText(bytes, name, collector_->schemas()).records, items);
-        tree = parse(withoutBom(bytes), name);
+        tree = parseYaml(bytes, name);
     } catch (const FormatError& error) {
         std::vector<Diagnostic> findings = error.diagnostics();
         for (Diagnostic& finding : findings) finding.message += file_.place.inclusion();
@@ -349,8 +351,19 @@ void YamlReader::resolveParts() {
     file_.pending.clear();
 }
 
-/// Reads the document kind and history after a magic first line, if present.
-Document readHead(std::string_view bytes, const std::string& name) {
+}  // namespace
+
+std::unique_ptr<const YamlTree> parseYaml(std::string_view bytes, const std::string& name) {
+    bytes = withoutBom(bytes);
+    checkTextBytes(bytes, name);
+    checkIndentation(bytes, name);
+    auto tree = std::make_unique<const YamlTree>(bytes, name);
+    if (tree->top().kind == YamlNode::Kind::Null)
+        throw FormatError({name, 0, 0, "no records found, wanted a list or map of records"});
+    return tree;
+}
+
+Document readYamlHead(std::string_view bytes, const std::string& name) {
     Document document;
     LineReader lines(withoutBom(bytes));
     const auto first = lines.next();
@@ -368,20 +381,37 @@ Document readHead(std::string_view bytes, const std::string& name) {
     return document;
 }
 
-}  // namespace
-
 Document readYaml(std::string_view bytes, const std::string& name, const Schemas& schemas,
                   const FileReader& read, std::optional<std::uint64_t> max_work,
                   IncludeFiles includes) {
     RecordCollector collector(name, schemas);
     YamlReader reader(collector, name, read, includes);
     YamlScene scene = reader.read(bytes);
-    Document document = readHead(bytes, name);
+    Document document = readYamlHead(bytes, name);
     document.records = expandItems(std::move(scene), collector, Budget(bytes.size(), max_work));
     document.sources = reader.files();
     findDoubledIds(document.records, collector.findings());
     collector.findings().throwIfAny();
     return document;
+}
+
+std::vector<Document> readYamlNodes(std::span<const YamlNode* const> nodes,
+                                    const YamlSource& source) {
+    RecordCollector collector(source.name, source.schemas);
+    YamlReader reader(collector, source.name, {}, source.includes);
+    reader.grant(source.bytes);
+    std::vector<Document> documents(nodes.size());
+    const std::uint64_t work = Budget(source.bytes, source.max_work).limit();
+    const std::uint64_t share = work / std::max<std::size_t>(nodes.size(), 1);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        Document& document = documents[i];
+        document.records =
+            expandItems(reader.read(*nodes[i]), collector, Budget(source.bytes, share));
+        findDoubledIds(document.records, collector.findings());
+    }
+    collector.findings().throwIfAny();
+    if (!documents.empty()) documents.front().sources = reader.files();
+    return documents;
 }
 
 }  // namespace ispace

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -75,6 +76,28 @@ enum class IncludeFiles {
 Document readYaml(std::string_view bytes, const std::string& name, const Schemas& schemas,
                   const FileReader& read = {}, std::optional<std::uint64_t> max_work = {},
                   IncludeFiles includes = IncludeFiles::InFolder);
+
+struct YamlNode;
+class YamlTree;
+
+/// Parses a YAML file of records. \throws FormatError as readYaml() does for the file as a whole
+std::unique_ptr<const YamlTree> parseYaml(std::string_view bytes, const std::string& name);
+/// Returns the document kind and the history of a YAML file, without records. \throws FormatError
+/// for another version
+Document readYamlHead(std::string_view bytes, const std::string& name);
+
+/// A YAML file that holds the records of several documents, each below a node.
+struct YamlSource {
+    std::size_t bytes = 0;  ///< size of the file
+    const std::string& name;
+    const Schemas& schemas;
+    std::optional<std::uint64_t> max_work = {};  ///< of the file; documents get equal parts
+    IncludeFiles includes = IncludeFiles::InFolder;
+};
+/// Reads a document below each of these nodes, as readYaml() does below the top of a file; parts
+/// and defaults hold in their document. \throws FormatError with the findings of all
+std::vector<Document> readYamlNodes(std::span<const YamlNode* const> nodes,
+                                    const YamlSource& source);
 
 /// Writes the document as YAML that readYaml accepts: magic line, history lines, and a list with
 /// one record a line, `- desk: {id: d1, at: [2, 3], heading: 30}`, with values in canonical form.
