@@ -154,6 +154,10 @@ const DeviceCatalogue& noDevices() {
 }  // namespace
 
 const DeviceCatalogue& devicesFor(std::initializer_list<const Document*> documents) {
+    return devicesFor(std::span(documents.begin(), documents.size()));
+}
+
+const DeviceCatalogue& devicesFor(std::span<const Document* const> documents) {
     for (const Document* const document : documents)
         if (document != nullptr &&
             std::any_of(document->records.begin(), document->records.end(), [](const Record& r) {
@@ -297,6 +301,14 @@ void addSceneRules(CommandLine& line, SceneRules& rules) {
                 "units of work that reading an input may take (default by its size, 1 to 20 "
                 "million; see envc(1), Work)",
                 Enters::Nothing);
+}
+
+void addStoreyOption(CommandLine& line, SceneRules& rules, const std::string& without) {
+    line.text("--storey", "ID", rules.storey,
+              "the storey of a building to take, by its id or name; layouts may have ids of the "
+              "storey or of the building (" +
+                  without + ")",
+              Enters::History);
 }
 
 std::uint64_t byteCount(const std::string& text) {

@@ -76,6 +76,7 @@ const DeviceCatalogue& shippedDevices();
 
 /// Likewise, but empty if no record names a model: reading them takes longer than a small room.
 const DeviceCatalogue& devicesFor(std::initializer_list<const Document*> documents);
+const DeviceCatalogue& devicesFor(std::span<const Document* const> documents);
 /// For values of --sensor: empty if all name bare kinds.
 const DeviceCatalogue& devicesForSensors(std::span<const std::string> specs);
 
@@ -120,6 +121,9 @@ void addDensityOption(CommandLine& line, double& pixels_per_metre);
 
 /// `--same-environment`, `--any-environment`, `--include-files` and `--max-work`.
 void addSceneRules(CommandLine& line, SceneRules& rules);
+
+/// `--storey`. \param without the effect of leaving it out, for help
+void addStoreyOption(CommandLine& line, SceneRules& rules, const std::string& without);
 
 /// Parses `500M`, `2G`, `1.5GB`: powers of 1024, any case. \throws UsageError
 std::uint64_t byteCount(const std::string& text);

@@ -2,10 +2,8 @@
 #include "cli/operands.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <iterator>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -13,11 +11,14 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/run_files.h"
+#include "building/building.h"
+#include "cli/building_operands.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "env/walls.h"
 #include "env/zone.h"
 #include "io/exporters.h"
+#include "io/glb/glb_read.h"
 #include "io/importers.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -33,6 +34,7 @@ ImportOptions defaultImport(const SceneRules& rules, ImportReport* report) {
     ImportOptions options;
     options.includes = rules.includes;
     options.max_work = rules.max_work;
+    options.storey = rules.storey;
     addModelFolders(options);
     options.report = report;
     return options;
@@ -46,6 +48,15 @@ Document parse(std::string_view bytes, const std::string& operand, const SceneRu
 Document read(const std::string& operand, const SceneRules& rules, ImportReport* report = nullptr) {
     return operand == "-" ? parse(readStdin(), operand, rules, report)
                           : readDocument(operand, defaultImport(rules, report), sceneSchemas());
+}
+
+/// Reads an operand that may be a building, of which it takes the storey of the rules.
+/// \param building receives the building
+Document readStorey(const std::string& operand, std::string_view bytes, const SceneRules& rules,
+                    ImportReport& report, std::optional<StoreyedDocument>& building) {
+    if (!isBuilding(bytes)) return parse(bytes, operand, rules, &report);
+    building = readBuilding(bytes, operand, defaultImport(rules, &report));
+    return chosenStorey(*building, operand, rules.storey);
 }
 
 bool hasPlaced(const Document& document, bool (*is_meant)(const SensorKind&)) {
@@ -136,14 +147,18 @@ class OperandReader {
     SceneInput read() {
         mustReadStdinOnce(request_.operands);
         named_ = request_.operands;
-        for (const std::string& operand : request_.operands)
-            take(operand, ispace::read(operand, request_.rules, &report_));
+        for (const std::string& operand : request_.operands) take(operand, readOperand(operand));
         if (wantsStdin()) {
             named_.emplace_back("-");
             takeLayoutFromStdin();
         }
         const bool is_operand = environment_.has_value();
         if (!is_operand) findEnvironment();
+        if (!request_.rules.storey.empty() && !building_ && !report_.has_storeys)
+            throw UsageError("--storey is about buildings, and " +
+                             displayName(environment_operand_) + " is one room");
+        if (layout_ && building_)
+            layout_ = layoutOfStorey(*layout_, *building_, request_.rules.storey);
         if (layout_)
             checkDigest(*layout_, {environment_->records, environment_operand_, is_operand},
                         request_.rules.same_environment, environment_->warnings);
@@ -156,6 +171,17 @@ class OperandReader {
     }
 
   private:
+    Document readOperand(const std::string& operand) {
+        // A compiled room is read in parts.
+        if (operand != "-")
+            if (auto room = readGlbFile(operand, sceneSchemas())) {
+                loadFiles(*room, operand);
+                return *std::move(room);
+            }
+        return readStorey(operand, operand == "-" ? readStdin() : readAll(operand), request_.rules,
+                          report_, building_);
+    }
+
     void take(const std::string& operand, Document document) {
         rebaseTextures(document.records, operand);
         if (document.kind == DocumentKind::Layout) {
@@ -206,7 +232,7 @@ class OperandReader {
         const std::string operand = (folder / reference->file).string();
         take(operand,
              documentReferenced(*reference, operand, layout_operand_, [&](std::string_view bytes) {
-                 return parse(bytes, operand, request_.rules, &report_);
+                 return readStorey(operand, bytes, request_.rules, report_, building_);
              }));
     }
 
@@ -215,6 +241,7 @@ class OperandReader {
     std::string environment_operand_, layout_operand_;
     std::vector<std::string> named_;
     ImportReport report_;
+    std::optional<StoreyedDocument> building_;  // of which the environment is a storey
 };
 
 }  // namespace
@@ -271,28 +298,6 @@ OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
             std::move(files), std::move(warnings)};
 }
 
-std::vector<std::string> filesOf(const SceneInput& input) {
-    std::vector<std::string> files{input.environment_operand};
-    if (input.layout) files.push_back(input.layout_operand);
-    const auto add = [&files](const Document& document) {
-        files.insert(files.end(), document.sources.begin(), document.sources.end());
-    };
-    add(input.environment);
-    if (input.layout) add(*input.layout);
-    return files;
-}
-
-std::string environmentFileFor(const std::string& output, const std::string& environment_operand) {
-    // Neither stdin nor a pipe by another name (/dev/stdin, <(…)) can be read again.
-    if (isStream(environment_operand)) return "";
-    const fs::path folder = output == "-" ? fs::path() : fs::path(output).parent_path();
-    const fs::path from = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder);
-    // The environment itself may be a deliberate link: only its folder is resolved.
-    const fs::path file(environment_operand);
-    const fs::path to = fs::weakly_canonical(file.has_parent_path() ? file.parent_path() : ".");
-    return (to / file.filename()).lexically_relative(from).string();
-}
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -317,21 +322,18 @@ void setInside(std::span<const Point2> points, std::vector<Document>& documents)
     }
 }
 
-/// The bytes of an input; an empty stdin may hold no records.
-struct RawInput {
-    std::string name, bytes;
-    bool is_plan = false;
-};
-
-RawInput readRaw(const std::string& input, const ImportOptions& import) {
-    RawInput raw{input, input == "-" ? readStdin() : readAll(input)};
-    raw.is_plan = isPlan(raw.bytes, input, import, sceneSchemas());
-    return raw;
-}
-
-Document parseInput(const RawInput& raw, const InputRequest& request, const ImportOptions& import) {
+/// Reads a room, a layout, or the storey of a building that the options name.
+/// \param building receives the building
+Document parseInput(const RawInput& raw, const InputRequest& request, const ImportOptions& import,
+                    std::optional<StoreyedDocument>& building) {
     if (raw.name == "-" && request.may_be_empty && isBlank(raw.bytes)) return {};
-    Document document = parseDocument(raw.bytes, raw.name, import, sceneSchemas());
+    Document document;
+    if (isBuilding(raw.bytes)) {
+        building = readBuilding(raw.bytes, raw.name, import);
+        document = chosenStorey(*building, raw.name, import.storey);
+    } else {
+        document = parseDocument(raw.bytes, raw.name, import, sceneSchemas());
+    }
     if (!isRecordText(raw.bytes)) checkIds(document.records);  // text records are checked when read
     rebaseFiles(document.records, folderOf(raw.name), "");
     return document;
@@ -353,10 +355,9 @@ void addKnown(std::span<const Record> records, ImportOptions& import) {
 }
 
 /// Parses all inputs in their order; plans last, as they require the records of the others.
-std::vector<Document> parseInputs(const InputRequest& request) {
-    std::vector<RawInput> raw;
-    for (const std::string& input : request.inputs) raw.push_back(readRaw(input, request.import));
+std::vector<Document> parseInputs(const std::vector<RawInput>& raw, const InputRequest& request) {
     std::vector<Document> documents(raw.size());
+    std::optional<StoreyedDocument> building;
     ImportOptions import = request.import;
     const bool any_plan =
         std::any_of(raw.begin(), raw.end(), [](const RawInput& input) { return input.is_plan; });
@@ -364,10 +365,16 @@ std::vector<Document> parseInputs(const InputRequest& request) {
     for (const bool plans : {false, true})
         for (std::size_t i = 0; i < raw.size(); ++i) {
             if (raw[i].is_plan != plans) continue;
-            documents[i] = parseInput(raw[i], request, import);
+            documents[i] = parseInput(raw[i], request, import, building);
             if (!plans && any_plan) addKnown(documents[i].records, import);
         }
     if (!any_plan && !import.inside.empty()) setInside(import.inside, documents);
+    if (building) {
+        if (import.report != nullptr) import.report->has_storeys = true;
+        for (Document& document : documents)
+            if (document.kind == DocumentKind::Layout)
+                document = layoutOfStorey(document, *building, import.storey);
+    }
     return documents;
 }
 
@@ -384,12 +391,17 @@ std::string addEnvironment(std::vector<Document>& documents, const InputRequest&
     for (std::size_t i = 0; i < documents.size(); ++i) {
         const auto reference = environmentReference(documents[i]);
         if (!reference || reference->file.empty()) continue;
+        std::optional<StoreyedDocument> building;
         // Names are relative to the current folder by now.
         Document environment = documentReferenced(
             *reference, reference->file, request.inputs[i], [&](const std::string& bytes) {
-                return parseInput({reference->file, bytes}, request, request.import);
+                return parseInput({reference->file, bytes}, request, request.import, building);
             });
         environment.sources.insert(environment.sources.begin(), reference->file);
+        if (building) {
+            if (request.import.report != nullptr) request.import.report->has_storeys = true;
+            documents[i] = layoutOfStorey(documents[i], *building, request.import.storey);
+        }
         documents.push_back(std::move(environment));
         return reference->file;
     }
@@ -411,35 +423,18 @@ Reference environmentAmong(std::vector<Document>& documents, const InputRequest&
 
 }  // namespace
 
-void rebaseFiles(std::vector<Record>& records, const std::string& from, const std::string& to) {
-    if (fs::path(from).lexically_normal() == fs::path(to).lexically_normal()) return;
-    const auto canonical = [](const std::string& folder) {
-        return fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder));
-    };
-    const fs::path old_base = canonical(from), new_base = canonical(to);
-    if (old_base == new_base) return;
-    for (Record& record : records)
-        for (const KeySpec& key : record.schema().keys) {
-            if (key.role != Role::File || !record.has(key.name)) continue;
-            const std::string& name = record.text(key.name);
-            if (fs::path(name).is_absolute() || name.empty()) continue;
-            record.set(key.name,
-                       (old_base / name).lexically_normal().lexically_relative(new_base).string(),
-                       record.keyPlace(key.name));
-        }
-}
-
-void addModelFolders(ImportOptions& options) {
-    for (const char* name : {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "SDF_PATH"}) {
-        const char* const value = std::getenv(name);
-        std::istringstream folders(value == nullptr ? "" : value);
-        for (std::string folder; std::getline(folders, folder, ':');)
-            if (!folder.empty()) options.model_folders.push_back(folder);
+std::vector<RawInput> readRawInputs(const InputRequest& request) {
+    std::vector<RawInput> raw;
+    for (const std::string& input : request.inputs) {
+        raw.push_back({input, input == "-" ? readStdin() : readAll(input)});
+        raw.back().is_plan = isPlan(raw.back().bytes, input, request.import, sceneSchemas());
     }
+    return raw;
 }
 
-Document readInputs(const InputRequest& request, std::vector<Diagnostic>& other_rooms) {
-    std::vector<Document> documents = parseInputs(request);
+Document readInputs(const std::vector<RawInput>& raw, const InputRequest& request,
+                    std::vector<Diagnostic>& other_rooms) {
+    std::vector<Document> documents = parseInputs(raw, request);
     Reference environment;
     if (request.compiles) environment = environmentAmong(documents, request);
     std::stable_sort(documents.begin(), documents.end(), [](const Document& a, const Document& b) {

@@ -24,6 +24,7 @@ struct SceneRules {
     std::optional<bool> same_environment = {};
     IncludeFiles includes = IncludeFiles::InFolder;
     std::optional<std::uint64_t> max_work = {};  ///< of each input, see Budget; unset: by its size
+    std::string storey = {};  ///< of --storey, to take out of a building; "": not given
 };
 
 /// Returns the changes that clients made to the world of a recorded run, which began in a scene.
@@ -106,13 +107,21 @@ struct InputRequest {
     bool may_be_empty = false;  ///< an empty stdin is an environment without records
 };
 
+/// The bytes of an input.
+struct RawInput {
+    std::string name, bytes;
+    bool is_plan = false;
+};
+std::vector<RawInput> readRawInputs(const InputRequest& request);
+
 /// Joins all inputs: environments in their order, then layouts: their records replace those with
 /// the same id. If only layouts are given and `compiles` is set, the environment that they name is
 /// read, too. File names are relative to the current folder; history, notes, warnings and sources
 /// are joined. \param other_rooms gets a warning for each layout with another digest and is no
 /// error \throws as parseDocument; FormatError for doubled ids and for a digest that must not
 /// differ
-Document readInputs(const InputRequest& request, std::vector<Diagnostic>& other_rooms);
+Document readInputs(const std::vector<RawInput>& raw, const InputRequest& request,
+                    std::vector<Diagnostic>& other_rooms);
 
 /// Rewrites file names in the records from relative to `from` to relative to `to`; "" is the
 /// current folder. Absolute names stay.

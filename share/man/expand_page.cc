@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "building/building_schemas.h"
 #include "cli/run_tool.h"
 #include "io/exporters.h"
 #include "record/schema.h"
@@ -13,6 +14,7 @@
 namespace {
 
 constexpr std::string_view kFormatsMark = "@EXPORT FORMATS@\n";
+constexpr std::string_view kBuildingMark = "@BUILDING RECORDS@\n";
 
 /// A paragraph each, with hyphens that can be copied.
 std::string formatsText() {
@@ -36,6 +38,12 @@ int main(int argc, char** argv) {
         std::string page = ispace::expandManual(ispace::readAll(argv[1]), ispace::sceneSchemas());
         if (const std::size_t at = page.find(kFormatsMark); at != std::string::npos)
             page.replace(at, kFormatsMark.size(), formatsText());
+        if (const std::size_t at = page.find(kBuildingMark); at != std::string::npos) {
+            std::string records;
+            for (const ispace::Schema& schema : ispace::buildingSchemas().all())
+                records += ispace::manualOf(schema);
+            page.replace(at, kBuildingMark.size(), records);
+        }
         ispace::writeAll(argv[2], page);
     });
 }

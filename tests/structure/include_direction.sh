@@ -23,8 +23,8 @@ violations() {
         layer("env", "raster record"); layer("scene", "env"); layer("drawing", "scene")
         layer("io", "drawing"); layer("trace", "scene"); layer("sense", "trace drawing")
         layer("coverage", "sense"); layer("arrange", "coverage"); layer("report", "arrange io")
-        layer("sim", "sense"); layer("server", "sim"); layer("client", "")
-        layer("cli", "server report")
+        layer("building", "report"); layer("sim", "sense"); layer("server", "sim"); layer("client", "")
+        layer("cli", "server building")
         heavy = "^(CGAL/|opencv2/|embree|rtcore|cairo|yaml-cpp/|tiny_gltf|tbb/|oneapi/|openssl/)"
         quiet = "(^|[^A-Za-z0-9_])(std::(cout|cerr|clog|cin)|(printf|fprintf|puts|fputs|putchar|" \
                 "perror|exit|_exit|quick_exit|abort|terminate|getenv|secure_getenv|setenv)[ ]*[(]|" \

@@ -143,6 +143,7 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     line_.group("Jobs");
     addShareOptions();
     addSceneRules(line_, options_.rules);
+    addStoreyOption(line_, options_.rules, "default: all storeys");
     addCommonOptions(line_, options_.common, "write the layout there (default: stdout)");
     line_.parse(argc, argv);
     settle();

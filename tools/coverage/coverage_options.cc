@@ -239,6 +239,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "their best value",
               Enters::Nothing);
     addSceneRules(line, o.rules);
+    addStoreyOption(line, o.rules, "default: all storeys");
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
     line.parse(argc, argv);
 

@@ -223,9 +223,10 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
                 "take the points of a cloud between two heights as walls (default: IFC is cut 1 m "
                 "above the floor, SDF at 0.3 m where its boxes enclose no room)",
                 Enters::History);
-    line.text("--storey", "NAME|NUMBER", import.storey,
-              "storey of an IFC building to read: its name, or its number from 1 for the lowest "
-              "(default: the lowest that has spaces or doors)",
+    line.text("--storey", "ID|NAME|NUMBER|all", import.storey,
+              "storey of a building to take out: its id or name (default: all of them); of IFC its "
+              "name, its number from 1 for the lowest, or all (default: the lowest that has spaces "
+              "or doors)",
               Enters::History);
     line.texts("--wall-layer", "GLOB", import.wall_layers,
                "layers of a drawing that hold walls (default: all others)", Enters::History);

@@ -16,6 +16,7 @@
 #include "cli/run_tool.h"
 #include "env/environment.h"
 #include "env/zone.h"
+#include "envc/envc_building.h"
 #include "envc/envc_options.h"
 #include "io/exporters.h"
 #include "io/importers.h"
@@ -46,7 +47,7 @@ void addZones(const EnvcOptions& options, Document& document) {
 
 /// \param found receives the rooms of plans; null: not requested
 /// \param report receives the other messages of the imports
-Document readModel(const EnvcOptions& options, FoundRooms* found, ImportReport& report) {
+InputRequest requestOf(const EnvcOptions& options, FoundRooms* found, ImportReport& report) {
     InputRequest request;
     request.inputs = options.inputs;
     request.import = options.import;
@@ -60,10 +61,15 @@ Document readModel(const EnvcOptions& options, FoundRooms* found, ImportReport& 
     request.import.max_work = options.rules.max_work;
     request.same_environment = options.rules.same_environment;
     request.may_be_empty = !options.edits.empty();
+    return request;
+}
+
+Document readModel(const EnvcOptions& options, const std::vector<RawInput>& raw,
+                   const InputRequest& request, ImportReport& report) {
     std::vector<Diagnostic> other_rooms;
-    Document document = readInputs(request, other_rooms);
+    Document document = readInputs(raw, request, other_rooms);
     if (!options.import.storey.empty() && !report.has_storeys)
-        throw UsageError("--storey is about buildings (IFC), and no input is one");
+        throw UsageError("--storey is about buildings, and no input is one");
     warn(options.common, "envc", other_rooms);
     document.records = edited(std::move(document.records), options.edits, sceneSchemas());
     if (request.compiles) loadFiles(document, "");
@@ -167,7 +173,11 @@ void envc(const EnvcOptions& options) {
     const bool wants_rooms =
         options.list_rooms || !options.report.empty() || (format != nullptr && format->draws_rooms);
     ImportReport report;
-    Document document = readModel(options, wants_rooms ? &found : nullptr, report);
+    const InputRequest request = requestOf(options, wants_rooms ? &found : nullptr, report);
+    const std::vector<RawInput> raw = readRawInputs(request);
+    if (auto building = readWholeBuilding(options, raw, request))
+        return writeBuilding(options, *std::move(building), report);
+    Document document = readModel(options, raw, request, report);
     std::vector<std::string> files = options.inputs;
     files.insert(files.end(), document.sources.begin(), document.sources.end());
     if (options.list_rooms && !found.any_plan)

@@ -145,6 +145,7 @@ void ScanCommand::declare() {
     line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",
                Enters::Nothing);
     addSceneRules(line_, o.rules);
+    addStoreyOption(line_, o.rules, "default: all storeys");
     addCommonOptions(line_, o.common,
                      "write the readings there: a file, a folder, or a pattern with %d (frame) and "
                      "%s (sensor) (default: stdout)");

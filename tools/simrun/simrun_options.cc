@@ -131,6 +131,7 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     line_.group("The server");
     declareServer();
     addSceneRules(line_, options_.rules);
+    addStoreyOption(line_, options_.rules, "a run has one");
     addCommonOptions(
         line_, options_.common,
         "draw the record of --replay there instead of serving it: the ways (.png, .svg, "

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "building/building.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/message.h"
+#include "base/run_files.h"
+#include "building/building_schemas.h"
+#include "io/exporters.h"
+#include "io/glb/glb_read.h"
+#include "io/import_records.h"
+#include "record/text.h"
+#include "record/yaml/yaml.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kStorey = "storey";
+
+/// Returns true if a line of records begins with the keyword.
+bool hasStoreyLine(std::string_view bytes) {
+    LineReader lines(bytes);
+    while (const auto line = lines.next()) {
+        const std::string_view text = trimmed(*line);
+        if (text.starts_with(kStorey) &&
+            (text.size() == kStorey.size() || text[kStorey.size()] == ' ' ||
+             text[kStorey.size()] == '\t'))
+            return true;
+    }
+    return false;
+}
+
+/// Returns true for YAML with the keyword at its top.
+bool hasStoreyNode(std::string_view bytes) {
+    try {
+        const auto tree = parseYaml(bytes, "");
+        const YamlNode& top = tree->top();
+        const auto has_key = [](const YamlNode& map) {
+            if (map.kind != YamlNode::Kind::Map) return false;
+            for (std::size_t i = 0; i + 1 < map.items.size(); i += 2)
+                if (map.items[i]->scalar == kStorey) return true;
+            return false;
+        };
+        if (top.kind == YamlNode::Kind::List)
+            return std::any_of(top.items.begin(), top.items.end(),
+                               [&](const YamlNode* item) { return has_key(*item); });
+        return has_key(top);
+    } catch (const FormatError&) {
+        return false;  // the reader of rooms reports the error
+    }
+}
+
+/// Ids of storeys in `storeys=`.
+std::vector<std::string> namesIn(const std::string& list) {
+    std::vector<std::string> names(1);
+    for (const char c : list) {
+        if (c == ',')
+            names.emplace_back();
+        else if (c != ' ')
+            names.back() += c;
+    }
+    return names;
+}
+
+std::vector<std::string> idsOf(const std::vector<Storey>& storeys) {
+    std::vector<std::string> ids;
+    ids.reserve(storeys.size());
+    for (const Storey& storey : storeys) ids.push_back(storey.id);
+    return ids;
+}
+
+/// Resolves the storeys of a passage. Reports unknown, doubled and missing ones.
+std::vector<std::size_t> storeysOf(const Record& record, const std::vector<Storey>& storeys,
+                                   Diagnostics& findings) {
+    std::vector<std::size_t> found;
+    const auto report = [&](const std::string& message) {
+        findings.add(record.finding("storeys", record.keyword() + ": " + message));
+    };
+    for (const std::string& name : namesIn(record.text("storeys"))) {
+        const auto at = std::find_if(storeys.begin(), storeys.end(),
+                                     [&](const Storey& storey) { return storey.id == name; });
+        if (at == storeys.end()) {
+            report("the building has no storey " + excerpt(name) +
+                   spellingHint(name, idsOf(storeys)));
+            return {};
+        }
+        found.push_back(static_cast<std::size_t>(at - storeys.begin()));
+    }
+    std::sort(found.begin(), found.end());
+    if (std::adjacent_find(found.begin(), found.end()) != found.end())
+        report("a storey is named twice");
+    else if (found.size() < 2)
+        report("it joins one storey, two or more are wanted");
+    return found;
+}
+
+/// Reads the rooms of files, each once.
+class RoomFiles {
+  public:
+    RoomFiles(const std::string& operand, const ImportOptions& options)
+        : operand_(operand), options_(options) {
+        options_.storey.clear();
+    }
+
+    /// \throws FormatError, std::system_error
+    std::shared_ptr<const Document> read(const Record& record) {
+        const std::string& name = record.text("file");
+        const std::string path = sideFilePath(operand_, name);
+        checkPlace(record, name, path);
+        const auto [known, is_new] = rooms_.try_emplace(fs::canonical(path).string());
+        if (is_new) known->second = readRoom(record, name, path);
+        return known->second;
+    }
+    [[nodiscard]] std::vector<std::string> takeSources() { return std::move(sources_); }
+
+  private:
+    [[noreturn]] static void refuse(const Record& record, const std::string& message) {
+        throw FormatError(record.finding("file", message));
+    }
+
+    void checkPlace(const Record& record, const std::string& name, const std::string& path) const {
+        std::error_code error;
+        const fs::path file = fs::canonical(path, error);
+        if (error || !mayBeRead(file.string()))
+            refuse(record, "the room " + excerpt(name) + " cannot be opened: " +
+                               (error ? error.message() : "it may not be read"));
+        const fs::path parent = fs::path(operand_ == "-" ? "" : operand_).parent_path();
+        const fs::path folder = fs::canonical(parent.empty() ? fs::path(".") : parent);
+        if (options_.includes != IncludeFiles::Anywhere && !liesIn(folder, file))
+            refuse(record, "the room " + excerpt(name) +
+                               " lies outside the folder of the building: put it there, or allow "
+                               "it with --include-files anywhere");
+    }
+
+    std::shared_ptr<const Document> readRoom(const Record& record, const std::string& name,
+                                             const std::string& path) {
+        const std::string bytes = readAll(path, InputKind::Regular);
+        if (isBuilding(bytes))
+            refuse(record, "a storey is one room, and " + excerpt(name) + " is a building");
+        Document room = parseDocument(bytes, path, options_, sceneSchemas());
+        if (room.kind != DocumentKind::Environment)
+            refuse(record, "a storey is a room, and " + excerpt(name) + " is a layout");
+        sources_.push_back(path);
+        sources_.insert(sources_.end(), room.sources.begin(), room.sources.end());
+        const fs::path folder = fs::path(name).parent_path();
+        for (Record& inner : room.records)
+            for (const KeySpec& key : inner.schema().keys)
+                if (key.role == Role::File && inner.has(key.name) && !folder.empty())
+                    inner.set(key.name, (folder / inner.text(key.name)).lexically_normal().string(),
+                              inner.keyPlace(key.name));
+        return std::make_shared<const Document>(std::move(room));
+    }
+
+    const std::string& operand_;
+    ImportOptions options_;
+    std::map<std::string, std::shared_ptr<const Document>> rooms_;  // by canonical path
+    std::vector<std::string> sources_;
+};
+
+/// Reads the rooms that records name; `rooms` has those inline.
+void readRooms(const std::vector<Record>& records, RoomFiles& files,
+               std::vector<std::shared_ptr<const Document>>& rooms) {
+    Diagnostics findings;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const Record& record = records[i];
+        if (record.keyword() != kStorey) continue;
+        const bool is_inline = rooms[i] != nullptr, has_file = record.has("file");
+        if (is_inline == has_file)
+            findings.add(
+                record.finding(is_inline ? "storey: `file` and `records` are given, one is wanted"
+                                         : "storey: its room is missing, wanted `file=ROOM` or, "
+                                           "in YAML, `records`"));
+        else if (has_file)
+            try {
+                rooms[i] = files.read(record);
+            } catch (const FormatError& error) {
+                findings.add(error);
+            }
+    }
+    findings.throwIfAny();
+}
+
+}  // namespace
+
+bool isBuilding(std::string_view bytes) {
+    if (isGlb(bytes)) return glbOtherText(bytes).has_value();
+    if (bytes.find(kStorey) == std::string_view::npos) return false;
+    bytes = withoutBom(bytes);
+    if (isRecordText(bytes)) return hasStoreyLine(bytes);
+    constexpr std::size_t kLooked = 4096;
+    if (bytes.substr(0, kLooked).find('\0') != std::string_view::npos || isIfc(bytes)) return false;
+    return xmlRootName(bytes).empty() && hasStoreyNode(bytes);
+}
+
+std::string StoreyedDocument::digest() const {
+    std::string text;
+    for (const Storey& storey : storeys)
+        text += formatRecord(storey.record) + ' ' + environmentDigest(storey.room->records) + '\n';
+    for (const StoreyPassage& passage : passages) text += formatRecord(passage.record) + '\n';
+    return sha256(text);
+}
+
+std::string StoreyedDocument::storeyList() const {
+    std::string list;
+    for (const Storey& storey : storeys) list += (list.empty() ? "" : ", ") + storey.id;
+    return list;
+}
+
+const Storey& StoreyedDocument::storey(const std::string& called) const {
+    for (const Storey& storey : storeys)
+        if (storey.id == called) return storey;
+    for (const Storey& storey : storeys)
+        if (storey.record.has("name") && storey.record.text("name") == called) return storey;
+    throw UsageError("the building has no storey " + excerpt(called) +
+                     didYouMean(called, idsOf(storeys)) + " (" + storeyList() + ')');
+}
+
+StoreyedDocument makeBuilding(std::vector<StoreyInput> inputs, std::vector<Record> passages,
+                              const std::string& file) {
+    StoreyedDocument building;
+    Diagnostics findings;
+    std::vector<Record> all;
+    for (const StoreyInput& input : inputs) all.push_back(input.record);
+    all.insert(all.end(), passages.begin(), passages.end());
+    const std::vector<std::string> ids = assignIds(all);
+    findDoubledIds(all, findings);
+    if (inputs.empty()) findings.add({displayName(file), 0, 0, "the building has no storey"});
+    if (inputs.size() > kMaxStoreys)
+        findings.add({displayName(file), 0, 0,
+                      "the building has more than " + std::to_string(kMaxStoreys) + " storeys"});
+    findings.throwIfAny();
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        Record& record = inputs[i].record;
+        if (ids[i].find('/') != std::string::npos)
+            findings.add(record.finding("id",
+                                        "`/` in the id of a storey: it separates the storey "
+                                        "from ids in its room"));
+        record.erase("file");
+        const Tuple& at = record.tuple("at");
+        Storey storey{record,
+                      ids[i],
+                      {{at[0], at[1]}, record.angle("heading")},
+                      record.number("z"),
+                      {},
+                      std::move(inputs[i].room)};
+        if (record.has("height")) storey.height = record.number("height");
+        building.storeys.push_back(std::move(storey));
+    }
+    std::stable_sort(building.storeys.begin(), building.storeys.end(),
+                     [](const Storey& a, const Storey& b) { return a.floor < b.floor; });
+    for (std::size_t i = 0; i < passages.size(); ++i) {
+        auto storeys = storeysOf(passages[i], building.storeys, findings);
+        building.passages.push_back(
+            {std::move(passages[i]), ids[inputs.size() + i], std::move(storeys)});
+    }
+    findings.throwIfAny();
+    return building;
+}
+
+StoreyedDocument readBuilding(std::string_view bytes, const std::string& operand,
+                              const ImportOptions& options) {
+    const auto compiled = glbOtherText(bytes);
+    const std::string_view text = compiled ? std::string_view(*compiled) : bytes;
+    Document head;
+    std::vector<std::shared_ptr<const Document>> rooms;
+    if (isRecordText(text)) {
+        head = readRecordText(text, operand, buildingSchemas());
+        rooms.resize(head.records.size());
+    } else {
+        head = readYamlHead(text, operand);
+        head.records = readBuildingYaml(text, operand, options, rooms);
+    }
+    RoomFiles files(operand, options);
+    readRooms(head.records, files, rooms);
+    std::map<const Document*, std::shared_ptr<const Document>> loaded;
+    std::vector<StoreyInput> storeys;
+    std::vector<Record> passages;
+    std::vector<std::string> sources = files.takeSources();
+    for (std::size_t i = 0; i < head.records.size(); ++i) {
+        Record& record = head.records[i];
+        if (record.keyword() != kStorey) {
+            passages.push_back(std::move(record));
+            continue;
+        }
+        if (!record.has("file")) {
+            auto [room, is_new] = loaded.try_emplace(rooms[i].get());
+            if (is_new) {
+                auto copy = std::make_shared<Document>(*rooms[i]);
+                if (compiled) attachGlbMeshes(bytes, operand, copy->records);
+                if (options.load_files) loadFiles(*copy, operand);
+                sources.insert(sources.end(), copy->sources.begin(), copy->sources.end());
+                room->second = std::move(copy);
+            }
+            rooms[i] = room->second;
+        }
+        storeys.push_back({std::move(record), std::move(rooms[i])});
+    }
+    StoreyedDocument building = makeBuilding(std::move(storeys), std::move(passages), operand);
+    building.history = std::move(head.history);
+    building.sources = std::move(sources);
+    std::vector<const Document*> told;
+    for (const Storey& storey : building.storeys) {
+        if (std::find(told.begin(), told.end(), storey.room.get()) != told.end()) continue;
+        told.push_back(storey.room.get());
+        const Document& room = *storey.room;
+        for (const std::string& note : room.notes)
+            building.notes.push_back(storey.id + ": " + note);
+        building.warnings.insert(building.warnings.end(), room.warnings.begin(),
+                                 room.warnings.end());
+    }
+    return building;
+}
+
+}  // namespace ispace

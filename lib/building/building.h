@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lib/building: rooms above each other, and what joins them. It owns the scenes, one for each
+// storey; no code below it knows of storeys. Uses report and below.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geom/pose.h"
+#include "io/importers.h"
+#include "record/record.h"
+
+namespace ispace {
+
+/// A storey of a building. Its room has a frame of its own, in which its floor lies at z = 0.
+struct Storey {
+    Record record;  ///< of the keyword `storey`, without `file`
+    std::string id;
+    Pose2 building_from_storey;
+    double floor = 0;              ///< height of its floor in the building, metres
+    std::optional<double> height;  ///< up to the floor above, metres; empty: not given
+    /// Names of files in its records are relative to the folder of the building. Storeys of equal
+    /// files share it.
+    std::shared_ptr<const Document> room;
+};
+
+/// Stairs, a lift or a shaft, in the coordinates of the building.
+struct StoreyPassage {
+    Record record;
+    std::string id;
+    std::vector<std::size_t> storeys;  ///< indices in StoreyedDocument::storeys, lowest first
+};
+
+/// Most storeys of a building.
+constexpr std::size_t kMaxStoreys = 200;
+
+/// A building as files hold it.
+struct StoreyedDocument {
+    History history;
+    std::vector<Storey> storeys;          ///< lowest first, in the order of the file where level
+    std::vector<StoreyPassage> passages;  ///< in the order of the file
+    std::vector<std::string> sources;     ///< files read besides the operand
+    std::vector<std::string> notes;
+    std::vector<Diagnostic> warnings;
+
+    /// Returns the digest of the rooms' environments and of all that joins them.
+    [[nodiscard]] std::string digest() const;
+    /// Returns the ids, lowest first, as "ground, upper".
+    [[nodiscard]] std::string storeyList() const;
+    /// Finds a storey by its id, else by its name. \throws UsageError with the nearest id
+    [[nodiscard]] const Storey& storey(const std::string& called) const;
+};
+
+/// Returns true for a building: records or YAML with a storey, a compiled building, or a site of
+/// Open-RMF. O(bytes), without reading files
+bool isBuilding(std::string_view bytes);
+
+/// Reads a building and the rooms of its storeys.
+///
+/// In YAML, `records` of a storey holds its room inline, in the forms of readYaml(); an alias
+/// stands for an equal room. Files of storeys must lie in the folder of the building or below
+/// unless ImportOptions::includes allows others; equal files are read once. \throws FormatError
+/// with all findings: storeys without a room or with two, unknown storeys, and
+///         as the readers of the rooms
+StoreyedDocument readBuilding(std::string_view bytes, const std::string& operand,
+                              const ImportOptions& options);
+
+/// A storey record and its room.
+struct StoreyInput {
+    Record record;
+    std::shared_ptr<const Document> room;
+};
+/// Joins storeys and what connects them. \throws FormatError with all findings, which name `file`
+/// as a whole where records have no location
+StoreyedDocument makeBuilding(std::vector<StoreyInput> storeys, std::vector<Record> passages,
+                              const std::string& file);
+
+/// Reads the records of a building in YAML, and the rooms inline. \param rooms has an entry for
+/// each record; null: not inline
+std::vector<Record> readBuildingYaml(std::string_view bytes, const std::string& operand,
+                                     const ImportOptions& options,
+                                     std::vector<std::shared_ptr<const Document>>& rooms);
+
+/// Writes a building as YAML with its rooms inline; equal rooms are aliases. \param compiled
+/// records of meshes name their content by digest
+std::string writeBuildingYaml(const StoreyedDocument& building, bool compiled = false);
+
+/// A file of a building, by its name relative to that of the building.
+struct BuildingPart {
+    std::string name, bytes;
+};
+/// Writes a building as records: the files of its rooms, STEM-ID.env, then the building itself,
+/// whose name is "". Equal rooms share a file. \param stem name of the building without suffix
+std::vector<BuildingPart> writeBuildingRecords(const StoreyedDocument& building,
+                                               const std::string& stem);
+
+}  // namespace ispace

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "building/building_scene.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "base/message.h"
+#include "io/glb/glb_write.h"
+
+namespace ispace {
+
+namespace {
+
+bool refers(const KeySpec& key) { return key.role == Role::Carrier || key.role == Role::Reference; }
+
+/// Returns the record with `change` applied to its id and to the ids that it refers to.
+template <typename Change>
+Record withIds(Record record, const std::string& id, Change change) {
+    record.set("id", change(id));
+    for (const KeySpec& key : record.schema().keys)
+        if (refers(key) && record.has(key.name))
+            record.set(key.name, change(record.text(key.name)), record.keyPlace(key.name));
+    return record;
+}
+
+}  // namespace
+
+double BuildingScene::height(std::size_t storey) const {
+    return document.storeys[storey].height.value_or(scenes[storey]->environment.height());
+}
+
+Point2 inStorey(const Storey& storey, Point2 p) {
+    const Pose2& frame = storey.building_from_storey;
+    const Frame3 axes({{frame.position.x, frame.position.y, 0}, frame.heading, {}, {}});
+    const Vec3 local = axes.toLocal({p.x, p.y, 0});
+    return {local.x, local.y};
+}
+
+std::vector<Document> layoutsOf(const Document& layout, const StoreyedDocument& building) {
+    std::vector<Document> layouts(building.storeys.size());
+    for (Document& one : layouts) one.kind = DocumentKind::Layout;
+    Diagnostics findings;
+    for (const Record& record : layout.records) {
+        if (record.schema().type == RecordType::Meta) continue;
+        const std::string id = record.writtenId();
+        const auto storey =
+            std::find_if(building.storeys.begin(), building.storeys.end(),
+                         [&](const Storey& one) { return id.starts_with(one.id + '/'); });
+        if (storey == building.storeys.end()) {
+            findings.add(record.finding(
+                "id", (id.empty() ? record.keyword() + " has no id" : excerpt(id)) +
+                          ", wanted one that begins with its storey, such as `" +
+                          building.storeys.front().id + '/' + (id.empty() ? "l1" : id) +
+                          "`; storeys: " + building.storeyList()));
+            continue;
+        }
+        const std::string prefix = storey->id + '/';
+        const auto plain = [&](const std::string& whole) {
+            return whole.starts_with(prefix) ? whole.substr(prefix.size()) : whole;
+        };
+        layouts[static_cast<std::size_t>(storey - building.storeys.begin())].records.push_back(
+            withIds(record, id, plain));
+    }
+    findings.throwIfAny();
+    return layouts;
+}
+
+Record inBuilding(const Storey& storey, Record record, const std::string& id) {
+    return withIds(std::move(record), id,
+                   [&](const std::string& plain) { return wholeId(storey, plain); });
+}
+
+BuildingScene makeBuildingScene(StoreyedDocument document, const std::vector<Document>& layouts,
+                                const DeviceCatalogue& devices) {
+    BuildingScene building{std::move(document), {}, devices};
+    std::map<const Document*, std::shared_ptr<const Scene>> bare;
+    for (std::size_t i = 0; i < building.document.storeys.size(); ++i) {
+        const Document& room = *building.document.storeys[i].room;
+        auto& plain = bare[&room];
+        const bool has_layout = !layouts.empty() && !layouts[i].records.empty();
+        if (plain == nullptr)
+            plain = std::make_shared<const Scene>(makeScene(room, nullptr, devices));
+        building.scenes.push_back(has_layout ? std::make_shared<const Scene>(makeScene(
+                                                   room, &layouts[i], devices, plain.get()))
+                                             : plain);
+    }
+    return building;
+}
+
+void writeBuildingGlb(const BuildingScene& building, const ByteSink& sink) {
+    std::vector<GlbPart> parts;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const Storey& storey = building.document.storeys[i];
+        const Point2 at = storey.building_from_storey.position;
+        parts.push_back({storey.id,
+                         "storey",
+                         {{at.x, at.y, storey.floor}, storey.building_from_storey.heading, {}, {}},
+                         building.scenes[i].get()});
+    }
+    writeGlb(parts, writeBuildingYaml(building.document, true), "building", sink);
+}
+
+}  // namespace ispace

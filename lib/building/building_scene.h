@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scenes of a building, one for each storey, and reports and drawings of all of them.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "building/building.h"
+#include "drawing/drawing.h"
+#include "scene/devices.h"
+#include "scene/scene.h"
+
+namespace ispace {
+
+/// A building and the scene of each storey. Storeys of one room without a layout share a scene.
+struct BuildingScene {
+    StoreyedDocument document;
+    std::vector<std::shared_ptr<const Scene>> scenes;  ///< by storey
+    DeviceCatalogue devices = {};                      ///< of the scenes
+
+    /// Returns the height of a storey: as given, else that of its highest wall.
+    [[nodiscard]] double height(std::size_t storey) const;
+};
+
+/// Converts a point of the building to the frame of a storey.
+Point2 inStorey(const Storey& storey, Point2 p);
+
+/// Returns the id of a thing across the building: "ground/d1".
+inline std::string wholeId(const Storey& storey, const std::string& id) {
+    return storey.id + '/' + id;
+}
+
+/// Splits a layout by storey: ids become plain, and so do ids in references. `environment` and
+/// `result` records are left out. Returns a document for each storey, empty for one without
+/// records. \throws FormatError with all records whose ids begin with no storey
+std::vector<Document> layoutsOf(const Document& layout, const StoreyedDocument& building);
+
+/// Returns the record of a storey's room or layout as it stands in a layout of the building, with
+/// the storey before its id and those that it refers to. \param id of the record, see assignIds()
+Record inBuilding(const Storey& storey, Record record, const std::string& id);
+
+/// Builds the scenes. \param layouts by storey; empty: none \throws FormatError as makeScene()
+BuildingScene makeBuildingScene(StoreyedDocument document, const std::vector<Document>& layouts,
+                                const DeviceCatalogue& devices);
+
+/// Checks what joins the storeys, and their heights; not the rooms, which checkScene() checks.
+///
+/// - stairs: a flight that begins or ends in a wall, in a solid or outside of the rooms;
+/// - lifts: without a door, with one wider than the cabin, with a load that is no number of
+///   kilograms, or that open in a wall or outside of the rooms;
+/// - shafts: outlines with less than three corners or that cross themselves;
+/// - storeys of one part of the building that overlap in height.
+std::vector<Diagnostic> checkBuilding(const BuildingScene& building);
+
+/// Returns one JSON object and a newline, schema ispace-building-info/1: by storey and in sum.
+std::string buildingInfoJson(const BuildingScene& building);
+std::string buildingInfoText(const BuildingScene& building);
+
+/// Draws pictures of the storeys, the lowest at the bottom, in panels below each other.
+/// \pre all have the unit of the page, and there is one
+Picture panelsOf(const std::vector<Picture>& pictures);
+
+/// Draws the plan of each storey in a panel. \param width of a PNG in pixels
+std::string drawBuilding(const BuildingScene& building, PictureFormat format, int width,
+                         const std::string& title);
+
+/// Writes a compiled building: glTF with a node for each storey, and the building as YAML in the
+/// position of records.
+void writeBuildingGlb(const BuildingScene& building, const ByteSink& sink);
+
+}  // namespace ispace

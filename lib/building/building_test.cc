@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "building/building.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "building/building_scene.h"
+#include "record/text.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRoom =
+    "{fence: {id: f, path: [[0, 0], [8, 0], [8, 6], [0, 6]], closed: yes}}";
+
+/// A building in YAML of two storeys of one room, with more records.
+std::string twoStoreys(const std::string& more = "", double z = 3) {
+    return "- storey: {id: ground, height: 3, records: &room [" + std::string(kRoom) + "]}\n" +
+           "- storey: {id: upper, z: " + std::to_string(z) + ", height: 2.5, records: *room}\n" +
+           more;
+}
+
+StoreyedDocument read(const std::string& text) { return readBuilding(text, "house.yaml", {}); }
+
+BuildingScene sceneOf(const std::string& text) { return makeBuildingScene(read(text), {}, {}); }
+
+/// Returns the messages of the error, or "" without one.
+template <typename Act>
+std::string errorOf(const Act& act) {
+    try {
+        act();
+    } catch (const FormatError& error) {
+        std::string text;
+        for (const Diagnostic& finding : error.diagnostics()) text += finding.text() + '\n';
+        return text;
+    } catch (const UsageError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::vector<std::string> findingsIn(const std::string& text) {
+    std::vector<std::string> messages;
+    for (const Diagnostic& finding : checkBuilding(sceneOf(text)))
+        messages.push_back(finding.message);
+    return messages;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+/// A folder of files for a test.
+class TemporaryFolder {
+  public:
+    TemporaryFolder() : path_(fs::path(testing::TempDir()) / "building_test") {
+        fs::remove_all(path_);
+        fs::create_directories(path_);
+    }
+    ~TemporaryFolder() { fs::remove_all(path_); }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    std::string write(const std::string& name, const std::string& text) const {
+        fs::create_directories((path_ / name).parent_path());
+        std::ofstream(path_ / name) << text;
+        return (path_ / name).string();
+    }
+
+  private:
+    fs::path path_;
+};
+
+TEST(Building, IsToldFromRooms) {
+    EXPECT_TRUE(isBuilding("#env 1\n# by hand\n  storey id=a file=a.env\n"));
+    EXPECT_TRUE(isBuilding(twoStoreys()));
+    EXPECT_TRUE(isBuilding("storey: [{id: a, file: a.env}]\n"));
+    EXPECT_FALSE(isBuilding("#env 1\ndesk id=storey\n# storey\nzone id=z name=\"storey x\"\n"));
+    EXPECT_FALSE(isBuilding("- desk: {id: storey}\n"));
+    EXPECT_FALSE(isBuilding("storeys: 3\n"));
+    EXPECT_FALSE(isBuilding(""));
+    EXPECT_FALSE(isBuilding("- storey: {unclosed"));
+}
+
+TEST(Building, SortsStoreysByHeightAndSharesEqualRooms) {
+    const StoreyedDocument building =
+        read("- storey: {id: attic, z: 6, records: [" + std::string(kRoom) + "]}\n" + twoStoreys());
+    EXPECT_EQ(building.storeyList(), "ground, upper, attic");
+    EXPECT_EQ(building.storeys[0].room, building.storeys[1].room);
+    EXPECT_NE(building.storeys[0].room, building.storeys[2].room);
+    const BuildingScene scene = makeBuildingScene(building, {}, {});
+    EXPECT_EQ(scene.scenes[0], scene.scenes[1]);
+    EXPECT_DOUBLE_EQ(scene.height(0), 3);
+    EXPECT_DOUBLE_EQ(scene.height(2), 2.5);  // of its walls
+}
+
+TEST(Building, SurvivesYaml) {
+    const StoreyedDocument building = read(twoStoreys(
+        "- stairs: {storeys: 'ground,upper', at: [2, 1], heading: 90, size: [1, 3]}\n"
+        "- lift: {id: l, storeys: 'upper,ground', at: [5, 3], size: [1.6, 1.4], door: 0.9}\n"));
+    const std::string text = writeBuildingYaml(building);
+    const StoreyedDocument again = read(text);
+    EXPECT_EQ(again.digest(), building.digest());
+    EXPECT_EQ(writeBuildingYaml(again), text);
+    EXPECT_EQ(again.storeys[0].room, again.storeys[1].room);
+    ASSERT_EQ(again.passages.size(), 2U);
+    EXPECT_EQ(again.passages[0].id, "stairs1");
+    EXPECT_EQ(again.passages[1].storeys, (std::vector<std::size_t>{0, 1}));
+}
+
+TEST(Building, DigestIsThatOfRoomsFramesAndPassages) {
+    const std::string digest = read(twoStoreys()).digest();
+    EXPECT_EQ(digest, read("# a comment\n" + twoStoreys()).digest());
+    EXPECT_NE(digest, read(twoStoreys("", 3.1)).digest());
+    EXPECT_NE(digest, read(twoStoreys("- shaft: {storeys: 'ground,upper', path: [[0, 0], [1, 0], "
+                                      "[0, 1]]}\n"))
+                          .digest());
+}
+
+TEST(Building, ReadsFilesInItsFolderOnce) {
+    const TemporaryFolder folder;
+    const std::string room = "#env 1\nispace size=4,3\nmesh id=m file=part.obj\n";
+    folder.write("house/rooms/a.env", room);
+    folder.write("outside.env", room);
+    const std::string name = folder.write("house/house.env", "");
+    ImportOptions options;
+    options.load_files = false;
+    const std::string storeys = "#env 1\nstorey id=a file=rooms/a.env\n";
+    const StoreyedDocument building =
+        readBuilding(storeys + "storey id=b file=rooms/../rooms/a.env z=3\n", name, options);
+    EXPECT_EQ(building.storeys[0].room, building.storeys[1].room);
+    EXPECT_EQ(building.sources.size(), 1U);
+    // Names in the room are relative to the building.
+    EXPECT_EQ(building.storeys[0].room->records[1].text("file"), "rooms/part.obj");
+
+    const std::string outside = "#env 1\nstorey id=a file=../outside.env\n";
+    EXPECT_TRUE(contains(errorOf([&] { readBuilding(outside, name, options); }),
+                         "the room `../outside.env` lies outside the folder "
+                         "of the building"));
+    options.includes = IncludeFiles::Anywhere;
+    EXPECT_EQ(readBuilding(outside, name, options).storeys.size(), 1U);
+    EXPECT_TRUE(contains(
+        errorOf([&] { readBuilding("#env 1\nstorey id=a file=none.env\n", name, options); }),
+        "the room `none.env` cannot be opened"));
+    folder.write("house/house.env", storeys);
+    EXPECT_TRUE(contains(
+        errorOf([&] { readBuilding("#env 1\nstorey id=a file=house.env\n", name, options); }),
+        "a storey is one room, and `house.env` is a building"));
+    folder.write("house/best.3dm", "#3dm 1\n");
+    EXPECT_TRUE(contains(
+        errorOf([&] { readBuilding("#env 1\nstorey id=a file=best.3dm\n", name, options); }),
+        "is a layout"));
+}
+
+TEST(Building, RejectsWhatJoinsNoStoreys) {
+    const auto passage = [](const std::string& storeys) {
+        return errorOf([&] {
+            (void)read(twoStoreys("- lift: {id: l, storeys: '" + storeys +
+                                  "', at: [5, 3], size: [1, 1]}\n"));
+        });
+    };
+    EXPECT_TRUE(contains(passage("ground,uper"), "no storey `uper`, did you mean `upper`?"));
+    EXPECT_TRUE(contains(passage("ground"), "it joins one storey"));
+    EXPECT_TRUE(contains(passage("ground,upper,ground"), "a storey is named twice"));
+    EXPECT_TRUE(contains(passage(""), "no storey"));
+    EXPECT_TRUE(
+        contains(errorOf([] { (void)read("- storey: {id: a}\n"); }), "its room is missing"));
+    EXPECT_TRUE(contains(
+        errorOf([] { (void)read("- storey: {id: a/b, records: [" + std::string(kRoom) + "]}\n"); }),
+        "`/` in the id of a storey"));
+    EXPECT_TRUE(contains(errorOf([] { (void)read(twoStoreys("- desk: {at: [1, 1]}\n")); }),
+                         "records of a room stand in `records` of its storey"));
+    EXPECT_TRUE(contains(errorOf([] { (void)read(twoStoreys() + twoStoreys("").substr(0, 20)); }),
+                         "house.yaml"));
+    EXPECT_TRUE(
+        contains(errorOf([] { (void)read(twoStoreys()).storey("cellar"); }), "no storey `cellar`"));
+}
+
+TEST(Building, SplitsLayoutsByTheStoreysOfTheirIds) {
+    const StoreyedDocument building = read(twoStoreys());
+    const auto split = [&](const std::string& text) {
+        return layoutsOf(readRecordText("#3dm 1\n" + text, "best.3dm", sceneSchemas()), building);
+    };
+    const std::vector<Document> layouts = split(
+        "environment file=house.yaml\nrobot id=upper/r at=1,1\nlaser id=upper/l on=upper/r\n"
+        "laser id=ground/a/b at=2,2\nresult coverage=50%\n");
+    ASSERT_EQ(layouts.size(), 2U);
+    ASSERT_EQ(layouts[0].records.size(), 1U);
+    EXPECT_EQ(layouts[0].records[0].writtenId(), "a/b");
+    ASSERT_EQ(layouts[1].records.size(), 2U);
+    EXPECT_EQ(layouts[1].records[1].text("on"), "r");
+    const Record whole = inBuilding(building.storeys[1], layouts[1].records[1], "l");
+    EXPECT_EQ(whole.writtenId(), "upper/l");
+    EXPECT_EQ(whole.text("on"), "upper/r");
+    const std::string error =
+        errorOf([&] { (void)split("laser id=l at=1,1\nlaser at=1,1\nlaser id=upper/x at=1,1\n"); });
+    EXPECT_TRUE(contains(error,
+                         "best.3dm:2:10: error: `l`, wanted one that begins with its "
+                         "storey, such as `ground/l`; storeys: ground, upper"));
+    EXPECT_TRUE(contains(error, "best.3dm:3:1: error: laser has no id"));
+    // Layouts make scenes of their own, which share the walls of the room.
+    const BuildingScene scene = makeBuildingScene(building, layouts, {});
+    EXPECT_NE(scene.scenes[0], scene.scenes[1]);
+    EXPECT_EQ(&scene.scenes[0]->environment.indoor(), &scene.scenes[1]->environment.indoor());
+}
+
+TEST(BuildingCheck, FindsStairsThatEndInWalls) {
+    const auto stairs = [](const std::string& keys) {
+        return findingsIn(twoStoreys("- stairs: {id: s, storeys: 'ground,upper', size: [1.2, 3], " +
+                                     keys + "}\n"));
+    };
+    using Messages = std::vector<std::string>;
+    EXPECT_EQ(stairs("at: [2, 1], heading: 90"), Messages());
+    EXPECT_EQ(stairs("at: [2, 3], heading: 90"),
+              Messages({"stairs s ends in a wall or object of upper at (2.0, 6.0)"}));
+    EXPECT_EQ(stairs("at: [2, 4], heading: 90"),
+              Messages({"stairs s ends outside of the rooms of upper at (2.0, 7.0)"}));
+    EXPECT_EQ(stairs("at: [2, 0], heading: 90"),
+              Messages({"stairs s begins in a wall or object of ground at (2.0, 0.0)"}));
+    // A flight that turns back ends where `top` says.
+    EXPECT_EQ(stairs("at: [2, 4], heading: 90, top: [3.5, 4]"), Messages());
+    EXPECT_EQ(stairs("at: [2, 1], heading: 90, top: [2, -4]"),
+              Messages({"stairs s ends outside of the rooms of upper at (2.0, -4.0)"}));
+}
+
+TEST(BuildingCheck, ConvertsToTheFramesOfStoreys) {
+    const std::string turned =
+        "- storey: {id: ground, height: 3, records: &room [" + std::string(kRoom) + "]}\n" +
+        "- storey: {id: upper, z: 3, at: [20, 0], heading: 90, records: *room}\n" +
+        "- stairs: {id: s, storeys: 'ground,upper', at: [2, 1], heading: 0, size: [1, 3], ";
+    EXPECT_TRUE(findingsIn(turned + "top: [15, 1]}\n").empty());
+    EXPECT_EQ(findingsIn(turned + "top: [21, 1]}\n").size(), 1U);
+    const StoreyedDocument building = read(turned + "top: [15, 1]}\n");
+    EXPECT_NEAR(inStorey(building.storeys[1], {15, 1}).x, 1, 1e-12);
+    EXPECT_NEAR(inStorey(building.storeys[1], {15, 1}).y, 5, 1e-12);
+}
+
+TEST(BuildingCheck, FindsLiftsWithoutDoorsOrOutsideRooms) {
+    const auto lift = [](const std::string& keys) {
+        return findingsIn(twoStoreys("- lift: {id: l, storeys: 'ground,upper', size: [1.6, 1.4], " +
+                                     keys + "}\n"));
+    };
+    using Messages = std::vector<std::string>;
+    EXPECT_EQ(lift("at: [4, 3], door: 0.9, capacity: 630kg"), Messages());
+    EXPECT_EQ(lift("at: [4, 3]"),
+              Messages({"lift l has no door: give its width, such as door=0.9"}));
+    EXPECT_EQ(lift("at: [4, 3], door: 1.7"),
+              Messages({"lift l has a door that is wider than its cabin"}));
+    EXPECT_EQ(lift("at: [4, 3], door: 0.9, capacity: many"),
+              Messages({"lift l has a capacity that is no load such as 630kg"}));
+    EXPECT_EQ(lift("at: [7.3, 3], door: 0.9").size(), 2U);  // of both storeys
+    EXPECT_EQ(lift("at: [8.5, 3], door: 0.9, heading: 180"), Messages());
+}
+
+TEST(BuildingCheck, FindsStoreysThatOverlapInHeight) {
+    EXPECT_EQ(
+        findingsIn(twoStoreys("", 2.9)),
+        std::vector<std::string>({"storeys ground and upper overlap: ground reaches up to 3.0 "
+                                  "m, and upper begins at 2.9 m"}));
+    EXPECT_TRUE(findingsIn(twoStoreys("", 3)).empty());
+    // Wings beside each other may be level.
+    const std::string room(kRoom);
+    const std::string wing = "- storey: {id: b, at: [8, 0], records: [" + room + "]}\n";
+    EXPECT_TRUE(findingsIn("- storey: {id: a, records: [" + room + "]}\n" + wing).empty());
+    EXPECT_EQ(findingsIn("- storey: {id: a, at: [1, 0], records: [" + room + "]}\n" + wing).size(),
+              1U);
+}
+
+TEST(BuildingCheck, FindsShaftsWithoutArea) {
+    const auto shaft = [](const std::string& path) {
+        return findingsIn(
+            twoStoreys("- shaft: {id: o, storeys: 'ground,upper', path: " + path + "}\n"));
+    };
+    EXPECT_TRUE(shaft("[[1, 1], [2, 1], [2, 2]]").empty());
+    EXPECT_EQ(shaft("[[1, 1], [2, 1]]").size(), 1U);
+    EXPECT_EQ(shaft("[[1, 1], [2, 2], [2, 1], [1, 2]]").size(), 1U);
+}
+
+}  // namespace
+}  // namespace ispace

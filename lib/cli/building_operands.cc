@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/building_operands.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/message.h"
+#include "base/run_files.h"
+#include "cli/common_options.h"
+#include "cli/outputs.h"
+#include "io/exporters.h"
+#include "io/glb/glb_read.h"
+#include "record/text.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace {
+
+Document chosenStorey(const StoreyedDocument& building, const std::string& operand,
+                      const std::string& storey) {
+    if (storey.empty())
+        throw UsageError(displayName(operand) + " is a building of the storeys " +
+                         building.storeyList() + ": choose one with --storey ID");
+    Document room = *building.storey(storey).room;
+    room.sources = building.sources;
+    return room;
+}
+
+Document layoutOfStorey(const Document& layout, const StoreyedDocument& building,
+                        const std::string& storey) {
+    const Storey& chosen = building.storey(storey);
+    const bool is_of_building =
+        std::any_of(layout.records.begin(), layout.records.end(), [&](const Record& record) {
+            const std::string id = record.writtenId();
+            return std::any_of(building.storeys.begin(), building.storeys.end(),
+                               [&](const Storey& one) { return id.starts_with(one.id + '/'); });
+        });
+    Document own = layout;
+    if (is_of_building) {
+        own.records =
+            layoutsOf(layout, building)[static_cast<std::size_t>(&chosen - building.storeys.data())]
+                .records;
+        for (const Record& record : layout.records)
+            if (record.keyword() == "environment") own.records.insert(own.records.begin(), record);
+    }
+    for (Record& record : own.records)
+        if (record.keyword() == "environment" && record.has("digest") &&
+            record.text("digest") == building.digest())
+            record.set("digest", environmentDigest(chosen.room->records));
+    return own;
+}
+
+namespace {
+
+ImportOptions importOf(const SceneRules& rules) {
+    ImportOptions options;
+    options.includes = rules.includes;
+    options.max_work = rules.max_work;
+    addModelFolders(options);
+    return options;
+}
+
+/// Reads a file that is seen before it is read as a room; empty for streams and compiled rooms,
+/// which are read once or in parts.
+std::optional<std::string> glance(const std::string& operand) {
+    if (isStream(operand)) return std::nullopt;
+    if (isGlbRoom(operand)) return std::nullopt;
+    return readAll(operand);
+}
+
+bool hasPlaced(const StoreyedDocument& building, bool (*is_meant)(const SensorKind&)) {
+    return std::any_of(building.storeys.begin(), building.storeys.end(), [&](const Storey& storey) {
+        return std::any_of(
+            storey.room->records.begin(), storey.room->records.end(), [&](const Record& record) {
+                const SensorKind* const kind = sensorKind(record.keyword());
+                return kind != nullptr && is_meant(*kind) && (record.has("at") || record.has("on"));
+            });
+    });
+}
+
+/// Compares the digest that the layout records with the building's, as for rooms.
+void checkDigest(const Document& layout, const StoreyedDocument& building, bool is_operand,
+                 std::optional<bool> same_environment, std::vector<Diagnostic>& warnings) {
+    const auto recorded = environmentReference(layout);
+    if (!same_environment.value_or(true) || !recorded || recorded->digest.empty() ||
+        recorded->digest == building.digest())
+        return;
+    Diagnostic finding = recorded->record.finding(
+        "digest",
+        "the layout was made for another building: arrange again, or accept it with "
+        "--any-environment");
+    if (same_environment || !is_operand) throw FormatError(std::move(finding));
+    finding.severity = Severity::Warning;
+    warnings.push_back(std::move(finding));
+}
+
+/// The operands, recognised by content.
+struct Operands {
+    std::string environment, layout;
+    std::optional<std::string> building;  ///< bytes of the environment if it is one
+    std::optional<Document> layout_document;
+    bool is_named = true;  ///< the environment is an operand
+};
+
+Document readLayout(const std::string& bytes, const std::string& operand, const SceneRules& rules) {
+    Document layout = parseDocument(bytes, operand, importOf(rules), sceneSchemas());
+    if (layout.kind != DocumentKind::Layout)
+        throw FormatError(
+            {displayName(operand), 0, 0, "an environment, where a layout (`#3dm 1`) is wanted"});
+    return layout;
+}
+
+bool beginsLayout(const std::string& bytes) {
+    return withoutBom(bytes).starts_with("#3dm") || bytes.starts_with("# ispace yaml 1 layout");
+}
+
+std::optional<Operands> findBuilding(const SceneRequest& request) {
+    Operands found;
+    for (const std::string& operand : request.operands) {
+        const auto bytes = glance(operand);
+        if (bytes && isBuilding(*bytes)) {
+            if (found.building)
+                throw UsageError("two environments given, one is wanted: " + operand);
+            found.building = bytes;
+            found.environment = operand;
+        } else if (bytes && beginsLayout(*bytes)) {
+            found.layout = operand;
+            found.layout_document = readLayout(*bytes, operand, request.rules);
+        } else if (isStream(operand) && found.layout.empty()) {
+            found.layout = operand;
+        } else {
+            return std::nullopt;
+        }
+    }
+    if (!found.building && found.layout_document) {
+        const auto reference = environmentReference(*found.layout_document);
+        if (!reference || reference->file.empty() || reference->file == "-") return std::nullopt;
+        found.environment = sideFilePath(found.layout, reference->file);
+        std::error_code missing;
+        if (!std::filesystem::is_regular_file(found.environment, missing))
+            return std::nullopt;  // readScene() reports it
+        const auto bytes = glance(found.environment);
+        if (bytes && isBuilding(*bytes)) found.building = bytes;
+        found.is_named = false;
+    }
+    if (!found.building) return std::nullopt;
+    return found;
+}
+
+}  // namespace
+
+std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
+    if (!request.rules.storey.empty()) return std::nullopt;
+    mustReadStdinOnce(request.operands);
+    auto found = findBuilding(request);
+    if (!found) return std::nullopt;
+    StoreyedDocument document =
+        readBuilding(*found->building, found->environment, importOf(request.rules));
+    BuildingInput input;
+    input.named = request.operands;
+    if (found->layout.empty() && request.layout_from_stdin &&
+        !hasPlaced(document, request.is_meant)) {
+        found->layout = "-";
+        input.named.emplace_back("-");
+    }
+    if (!found->layout.empty() && !found->layout_document) {
+        const std::string& layout = found->layout;
+        const std::string bytes = layout == "-" ? readStdin() : readAll(layout);
+        if (bytes.empty())
+            throw FormatError({displayName(layout), 0, 0,
+                               "empty, where a layout (`#3dm 1`) is wanted: " +
+                                   displayName(found->environment) + " holds no placed sensor"});
+        found->layout_document = readLayout(bytes, layout, request.rules);
+    }
+    std::vector<Document> layouts;
+    input.files = {found->environment};
+    input.warnings = document.warnings;
+    if (found->layout_document) {
+        checkDigest(*found->layout_document, document, found->is_named,
+                    request.rules.same_environment, input.warnings);
+        layouts = layoutsOf(*found->layout_document, document);
+        input.files.push_back(found->layout);
+    }
+    input.files.insert(input.files.end(), document.sources.begin(), document.sources.end());
+    std::vector<const Document*> all;
+    for (const Storey& storey : document.storeys) all.push_back(storey.room.get());
+    for (const Document& layout : layouts) all.push_back(&layout);
+    const DeviceCatalogue& devices = devicesFor(std::span<const Document* const>(all));
+    input.building = makeBuildingScene(std::move(document), layouts, devices);
+    input.layout = std::move(found->layout_document);
+    input.environment_operand = std::move(found->environment);
+    input.layout_operand = std::move(found->layout);
+    return input;
+}
+
+}  // namespace ispace

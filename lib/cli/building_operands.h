@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Buildings among the operands of a tool: one storey as a room, or all of them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "building/building.h"
+#include "building/building_scene.h"
+#include "cli/operands.h"
+#include "record/record.h"
+
+namespace ispace {
+
+/// Returns the room of a storey. \throws UsageError for a missing storey; without `storey` one that
+/// names the storeys
+Document chosenStorey(const StoreyedDocument& building, const std::string& operand,
+                      const std::string& storey);
+
+/// Returns the part of a layout that is about a storey, with plain ids; a layout without ids of
+/// storeys is about the storey as a whole. The digest of the building in its `environment` record
+/// becomes that of the storey. \throws FormatError as layoutsOf()
+Document layoutOfStorey(const Document& layout, const StoreyedDocument& building,
+                        const std::string& storey);
+
+/// A building and a layout, as operands.
+struct BuildingInput {
+    BuildingScene building;
+    std::optional<Document> layout;  ///< as read
+    std::string environment_operand, layout_operand;
+    std::vector<std::string> named;  ///< as SceneInput::named
+    std::vector<std::string> files;  ///< all that were read, for -MD
+    std::vector<Diagnostic> warnings;
+};
+
+/// Reads ENV and LAYOUT if ENV is a building and no storey of it is chosen; std::nullopt for
+/// others, which readScene() reads. \throws as readScene() and readBuilding()
+std::optional<BuildingInput> readBuildingInput(const SceneRequest& request);
+
+}  // namespace ispace

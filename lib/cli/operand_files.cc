@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Names of files that operands and their records name.
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "cli/operands.h"
+#include "cli/outputs.h"
+
+namespace ispace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+std::vector<std::string> filesOf(const SceneInput& input) {
+    std::vector<std::string> files{input.environment_operand};
+    if (input.layout) files.push_back(input.layout_operand);
+    const auto add = [&files](const Document& document) {
+        files.insert(files.end(), document.sources.begin(), document.sources.end());
+    };
+    add(input.environment);
+    if (input.layout) add(*input.layout);
+    return files;
+}
+
+std::string environmentFileFor(const std::string& output, const std::string& environment_operand) {
+    // Neither stdin nor a pipe by another name (/dev/stdin, <(…)) can be read again.
+    if (isStream(environment_operand)) return "";
+    const fs::path folder = output == "-" ? fs::path() : fs::path(output).parent_path();
+    const fs::path from = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder);
+    // The environment itself may be a deliberate link: only its folder is resolved.
+    const fs::path file(environment_operand);
+    const fs::path to = fs::weakly_canonical(file.has_parent_path() ? file.parent_path() : ".");
+    return (to / file.filename()).lexically_relative(from).string();
+}
+
+void rebaseFiles(std::vector<Record>& records, const std::string& from, const std::string& to) {
+    if (fs::path(from).lexically_normal() == fs::path(to).lexically_normal()) return;
+    const auto canonical = [](const std::string& folder) {
+        return fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder));
+    };
+    const fs::path old_base = canonical(from), new_base = canonical(to);
+    if (old_base == new_base) return;
+    for (Record& record : records)
+        for (const KeySpec& key : record.schema().keys) {
+            if (key.role != Role::File || !record.has(key.name)) continue;
+            const std::string& name = record.text(key.name);
+            if (fs::path(name).is_absolute() || name.empty()) continue;
+            record.set(key.name,
+                       (old_base / name).lexically_normal().lexically_relative(new_base).string(),
+                       record.keyPlace(key.name));
+        }
+}
+
+void addModelFolders(ImportOptions& options) {
+    for (const char* name : {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "SDF_PATH"}) {
+        const char* const value = std::getenv(name);
+        std::istringstream folders(value == nullptr ? "" : value);
+        for (std::string folder; std::getline(folders, folder, ':');)
+            if (!folder.empty()) options.model_folders.push_back(folder);
+    }
+}
+
+}  // namespace ispace

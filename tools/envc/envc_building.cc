@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "envc/envc_building.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "base/run_files.h"
+#include "building/building_scene.h"
+#include "cli/common_options.h"
+#include "cli/outputs.h"
+#include "cli/run_tool.h"
+#include "record/text.h"
+#include "scene/findings/findings.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kFormats[] = {"glb", "env", "yaml", "svg", "png", "pdf"};
+
+/// \throws UsageError for an option that is about one room
+void mustBeAboutBuildings(const EnvcOptions& options, const StoreyedDocument& building) {
+    std::string option;
+    if (!options.edits.empty()) option = optionOf(options.edits.front().kind);
+    if (options.slice) option = "--slice";
+    if (!options.zones.empty()) option = "--zone";
+    if (!options.report.empty()) option = "--report";
+    if (options.list_rooms) option = "--rooms list";
+    if (option.empty() && options.format != nullptr &&
+        std::find(std::begin(kFormats), std::end(kFormats), options.format->name) ==
+            std::end(kFormats))
+        option = "--to " + std::string(options.format->name);
+    if (!option.empty())
+        throw UsageError(option +
+                         " is about one storey of the building: choose it with --storey (" +
+                         building.storeyList() + ')');
+}
+
+/// Adds the records of a layout to the rooms of their storeys.
+void addLayout(const Document& layout, StoreyedDocument& building) {
+    const std::vector<Document> layouts = layoutsOf(layout, building);
+    for (std::size_t i = 0; i < layouts.size(); ++i) {
+        if (layouts[i].records.empty()) continue;
+        Storey& storey = building.storeys[i];
+        Document room = *storey.room;
+        room.records = joinRecords(room.records, layouts[i].records);
+        storey.room = std::make_shared<const Document>(std::move(room));
+    }
+    building.history.insert(building.history.end(), layout.history.begin(), layout.history.end());
+}
+
+/// Makes names of files in the rooms relative to the folder of the output. Storeys keep sharing
+/// rooms.
+void rebaseRooms(const EnvcOptions& options, const std::string& from, StoreyedDocument& building) {
+    const std::string& output = options.common.output;
+    const std::string to = isStream(output) ? "" : fs::path(output).parent_path().string();
+    std::vector<std::pair<std::shared_ptr<const Document>, std::shared_ptr<const Document>>> made;
+    for (Storey& storey : building.storeys) {
+        auto known = std::find_if(made.begin(), made.end(),
+                                  [&](const auto& pair) { return pair.first == storey.room; });
+        if (known == made.end()) {
+            auto room = std::make_shared<Document>(*storey.room);
+            rebaseFiles(room->records, isStream(from) ? "" : fs::path(from).parent_path().string(),
+                        to);
+            made.emplace_back(storey.room, std::move(room));
+            known = std::prev(made.end());
+        }
+        storey.room = known->second;
+    }
+}
+
+/// \throws FormatError with the findings of all storeys, each room once
+void check(const EnvcOptions& options, const BuildingScene& building, const ImportReport& report) {
+    Diagnostics findings;
+    for (const Diagnostic& warning : building.document.warnings) findings.add(warning);
+    for (const Diagnostic& doubt : report.doubts) findings.add(doubt);
+    std::vector<const Scene*> checked;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const Scene* const scene = building.scenes[i].get();
+        if (std::find(checked.begin(), checked.end(), scene) != checked.end()) continue;
+        checked.push_back(scene);
+        FindingFilter mistakes;
+        for (const SceneCheck& check : sceneChecks())
+            if (check.name != "unplaced") mistakes.checks.push_back(check.name);
+        for (const Finding& finding : checkScene(*scene, mistakes)) {
+            Diagnostic diagnostic = finding.diagnostic();
+            diagnostic.message = building.document.storeys[i].id + ": " + diagnostic.message;
+            findings.add(std::move(diagnostic));
+        }
+    }
+    for (Diagnostic& finding : checkBuilding(building)) findings.add(std::move(finding));
+    findings.throwIfAny();
+    talk(options.common, "envc", "nothing found");
+}
+
+/// Writes the building and the files of its rooms.
+void writeRecords(const std::string& output, const StoreyedDocument& building) {
+    if (isStream(output))
+        throw UsageError(
+            "a building in records is several files: name it with -o FILE.env, or "
+            "write it as YAML (--to yaml)");
+    const fs::path folder = fs::path(output).parent_path();
+    const std::vector<BuildingPart> parts =
+        writeBuildingRecords(building, fs::path(output).stem().string());
+    std::vector<NamedBytes> files;
+    for (const BuildingPart& part : parts) {
+        files.push_back({part.name.empty() ? output : (folder / part.name).string(), part.bytes});
+        if (!part.name.empty()) claimOutput(files.back().name, "the room of a storey");
+    }
+    writeTogether(files);
+}
+
+void writeProduct(const EnvcOptions& options, const BuildingScene& building) {
+    const std::string& output = options.common.output;
+    const std::string_view format = options.format->name;
+    if (format == "env") return writeRecords(output, building.document);
+    if (format == "yaml") return writeAll(output, writeBuildingYaml(building.document));
+    if (format == "glb") {
+        OutputFile file(output);
+        writeBuildingGlb(building, [&file](std::string_view bytes) { file.write(bytes); });
+        return file.commit();
+    }
+    const std::string& input = options.inputs.front();
+    const PictureFormat picture = format == "svg"   ? PictureFormat::Svg
+                                  : format == "pdf" ? PictureFormat::Pdf
+                                                    : PictureFormat::Png;
+    writeAll(output, drawBuilding(building, picture, options.width,
+                                  isStream(input) ? "" : baseName(input)));
+}
+
+}  // namespace
+
+std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
+                                                  const std::vector<RawInput>& raw,
+                                                  const InputRequest& request) {
+    const auto is_whole = [&](const RawInput& input) {
+        return request.import.storey.empty() && isBuilding(input.bytes);
+    };
+    const auto found = std::find_if(raw.begin(), raw.end(), is_whole);
+    if (found == raw.end()) return std::nullopt;
+    ImportOptions import = request.import;
+    import.load_files = request.compiles;
+    StoreyedDocument building = readBuilding(found->bytes, found->name, import);
+    mustBeAboutBuildings(options, building);
+    for (const RawInput& input : raw) {
+        if (&input == &*found) continue;
+        const Document layout = parseDocument(input.bytes, input.name, import, sceneSchemas());
+        if (layout.kind != DocumentKind::Layout || is_whole(input))
+            throw UsageError(displayName(input.name) + " beside the building " +
+                             displayName(found->name) + ": a building goes with layouts alone");
+        addLayout(layout, building);
+        building.sources.push_back(input.name);
+    }
+    building.sources.insert(building.sources.begin(), found->name);
+    building.history.push_back(options.history_line);
+    if (options.format != nullptr) rebaseRooms(options, found->name, building);
+    return building;
+}
+
+void writeBuilding(const EnvcOptions& options, StoreyedDocument document,
+                   const ImportReport& report) {
+    warn(options.common, "envc", report.choices);
+    if (!options.check) warn(options.common, "envc", document.warnings);
+    for (const std::string& note : document.notes) talk(options.common, "envc", note);
+    const std::vector<std::string> files = document.sources;
+    if (options.format != nullptr && options.format->write_records != nullptr) {
+        writeProduct(options, {std::move(document), {}, {}});
+        return writeDependencies(options.common, files);
+    }
+    std::vector<const Document*> rooms;
+    for (const Storey& storey : document.storeys) rooms.push_back(storey.room.get());
+    const DeviceCatalogue& devices = devicesFor(std::span<const Document* const>(rooms));
+    const BuildingScene building = makeBuildingScene(std::move(document), {}, devices);
+    if (options.check) return check(options, building, report);
+    if (options.info)
+        writeAll(options.common.output,
+                 options.json ? buildingInfoJson(building) : buildingInfoText(building));
+    else
+        writeProduct(options, building);
+    writeDependencies(options.common, files);
+}
+
+}  // namespace ispace
