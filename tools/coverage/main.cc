@@ -11,6 +11,7 @@
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
+#include "coverage/coverage_building.h"
 #include "coverage/coverage_options.h"
 #include "coverage/coverage_run.h"
 #include "report/coverage_formats.h"
@@ -129,7 +130,9 @@ void coverage(const CoverageToolOptions& options) {
         claimOutput(withSuffix(options.common.output, options.format->beside_suffix),
                     "the picture of the map");
     JunitFile junit("coverage", options.junit);
-    junit.during(options.operands, [&] { coverScene(options, junit); });
+    junit.during(options.operands, [&] {
+        if (!coverBuilding(options, junit)) coverScene(options, junit);
+    });
 }
 
 }  // namespace

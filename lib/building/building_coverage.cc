@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "building/building_coverage.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/json_writer.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "report/coverage_report.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+namespace {
+
+/// Adds up areas that are known for all storeys.
+class AreaSum {
+  public:
+    void add(const std::optional<double>& area) {
+        is_known_ = is_known_ && area.has_value();
+        sum_ += area.value_or(0);
+    }
+    [[nodiscard]] std::optional<double> sum() const {
+        return is_known_ ? std::optional(sum_) : std::nullopt;
+    }
+    /// Returns the sum as a share; empty for no area.
+    [[nodiscard]] std::optional<double> shareOf(double area) const {
+        return is_known_ && area > 0 ? std::optional(sum_ / area) : std::nullopt;
+    }
+
+  private:
+    double sum_ = 0;
+    bool is_known_ = true;
+};
+
+std::optional<double> areaOf(const std::optional<double>& share, double area) {
+    if (!(area > 0)) return 0.0;  // no floor, no share of it
+    return share ? std::optional(*share * area) : std::nullopt;
+}
+
+/// Puts the storey before all ids.
+void nameWholly(const Storey& storey, Coverage& coverage) {
+    for (SensorMetrics& sensor : coverage.report.sensors) sensor.id = wholeId(storey, sensor.id);
+    for (ZoneMetrics& zone : coverage.report.zones) zone.id = wholeId(storey, zone.id);
+    for (SensorView& view : coverage.sensors) view.id = wholeId(storey, view.id);
+}
+
+void addUp(BuildingCoverage& building) {
+    AreaSum total_grid, total_exact, grid, exact, free_grid, free_exact;
+    for (const Coverage& storey : building.storeys) {
+        const CoverageReport& report = storey.report;
+        building.indoor_area += report.indoor_area;
+        building.free_area += report.free_area;
+        total_grid.add(report.total_effective_area.grid);
+        total_exact.add(report.total_effective_area.exact);
+        grid.add(areaOf(report.coverage.grid, report.indoor_area));
+        exact.add(areaOf(report.coverage.exact, report.indoor_area));
+        free_grid.add(areaOf(report.free_coverage.grid, report.free_area));
+        free_exact.add(areaOf(report.free_coverage.exact, report.free_area));
+        if (report.redundancy.size() > building.redundancy.size())
+            building.redundancy.resize(report.redundancy.size());
+        for (std::size_t k = 0; k < report.redundancy.size(); ++k)
+            building.redundancy[k] += report.redundancy[k] * report.indoor_area;
+    }
+    building.total_effective_area = {total_grid.sum(), total_exact.sum()};
+    building.coverage = {grid.shareOf(building.indoor_area), exact.shareOf(building.indoor_area)};
+    building.free_coverage = {free_grid.shareOf(building.free_area),
+                              free_exact.shareOf(building.free_area)};
+    if (building.indoor_area > 0)
+        for (double& share : building.redundancy) share /= building.indoor_area;
+}
+
+void writeMetric(JsonWriter& json, const char* key, const Metric& metric) {
+    const auto rounded = [](const std::optional<double>& number) {
+        return number ? std::optional(roundSignificant(*number)) : std::nullopt;
+    };
+    json.key(key).beginObject().key("grid").value(rounded(metric.grid));
+    json.key("exact").value(rounded(metric.exact)).endObject();
+}
+
+std::string shareText(const std::optional<double>& share) {
+    return share ? percentText(*share) : "-";
+}
+
+TextRow tableRow(const std::string& name, std::size_t sensors, double indoor,
+                 const Metric& coverage, const Metric& free_coverage) {
+    return {name,
+            std::to_string(sensors),
+            formatFixed(indoor, 2),
+            shareText(coverage.grid),
+            shareText(coverage.exact),
+            shareText(free_coverage.grid),
+            shareText(free_coverage.exact)};
+}
+
+}  // namespace
+
+BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options) {
+    BuildingCoverage measured;
+    std::map<const Scene*, std::size_t> known;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const Scene& scene = *building.scenes[i];
+        const auto [first, is_new] = known.try_emplace(&scene, i);
+        if (is_new) {
+            Worlds worlds(scene.environment);
+            measured.storeys.push_back(measureCoverage(scene, worlds, options));
+        } else {
+            measured.storeys.push_back(measured.storeys[first->second]);
+        }
+    }
+    for (std::size_t i = 0; i < building.scenes.size(); ++i)
+        nameWholly(building.document.storeys[i], measured.storeys[i]);
+    addUp(measured);
+    return measured;
+}
+
+std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage) {
+    JsonWriter json;
+    beginReport(json, "ispace-building-coverage/1", "coverage");
+    json.key("digest").value(building.document.digest()).key("storeys").beginArray();
+    std::string text;
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
+        json.beginObject().key("id").value(building.document.storeys[i].id).key("report");
+        text += json.take() + coverageJson(coverage.storeys[i].report);
+        text.pop_back();  // its newline
+        json.endObject();
+    }
+    json.endArray();
+    json.key("indoor_area").value(roundSignificant(coverage.indoor_area));
+    json.key("free_area").value(roundSignificant(coverage.free_area));
+    writeMetric(json, "total_effective_area", coverage.total_effective_area);
+    writeMetric(json, "coverage", coverage.coverage);
+    writeMetric(json, "free_coverage", coverage.free_coverage);
+    json.key("redundancy").beginArray();
+    for (const double share : coverage.redundancy) json.value(roundSignificant(share));
+    json.endArray().endObject();
+    return text + json.take() + '\n';
+}
+
+std::string buildingCoverageText(const BuildingScene& building, const BuildingCoverage& coverage) {
+    std::string text;
+    std::vector<TextRow> rows = {
+        {"storey", "sensors", "indoor m2", "covered", "exactly", "free floor", "exactly"}};
+    std::size_t sensors = 0;
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
+        const CoverageReport& report = coverage.storeys[i].report;
+        const std::string& id = building.document.storeys[i].id;
+        text += "storey " + id + '\n' + coverageText(report) + '\n';
+        rows.push_back(tableRow(id, report.sensors.size(), report.indoor_area, report.coverage,
+                                report.free_coverage));
+        sensors += report.sensors.size();
+    }
+    rows.push_back(tableRow("building", sensors, coverage.indoor_area, coverage.coverage,
+                            coverage.free_coverage));
+    return text + aligned(rows, "lr");
+}
+
+}  // namespace ispace

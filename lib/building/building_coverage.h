@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "building/building_scene.h"
+#include "coverage/coverage.h"
+
+namespace ispace {
+
+/// The coverage of each storey, and their sums: areas add up, shares are of all floor. Ids in the
+/// reports name the storey, as in "ground/l1".
+struct BuildingCoverage {
+    std::vector<Coverage> storeys;
+    double indoor_area = 0, free_area = 0;  ///< m2
+    Metric total_effective_area;            ///< m2
+    Metric coverage, free_coverage;         ///< shares; empty if that of a storey is unknown
+    std::vector<double> redundancy;         ///< see CoverageReport
+};
+
+/// Measures all storeys; equal ones once.
+BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options);
+
+/// Writes one JSON object and a newline, schema ispace-building-coverage/1.
+std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage);
+/// Writes the report of each storey, then a table of all.
+std::string buildingCoverageText(const BuildingScene& building, const BuildingCoverage& coverage);
+
+}  // namespace ispace
