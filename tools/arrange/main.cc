@@ -3,6 +3,7 @@
 
 #include "arrange/arrange.h"
 #include "arrange/arrange_batch.h"
+#include "arrange/arrange_building.h"
 #include "arrange/arrange_options.h"
 #include "arrange/arrange_report.h"
 #include "arrange/arrange_run.h"
@@ -183,7 +184,10 @@ void arrangeSensors(const ArrangeCommand& command) {
             [&command](const BatchJob& job, const CommonOptions& common, JobOutcome& outcome) {
                 arrangeJob(command, job, common, outcome);
             });
-    if (!options.batch.merge) return runCommand(command, nullptr);
+    if (!options.batch.merge) {
+        if (!arrangeInBuilding(command)) runCommand(command, nullptr);
+        return;
+    }
     auto parts = std::make_unique<JobResults>(mergeParts(options.operands, "arrange"));
     const auto made_by = commandOf(*parts, options);
     runCommand(*made_by, std::move(parts));
