@@ -84,7 +84,8 @@ std::string buildingInfoText(const BuildingScene& building) {
                 formatFixed(storey.floor + building.height(i), 3) + " m\n" +
                 infoText(info.storeys[i]) + '\n';
     }
-    text += "building of " + std::to_string(building.scenes.size()) + " storeys\n";
+    text += "building of " + std::to_string(building.scenes.size()) +
+            (building.scenes.size() == 1 ? " storey\n" : " storeys\n");
     text += "digest       " + building.document.digest() + '\n';
     text += "indoor area  " + formatFixed(info.indoor_area, 3) + " m2\n";
     text += "free area    " + formatFixed(info.free_area, 3) + " m2 at " +

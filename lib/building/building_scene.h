@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "building/building.h"
+#include "building/storeys.h"
 #include "drawing/drawing.h"
 #include "scene/devices.h"
 #include "scene/scene.h"

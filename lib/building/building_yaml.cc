@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "base/error.h"
-#include "building/building.h"
 #include "building/building_schemas.h"
+#include "building/storeys.h"
 #include "record/text.h"
 #include "record/yaml/yaml.h"
 #include "scene/placement_schemas.h"

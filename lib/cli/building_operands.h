@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "building/building.h"
 #include "building/building_scene.h"
+#include "building/storeys.h"
 #include "cli/operands.h"
 #include "record/record.h"
 

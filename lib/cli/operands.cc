@@ -11,7 +11,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/run_files.h"
-#include "building/building.h"
+#include "building/storeys.h"
 #include "cli/building_operands.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"

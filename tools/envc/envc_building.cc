@@ -12,6 +12,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
+#include "building/building_imports.h"
 #include "building/building_scene.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
@@ -143,14 +144,16 @@ void writeProduct(const EnvcOptions& options, const BuildingScene& building) {
 std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
                                                   const std::vector<RawInput>& raw,
                                                   const InputRequest& request) {
+    const std::string& storey = request.import.storey;
     const auto is_whole = [&](const RawInput& input) {
-        return request.import.storey.empty() && isBuilding(input.bytes);
+        return storey.empty() ? isBuilding(input.bytes) : storey == "all" && isIfc(input.bytes);
     };
     const auto found = std::find_if(raw.begin(), raw.end(), is_whole);
     if (found == raw.end()) return std::nullopt;
     ImportOptions import = request.import;
     import.load_files = request.compiles;
-    StoreyedDocument building = readBuilding(found->bytes, found->name, import);
+    StoreyedDocument building = storey.empty() ? readBuilding(found->bytes, found->name, import)
+                                               : readIfcBuilding(found->bytes, found->name, import);
     mustBeAboutBuildings(options, building);
     for (const RawInput& input : raw) {
         if (&input == &*found) continue;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "building/building.h"
+#include "building/storeys.h"
 #include "cli/operands.h"
 #include "envc/envc_options.h"
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <optional>
 #include <set>
 #include <string>
@@ -103,8 +104,10 @@ double areaOfSection(const BuildingSection& section) { return totalArea(areaOf(s
 std::size_t chosenStorey(const Building& building, const ImportOptions& options) {
     const std::size_t count = building.storeys.size();
     if (lowerCase(options.storey) == "all" && count > 1)
-        refuse("several storeys at once are not read yet: choose one with --storey; the storeys: " +
-               listOf(building));
+        refuse(
+            "one storey is read here: choose it with --storey, or make a building of all of them "
+            "with `envc --storey all`; the storeys: " +
+            listOf(building));
     if (!options.storey.empty() && lowerCase(options.storey) != "all")
         return storeyCalled(building, options.storey);
     if (options.slice_walls)
@@ -213,11 +216,64 @@ bool isIfc(std::string_view bytes) {
                std::string_view::npos;
 }
 
-Document readIfc(std::string_view bytes, const std::string& operand, const ImportOptions& options,
-                 const Schemas& schemas) {
+namespace {
+
+Building wholeBuilding(std::string_view bytes, const std::string& operand,
+                       const ImportOptions& options) {
     if (bytes.find("END-ISO-10303-21") == std::string_view::npos)
         failFile(operand, "truncated: the building ends without `END-ISO-10303-21;`");
-    Building building = readBuildingInChild(bytes, operand, options.slice_walls);
+    return readBuildingInChild(bytes, operand, options.slice_walls);
+}
+
+/// Returns the boxes of all things of these types.
+std::vector<BuildingBox> boxesOf(const Building& building,
+                                 std::initializer_list<std::string_view> types) {
+    std::vector<BuildingBox> boxes;
+    for (const BuildingThing& thing : building.things)
+        if (std::find(types.begin(), types.end(), thing.type) != types.end())
+            boxes.insert(boxes.end(), thing.boxes.begin(), thing.boxes.end());
+    return boxes;
+}
+
+}  // namespace
+
+IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
+                          const ImportOptions& options, const Schemas& schemas) {
+    Building building = wholeBuilding(bytes, operand, options);
+    IfcStoreys all;
+    const auto warn = [&](const std::string& sentence) {
+        all.warnings.push_back({displayName(operand), 0, 0, sentence, Severity::Warning});
+    };
+    if (const auto moved = movedHome(building)) all.notes.push_back(surveyText(*moved, "building"));
+    if (!building.unread.empty()) warn(unreadText(building));
+    if (options.report != nullptr) options.report->has_storeys = true;
+    const bool any_rooms =
+        std::any_of(building.storeys.begin(), building.storeys.end(),
+                    [](const BuildingStorey& storey) { return storey.doors > 0; }) ||
+        !building.spaces.empty();
+    for (std::size_t i = 0; i < building.storeys.size(); ++i) {
+        const BuildingStorey& storey = building.storeys[i];
+        const bool is_room = !any_rooms || storey.doors > 0 || !spaceAreas(building, i).empty();
+        const bool is_level =
+            !all.storeys.empty() && !(storey.elevation > all.storeys.back().elevation);
+        if (!is_room || is_level) {
+            all.notes.push_back("storey " + describe(building, i) + " is left out");
+            continue;
+        }
+        ImportRecords out(schemas, operand, options);
+        out.setStorey(storeyWord(building, i));
+        withFileName(operand, [&] { writeStorey(building, i, options, out); });
+        all.storeys.push_back({storey.name, storey.elevation, out.take()});
+    }
+    if (all.storeys.empty()) failFile(operand, "no storey has walls or spaces");
+    all.flights = boxesOf(building, {"IFCSTAIR", "IFCSTAIRFLIGHT"});
+    all.lifts = boxesOf(building, {"IFCTRANSPORTELEMENT"});
+    return all;
+}
+
+Document readIfc(std::string_view bytes, const std::string& operand, const ImportOptions& options,
+                 const Schemas& schemas) {
+    Building building = wholeBuilding(bytes, operand, options);
     ImportRecords out(schemas, operand, options);
     withFileName(operand, [&] {
         const auto moved = movedHome(building);

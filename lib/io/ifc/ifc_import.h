@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "io/ifc/building.h"
 #include "io/importers.h"
@@ -29,5 +31,25 @@ std::string unreadText(const Building& building);
 
 /// Computes the area of a section in square metres.
 double areaOfSection(const BuildingSection& section);
+
+/// A storey of a building as a room, in the building's x and y.
+struct IfcStorey {
+    std::string name;      ///< as in the file; "" if unnamed
+    double elevation = 0;  ///< of its floor, metres
+    Document room;
+};
+
+/// The storeys of a building that have walls or spaces, from the lowest on.
+struct IfcStoreys {
+    std::vector<IfcStorey> storeys;
+    std::vector<BuildingBox> flights, lifts;  ///< around stairs and transport elements
+    std::vector<std::string> notes;
+    std::vector<Diagnostic> warnings;
+};
+
+/// Reads all storeys as readIfc() reads one. Storeys without walls and spaces, and those that are
+/// level with a lower one, are left out, with a note. \throws FormatError as readIfc()
+IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
+                          const ImportOptions& options, const Schemas& schemas);
 
 }  // namespace ispace

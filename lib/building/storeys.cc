@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "building/building.h"
+#include "building/storeys.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/run_files.h"
+#include "building/building_imports.h"
 #include "building/building_schemas.h"
 #include "io/exporters.h"
 #include "io/glb/glb_read.h"
@@ -40,11 +41,12 @@ bool hasStoreyLine(std::string_view bytes) {
     return false;
 }
 
-/// Returns true for YAML with the keyword at its top.
+/// Returns true for YAML with the keyword at its top, and for sites of Open-RMF.
 bool hasStoreyNode(std::string_view bytes) {
     try {
         const auto tree = parseYaml(bytes, "");
         const YamlNode& top = tree->top();
+        if (isRmfSite(top)) return true;
         const auto has_key = [](const YamlNode& map) {
             if (map.kind != YamlNode::Kind::Map) return false;
             for (std::size_t i = 0; i + 1 < map.items.size(); i += 2)
@@ -194,7 +196,10 @@ void readRooms(const std::vector<Record>& records, RoomFiles& files,
 
 bool isBuilding(std::string_view bytes) {
     if (isGlb(bytes)) return glbOtherText(bytes).has_value();
-    if (bytes.find(kStorey) == std::string_view::npos) return false;
+    constexpr std::string_view kVertices = "vertices";  // of Open-RMF
+    if (bytes.find(kStorey) == std::string_view::npos &&
+        bytes.find(kVertices) == std::string_view::npos)
+        return false;
     bytes = withoutBom(bytes);
     if (isRecordText(bytes)) return hasStoreyLine(bytes);
     constexpr std::size_t kLooked = 4096;
@@ -264,6 +269,16 @@ StoreyedDocument makeBuilding(std::vector<StoreyInput> inputs, std::vector<Recor
             {std::move(passages[i]), ids[inputs.size() + i], std::move(storeys)});
     }
     findings.throwIfAny();
+    std::vector<const Document*> told;
+    for (const Storey& storey : building.storeys) {
+        if (std::find(told.begin(), told.end(), storey.room.get()) != told.end()) continue;
+        told.push_back(storey.room.get());
+        const Document& room = *storey.room;
+        for (const std::string& note : room.notes)
+            building.notes.push_back(storey.id + ": " + note);
+        building.warnings.insert(building.warnings.end(), room.warnings.begin(),
+                                 room.warnings.end());
+    }
     return building;
 }
 
@@ -277,6 +292,8 @@ StoreyedDocument readBuilding(std::string_view bytes, const std::string& operand
         head = readRecordText(text, operand, buildingSchemas());
         rooms.resize(head.records.size());
     } else {
+        const auto tree = parseYaml(text, operand);
+        if (isRmfSite(tree->top())) return readRmfSite(tree->top(), operand, options);
         head = readYamlHead(text, operand);
         head.records = readBuildingYaml(text, operand, options, rooms);
     }
@@ -308,16 +325,6 @@ StoreyedDocument readBuilding(std::string_view bytes, const std::string& operand
     StoreyedDocument building = makeBuilding(std::move(storeys), std::move(passages), operand);
     building.history = std::move(head.history);
     building.sources = std::move(sources);
-    std::vector<const Document*> told;
-    for (const Storey& storey : building.storeys) {
-        if (std::find(told.begin(), told.end(), storey.room.get()) != told.end()) continue;
-        told.push_back(storey.room.get());
-        const Document& room = *storey.room;
-        for (const std::string& note : room.notes)
-            building.notes.push_back(storey.id + ": " + note);
-        building.warnings.insert(building.warnings.end(), room.warnings.begin(),
-                                 room.warnings.end());
-    }
     return building;
 }
 

@@ -74,8 +74,8 @@ struct StoreyInput {
     Record record;
     std::shared_ptr<const Document> room;
 };
-/// Joins storeys and what connects them. \throws FormatError with all findings, which name `file`
-/// as a whole where records have no location
+/// Joins storeys and what connects them, with the notes and warnings of the rooms. \throws
+/// FormatError with all findings, which name `file` as a whole where records have no location
 StoreyedDocument makeBuilding(std::vector<StoreyInput> storeys, std::vector<Record> passages,
                               const std::string& file);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "building/building.h"
+#include "building/storeys.h"
 
 #include <gtest/gtest.h>
 
