@@ -11,6 +11,7 @@
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "scan/scan_batch.h"
+#include "scan/scan_building.h"
 #include "scan/scan_options.h"
 #include "scan/scan_run.h"
 #include "scan/scan_views.h"
@@ -141,6 +142,7 @@ void scan(const ScanCommand& command) {
     if (options.list_models) return writeAll(options.common.output, deviceTable(shippedDevices()));
     if (options.batch.merge) return mergeReadings(command);
     limitThreads(options.common.threads);
+    if (scanBuilding(command)) return;
     if (!options.view.views.empty()) return takeViews(command);
     if (!options.view.run.empty()) return writeRecorded(command);
     scanScene(command, options);
