@@ -14,8 +14,6 @@ namespace ispace {
 
 namespace {
 
-/// The frame of poses: fixed in the world, by REP 105.
-constexpr std::string_view kWorldFrame = "map";
 constexpr const char* kOptical = "_optical";
 
 constexpr RosTopic kOdometry{RosType::Odometry, "odom", RosFrame::World};
@@ -63,7 +61,7 @@ class Messages {
             if (topics_[i]->message != nullptr) continue;
             const std::uint64_t end = nanoseconds(views.back().time);
             send(i, sequenceOf(views.back()), end,
-                 pointCloudMessage({end, kWorldFrame},
+                 pointCloudMessage({end, kRosWorld},
                                    kind_.points(sensor_, reading, Coordinates::World)));
         }
     }
@@ -90,7 +88,7 @@ class Messages {
     }
 
     [[nodiscard]] std::string_view frameOf(const RosTopic& topic) const {
-        if (topic.frame == RosFrame::World) return kWorldFrame;
+        if (topic.frame == RosFrame::World) return kRosWorld;
         return topic.frame == RosFrame::Optical ? optical_ : name_;
     }
 
@@ -102,7 +100,7 @@ class Messages {
     }
 
     void addPose(std::uint64_t time, std::uint32_t sequence, const Pose3& pose) {
-        std::vector<RosTransform> transforms{{{time, kWorldFrame}, name_, pose}};
+        std::vector<RosTransform> transforms{{{time, kRosWorld}, name_, pose}};
         if (is_optical_) transforms.push_back({{time, name_}, optical_, Pose3(), true});
         appendMcapMessage(out_, 0, sequence, time, transformsMessage(transforms));
     }
@@ -127,10 +125,18 @@ class Messages {
     bool is_optical_ = false;
 };
 
+/// Files hold the definitions of all types that readings and runs have.
+std::vector<McapSchema> recordedSchemas() {
+    std::vector<McapSchema> schemas = rosSchemas();
+    schemas.resize(kRecordedRosTypes);
+    return schemas;
+}
+
 class McapStream final : public ReadingStream {
   public:
     McapStream(ByteSink write, std::vector<McapChannel> channels, McapCompression compression)
-        : file_(std::move(write), "ros2", "cdr", rosSchemas(), std::move(channels), compression) {}
+        : file_(std::move(write), "ros2", "cdr", recordedSchemas(), std::move(channels),
+                compression) {}
     void write(std::string_view appended) override { file_.add(appended); }
     void finish() override { file_.finish(); }
 
@@ -143,17 +149,6 @@ struct Member {
     std::string name, odometry;  ///< its frames
     std::uint16_t channel = 0;   ///< of a robot's odometry
 };
-
-/// Computes the pose of a robot's odometry frame from its pose in both frames.
-Pose2 odometryFrame(const Pose2& robot, const Pose2& odometry) {
-    const Angle heading = robot.heading - odometry.heading;
-    const Vec2 way = Pose2{{}, heading} * (odometry.position - Point2{});
-    return {robot.position - way, heading};
-}
-
-Pose3 onFloor(const Pose2& pose) {
-    return {{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
-}
 
 class Mcap final : public FormatBase {
   public:
@@ -182,12 +177,10 @@ class Mcap final : public FormatBase {
             const std::uint64_t now = rosTime(time, options_.members[state.who].id);
             const Member& one = members_[state.who];
             if (!state.odometry) {
-                transforms.push_back({{now, kWorldFrame}, one.name, onFloor(state.pose)});
+                addMoverFrame(transforms, now, one.name, state.pose);
                 continue;
             }
-            const Pose2 frame = odometryFrame(state.pose, *state.odometry);
-            transforms.push_back({{now, kWorldFrame}, one.odometry, onFloor(frame)});
-            transforms.push_back({{now, one.odometry}, one.name, onFloor(*state.odometry)});
+            addRobotFrames(transforms, now, one.odometry, one.name, state.pose, *state.odometry);
             appendMcapMessage(odometries, one.channel, sequence, now,
                               odometryMessage({now, one.odometry}, one.name, *state.odometry,
                                               {state.speed, state.sidespeed, state.rotspeed}));
@@ -227,7 +220,7 @@ class Mcap final : public FormatBase {
         members_.push_back(std::move(member));
     }
 
-    std::map<std::string, std::string> taken_{{std::string(kWorldFrame), "the world's frame"},
+    std::map<std::string, std::string> taken_{{std::string(kRosWorld), "the world's frame"},
                                               {"tf", "the topic of poses"}};
     std::vector<McapChannel> channels_;
     std::vector<Member> members_;

@@ -48,7 +48,9 @@ TEST(RosName, IsOneThatTopicsMayHave) {
 }
 
 TEST(RosSchemas, HoldAllTheTypesTheyName) {
-    for (const McapSchema& schema : rosSchemas()) {
+    std::vector<McapSchema> recorded = rosSchemas();
+    recorded.resize(kRecordedRosTypes);
+    for (const McapSchema& schema : recorded) {
         EXPECT_NE(schema.text.find("MSG: builtin_interfaces/Time\n"), std::string::npos)
             << schema.name;
         EXPECT_NE(schema.text.find("MSG: std_msgs/Header\n"), std::string::npos) << schema.name;

@@ -4,74 +4,38 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "geom/rotation.h"
+#include "sense/formats/cdr.h"
 #include "sense/formats/reading_picture.h"
 
 namespace ispace {
 
 namespace {
 
-/// Writes Common Data Representation, version 1: numbers are aligned to multiples of their size,
-/// counted from the end of the four bytes that name the encoding.
-class CdrWriter {
-  public:
-    CdrWriter() : out_("\0\1\0\0", kBegin) {}
+CdrWriter& put(CdrWriter& out, const RosHeader& header) {
+    constexpr std::uint64_t kSecond = 1'000'000'000;
+    out.put(static_cast<std::int32_t>(header.nanoseconds / kSecond));
+    out.put(static_cast<std::uint32_t>(header.nanoseconds % kSecond));
+    return out.put(header.frame);
+}
 
-    template <typename Number>
-    CdrWriter& put(Number value) {
-        align(sizeof(Number));
-        appendLittle(out_, value);
-        return *this;
-    }
-    CdrWriter& put(bool value) { return put(static_cast<std::uint8_t>(value)); }
-    CdrWriter& put(std::string_view text) {
-        count(text.size() + 1);
-        out_.append(text).append(1, '\0');
-        return *this;
-    }
-    CdrWriter& put(const char* text) { return put(std::string_view(text)); }
-    CdrWriter& put(const RosHeader& header) {
-        constexpr std::uint64_t kSecond = 1'000'000'000;
-        put(static_cast<std::int32_t>(header.nanoseconds / kSecond));
-        put(static_cast<std::uint32_t>(header.nanoseconds % kSecond));
-        return put(header.frame);
-    }
-    /// Writes a fixed number of values, known from the type.
-    template <typename Number>
-    CdrWriter& array(std::span<const Number> values) {
-        align(sizeof(Number));
-        out_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-        return *this;
-    }
-    /// Writes a count and its values.
-    template <typename Number>
-    CdrWriter& sequence(std::span<const Number> values) {
-        count(values.size());
-        return values.empty() ? *this : array(values);
-    }
-    CdrWriter& bytes(std::string_view values) {
-        count(values.size());
-        out_ += values;
-        return *this;
-    }
-    CdrWriter& count(std::size_t number) { return put(static_cast<std::uint32_t>(number)); }
+/// Returns a message that begins with a header.
+CdrWriter headed(const RosHeader& header) {
+    CdrWriter out;
+    put(out, header);
+    return out;
+}
 
-    [[nodiscard]] std::string take() { return std::move(out_); }
-
-  private:
-    static constexpr std::size_t kBegin = 4;
-    void align(std::size_t size) {
-        out_.append((size - (out_.size() - kBegin) % size) % size, '\0');
-    }
-
-    std::string out_;
-};
+void putPoint(CdrWriter& out, Point3 point) { out.put(point.x).put(point.y).put(point.z); }
 
 void putRotation(CdrWriter& out, const Eigen::Quaterniond& turn) {
     out.put(turn.x()).put(turn.y()).put(turn.z()).put(turn.w());
+}
+
+Pose3 onFloor(const Pose2& pose) {
+    return {{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
 }
 
 /// Sizes and matrices of a picture.
@@ -84,8 +48,8 @@ struct Intrinsics {
 
 std::string infoMessage(const RosHeader& header, const Intrinsics& info) {
     const auto [fx, fy, cx, cy] = std::array{info.fx, info.fy, info.cx, info.cy};
-    CdrWriter out;
-    out.put(header).count(static_cast<std::size_t>(info.rows));
+    CdrWriter out = headed(header);
+    out.count(static_cast<std::size_t>(info.rows));
     out.count(static_cast<std::size_t>(info.columns)).put(info.model);
     out.sequence(std::span<const double>(info.coefficients));
     out.array(std::span<const double>(std::array<double, 9>{fx, 0, cx, 0, fy, cy, 0, 0, 1}));
@@ -113,13 +77,26 @@ std::string rosName(std::string_view id) {
     return name.empty() ? "s" : name;
 }
 
+void addMoverFrame(std::vector<RosTransform>& out, std::uint64_t nanoseconds,
+                   std::string_view frame, const Pose2& pose) {
+    out.push_back({{nanoseconds, kRosWorld}, frame, onFloor(pose)});
+}
+
+void addRobotFrames(std::vector<RosTransform>& out, std::uint64_t nanoseconds,
+                    std::string_view odometry_frame, std::string_view frame, const Pose2& pose,
+                    const Pose2& odometry) {
+    const Angle heading = pose.heading - odometry.heading;
+    const Vec2 way = Pose2{{}, heading} * (odometry.position - Point2{});
+    addMoverFrame(out, nanoseconds, odometry_frame, {pose.position - way, heading});
+    out.push_back({{nanoseconds, odometry_frame}, frame, onFloor(odometry)});
+}
+
 std::string transformsMessage(std::span<const RosTransform> transforms) {
     CdrWriter out;
     out.count(transforms.size());
     for (const RosTransform& one : transforms) {
-        out.put(one.header).put(one.child);
-        const Point3& place = one.pose.position;
-        out.put(place.x).put(place.y).put(place.z);
+        put(out, one.header).put(one.child);
+        putPoint(out, one.pose.position);
         constexpr double kHalf = 0.5;
         const Eigen::Quaterniond optical(kHalf, -kHalf, kHalf, -kHalf);
         const Eigen::Quaterniond turn = quaternionOf(one.pose);
@@ -130,8 +107,7 @@ std::string transformsMessage(std::span<const RosTransform> transforms) {
 
 std::string laserScanMessage(const RosHeader& header, const Laser& laser, double time_increment,
                              std::span<const float> ranges) {
-    CdrWriter out;
-    out.put(header);
+    CdrWriter out = headed(header);
     for (const double value : {laser.first.radians(), laser.last().radians(), laser.step.radians(),
                                time_increment, 1 / laser.rate, laser.min_range, laser.max_range})
         out.put(static_cast<float>(value));
@@ -144,8 +120,8 @@ std::string pointCloudMessage(const RosHeader& header, const PointCloud& cloud,
     std::vector<const char*> names{"x", "y", "z"};
     for (const PointField& other : others) names.push_back(other.name);
     const std::size_t point = names.size() * sizeof(float);
-    CdrWriter out;
-    out.put(header).count(cloud.height).count(cloud.width).count(names.size());
+    CdrWriter out = headed(header);
+    out.count(cloud.height).count(cloud.width).count(names.size());
     std::uint32_t offset = 0;
     for (const char* const name : names) {
         out.put(name).put(offset).put(kFloat32).count(1);
@@ -164,9 +140,9 @@ std::string pointCloudMessage(const RosHeader& header, const PointCloud& cloud,
 
 std::string depthImageMessage(const RosHeader& header, const Ranger& ranger,
                               std::span<const float> depths) {
-    CdrWriter out;
+    CdrWriter out = headed(header);
     const auto columns = static_cast<std::size_t>(ranger.columns);
-    out.put(header).count(static_cast<std::size_t>(ranger.rows)).count(columns);
+    out.count(static_cast<std::size_t>(ranger.rows)).count(columns);
     out.put("32FC1").put(false).count(columns * sizeof(float));
     std::string bytes;
     bytes.reserve(depths.size_bytes());
@@ -177,7 +153,7 @@ std::string depthImageMessage(const RosHeader& header, const Ranger& ranger,
 
 std::string compressedImageMessage(const RosHeader& header, std::string_view format,
                                    std::string_view bytes) {
-    return CdrWriter().put(header).put(format).bytes(bytes).take();
+    return headed(header).put(format).bytes(bytes).take();
 }
 
 std::string cameraInfoMessage(const RosHeader& header, const Ranger& ranger) {
@@ -203,14 +179,14 @@ std::string cameraInfoMessage(const RosHeader& header, const Camera& camera) {
 }
 
 std::string pointMessage(const RosHeader& header, Point3 point) {
-    return CdrWriter().put(header).put(point.x).put(point.y).put(point.z).take();
+    return headed(header).put(point.x).put(point.y).put(point.z).take();
 }
 
 std::string odometryMessage(const RosHeader& header, std::string_view child, const Pose2& pose,
                             const RosTwist& twist) {
     constexpr std::array<double, 36> kUnknown{};
-    CdrWriter out;
-    out.put(header).put(child).put(pose.position.x).put(pose.position.y).put(0.0);
+    CdrWriter out = headed(header);
+    out.put(child).put(pose.position.x).put(pose.position.y).put(0.0);
     putRotation(out, Eigen::Quaterniond(turnAbout(2, pose.heading)));
     out.array(std::span<const double>(kUnknown));
     out.put(twist.forward).put(twist.left).put(0.0);
@@ -220,79 +196,155 @@ std::string odometryMessage(const RosHeader& header, std::string_view child, con
 
 namespace {
 
-/// Definitions of ROS 2's common_interfaces, without their comments. Types of other packages are
-/// prefixed with the package; contained types precede their users.
-struct Definition {
-    std::string_view name;  ///< as other definitions refer to it
-    std::string_view text;
+/// Of visualization_msgs/Marker.
+enum class MarkerType : std::int32_t { Cylinder = 3, Text = 9, Mesh = 10 };
+
+/// A marker, which a message of the same namespace and id replaces.
+struct Marker {
+    RosHeader header;
+    std::int32_t id = 0;
+    MarkerType type = MarkerType::Cylinder;
+    Point3 position = {};
+    Angle heading = {};
+    Vec3 scale{1, 1, 1};
+    std::array<float, 4> color{};  // red, green, blue, opacity
+    std::string_view text = {}, mesh = {};
 };
 
-constexpr Definition kParts[] = {
-    {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
-    {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
-    {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
-    {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
-    {"geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"},
-    {"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
-    {"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
-    {"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
-    {"geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
-    {"geometry_msgs/Transform",
-     "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
-    {"geometry_msgs/TransformStamped",
-     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
-    {"sensor_msgs/PointField",
-     "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\n"
-     "uint8 FLOAT32=7\nuint8 FLOAT64=8\n"
-     "string name\nuint32 offset\nuint8 datatype\nuint32 count\n"},
-    {"sensor_msgs/RegionOfInterest",
-     "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify\n"},
-};
+void putMarker(CdrWriter& out, const Marker& marker, std::int32_t action = 0) {
+    put(out, marker.header)
+        .put("ispace")
+        .put(marker.id)
+        .put(static_cast<std::int32_t>(marker.type))
+        .put(action);
+    putPoint(out, marker.position);
+    putRotation(out, Eigen::Quaterniond(turnAbout(2, marker.heading)));
+    out.put(marker.scale.x).put(marker.scale.y).put(marker.scale.z);
+    out.array(std::span<const float>(marker.color));
+    out.count(0).count(0).put(true);                  // lasts for ever, moves with its frame
+    out.count(0).count(0).put("");                    // points, colors, texture_resource
+    put(out, RosHeader()).put("").count(0).count(0);  // texture, uv_coordinates
+    out.put(marker.text).put(marker.mesh).put("").count(0).put(true);
+}
 
-/// Sorted as RosType.
-constexpr Definition kTypes[] = {
-    {"tf2_msgs/msg/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
-    {"sensor_msgs/msg/LaserScan",
-     "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n"
-     "float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n"
-     "float32[] ranges\nfloat32[] intensities\n"},
-    {"sensor_msgs/msg/PointCloud2",
-     "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n"
-     "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
-    {"sensor_msgs/msg/Image",
-     "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\n"
-     "uint32 step\nuint8[] data\n"},
-    {"sensor_msgs/msg/CompressedImage", "std_msgs/Header header\nstring format\nuint8[] data\n"},
-    {"sensor_msgs/msg/CameraInfo",
-     "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\nfloat64[] d\n"
-     "float64[9] k\nfloat64[9] r\nfloat64[12] p\nuint32 binning_x\nuint32 binning_y\n"
-     "sensor_msgs/RegionOfInterest roi\n"},
-    {"geometry_msgs/msg/PointStamped", "std_msgs/Header header\ngeometry_msgs/Point point\n"},
-    {"nav_msgs/msg/Odometry",
-     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
-     "geometry_msgs/TwistWithCovariance twist\n"},
-};
-
-/// Returns a type and all types that it contains, as bags store it.
-std::string wholeText(const Definition& type) {
-    std::string own(type.text), out = own;
-    // In reverse, as contained types precede their users in kParts.
-    for (auto part = std::rbegin(kParts); part != std::rend(kParts); ++part) {
-        if (own.find(part->name) == std::string::npos) continue;
-        own += part->text;
-        out += std::string(80, '=') + "\nMSG: " + std::string(part->name) + "\n";
-        out += part->text;
-    }
-    return out;
+/// Deletes all markers of the topic.
+void putDeletion(CdrWriter& out, const RosHeader& header) {
+    constexpr std::int32_t kDeleteAll = 3;
+    putMarker(out, {.header = header}, kDeleteAll);
 }
 
 }  // namespace
 
-std::vector<McapSchema> rosSchemas() {
-    std::vector<McapSchema> schemas;
-    for (const Definition& type : kTypes)
-        schemas.push_back({std::string(type.name), "ros2msg", wholeText(type)});
-    return schemas;
+std::string clockMessage(std::uint64_t nanoseconds) {
+    // The time alone, without a frame.
+    constexpr std::uint64_t kSecond = 1'000'000'000;
+    return CdrWriter()
+        .put(static_cast<std::int32_t>(nanoseconds / kSecond))
+        .put(static_cast<std::uint32_t>(nanoseconds % kSecond))
+        .take();
+}
+
+std::string boolMessage(bool value) { return CdrWriter().put(value).take(); }
+
+std::string mapMessage(const RosHeader& header, const RosGrid& map) {
+    CdrWriter out = headed(header);
+    out.put(std::int32_t{0}).count(0).put(static_cast<float>(map.resolution));
+    out.count(map.columns).count(map.columns == 0 ? 0 : map.cells.size() / map.columns);
+    putPoint(out, {map.origin.x, map.origin.y, 0});
+    putRotation(out, Eigen::Quaterniond::Identity());
+    return out.sequence(std::span<const std::int8_t>(map.cells)).take();
+}
+
+std::string rangeMessage(const RosHeader& header, const SonarRing& ring, float range) {
+    constexpr std::uint8_t kUltrasound = 0;
+    CdrWriter out = headed(header);
+    out.put(kUltrasound).put(static_cast<float>(ring.fov.radians()));
+    out.put(static_cast<float>(ring.min_range)).put(static_cast<float>(ring.max_range));
+    return out.put(range).put(0.0F).take();
+}
+
+std::string peopleMessage(const RosHeader& header, std::span<const RosPerson> people) {
+    constexpr std::array<float, 4> kBody{0.85F, 0.45F, 0.1F, 1}, kLetters{1, 1, 1, 1};
+    CdrWriter out;
+    out.count(1 + 2 * people.size());
+    putDeletion(out, header);
+    for (std::int32_t i = 0; const RosPerson& person : people) {
+        const Point2 place = person.pose.position;
+        const double width = 2 * person.radius, letters = 0.2;
+        putMarker(out, {.header = header,
+                        .id = i++,
+                        .position = {place.x, place.y, person.height / 2},
+                        .heading = person.pose.heading,
+                        .scale = {width, width, person.height},
+                        .color = kBody});
+        putMarker(out, {.header = header,
+                        .id = i++,
+                        .type = MarkerType::Text,
+                        .position = {place.x, place.y, person.height + letters},
+                        .scale = {letters, letters, letters},
+                        .color = kLetters,
+                        .text = person.id});
+    }
+    return out.take();
+}
+
+std::string roomMessage(const RosHeader& header, std::string_view mesh) {
+    CdrWriter out;
+    out.count(1);
+    putMarker(out, {.header = header, .type = MarkerType::Mesh, .mesh = mesh});
+    return out.take();
+}
+
+std::string diagnosticsMessage(const RosHeader& header, std::span<const RosDiagnostic> all) {
+    CdrWriter out = headed(header);
+    out.count(all.size());
+    for (const RosDiagnostic& one : all) {
+        out.put(static_cast<std::uint8_t>(one.is_warning ? 1 : 0)).put(one.name).put(one.message);
+        out.put("simrun").count(one.values.size());
+        for (const auto& [key, value] : one.values) out.put(key).put(value);
+    }
+    return out.take();
+}
+
+namespace {
+
+RosTwist readTwist(CdrReader& in) {
+    RosTwist twist;
+    twist.forward = in.number<double>();
+    twist.left = in.number<double>();
+    for (int i = 0; i < 3; ++i) in.number<double>();  // up, and turns about x and y
+    twist.turn = Angle::radians(in.number<double>());
+    return twist;
+}
+
+RosReadHeader readHeader(CdrReader& in) {
+    constexpr std::uint64_t kSecond = 1'000'000'000;
+    const auto seconds = in.number<std::int32_t>();
+    const auto nanoseconds = in.number<std::uint32_t>();
+    return {static_cast<std::uint64_t>(std::max(seconds, 0)) * kSecond + nanoseconds,
+            std::string(in.text())};
+}
+
+}  // namespace
+
+RosTwist twistOf(RosType type, std::string_view message) {
+    CdrReader in(message);
+    if (type == RosType::TwistStamped) readHeader(in);
+    return readTwist(in);
+}
+
+RosPose poseOf(std::string_view message) {
+    CdrReader in(message);
+    RosPose out;
+    out.frame = readHeader(in).frame;
+    out.pose.position.x = in.number<double>();
+    out.pose.position.y = in.number<double>();
+    in.number<double>();
+    const auto x = in.number<double>(), y = in.number<double>(), z = in.number<double>(),
+               w = in.number<double>();
+    out.pose.heading =
+        Angle::radians(std::atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z));
+    return out;
 }
 
 }  // namespace ispace

@@ -6,30 +6,17 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "geom/pose.h"
-#include "sense/formats/mcap_writer.h"
+#include "scene/robot.h"
 #include "sense/formats/point_cloud.h"
+#include "sense/formats/ros_types.h"
 #include "sense/photo.h"
 #include "sense/scan.h"
 
 namespace ispace {
-
-/// The types written here, in the order of rosSchemas().
-enum class RosType : std::uint16_t {
-    TFMessage,
-    LaserScan,
-    PointCloud2,
-    Image,
-    CompressedImage,
-    CameraInfo,
-    PointStamped,
-    Odometry
-};
-
-/// Returns their definitions with all contained types (`ros2msg`).
-std::vector<McapSchema> rosSchemas();
 
 /// Converts an id to a valid name of ROS topics and frames: letters, digits and single underscores,
 /// a letter first. `camera-2/left` becomes camera_2_left.
@@ -48,6 +35,18 @@ struct RosTransform {
     Pose3 pose;
     bool is_optical = false;  ///< rotated further: x right, y down, z ahead
 };
+
+/// The frame of poses: fixed in the world, by REP 105.
+inline constexpr std::string_view kRosWorld = "map";
+
+/// Appends the pose of a mover's frame in the world.
+void addMoverFrame(std::vector<RosTransform>& out, std::uint64_t nanoseconds,
+                   std::string_view frame, const Pose2& pose);
+/// Appends the frame of a robot's odometry in the world, and the robot's frame in it.
+/// \param odometry the robot's pose in that frame
+void addRobotFrames(std::vector<RosTransform>& out, std::uint64_t nanoseconds,
+                    std::string_view odometry_frame, std::string_view frame, const Pose2& pose,
+                    const Pose2& odometry);
 
 std::string transformsMessage(std::span<const RosTransform> transforms);
 /// Writes a scan. \param time_increment seconds from beam to beam; the header has the time of beam
@@ -81,5 +80,54 @@ struct RosTwist {
 /// Writes the odometry pose of `child` in the header's frame. Covariances are 0: unknown.
 std::string odometryMessage(const RosHeader& header, std::string_view child, const Pose2& pose,
                             const RosTwist& twist);
+
+// Messages of a running world.
+
+std::string clockMessage(std::uint64_t nanoseconds);
+std::string boolMessage(bool value);
+
+/// An occupancy grid: rows from the lowest y, each from the lowest x.
+struct RosGrid {
+    Point2 origin;  ///< corner of the first cell
+    double resolution = 0.05;
+    std::size_t columns = 0;
+    std::vector<std::int8_t> cells;  ///< 0 free, 100 occupied, -1 unknown
+};
+std::string mapMessage(const RosHeader& header, const RosGrid& map);
+/// Writes the range of one sonar: metres, +infinity without an echo (REP 117).
+std::string rangeMessage(const RosHeader& header, const SonarRing& ring, float range);
+
+struct RosPerson {
+    std::string_view id;
+    Pose2 pose;
+    double radius = 0, height = 0;
+};
+/// Writes a cylinder and a name for each person; earlier markers of the topic disappear.
+std::string peopleMessage(const RosHeader& header, std::span<const RosPerson> people);
+/// Writes a mesh by its URI, in the header's frame.
+std::string roomMessage(const RosHeader& header, std::string_view mesh);
+
+struct RosDiagnostic {
+    std::string name, message;
+    bool is_warning = false;
+    std::vector<std::pair<std::string, std::string>> values = {};
+};
+std::string diagnosticsMessage(const RosHeader& header, std::span<const RosDiagnostic> all);
+
+// Messages to a running world. \throws FormatError for messages that are too short
+
+struct RosReadHeader {
+    std::uint64_t nanoseconds = 0;
+    std::string frame;
+};
+/// Reads a Twist or a TwistStamped: the motion in the plane.
+RosTwist twistOf(RosType type, std::string_view message);
+
+struct RosPose {
+    std::string frame;
+    Pose2 pose;
+};
+/// Reads the pose of a PoseWithCovarianceStamped, turned about z alone.
+RosPose poseOf(std::string_view message);
 
 }  // namespace ispace
