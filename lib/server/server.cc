@@ -28,6 +28,7 @@
 #include "base/number.h"
 #include "server/client_connection.h"
 #include "server/device/device_port.h"
+#include "server/web/web_page.h"
 #include "server/web_server.h"
 
 namespace ispace {
@@ -88,7 +89,7 @@ struct Server::Data {
     std::optional<WallTime> alarm_time;
     std::vector<std::shared_ptr<ClientConnection>> connections;  // in order of arrival
     std::atomic<std::size_t> serving = 0;
-    std::optional<WebServer> web;
+    std::list<WebServer> webs;
     DeviceHost host{state};
     std::list<DevicePort> devices;
 };
@@ -143,7 +144,7 @@ void Server::Data::stepped() {
     for (const auto& connection : connections)
         connection->stepped(may_be_late || steady_clock::now() < end);
     for (DevicePort& device : devices) device.stepped();
-    if (web) web->stepped();
+    for (WebServer& web : webs) web.stepped();
     static_cast<void>(state.hasUpdates());
     has_news = false;
     next_news = steady_clock::now() + kNewsEvery;
@@ -160,7 +161,7 @@ WallTime Server::Data::nextTurn() const {
             next = std::min(next, connection->heard() + limits.watchdog);
     }
     for (const DevicePort& device : devices) may_change = may_change || device.waitsToChange();
-    may_change = may_change || (web && web->waitsToChange());
+    for (const WebServer& web : webs) may_change = may_change || web.waitsToChange();
     if (const auto change = state.nextChange(); may_change && change)
         next = std::min(next, *change);
     return next;
@@ -170,7 +171,7 @@ WallTime Server::Data::nextTurn() const {
 std::chrono::nanoseconds Server::Data::turn() const {
     const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay() ||
                           simulation.paused();
-    if (!may_hold || (serving == 0 && !web && devices.empty())) return kTurn;
+    if (!may_hold || (serving == 0 && webs.empty() && devices.empty())) return kTurn;
     const auto sensors = simulation.world().sensors();
     const bool has_heavy = std::any_of(sensors.begin(), sensors.end(), isHeavy);
     return has_heavy ? std::chrono::nanoseconds(0) : kTurn;
@@ -185,8 +186,10 @@ void Server::Data::serveClients() {
     const bool has_made = state.collect();
     for (const auto& connection : connections)
         if (has_made || connection->waiting()) connection->proceed();
-    if (web && has_made) web->stepped();
-    if (web) web->serve();
+    for (WebServer& web : webs) {
+        if (has_made) web.stepped();
+        web.serve();
+    }
     for (DevicePort& device : devices) {
         device.serve(steady_clock::now());
         if (has_made) device.stepped();
@@ -255,11 +258,12 @@ void Server::Data::finishRecord() {
 void Server::Data::end() {
     acceptor.close();
     for (const auto& connection : connections) connection->end();
-    if (web) web->end();
+    for (WebServer& web : webs) web.end();
     for (DevicePort& device : devices) device.end();
     sweep();
     const auto busy = [this] {
-        return !connections.empty() || (web && web->busy()) ||
+        return !connections.empty() ||
+               std::any_of(webs.begin(), webs.end(), [](WebServer& web) { return web.busy(); }) ||
                std::any_of(devices.begin(), devices.end(),
                            [](DevicePort& device) { return device.busy(); });
     };
@@ -273,7 +277,7 @@ void Server::Data::end() {
 
 void Server::Data::closeAll() {
     for (const auto& connection : connections) connection->close();
-    if (web) web->closeAll();
+    for (WebServer& web : webs) web.closeAll();
     for (DevicePort& device : devices) device.closeAll();
     sweep();
 }
@@ -288,7 +292,10 @@ std::string Server::address() const { return data_->acceptor.address(); }
 std::uint16_t Server::port() const { return data_->acceptor.port(); }
 
 std::string Server::serveWeb(const Endpoint& endpoint, const std::string& title) {
-    return data_->web.emplace(data_->io, data_->state, endpoint, title).url();
+    Data& data = *data_;
+    const WebServer& web = data.webs.emplace_back(data.io, endpoint, data.limits,
+                                                  std::make_unique<WebPage>(data.state, title));
+    return "http://" + web.address() + "/";
 }
 
 std::string Server::serveDevice(const WireProtocol& protocol, const std::string& id,

@@ -19,13 +19,14 @@ constexpr std::size_t kMaxConnections = 64;
 
 }  // namespace
 
-WebServer::WebServer(boost::asio::io_context& io, ServerState& state, const Endpoint& endpoint,
-                     std::string title)
-    : frames_(state.simulation(), std::move(title)),
+WebServer::WebServer(boost::asio::io_context& io, const Endpoint& endpoint,
+                     const ServerLimits& limits, std::unique_ptr<WebSite> site)
+    : limits_(limits),
+      site_(std::move(site)),
       acceptor_(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }),
-      origin_(acceptor_.host(), acceptor_.port()),
-      share_{&state, &frames_, &origin_},
-      alarm_(io) {}
+      alarm_(io) {
+    site_->settle(acceptor_.host(), acceptor_.port());
+}
 
 /// When the server is full, drops the oldest connection that is not a WebSocket, else the WebSocket
 /// that has been idle longest.
@@ -35,16 +36,16 @@ void WebServer::welcome(tcp::socket socket) {
         auto leaves = std::find_if(connections_.cbegin(), connections_.cend(),
                                    [](const auto& connection) { return !connection->isSocket(); });
         if (leaves == connections_.cend())
-            leaves = longestIdle(connections_,
-                                 steady_clock::now() - share_.state->limits().roleless_grace);
+            leaves = longestIdle(connections_, steady_clock::now() - limits_.roleless_grace);
         if (leaves == connections_.cend()) return;
         (*leaves)->close();
         sweep();
     }
-    connections_.push_back(serveBrowser(std::move(socket), share_));
+    connections_.push_back(serveBrowser(std::move(socket), *site_, limits_));
 }
 
 void WebServer::stepped() {
+    site_->stepped();
     for (const auto& connection : connections_) connection->stepped();
 }
 
@@ -56,17 +57,17 @@ void WebServer::serve() {
         connection->checkPatience(now);
         // A client that awaits a frame of a paused world is not idle.
         const auto idle = connection->idleSince();
-        if (idle && *idle <= now - share_.state->limits().roleless && !connection->wantsFrame())
-            connection->dismiss();
+        const bool is_late = idle && *idle <= now - limits_.roleless;
+        if (is_late && connection->expires() && !connection->wantsFrame()) connection->dismiss();
         wanted = wanted || connection->wantsFrame();
     }
     sweep();
     if (!wanted) return;
-    frames_.look(now);
+    const WallTime next = site_->look(now);
     for (const auto& connection : connections_) connection->offerFrame();
-    if (alarm_time_ == frames_.nextLook()) return;
+    if (alarm_time_ == next) return;
     // Wakes the loop, which then comes here.
-    alarm_time_ = frames_.nextLook();
+    alarm_time_ = next;
     alarm_.expires_at(alarm_time_);
     alarm_.async_wait([](boost::system::error_code) {});
 }
@@ -88,7 +89,7 @@ bool WebServer::busy() {
 void WebServer::end() {
     acceptor_.close();
     alarm_.cancel();
-    frames_.look(std::max(steady_clock::now(), frames_.nextLook()));
+    site_->lookAtEnd();
     for (const auto& connection : connections_) connection->end();
     sweep();
 }

@@ -10,19 +10,20 @@
 
 #include "server/server.h"
 #include "server/web/web_connection.h"
+#include "server/web/web_dialogue.h"
 
 namespace ispace {
 
-/// Serves the page that shows a running world, and the connections of its browsers. Belongs to a
-/// Server and runs in its thread and event loop.
+/// Serves a site to browsers and other clients of WebSockets. Belongs to a Server and runs in its
+/// thread and event loop.
 class WebServer {
   public:
     /// Starts listening. \throws std::system_error naming the endpoint
-    WebServer(boost::asio::io_context& io, ServerState& state, const Endpoint& endpoint,
-              std::string title);
+    WebServer(boost::asio::io_context& io, const Endpoint& endpoint, const ServerLimits& limits,
+              std::unique_ptr<WebSite> site);
 
-    /// "http://127.0.0.1:40123/"
-    [[nodiscard]] std::string url() const { return "http://" + acceptor_.address() + "/"; }
+    /// "127.0.0.1:40123"
+    [[nodiscard]] std::string address() const { return acceptor_.address(); }
     /// Call after each step of the world.
     void stepped();
     /// Call between steps: answers finished STEPs and sends frames.
@@ -39,10 +40,9 @@ class WebServer {
     void welcome(boost::asio::ip::tcp::socket socket);
     void sweep();
 
-    WebFrames frames_;
+    ServerLimits limits_;
+    std::unique_ptr<WebSite> site_;
     Acceptor acceptor_;
-    WebOrigin origin_;
-    WebShare share_;
     boost::asio::steady_timer alarm_;  // wakes for the next frame
     WallTime alarm_time_{};
     std::vector<std::shared_ptr<WebConnection>> connections_;  // in order of arrival

@@ -13,6 +13,7 @@
 #include "fuzz.h"
 #include "served_room.h"
 #include "server/web/web_connection.h"
+#include "server/web/web_page.h"
 
 namespace {
 
@@ -32,7 +33,8 @@ class Browser {
         end_ = ends[0];
         boost::asio::ip::tcp::socket socket(io_);
         socket.assign(boost::asio::ip::tcp::v4(), ends[1]);
-        connection_ = serveBrowser(std::move(socket), {&room_.state(), &frames_, &origin_});
+        page_.settle("127.0.0.1", 8000);
+        connection_ = serveBrowser(std::move(socket), page_, room_.state().limits());
     }
     ~Browser() {
         connection_->close();
@@ -69,7 +71,7 @@ class Browser {
         room_.run([this] { connection_->stepped(); });
         if (connection_->waiting()) connection_->proceed();
         if (connection_->wantsFrame()) {
-            frames_.look(std::chrono::steady_clock::now());
+            page_.look(std::chrono::steady_clock::now());
             connection_->offerFrame();
         }
         std::array<char, 65536> block{};
@@ -81,8 +83,7 @@ class Browser {
     }
 
     fuzz::ServedRoom room_;
-    WebFrames frames_{room_.simulation(), "room.env"};
-    WebOrigin origin_{"127.0.0.1", 8000};
+    WebPage page_{room_.state(), "room.env"};
     boost::asio::io_context io_;
     std::shared_ptr<WebConnection> connection_;
     int end_ = -1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/web/web_connection.h"
 
+#include <array>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/empty_body.hpp>
@@ -10,13 +11,10 @@
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <chrono>
-#include <deque>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "base/message.h"
-#include "server/session.h"
 #include "server/web/web_files.h"
 
 namespace ispace {
@@ -37,46 +35,44 @@ constexpr std::uint32_t kMaxHeader = 8192;
 constexpr auto kHttpPatience = std::chrono::seconds(10);
 /// Time limit for a WebSocket whose peer does not answer pings.
 constexpr auto kSilence = std::chrono::seconds(60);
-/// Maximum requests that wait for the end of a STEP.
-constexpr std::size_t kMaxHeld = 64;
-constexpr std::string_view kSocketPath = "/ws";
-
-/// WebSocket has messages of text, which must be UTF-8, and others.
-bool isText(std::string_view bytes) {
-    while (!bytes.empty()) {
-        const std::size_t length = utf8Length(bytes);
-        if (length == 0) return false;
-        bytes.remove_prefix(length);
-    }
-    return true;
-}
 
 std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
 
 class Browser final : public WebConnection, public std::enable_shared_from_this<Browser> {
   public:
-    Browser(tcp::socket socket, const WebShare& share)
-        : stream_(std::move(socket)), share_(share) {}
+    Browser(tcp::socket socket, WebSite& site, const ServerLimits& limits)
+        : stream_(std::move(socket)), site_(&site), patience_(limits.patience) {}
 
     void awaitRequest();
 
-    void stepped() override;
-    void proceed() override;
-    void goOn();
-    [[nodiscard]] bool waiting() const override { return session_ && session_->waiting(); }
-    [[nodiscard]] bool waitsToChange() const override {
-        return session_ && session_->waitsToChange();
+    void stepped() override {
+        if (!dialogue_ || closed_) return;
+        dialogue_->stepped();
+        goOn();
     }
-    [[nodiscard]] bool wantsFrame() const override { return wants_frame_ && !closed_; }
+    void proceed() override {
+        if (!dialogue_ || closed_) return;
+        dialogue_->proceed();
+        goOn();
+    }
+    [[nodiscard]] bool waiting() const override { return dialogue_ && dialogue_->waiting(); }
+    [[nodiscard]] bool waitsToChange() const override {
+        return dialogue_ && dialogue_->waitsToChange();
+    }
+    [[nodiscard]] bool wantsFrame() const override {
+        return dialogue_ && dialogue_->wantsFrame() && !closed_;
+    }
+    [[nodiscard]] bool expires() const override { return dialogue_ && dialogue_->expires(); }
     void offerFrame() override {
-        if (wants_frame_) flush();
+        if (wantsFrame()) flush();
     }
     void checkPatience(WallTime now) override {
-        if (writing_ && now - writing_since_ > limits().patience) close();
+        if (writing_ && now - writing_since_ > patience_) close();
     }
     [[nodiscard]] bool isSocket() const override { return socket_.has_value(); }
     [[nodiscard]] std::optional<WallTime> idleSince() const override {
-        const bool is_idle = session_ && !session_->hasRole() && !session_->closing() && !ending_;
+        const bool is_idle =
+            dialogue_ && !dialogue_->isEngaged() && !dialogue_->closing() && !ending_;
         return is_idle ? std::optional(heard_) : std::nullopt;
     }
     void dismiss() override;
@@ -88,7 +84,6 @@ class Browser final : public WebConnection, public std::enable_shared_from_this<
     using Request = http::request<http::empty_body>;
     using Response = http::response<http::span_body<const char>>;
 
-    [[nodiscard]] const ServerLimits& limits() const { return share_.state->limits(); }
     void requested(error_code error);
     void answer(const Request& request);
     void respond(const Request& request, http::status status, std::string_view type,
@@ -96,29 +91,26 @@ class Browser final : public WebConnection, public std::enable_shared_from_this<
     void refuse(http::status status, std::string_view why);
     void send(Response response);
 
-    void upgrade(const Request& request);
+    void upgrade(const Request& request, WebAdmission admission);
     void listen();
     void received();
-    void answerHeld();
+    void goOn();
     void flush();
-    std::shared_ptr<const std::string> nextMessage();
     void sayGoodbye();
 
     beast::tcp_stream stream_;
-    WebShare share_;
+    WebSite* site_;
+    std::chrono::nanoseconds patience_;
     beast::flat_buffer in_;
     std::optional<http::request_parser<http::empty_body>> parser_;
     std::optional<Response> response_;
     // Set by the upgrade:
     std::optional<websocket::stream<beast::tcp_stream>> socket_;
-    std::optional<Session> session_;
-    std::deque<std::string> held_;  // unanswered requests
-    std::string out_;               // unsent replies
-    std::shared_ptr<const std::string> sending_;
-    WallTime writing_since_{}, heard_{};  // heard_: last message
-    std::int64_t known_frame_ = 0, known_scene_ = -1;
-    bool wants_frame_ = false;
+    std::unique_ptr<WebDialogue> dialogue_;
+    std::optional<WebMessage> sending_;
+    WallTime writing_since_{}, heard_{};      // heard_: last message
     bool reading_ = false, writing_ = false;  // handlers pending
+    bool open_ = false;                       // the handshake is complete
     bool ending_ = false, closed_ = false;
 };
 
@@ -146,20 +138,23 @@ void Browser::requested(error_code error) {
     if (error) return close();
     const Request request = parser_->release();
     const auto host = view(request[http::field::host]);
-    if (request.count(http::field::host) != 1 || !share_.origin->isHost(host))
+    if (request.count(http::field::host) != 1 || !site_->isHost(host))
         return refuse(http::status::forbidden,
                       "no server of that name here: its address is the "
                       "one that simrun says");
     if (!websocket::is_upgrade(request)) return answer(request);
-    if (view(request.target()) != kSocketPath)
-        return refuse(http::status::not_found, "the WebSocket is /ws");
-    if (request.count(http::field::origin) > 1 ||
-        !share_.origin->mayConnect(view(request[http::field::origin])))
-        return refuse(http::status::forbidden, "only the page of this server may connect");
+    constexpr const char* kProtocols = "Sec-WebSocket-Protocol";
+    const bool is_repeated =
+        request.count(http::field::origin) > 1 || request.count(kProtocols) > 1;
+    if (is_repeated) return refuse(http::status::forbidden, "a header is repeated");
     // Beast would read them as the beginning of the first message.
     if (in_.size() > 0)
         return refuse(http::status::bad_request, "frames follow the answer to the upgrade");
-    upgrade(request);
+    WebAdmission admission = site_->open({.target = view(request.target()),
+                                          .origin = view(request[http::field::origin]),
+                                          .protocols = view(request[kProtocols])});
+    if (!admission.dialogue) return refuse(http::int_to_status(admission.status), admission.why);
+    upgrade(request, std::move(admission));
 }
 
 void Browser::answer(const Request& request) {
@@ -167,7 +162,7 @@ void Browser::answer(const Request& request) {
     if (request.method() != http::verb::get && request.method() != http::verb::head)
         return respond(request, http::status::method_not_allowed, kPlain, "only GET and HEAD\n");
     const std::string_view target = view(request.target());
-    const WebFile* const file = webFile(target.substr(0, target.find('?')));
+    const WebFile* const file = site_->file(target.substr(0, target.find('?')));
     if (file == nullptr)
         return respond(request, http::status::not_found, kPlain, "there is no such file\n");
     respond(request, http::status::ok, file->type, file->bytes);
@@ -215,26 +210,30 @@ void Browser::send(Response response) {
 
 // WebSocket.
 
-void Browser::upgrade(const Request& request) {
+void Browser::upgrade(const Request& request, WebAdmission admission) {
+    dialogue_ = std::move(admission.dialogue);
     stream_.expires_never();
     response_.reset();
     socket_.emplace(std::move(stream_));
     socket_->set_option(websocket::stream_base::timeout{kHttpPatience, kSilence, true});
-    socket_->read_message_max(limits().line);
+    socket_->read_message_max(dialogue_->longest());
+    if (!admission.protocol.empty())
+        socket_->set_option(websocket::stream_base::decorator(
+            [protocol = std::string(admission.protocol)](websocket::response_type& response) {
+                response.set(http::field::sec_websocket_protocol, protocol);
+            }));
+    heard_ = steady_clock::now();
     socket_->async_accept(request, [self = shared_from_this()](error_code error) {
         if (self->closed_) return;
         if (error) return self->close();
-        self->session_.emplace(*self->share_.state);
-        self->heard_ = steady_clock::now();
-        self->out_ = Session::greeting();
+        self->open_ = true;
         self->flush();
         self->listen();
     });
 }
 
 void Browser::listen() {
-    const bool full = held_.size() >= kMaxHeld || out_.size() > limits().pending;
-    if (reading_ || closed_ || ending_ || !session_ || full) return;
+    if (reading_ || closed_ || ending_ || !open_ || !dialogue_->hasRoom()) return;
     reading_ = true;
     socket_->async_read(in_, [self = shared_from_this()](error_code error, auto) {
         self->reading_ = false;
@@ -245,95 +244,46 @@ void Browser::listen() {
 }
 
 void Browser::received() {
-    if (!session_) return;  // arrived after the closing message
     heard_ = steady_clock::now();
     const auto data = in_.cdata();
-    std::string_view lines(static_cast<const char*>(data.data()), data.size());
-    while (!lines.empty()) {
-        const std::string_view line = lines.substr(0, lines.find('\n'));
-        lines.remove_prefix(std::min(lines.size(), line.size() + 1));
-        if (line != "FRAME")
-            held_.emplace_back(line);
-        else if (session_->mayLook())
-            wants_frame_ = true;
-        else
-            out_ += "ERR 401 FRAME needs the token of this run: TOKEN x comes before it\n";
-    }
+    if (!ending_)
+        dialogue_->receive({static_cast<const char*>(data.data()), data.size()},
+                           socket_->got_text());
     in_.consume(in_.size());
-    answerHeld();
     flush();
     listen();
-}
-
-void Browser::answerHeld() {
-    while (session_ && !held_.empty() && !session_->waiting() && !session_->closing() &&
-           out_.size() <= limits().pending) {
-        session_->request(held_.front());
-        held_.pop_front();
-        out_ += session_->take();
-    }
-}
-
-void Browser::stepped() {
-    if (!session_ || closed_) return;
-    session_->stepped(out_.size() <= limits().pending);
-    goOn();
-}
-
-void Browser::proceed() {
-    if (!session_ || closed_) return;
-    session_->proceed();
-    goOn();
 }
 
 void Browser::goOn() {
-    out_ += session_->take();
-    // Events come unasked.
-    if (out_.size() > 2 * limits().pending) return close();
-    answerHeld();
+    if (dialogue_->isOverfull()) return close();
     flush();
     listen();
 }
 
-std::shared_ptr<const std::string> Browser::nextMessage() {
-    if (!out_.empty()) return std::make_shared<const std::string>(std::exchange(out_, {}));
-    if (!session_) return nullptr;
-    if (auto scan = session_->takeScan()) return scan;
-    WebFrames& frames = *share_.frames;
-    if (!wants_frame_ || frames.number() == known_frame_) return nullptr;
-    if (std::exchange(known_scene_, frames.sceneVersion()) != frames.sceneVersion()) {
-        known_frame_ = 0;
-        return frames.scene();
-    }
-    wants_frame_ = false;
-    return frames.frame(std::exchange(known_frame_, frames.number()));
-}
-
 void Browser::flush() {
-    if (writing_ || closed_ || !socket_) return;
-    sending_ = nextMessage();
+    if (writing_ || closed_ || !open_) return;
+    sending_ = dialogue_->next();
     if (!sending_) {
-        if (ending_ || (session_ && session_->closing())) sayGoodbye();
+        if (ending_ || dialogue_->closing()) sayGoodbye();
         return;
     }
     writing_ = true;
     writing_since_ = steady_clock::now();
-    socket_->text(isText(*sending_));
-    socket_->async_write(asio::buffer(*sending_), [self = shared_from_this()](auto error, auto) {
+    socket_->text(sending_->is_text);
+    const std::string_view body = sending_->body ? *sending_->body : std::string_view();
+    const std::array<asio::const_buffer, 3> pieces{asio::buffer(sending_->head), asio::buffer(body),
+                                                   asio::buffer(sending_->tail)};
+    socket_->async_write(pieces, [self = shared_from_this()](auto error, auto) {
         self->writing_ = false;
         if (self->closed_) return;
         if (error) return self->close();
-        self->answerHeld();
         self->flush();
         self->listen();
     });
 }
 
 void Browser::dismiss() {
-    session_.reset();
-    held_.clear();
-    out_ += "ERR 408 no role taken in time: ROBOT id, SENSOR id or WORLD comes first\n";
-    wants_frame_ = false;
+    dialogue_->dismiss();
     ending_ = true;
     flush();
 }
@@ -341,35 +291,35 @@ void Browser::dismiss() {
 void Browser::sayGoodbye() {
     writing_ = true;
     writing_since_ = steady_clock::now();
-    session_.reset();
     const auto code = ending_ ? websocket::close_code::going_away : websocket::close_code::normal;
+    ending_ = true;
+    dialogue_.reset();
     socket_->async_close(code, [self = shared_from_this()](error_code) { self->close(); });
 }
 
 void Browser::end() {
     if (closed_) return;
     ending_ = true;
-    if (!session_) {
+    if (!open_ || !dialogue_) {
         if (!response_) close();
         return;
     }
-    session_->finish();
-    out_ += session_->take();
-    wants_frame_ = true;  // the last one
+    dialogue_->finish();
     flush();
 }
 
 void Browser::close() {
     if (std::exchange(closed_, true)) return;
-    session_.reset();
+    dialogue_.reset();
     error_code ignored;
     (socket_ ? beast::get_lowest_layer(*socket_) : stream_).socket().close(ignored);
 }
 
 }  // namespace
 
-std::shared_ptr<WebConnection> serveBrowser(tcp::socket socket, const WebShare& share) {
-    const auto browser = std::make_shared<Browser>(std::move(socket), share);
+std::shared_ptr<WebConnection> serveBrowser(tcp::socket socket, WebSite& site,
+                                            const ServerLimits& limits) {
+    const auto browser = std::make_shared<Browser>(std::move(socket), site, limits);
     browser->awaitRequest();
     return browser;
 }

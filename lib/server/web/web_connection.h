@@ -7,37 +7,26 @@
 #include <optional>
 
 #include "server/server_state.h"
-#include "server/web/web_files.h"
-#include "server/web/web_frames.h"
+#include "server/web/web_dialogue.h"
 
 namespace ispace {
 
-/// State shared by the connections of one web server.
-struct WebShare {
-    ServerState* state;
-    WebFrames* frames;
-    const WebOrigin* origin;
-};
-
-/// A browser's connection: HTTP requests for the page's files, until one upgrades it to a
-/// WebSocket. Each message there holds one or more requests of the Simulator TCP Protocol, answered
-/// by a Session, and one addition: FRAME is answered by the next frame, a JSON object, as soon as
-/// it is newer than the last one; a new scene is sent before it.
+/// The transport of a browser, or of another client of a WebSite: HTTP requests for files, until
+/// one upgrades it to a WebSocket with a WebDialogue.
 ///
-/// Non-blocking. Memory per connection is bounded: one message each way, replies up to a limit, one
-/// frame. Pending handlers keep it alive until it is closed.
+/// Non-blocking. Pending handlers keep it alive until it is closed.
 class WebConnection {
   public:
     virtual ~WebConnection() = default;
 
-    /// As in Session.
+    /// As in WebDialogue.
     virtual void stepped() = 0;
     virtual void proceed() = 0;
     [[nodiscard]] virtual bool waiting() const = 0;
     [[nodiscard]] virtual bool waitsToChange() const = 0;
-    /// True if a FRAME request is pending.
     [[nodiscard]] virtual bool wantsFrame() const = 0;
-    /// Sends the newest frame unless it was sent already.
+    [[nodiscard]] virtual bool expires() const = 0;
+    /// Sends the newest frame if it is wanted and was not sent already.
     virtual void offerFrame() = 0;
     /// Closes it if the peer has not read for too long.
     virtual void checkPatience(WallTime now) = 0;
@@ -53,8 +42,8 @@ class WebConnection {
     [[nodiscard]] virtual bool closed() const = 0;
 };
 
-/// Serves a browser on this socket.
-std::shared_ptr<WebConnection> serveBrowser(boost::asio::ip::tcp::socket socket,
-                                            const WebShare& share);
+/// Serves a client on this socket. The site outlives the connection.
+std::shared_ptr<WebConnection> serveBrowser(boost::asio::ip::tcp::socket socket, WebSite& site,
+                                            const ServerLimits& limits);
 
 }  // namespace ispace

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/web/web_page.h"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <utility>
+
+#include "base/message.h"
+#include "server/session.h"
+
+namespace ispace {
+
+namespace {
+
+/// Maximum requests that wait for the end of a STEP.
+constexpr std::size_t kMaxHeld = 64;
+constexpr std::string_view kSocketPath = "/ws";
+
+/// WebSocket has messages of text, which must be UTF-8, and others.
+bool isText(std::string_view bytes) {
+    while (!bytes.empty()) {
+        const std::size_t length = utf8Length(bytes);
+        if (length == 0) return false;
+        bytes.remove_prefix(length);
+    }
+    return true;
+}
+
+/// Memory is bounded: one message each way, replies up to a limit, one frame.
+class PageDialogue final : public WebDialogue {
+  public:
+    PageDialogue(ServerState& state, WebFrames& frames)
+        : state_(&state), frames_(&frames), session_(std::in_place, state) {
+        out_ = Session::greeting();
+    }
+
+    [[nodiscard]] std::size_t longest() const override { return state_->limits().line; }
+    void receive(std::string_view message, bool is_text) override;
+    [[nodiscard]] bool hasRoom() const override {
+        return session_ && held_.size() < kMaxHeld && out_.size() <= state_->limits().pending;
+    }
+    void stepped() override {
+        if (!session_) return;
+        session_->stepped(out_.size() <= state_->limits().pending);
+        goOn();
+    }
+    void proceed() override {
+        if (!session_) return;
+        session_->proceed();
+        goOn();
+    }
+    [[nodiscard]] bool waiting() const override { return session_ && session_->waiting(); }
+    [[nodiscard]] bool waitsToChange() const override {
+        return session_ && session_->waitsToChange();
+    }
+    std::optional<WebMessage> next() override;
+    // Events come unasked.
+    [[nodiscard]] bool isOverfull() const override {
+        return out_.size() > 2 * state_->limits().pending;
+    }
+    [[nodiscard]] bool closing() const override { return session_ && session_->closing(); }
+    [[nodiscard]] bool isEngaged() const override { return !session_ || session_->hasRole(); }
+    [[nodiscard]] bool expires() const override { return true; }
+    [[nodiscard]] bool wantsFrame() const override { return wants_frame_; }
+    void dismiss() override;
+    void finish() override;
+
+  private:
+    void goOn() {
+        out_ += session_->take();
+        answerHeld();
+    }
+    void answerHeld();
+    std::shared_ptr<const std::string> nextBytes();
+
+    ServerState* state_;
+    WebFrames* frames_;
+    std::optional<Session> session_;  // empty: the dialogue is about to end
+    std::deque<std::string> held_;    // unanswered requests
+    std::string out_;                 // unsent replies
+    std::int64_t known_frame_ = 0, known_scene_ = -1;
+    bool wants_frame_ = false;
+};
+
+void PageDialogue::receive(std::string_view message, bool /*is_text*/) {
+    if (!session_) return;  // arrived after the closing message
+    while (!message.empty()) {
+        const std::string_view line = message.substr(0, message.find('\n'));
+        message.remove_prefix(std::min(message.size(), line.size() + 1));
+        if (line != "FRAME")
+            held_.emplace_back(line);
+        else if (session_->mayLook())
+            wants_frame_ = true;
+        else
+            out_ += "ERR 401 FRAME needs the token of this run: TOKEN x comes before it\n";
+    }
+    answerHeld();
+}
+
+void PageDialogue::answerHeld() {
+    while (session_ && !held_.empty() && !session_->waiting() && !session_->closing() &&
+           out_.size() <= state_->limits().pending) {
+        session_->request(held_.front());
+        held_.pop_front();
+        out_ += session_->take();
+    }
+}
+
+std::optional<WebMessage> PageDialogue::next() {
+    answerHeld();
+    std::shared_ptr<const std::string> bytes = nextBytes();
+    if (!bytes) return std::nullopt;
+    const bool is_text = isText(*bytes);
+    return WebMessage{.body = std::move(bytes), .is_text = is_text};
+}
+
+std::shared_ptr<const std::string> PageDialogue::nextBytes() {
+    if (!out_.empty()) return std::make_shared<const std::string>(std::exchange(out_, {}));
+    if (session_)
+        if (auto scan = session_->takeScan()) return scan;
+    if (!wants_frame_ || frames_->number() == known_frame_) return nullptr;
+    if (std::exchange(known_scene_, frames_->sceneVersion()) != frames_->sceneVersion()) {
+        known_frame_ = 0;
+        return frames_->scene();
+    }
+    wants_frame_ = false;
+    return frames_->frame(std::exchange(known_frame_, frames_->number()));
+}
+
+void PageDialogue::dismiss() {
+    session_.reset();
+    held_.clear();
+    out_ += "ERR 408 no role taken in time: ROBOT id, SENSOR id or WORLD comes first\n";
+    wants_frame_ = false;
+}
+
+void PageDialogue::finish() {
+    if (!session_) return;
+    session_->finish();
+    out_ += session_->take();
+    wants_frame_ = true;  // the last one
+}
+
+}  // namespace
+
+WebAdmission WebPage::open(const WebRequest& request) {
+    if (request.target != kSocketPath) return {.status = 404, .why = "the WebSocket is /ws"};
+    if (!origin_->mayConnect(request.origin))
+        return {.status = 403, .why = "only the page of this server may connect"};
+    return {.dialogue = std::make_unique<PageDialogue>(*state_, frames_)};
+}
+
+void WebPage::lookAtEnd() {
+    frames_.look(std::max(std::chrono::steady_clock::now(), frames_.nextLook()));
+}
+
+}  // namespace ispace

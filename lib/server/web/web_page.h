@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/server.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "server/server_state.h"
+#include "server/web/web_dialogue.h"
+#include "server/web/web_files.h"
+#include "server/web/web_frames.h"
+
+namespace ispace {
+
+/// The page that shows a running world: its files, and the dialogues of its WebSockets.
+///
+/// Each message there holds one or more requests of the Simulator TCP Protocol, answered by a
+/// Session, and one addition: FRAME is answered by the next frame, a JSON object, as soon as it is
+/// newer than the last one; a new scene is sent before it.
+class WebPage final : public WebSite {
+  public:
+    /// \param title of the page, e.g. base name of ENV
+    WebPage(ServerState& state, std::string title)
+        : state_(&state), frames_(state.simulation(), std::move(title)) {}
+
+    void settle(const std::string& host, std::uint16_t port) override {
+        origin_.emplace(host, port);
+    }
+    [[nodiscard]] bool isHost(std::string_view host) const override {
+        return origin_->isHost(host);
+    }
+    [[nodiscard]] const WebFile* file(std::string_view path) const override {
+        return webFile(path);
+    }
+    WebAdmission open(const WebRequest& request) override;
+    WallTime look(WallTime now) override {
+        frames_.look(now);
+        return frames_.nextLook();
+    }
+    void lookAtEnd() override;
+
+  private:
+    ServerState* state_;
+    WebFrames frames_;
+    std::optional<WebOrigin> origin_;
+};
+
+}  // namespace ispace
