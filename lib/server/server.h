@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "sense/formats/ros_messages.h"
 #include "server/device/wire_session.h"
 #include "server/network.h"
 #include "sim/simulation.h"
@@ -69,6 +70,12 @@ struct ServerLimits {
     /// Networks that may use device ports, besides this machine.
     std::vector<Network> allowed;
     bool wall_clock = false;  ///< clocks of devices show wall time instead of simulated time
+};
+
+/// Data about the room for clients of ROS topics, computed in background threads.
+struct RosScenery {
+    std::function<RosGrid(const Scene& scene)> map = {};       ///< null: there is no map
+    std::function<std::string(const Scene& scene)> room = {};  ///< a mesh as GLB; null: none
 };
 
 /// Runs a simulation and serves it to many clients. One thread does both in turn, so the world does

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/ros/ros_feed.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "sim/sensor_reading.h"
+#include "support/test_world.h"
+
+namespace ispace {
+namespace {
+
+using nlohmann::json;
+
+/// A world in steps of 0.1 s, and its feed.
+struct Fed {
+    explicit Fed(const std::string& more = "", RosScenery scenery = {})
+        : room({Clock::Kind::Step, 1}, {}, "", more),
+          state(room.simulation),
+          feed(state, std::move(scenery)) {}
+
+    void step(std::int64_t count = 1) {
+        room.simulation.allow(count);
+        for (std::int64_t i = 0; i < count; ++i) {
+            room.simulation.run({}, std::chrono::nanoseconds(0));
+            state.collect();
+            feed.stepped();
+        }
+    }
+    [[nodiscard]] std::uint32_t number(const std::string& topic) const {
+        for (const auto& [number, entry] : feed.entries())
+            if (entry.channel.topic == topic) return number;
+        return 0;
+    }
+    [[nodiscard]] const RosFeed::Entry& entry(const std::string& topic) const {
+        return feed.entries().at(number(topic));
+    }
+    [[nodiscard]] json newest(const std::string& topic) const {
+        const auto& message = entry(topic).newest;
+        return message ? json::parse(*message->json()) : json();
+    }
+
+    testing::TestWorld room;
+    ServerState state;
+    RosFeed feed;
+};
+
+TEST(RosFeed, HasARowForEachTopic) {
+    const Fed fed("camera id=c1 at=0,-2,2 pixels=4,3\nhuman id=h1 at=-2,2\n");
+    std::set<std::string> topics;
+    for (const auto& [number, entry] : fed.feed.entries()) topics.insert(entry.channel.topic);
+    for (const char* topic :
+         {"/clock", "/tf", "/tf_static", "/map", "/room", "/people", "/diagnostics", "/r1/odom",
+          "/r1/sonar_0", "/r1/sonar_7", "/r1/cmd_vel", "/r2/initialpose", "/l1/scan", "/l2/scan",
+          "/c1/image_raw/compressed", "/c1/camera_info"})
+        EXPECT_TRUE(topics.contains(topic)) << topic;
+    EXPECT_FALSE(topics.contains("/cmd_vel")) << "two robots";
+    EXPECT_FALSE(topics.contains("/r2/sonar_0")) << "a robot without sonars";
+}
+
+TEST(RosFeed, ComputesWantedTopicsAtTheirRates) {
+    Fed fed;
+    fed.step();
+    EXPECT_FALSE(fed.entry("/r1/odom").newest) << "not wanted";
+    fed.feed.want(fed.number("/clock"));
+    fed.feed.want(fed.number("/diagnostics"));
+    EXPECT_EQ(fed.newest("/clock")["clock"], json({{"sec", 0}, {"nanosec", 100'000'000}}));
+    const auto first = fed.entry("/diagnostics").newest;
+    fed.step(5);
+    EXPECT_EQ(fed.entry("/diagnostics").newest, first) << "once a second";
+    fed.step(5);
+    EXPECT_NE(fed.entry("/diagnostics").newest, first);
+    EXPECT_EQ(fed.newest("/clock")["clock"], json({{"sec", 1}, {"nanosec", 100'000'000}}));
+    fed.feed.unwant(fed.number("/clock"));
+    EXPECT_FALSE(fed.entry("/clock").newest);
+}
+
+TEST(RosFeed, ScansAreThoseOfTheWorld) {
+    Fed fed;
+    fed.feed.want(fed.number("/l1/scan"));
+    fed.step(3);
+    const json scan = fed.newest("/l1/scan");
+    EXPECT_EQ(scan["header"]["frame_id"], "l1");
+    EXPECT_EQ(scan["ranges"], json::parse("[null,7.0,null]"));
+    EXPECT_NEAR(scan["range_max"].get<double>(), 7.002, 1e-6);
+}
+
+TEST(RosFeed, FramesLeadFromTheMapToEachSensor) {
+    Fed fed("camera id=c1 on=r1 at=0,0,1 pixels=4,3\nhuman id=h1 at=-2,2\n");
+    for (const char* topic : {"/tf", "/tf_static"}) fed.feed.want(fed.number(topic));
+    std::map<std::string, std::string> parents;
+    for (const char* topic : {"/tf", "/tf_static"}) {
+        const json message = fed.newest(topic);
+        for (const json& one : message["transforms"]) {
+            const bool is_new =
+                parents.emplace(one["child_frame_id"], one["header"]["frame_id"]).second;
+            EXPECT_TRUE(is_new) << one["child_frame_id"];
+        }
+    }
+    for (const char* leaf : {"l1", "l2", "c1_optical", "h1", "r2", "r1_sonar_3"}) {
+        std::string frame = leaf;
+        for (int i = 0; i < 6 && frame != "map"; ++i) frame = parents[frame];
+        EXPECT_EQ(frame, "map") << leaf;
+    }
+    EXPECT_EQ(parents["r1"], "r1_odom");
+    EXPECT_EQ(parents["l2"], "r1");
+}
+
+TEST(RosFeed, OdometryAndFramesAgreeWithTheWorld) {
+    Fed fed;
+    fed.feed.want(fed.number("/r2/odom"));
+    fed.feed.want(fed.number("/tf"));
+    const std::size_t r2 = fed.room.world.robotNamed("r2").value();
+    fed.room.world.command(r2, {Verb::Speed, 0.5});
+    fed.step(10);
+    const json odometry = fed.newest("/r2/odom");
+    EXPECT_EQ(odometry["child_frame_id"], "r2");
+    EXPECT_NEAR(odometry["twist"]["twist"]["linear"]["x"].get<double>(), 0.5, 1e-9);
+    EXPECT_NEAR(odometry["pose"]["pose"]["position"]["x"].get<double>(),
+                fed.room.world.odometry(r2).pose.position.x, 1e-12);
+    const json frames = fed.newest("/tf");
+    for (const json& one : frames["transforms"]) {
+        if (one["child_frame_id"] != "r2_odom") continue;
+        EXPECT_NEAR(one["transform"]["translation"]["x"].get<double>(), 2, 1e-9) << "its start";
+        EXPECT_NEAR(one["transform"]["rotation"]["z"].get<double>(), std::sqrt(0.5), 1e-9);
+    }
+}
+
+TEST(RosFeed, SonarsAndPeopleFollowTheWorld) {
+    Fed fed("human id=h1 at=-2,2\n");
+    for (const char* topic : {"/r1/sonar_0", "/people"}) fed.feed.want(fed.number(topic));
+    const float wanted = fed.room.world.sonar(0)[0];
+    EXPECT_FLOAT_EQ(fed.newest("/r1/sonar_0")["range"].get<float>(), wanted);
+    EXPECT_EQ(fed.newest("/r1/sonar_0")["header"]["frame_id"], "r1_sonar_0");
+    const json markers = fed.newest("/people")["markers"];
+    ASSERT_EQ(markers.size(), 3U);
+    EXPECT_EQ(markers[0]["action"], 3) << "first deletes all";
+    EXPECT_EQ(markers[1]["type"], 3);
+    EXPECT_EQ(markers[1]["pose"]["position"]["x"], -2.0);
+    EXPECT_EQ(markers[2]["text"], "h1");
+}
+
+TEST(RosFeed, FramesOfCamerasAreTakenWhenWanted) {
+    Fed fed("camera id=c1 at=0,-2,2 pixels=4,3 rate=5\nranger id=d1 at=0,2,1 pixels=4,3\n");
+    fed.step();
+    fed.feed.want(fed.number("/c1/image_raw/compressed"));
+    fed.feed.want(fed.number("/d1/points"));
+    fed.step(2);
+    const json picture = fed.newest("/c1/image_raw/compressed");
+    EXPECT_EQ(picture["format"], "png");
+    EXPECT_TRUE(picture["data"].get<std::string>().starts_with("iVBOR")) << "PNG";
+    EXPECT_EQ(fed.newest("/d1/points")["width"], 4);
+    EXPECT_FALSE(fed.entry("/c1/camera_info").newest) << "not wanted";
+}
+
+TEST(RosFeed, DrawsTheMapOnce) {
+    int drawn = 0;
+    Fed fed("", {.map = [&drawn](const Scene&) {
+                ++drawn;
+                return RosGrid{{}, 0.05, 2, {0, 100}};
+            }});
+    EXPECT_EQ(drawn, 0);
+    fed.feed.want(fed.number("/map"));
+    fed.step(3);
+    EXPECT_EQ(drawn, 1);
+    EXPECT_EQ(fed.newest("/map")["data"], json::parse("[0,100]"));
+}
+
+TEST(RosFeed, TopicsKeepTheirNumbersInAChangedWorld) {
+    Fed fed;
+    const std::uint32_t scan = fed.number("/l1/scan");
+    fed.feed.want(scan);
+    const std::int64_t version = fed.feed.version();
+    Scene scene = testing::scene("ispace size=8,6\n",
+                                 "robot id=r9 at=0,0\nlaser id=l1 at=-3,-2 fov=4 step=2\n");
+    fed.room.world.change(std::move(scene));
+    fed.state.sync();
+    fed.feed.stepped();
+    EXPECT_NE(fed.feed.version(), version);
+    EXPECT_EQ(fed.number("/l1/scan"), scan);
+    EXPECT_EQ(fed.entry("/l1/scan").wanted, 1U);
+    EXPECT_EQ(fed.number("/r1/odom"), 0U);
+    EXPECT_NE(fed.number("/r9/odom"), 0U);
+    EXPECT_NE(fed.number("/cmd_vel"), 0U) << "one robot";
+}
+
+TEST(RosFeed, EqualNamesGetNumbers) {
+    const Fed fed("laser id=a-b at=0,-2\nlaser id=a_b at=0,2\nlaser id=map at=1,2\n");
+    EXPECT_NE(fed.number("/a_b/scan"), 0U);
+    EXPECT_NE(fed.number("/a_b_2/scan"), 0U);
+    EXPECT_NE(fed.number("/map_2/scan"), 0U) << "map is the world's frame";
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/ros/ros_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+
+#include "base/error.h"
+#include "base/json_writer.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "sense/formats/cdr.h"
+
+namespace ispace {
+
+namespace {
+
+using nlohmann::json;
+using Kind = RosField::Kind;
+
+/// Calls visit(value of a number's type) for a kind of numbers or bools.
+template <typename Visit>
+void withNumber(Kind kind, Visit visit) {
+    switch (kind) {
+        case Kind::Bool:
+            return visit(bool());
+        case Kind::Int8:
+            return visit(std::int8_t());
+        case Kind::Uint8:
+            return visit(std::uint8_t());
+        case Kind::Int32:
+            return visit(std::int32_t());
+        case Kind::Uint32:
+            return visit(std::uint32_t());
+        case Kind::Float32:
+            return visit(float());
+        case Kind::Float64:
+            return visit(double());
+        case Kind::Text:
+        case Kind::Struct:
+            return;
+    }
+}
+
+/// Reads one number; a bool is a byte.
+template <typename Number>
+Number numberFrom(CdrReader& in) {
+    if constexpr (std::is_same_v<Number, bool>)
+        return in.number<std::uint8_t>() != 0;
+    else
+        return in.number<Number>();
+}
+
+/// Walks through a message by its definition and hands its parts to a writer.
+template <typename Writer>
+class Walk {
+  public:
+    Walk(std::string_view message, Writer& out) : in_(message), out_(&out) {}
+
+    void structure(const RosStruct& type) {
+        out_->beginStruct(type.fields.size());
+        for (const RosField& field : type.fields) {
+            out_->name(field.name);
+            field.is_array ? list(field) : one(field);
+        }
+        out_->endStruct();
+    }
+
+  private:
+    void one(const RosField& field) {
+        if (field.kind == Kind::Struct) return structure(*field.fields);
+        if (field.kind == Kind::Text) return out_->text(in_.text());
+        withNumber(field.kind,
+                   [&](auto number) { out_->number(numberFrom<decltype(number)>(in_)); });
+    }
+    void list(const RosField& field) {
+        const std::size_t count = field.length > 0 ? field.length : in_.count();
+        const std::size_t size = sizeOf(field.kind);
+        if (size > 0) return out_->numbers(field.kind, in_.values(count, size), count);
+        out_->beginList(count);
+        for (std::size_t i = 0; i < count; ++i) one(field);
+        out_->endList();
+    }
+
+    CdrReader in_;
+    Writer* out_;
+};
+
+class JsonOutput {
+  public:
+    void beginStruct(std::size_t /*fields*/) { json_.beginObject(); }
+    void endStruct() { json_.endObject(); }
+    void name(std::string_view name) { json_.key(name); }
+    void beginList(std::size_t /*count*/) { json_.beginArray(); }
+    void endList() { json_.endArray(); }
+    void text(std::string_view text) { json_.value(text); }
+    template <typename Number>
+    void number(Number value) {
+        if constexpr (std::is_integral_v<Number> && !std::is_same_v<Number, bool>)
+            json_.value(static_cast<std::int64_t>(value));
+        else
+            json_.value(value);
+    }
+    void numbers(Kind kind, std::string_view bytes, std::size_t count) {
+        if (kind == Kind::Uint8 || kind == Kind::Bool) return text(base64(bytes));
+        json_.beginArray();
+        withNumber(kind, [&](auto value) {
+            for (std::size_t i = 0; i < count; ++i) {
+                std::memcpy(&value, bytes.data() + i * sizeof value, sizeof value);
+                number(value);
+            }
+        });
+        json_.endArray();
+    }
+    std::string take() { return json_.take(); }
+
+  private:
+    JsonWriter json_;
+};
+
+/// Appends the bytes of a number, most significant first.
+template <typename Number>
+void appendBig(std::string& out, Number number) {
+    std::string bytes(sizeof number, '\0');
+    std::memcpy(bytes.data(), &number, sizeof number);
+    out.append(bytes.rbegin(), bytes.rend());
+}
+
+class CborOutput {
+  public:
+    void beginStruct(std::size_t fields) { appendCborHead(out_, CborHead::Map, fields); }
+    void endStruct() {}
+    void name(std::string_view name) { text(name); }
+    void beginList(std::size_t count) { appendCborHead(out_, CborHead::List, count); }
+    void endList() {}
+    void text(std::string_view text) { appendCborText(out_, text); }
+    template <typename Number>
+    void number(Number value) {
+        constexpr char kFalse = '\xf4', kTrue = '\xf5', kFloat = '\xfa', kDouble = '\xfb';
+        if constexpr (std::is_same_v<Number, bool>) {
+            out_ += value ? kTrue : kFalse;
+        } else if constexpr (std::is_floating_point_v<Number>) {
+            out_ += sizeof(Number) == sizeof(float) ? kFloat : kDouble;
+            appendBig(out_, value);
+        } else {
+            const std::int64_t wide = value;
+            const bool is_negative = wide < 0;
+            appendCborHead(out_, is_negative ? CborHead::Negative : CborHead::Unsigned,
+                           static_cast<std::uint64_t>(is_negative ? -1 - wide : wide));
+        }
+    }
+    void numbers(Kind kind, std::string_view bytes, std::size_t /*count*/) {
+        // Of RFC 8746, little-endian. Bytes need no tag.
+        constexpr std::uint64_t kInt8 = 72, kInt32 = 78, kUint32 = 70, kFloat32 = 85, kFloat64 = 86;
+        const std::uint64_t tag = kind == Kind::Int8      ? kInt8
+                                  : kind == Kind::Int32   ? kInt32
+                                  : kind == Kind::Uint32  ? kUint32
+                                  : kind == Kind::Float32 ? kFloat32
+                                  : kind == Kind::Float64 ? kFloat64
+                                                          : 0;
+        if (tag > 0) appendCborHead(out_, CborHead::Tag, tag);
+        appendCborHead(out_, CborHead::Bytes, bytes.size());
+        out_ += bytes;
+    }
+    std::string take() { return std::move(out_); }
+
+  private:
+    std::string out_;
+};
+
+template <typename Output>
+std::string converted(RosType type, std::string_view message) {
+    Output out;
+    Walk<Output>(message, out).structure(rosFields(type));
+    return out.take();
+}
+
+}  // namespace
+
+void appendCborHead(std::string& out, CborHead head, std::uint64_t value) {
+    constexpr unsigned kShift = 5, kShort = 24;
+    const unsigned kind = static_cast<unsigned>(head) << kShift;
+    const auto put = [&](unsigned low) { out += static_cast<char>(kind | low); };
+    if (value < kShort) return put(static_cast<unsigned>(value));
+    if (value <= std::numeric_limits<std::uint8_t>::max()) {
+        put(kShort);
+        appendBig(out, static_cast<std::uint8_t>(value));
+    } else if (value <= std::numeric_limits<std::uint16_t>::max()) {
+        put(kShort + 1);
+        appendBig(out, static_cast<std::uint16_t>(value));
+    } else if (value <= std::numeric_limits<std::uint32_t>::max()) {
+        put(kShort + 2);
+        appendBig(out, static_cast<std::uint32_t>(value));
+    } else {
+        put(kShort + 3);
+        appendBig(out, value);
+    }
+}
+
+void appendCborText(std::string& out, std::string_view text) {
+    appendCborHead(out, CborHead::Text, text.size());
+    out += text;
+}
+
+std::string rosJson(RosType type, std::string_view message) {
+    return converted<JsonOutput>(type, message);
+}
+
+std::string rosCbor(RosType type, std::string_view message) {
+    return converted<CborOutput>(type, message);
+}
+
+std::optional<json> parseClientJson(std::string_view text) {
+    constexpr int kMaxDepth = 32;
+    bool is_deep = false;
+    json value = json::parse(
+        text.begin(), text.end(),
+        [&is_deep](int depth, json::parse_event_t /*event*/, json& /*parsed*/) {
+            is_deep = is_deep || depth > kMaxDepth;
+            return !is_deep;
+        },
+        false);
+    if (value.is_discarded() || is_deep) return std::nullopt;
+    return value;
+}
+
+namespace {
+
+/// Writes a message by its definition, with the values of JSON.
+class FromJson {
+  public:
+    void structure(const RosStruct& type, const json& value) {
+        if (!value.is_null() && !value.is_object()) refuse(type.name, "an object");
+        const bool is_time = type.name.starts_with("builtin_interfaces/");
+        for (const RosField& field : type.fields) {
+            const json& member = memberOf(value, field.name, is_time);
+            field.is_array ? list(field, member) : one(field, member);
+        }
+    }
+    std::string take() { return out_.take(); }
+
+  private:
+    [[noreturn]] static void refuse(const std::string& name, const std::string& wanted) {
+        throw FormatError({"", 0, 0, excerpt(name) + " is wanted as " + wanted});
+    }
+    static const json& memberOf(const json& value, const std::string& name, bool is_time) {
+        static const json none = json::value_t::discarded;
+        if (!value.is_object()) return none;
+        const auto found = value.find(name);
+        if (found != value.end()) return *found;
+        const auto old = is_time ? value.find(name == "sec" ? "secs" : "nsecs") : value.end();
+        return old != value.end() ? *old : none;
+    }
+    void one(const RosField& field, const json& value) {
+        static const json null;
+        if (field.kind == Kind::Struct)
+            return structure(*field.fields, value.is_discarded() ? null : value);
+        if (field.kind == Kind::Text) {
+            if (value.is_discarded()) return static_cast<void>(out_.put(""));
+            if (!value.is_string()) refuse(field.name, "a text");
+            return static_cast<void>(out_.put(value.get_ref<const std::string&>()));
+        }
+        withNumber(field.kind, [&](auto number) { put<decltype(number)>(field, value); });
+    }
+    template <typename Number>
+    void put(const RosField& field, const json& value) {
+        if (value.is_discarded()) {
+            const double fallback = parseDouble(field.text_default).value_or(0);
+            out_.put(static_cast<Number>(fallback));
+        } else if constexpr (std::is_same_v<Number, bool>) {
+            if (!value.is_boolean()) refuse(field.name, "true or false");
+            out_.put(value.get<bool>());
+        } else if constexpr (std::is_floating_point_v<Number>) {
+            if (!value.is_null() && !value.is_number()) refuse(field.name, "a number");
+            out_.put(value.is_null() ? std::numeric_limits<Number>::quiet_NaN()
+                                     : static_cast<Number>(value.get<double>()));
+        } else {
+            const double least = std::numeric_limits<Number>::min(),
+                         most = std::numeric_limits<Number>::max();
+            const double number = value.is_number() ? value.get<double>() : least - 1;
+            if (!(number >= least && number <= most) || number != std::floor(number))
+                refuse(field.name, "a whole number of its type");
+            out_.put(static_cast<Number>(number));
+        }
+    }
+    void list(const RosField& field, const json& value) {
+        static const json none = json::value_t::discarded;
+        if (!value.is_discarded() && !value.is_array()) refuse(field.name, "a list");
+        const std::size_t given = value.is_array() ? value.size() : 0;
+        const std::size_t count = field.length > 0 ? field.length : given;
+        if (given > 0 && given != count) refuse(field.name, std::to_string(count) + " values");
+        if (field.length == 0) out_.count(count);
+        for (std::size_t i = 0; i < count; ++i) one(field, given > 0 ? value[i] : none);
+    }
+
+    CdrWriter out_;
+};
+
+}  // namespace
+
+std::string rosMessage(RosType type, const json& value) {
+    FromJson out;
+    out.structure(rosFields(type), value);
+    return out.take();
+}
+
+}  // namespace ispace

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lib/server/ros: a running world as topics of ROS 2, for Foxglove and rosbridge. A new topic of
+// the world is a row of rosRows(); the topics of a sensor are those of its ReadingKind, as in MCAP
+// files. Private to lib/server; uses sim and below.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "sense/formats/reading_fields.h"
+#include "sense/formats/ros_messages.h"
+#include "sim/simulation.h"
+
+namespace ispace {
+
+/// Quality of service of a topic: messages kept for a slow reader, the oldest dropped first. All
+/// are reliable. A latched one also sends its last message to new readers, as do all others here.
+struct RosQuality {
+    std::size_t depth = 10;
+    bool is_latched = false;
+};
+inline constexpr RosQuality kSensorData{.depth = 5};
+
+/// The frames of a scene, by index of World::movers() and World::sensors(). Names are unique.
+struct RosFrames {
+    explicit RosFrames(const World& world);
+
+    std::vector<std::string> movers, odometries;  ///< of robots alone: odometries
+    std::vector<std::string> sensors;             ///< of mats and gates: ""
+    /// Returns the frame of one sonar: "r1_sonar_3".
+    [[nodiscard]] std::string sonar(std::size_t robot, std::size_t which) const;
+};
+
+/// URI of the room's mesh in /room.
+inline constexpr std::string_view kRosRoom = "package://ispace/room.glb";
+
+/// Returns nanoseconds as ROS counts them, at most 2^31 seconds.
+std::uint64_t rosTimeOf(SimTime time);
+
+/// The topics of a sensor, in the order of its row.
+std::vector<const RosTopic*> rosTopicsOf(const Sensor& sensor);
+/// Writes the message of a topic; "" if this reading has none. \param frame of the sensor
+std::string rosMessageOf(const RosTopic& topic, const Sensor& sensor, const SensorReading& reading,
+                         std::string_view frame);
+
+/// The world between two steps. Sonars and bumpers are computed when needed.
+struct RosMoment {
+    const Simulation& simulation;
+    const RosFrames& frames;
+    const std::optional<RosGrid>& map;  ///< empty until it is computed
+    bool has_room = false;              ///< there is a mesh of the room
+    std::function<const std::vector<float>&(std::size_t robot)> sonars;
+    std::function<const std::vector<bool>&(std::size_t robot)> bumpers;
+
+    [[nodiscard]] const World& world() const { return simulation.world(); }
+    [[nodiscard]] RosHeader header() const { return {rosTimeOf(world().time()), kRosWorld}; }
+};
+
+/// A message to a robot: its speeds, or its pose in the world.
+using RosOrder = std::variant<RosTwist, RosPose>;
+
+/// One row of the table of topics.
+struct RosRow {
+    std::string_view name;  ///< after the subject's name
+    RosType type;
+    enum class Of {
+        World,
+        Robot,  ///< /r1/NAME
+        Sonar,  ///< /r1/NAME_0, ...
+        Bumper
+    } subject;
+    double rate;  ///< messages in a simulated second; 0: one for each change of the world
+    RosQuality quality;
+    /// Writes the message about a robot (and one of its sonars or bumpers); "" if there is none
+    /// yet. Null: the topic takes messages.
+    std::string (*encode)(const RosMoment& moment, std::size_t robot, std::size_t part) = nullptr;
+    /// Reads a message. \throws FormatError
+    RosOrder (*decode)(RosType type, std::string_view message) = nullptr;
+};
+std::span<const RosRow> rosRows();
+
+/// A topic of a scene.
+struct RosChannel {
+    std::string topic;  ///< "/r1/odom"
+    RosType type = RosType::Clock;
+    double rate = 0;
+    RosQuality quality = kSensorData;
+    std::size_t subject = 0;           ///< index of the robot or the sensor
+    std::size_t part = 0;              ///< of the sonar or bumper
+    const RosRow* row = nullptr;       ///< null: a sensor's topic
+    const RosTopic* sensor = nullptr;  ///< null: a row's topic
+
+    [[nodiscard]] bool isInput() const { return row != nullptr && row->decode != nullptr; }
+};
+/// Returns all topics of the world, rows first. Inputs that accept two types are two channels.
+std::vector<RosChannel> rosChannels(const World& world, const RosFrames& frames);
+
+}  // namespace ispace
