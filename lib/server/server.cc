@@ -28,6 +28,8 @@
 #include "base/number.h"
 #include "server/client_connection.h"
 #include "server/device/device_port.h"
+#include "server/ros/ros_feed.h"
+#include "server/ros/ros_site.h"
 #include "server/web/web_page.h"
 #include "server/web_server.h"
 
@@ -89,6 +91,7 @@ struct Server::Data {
     std::optional<WallTime> alarm_time;
     std::vector<std::shared_ptr<ClientConnection>> connections;  // in order of arrival
     std::atomic<std::size_t> serving = 0;
+    std::optional<RosFeed> feed;
     std::list<WebServer> webs;
     DeviceHost host{state};
     std::list<DevicePort> devices;
@@ -296,6 +299,16 @@ std::string Server::serveWeb(const Endpoint& endpoint, const std::string& title)
     const WebServer& web = data.webs.emplace_back(data.io, endpoint, data.limits,
                                                   std::make_unique<WebPage>(data.state, title));
     return "http://" + web.address() + "/";
+}
+
+std::string Server::serveRos(RosLanguage language, const Endpoint& endpoint,
+                             const std::string& title, RosScenery scenery) {
+    Data& data = *data_;
+    if (!data.feed) data.feed.emplace(data.state, std::move(scenery));
+    auto site =
+        std::make_unique<RosSite>(data.state, *data.feed, language, title, endpoint.is_loopback);
+    return "ws://" +
+           data.webs.emplace_back(data.io, endpoint, data.limits, std::move(site)).address();
 }
 
 std::string Server::serveDevice(const WireProtocol& protocol, const std::string& id,

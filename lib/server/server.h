@@ -72,6 +72,9 @@ struct ServerLimits {
     bool wall_clock = false;  ///< clocks of devices show wall time instead of simulated time
 };
 
+/// Protocols that carry topics of ROS over WebSockets.
+enum class RosLanguage { Foxglove, Rosbridge };
+
 /// Data about the room for clients of ROS topics, computed in background threads.
 struct RosScenery {
     std::function<RosGrid(const Scene& scene)> map = {};       ///< null: there is no map
@@ -99,6 +102,12 @@ class Server {
     /// run(). \param title of the page \returns "http://127.0.0.1:40124/"
     /// \throws std::system_error naming the endpoint
     std::string serveWeb(const Endpoint& endpoint, const std::string& title);
+    /// Serves the running world as topics of ROS 2 at a separate endpoint. Call before run(). An
+    /// endpoint for other machines requires ServerLimits::token.
+    /// \param title of the run \param scenery of the first call serves all
+    /// \returns "ws://127.0.0.1:8765" \throws std::system_error naming the endpoint
+    std::string serveRos(RosLanguage language, const Endpoint& endpoint, const std::string& title,
+                         RosScenery scenery = {});
     /// Serves a robot or sensor through the protocol of a real device at a separate endpoint. Call
     /// before run(). \returns "127.0.0.1:10940"
     /// \throws UsageError if the world has no such device, std::system_error naming the endpoint

@@ -22,7 +22,7 @@ for schema in "$source_dir"/share/schemas/*.json; do
 done
 if command -v man >/dev/null; then
     for page in $tools ispace ispace-sweep golden-diff ispace-env ispace-3dm ispace-yaml ispace-protocol ispace-wire \
-        ispace-stability; do
+        ispace-ros ispace-stability; do
         man -M moved/share/man -w "$page" >page && grep -q moved "page" ||
             fail "man does not find $page: $(cat page)"
     done

@@ -33,7 +33,7 @@ for tool in $tools; do
     [ -s "root/usr/share/man/man1/$tool.1ispace.gz" ] || fail "no manual page of $tool"
 done
 for page in man1/ispace.1 man1/ispace-sweep.1 man5/ispace-env.5 man5/ispace-3dm.5 man5/ispace-yaml.5 \
-    man1/golden-diff.1 man7/ispace-protocol.7 man7/ispace-stability.7 man7/ispace-wire.7; do
+    man1/golden-diff.1 man7/ispace-protocol.7 man7/ispace-ros.7 man7/ispace-stability.7 man7/ispace-wire.7; do
     [ -s "root/usr/share/man/$page.gz" ] || fail "no page $page"
 done
 if found=$(grep -rlF -e "$source_dir" -e "$binary_dir" root); then fail "the build's path is in $found"; fi

@@ -14,6 +14,7 @@
 #include "server/server.h"
 #include "sim/world_state.h"
 #include "simrun/simrun_options.h"
+#include "simrun/simrun_ports.h"
 #include "simrun/simrun_report.h"
 #include "simrun/simrun_run.h"
 
@@ -61,9 +62,7 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
 
     checkRecord(options, world);
     Server server(simulation, options.listen, limitsOf(options, input));
-    const std::string web =
-        options.web ? server.serveWeb(*options.web, titleOf(options, input)) : "";
-    const DeviceAddresses devices = serveDevices(server, options.devices);
+    const ServedAddresses addresses = servePorts(server, options, input);
     const StopSignals signals;
     server.stopOn(signals.descriptor());
     std::optional<OutputFile> port_file;
@@ -75,7 +74,7 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
     const auto record = recordOf(simulation, options, input.scene, historyOf(command, input),
                                  odometry, server.frameTaker());
     const auto progress = progressOf(simulation, options);
-    announce(server, web, devices);
+    announce(server, addresses);
     if (port_file) port_file->commit();
     const auto serve_and_conclude = [&] {
         server.run();

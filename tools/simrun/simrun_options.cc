@@ -19,6 +19,11 @@ namespace {
 
 std::string optionOf(const WireProtocol& protocol) { return "--" + std::string(protocol.name); }
 
+/// Parses "10940" of this machine, or "127.0.0.2:10940".
+Endpoint parsePortOf(const std::string& text) {
+    return parseEndpoint(text.find(':') == std::string::npos ? "127.0.0.1:" + text : text);
+}
+
 /// Parses "l1=10940" or "l1=127.0.0.2:10940".
 DevicePortOption parsePort(const WireProtocol& protocol, const std::string& text) {
     const auto equals = text.find('=');
@@ -27,10 +32,7 @@ DevicePortOption parsePort(const WireProtocol& protocol, const std::string& text
                          "=[ADDR:]PORT with its id, like " +
                          static_cast<char>(std::tolower(protocol.device.front())) +
                          "1=" + std::to_string(protocol.port));
-    const std::string where = text.substr(equals + 1);
-    const bool is_port = where.find(':') == std::string::npos;
-    return {&protocol, text.substr(0, equals),
-            parseEndpoint(is_port ? "127.0.0.1:" + where : where)};
+    return {&protocol, text.substr(0, equals), parsePortOf(text.substr(equals + 1))};
 }
 
 }  // namespace
@@ -300,8 +302,9 @@ void SimrunCommand::takeDrawing() {
         throw UsageError(
             "-o is a picture or a film of a record: give --replay DIR (a run writes to --record "
             "DIR)");
-    std::vector<std::string> of_runs{"--record", "--expect", "--clock",    "--hold",
-                                     "--listen", "--web",    "--port-file"};
+    std::vector<std::string> of_runs{"--record",   "--expect",    "--clock",
+                                     "--hold",     "--listen",    "--web",
+                                     "--foxglove", "--rosbridge", "--port-file"};
     for (const WireProtocol* const protocol : wireProtocols())
         of_runs.push_back("--" + std::string(protocol->name));
     for (const std::string& option : of_runs)
@@ -341,6 +344,7 @@ void SimrunCommand::declareServer() {
                                  ": the page is for browsers of this machine; use 127.0.0.1");
         },
         "show the running world to browsers there; port 0 takes any free one", Enters::Nothing);
+    declareRos();
     o.devices.declare(line_);
     line_.file("--port-file", "FILE", o.port_file,
                "write the port number there when clients can connect", Enters::Nothing);
@@ -375,12 +379,32 @@ void SimrunCommand::declareServer() {
                      Enters::Nothing);
 }
 
+void SimrunCommand::declareRos() {
+    SimrunOptions& o = options_;
+    line_.parsed(
+        "--foxglove", "[ADDR:]PORT",
+        [&o](const std::string& text) { o.foxglove = parsePortOf(text); },
+        "serve topics of ROS 2 to Foxglove and Lichtblick there (by custom 8765); port 0 takes any "
+        "free one",
+        Enters::Nothing);
+    line_.parsed(
+        "--rosbridge", "[ADDR:]PORT",
+        [&o](const std::string& text) { o.rosbridge = parsePortOf(text); },
+        "serve topics of ROS 2 to clients of rosbridge there (by custom 9090)", Enters::Nothing);
+}
+
 void SimrunCommand::takeServer() {
     SimrunOptions& o = options_;
     o.limits.shutdown = o.shutdown.value_or(true);
     o.limits.changes = o.changes.value_or(true);
     o.limits.token_first = !o.listen.is_loopback;
     o.devices.take(line_, o.limits);
+    for (const auto& [option, endpoint] :
+         {std::pair("--foxglove", o.foxglove), {"--rosbridge", o.rosbridge}})
+        if (endpoint && !endpoint->is_loopback && o.token_file.empty())
+            throw UsageError(std::string(option) + ": `" + endpoint->address +
+                             "`: other machines are served only with --token-file; or use "
+                             "127.0.0.1");
     if (!o.listen.is_loopback && o.token_file.empty())
         throw UsageError("--listen: `" + o.listen.address +
                          "`: other machines are served only with --token-file; or listen on "

@@ -75,7 +75,7 @@ struct SimrunOptions {
     double recorded_sonars = 10;
     std::string port_file;  ///< "" without
     Endpoint listen;
-    std::optional<Endpoint> web;
+    std::optional<Endpoint> web, foxglove, rosbridge;
     std::optional<bool> shutdown, changes;
     std::string token_file;   ///< "" without
     std::string load_folder;  ///< "": that of the scene
@@ -100,6 +100,7 @@ class SimrunCommand : public ToolCommand<SimrunOptions> {
     void takeDrawing();
     void takeExpectations();
     void declareServer();
+    void declareRos();
     void takeServer();
 
     std::vector<std::string> expected_;

@@ -4,7 +4,6 @@
 #include <sys/resource.h>
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -184,8 +183,8 @@ std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOpti
 namespace {
 
 /// A client requires a file descriptor: the limit is that of the process, less those in use.
-ServerLimits withinFileLimit(ServerLimits limits, std::size_t of_devices) {
-    const rlim_t own = 32 + of_devices;
+ServerLimits withinFileLimit(ServerLimits limits, std::size_t others) {
+    const rlim_t own = 32 + others;
     rlimit files{};
     if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return limits;
     files.rlim_cur = files.rlim_max;
@@ -198,7 +197,10 @@ ServerLimits withinFileLimit(ServerLimits limits, std::size_t of_devices) {
 }  // namespace
 
 ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input) {
-    ServerLimits limits = withinFileLimit(options.limits, options.devices.connections());
+    constexpr std::size_t kOfPort = 64;  // connections of a port for topics
+    std::size_t others = options.devices.connections();
+    for (const auto& port : {options.foxglove, options.rosbridge}) others += port ? kOfPort : 0;
+    ServerLimits limits = withinFileLimit(options.limits, others);
     if (!options.token_file.empty()) {
         limits.token = readToken(options.token_file);
         if (isOpenToOthers(options.token_file))
@@ -209,27 +211,6 @@ ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input) {
     limits.source = std::make_shared<SceneFolder>(folder.empty() ? SceneFolder::of(input) : folder,
                                                   options.rules);
     return limits;
-}
-
-void announce(const Server& server, const std::string& web, const DeviceAddresses& devices) {
-    JsonWriter json;
-    json.beginObject().key("schema").value("ispace-simrun/1");
-    json.key("listen").value(server.address());
-    for (const WireProtocol* const protocol : wireProtocols()) {
-        const auto found = devices.find(protocol);
-        const bool is_used = found != devices.end();
-        // The first two are always listed; later ones would surprise old readers.
-        if (!is_used && protocol->name != "p2os" && protocol->name != "scip") continue;
-        json.key(std::string(protocol->name)).beginObject();
-        if (is_used)
-            for (const auto& [id, address] : found->second) json.key(id).value(address);
-        json.endObject();
-    }
-    if (!web.empty()) json.key("web").value(web);
-    json.endObject();
-    writeAll("-", json.take() + '\n');
-    // Clients stay connected when the reader of the warnings has gone.
-    std::signal(SIGPIPE, SIG_IGN);
 }
 
 namespace {

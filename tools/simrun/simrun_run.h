@@ -79,11 +79,6 @@ std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOpti
 /// limit of open files of this process, as every client takes one.
 ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input);
 
-/// Writes the first line of output: clients can connect now.
-/// \param web address of the page; "" without
-/// \param devices addresses of device ports
-void announce(const Server& server, const std::string& web, const DeviceAddresses& devices);
-
 /// Draws the record of --replay to -o, as a picture or a film.
 /// \param title of the picture, may be ""
 void drawRecord(const SimrunOptions& options, const Scene& scene, const std::string& title);

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/ros/foxglove_dialogue.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/json_writer.h"
+#include "base/message.h"
+#include "server/ros/ros_parameters.h"
+#include "server/ros/ros_text.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::size_t kMaxChannels = 256, kMaxWatched = 4096;
+constexpr int kMaxFetches = 8;
+constexpr double kTimeRate = 50;  // a second, as of /clock
+constexpr const char *kJson = "json", *kCdr = "cdr";
+
+/// Reads a number of 32 bits; empty for anything else.
+std::optional<std::uint32_t> numberOf(const nlohmann::json& value) {
+    const auto* const number = value.get_ptr<const nlohmann::json::number_unsigned_t*>();
+    if (number == nullptr || *number > std::numeric_limits<std::uint32_t>::max())
+        return std::nullopt;
+    return static_cast<std::uint32_t>(*number);
+}
+
+/// Returns a member; null if the value is no object or lacks it.
+const nlohmann::json& member(const nlohmann::json& value, const char* name) {
+    static const nlohmann::json null;
+    if (!value.is_object()) return null;
+    const auto found = value.find(name);
+    return found == value.end() ? null : *found;
+}
+
+std::string textOf(const nlohmann::json& value) {
+    const auto* const text = value.get_ptr<const std::string*>();
+    return text == nullptr ? std::string() : *text;
+}
+
+/// Cuts a little-endian number off; empty if there are too few bytes.
+std::optional<std::uint32_t> takeNumber(std::string_view& bytes) {
+    std::uint32_t number = 0;
+    if (bytes.size() < sizeof number) return std::nullopt;
+    std::memcpy(&number, bytes.data(), sizeof number);
+    bytes.remove_prefix(sizeof number);
+    return number;
+}
+
+std::string binary(FoxgloveOpcode opcode) { return std::string(1, static_cast<char>(opcode)); }
+
+}  // namespace
+
+FoxgloveDialogue::FoxgloveDialogue(ServerState& state, RosFeed& feed, const std::string& title,
+                                   const std::string& session_id)
+    : RosDialogue(state, feed) {
+    greet(title, session_id);
+    advertise();
+    advertiseServices();
+}
+
+void FoxgloveDialogue::greet(const std::string& title, const std::string& session_id) {
+    JsonWriter json;
+    json.beginObject().key("op").value("serverInfo").key("name").value(title);
+    json.key("capabilities").beginArray();
+    for (const char* one :
+         {"clientPublish", "time", "parameters", "parametersSubscribe", "services", "assets"})
+        json.value(one);
+    json.endArray().key("supportedEncodings").beginArray().value(kJson).value(kCdr).endArray();
+    // Programs then know the common types.
+    json.key("metadata").beginObject().key("ROS_DISTRO").value("jazzy").endObject();
+    json.key("sessionId").value(session_id).endObject();
+    sendText(json.take());
+}
+
+void FoxgloveDialogue::advertise() {
+    std::set<std::uint32_t> present;
+    JsonWriter json;
+    json.beginObject().key("op").value("advertise").key("channels").beginArray();
+    bool has_new = false;
+    for (const auto& [number, entry] : feed().entries()) {
+        if (entry.channel.isInput()) continue;
+        present.insert(number);
+        if (advertised_.contains(number)) continue;
+        has_new = true;
+        json.beginObject().key("id").value(std::int64_t{number});
+        json.key("topic").value(entry.channel.topic).key("encoding").value(kCdr);
+        json.key("schemaName").value(nameOf(entry.channel.type));
+        json.key("schemaEncoding").value("ros2msg");
+        json.key("schema").value(rosDefinition(entry.channel.type)).endObject();
+    }
+    json.endArray().endObject();
+    JsonWriter gone;
+    gone.beginObject().key("op").value("unadvertise").key("channelIds").beginArray();
+    bool has_gone = false;
+    for (const std::uint32_t number : advertised_) {
+        if (present.contains(number)) continue;
+        has_gone = true;
+        gone.value(std::int64_t{number});
+    }
+    gone.endArray().endObject();
+    if (has_gone) sendText(gone.take());
+    if (has_new || advertised_.empty()) sendText(json.take());
+    advertised_ = std::move(present);
+}
+
+void FoxgloveDialogue::advertiseServices() {
+    JsonWriter json;
+    json.beginObject().key("op").value("advertiseServices").key("services").beginArray();
+    const auto services = rosServices();
+    for (std::size_t i = 0; i < services.size(); ++i) {
+        json.beginObject().key("id").value(i).key("name").value(services[i].name);
+        json.key("type").value(kRosEmptyService);
+        for (const char* side : {"request", "response"}) {
+            json.key(side).beginObject().key("encoding").value(kCdr);
+            json.key("schemaName")
+                .value(std::string(kRosEmptyService) + (side[2] == 'q' ? "_Request" : "_Response"));
+            json.key("schemaEncoding").value("ros2msg").key("schema").value("").endObject();
+        }
+        json.key("requestSchema").value("").key("responseSchema").value("").endObject();
+    }
+    json.endArray().endObject();
+    sendText(json.take());
+}
+
+WebMessage FoxgloveDialogue::write(std::uint32_t key, const RosFeed::Entry& /*topic*/,
+                                   const RosMessage& message) {
+    std::string head = binary(FoxgloveOpcode::Message);
+    appendLittle(head, key);
+    appendLittle(head, message.time());
+    return {.head = std::move(head), .body = message.cdr(), .is_text = false};
+}
+
+void FoxgloveDialogue::tell(Level level, const std::string& text) {
+    JsonWriter json;
+    json.beginObject().key("op").value("status").key("level").value(static_cast<int>(level));
+    json.key("message").value(text).endObject();
+    sendText(json.take());
+}
+
+void FoxgloveDialogue::stepped() {
+    RosDialogue::stepped();
+    const Simulation& simulation = state().simulation();
+    static const Periods periods(kTimeRate);
+    const std::int64_t period = periods.newest(simulation.world().time());
+    if (std::exchange(time_period_, period) != period) is_time_due_ = true;
+    const bool is_other =
+        was_paused_ != simulation.paused() || seen_changes_ != simulation.world().changes();
+    was_paused_ = simulation.paused();
+    seen_changes_ = simulation.world().changes();
+    if (is_other && !watched_.empty()) sendParameters(watched_, "");
+}
+
+std::optional<WebMessage> FoxgloveDialogue::next() {
+    if (hasAnswers() || !std::exchange(is_time_due_, false)) return RosDialogue::next();
+    std::string head = binary(FoxgloveOpcode::Time);
+    appendLittle(head, rosTimeOf(state().simulation().world().time()));
+    return WebMessage{.head = std::move(head), .is_text = false};
+}
+
+// Requests.
+
+struct FoxgloveDialogue::Op {
+    std::string_view name;
+    void (FoxgloveDialogue::*obey)(const Json& request);
+};
+
+void FoxgloveDialogue::receive(std::string_view message, bool is_text) {
+    // The world may have changed since the last step.
+    feed().sync();
+    try {
+        if (is_text) return obeyText(message);
+        constexpr char kMessage = 1, kCall = 2;
+        if (message.starts_with(kMessage)) return obeyMessage(message.substr(1));
+        if (message.starts_with(kCall)) return callService(message.substr(1));
+        tell(Level::Error, "this opcode is not served");
+    } catch (const FormatError& error) {
+        tell(Level::Error, error.diagnostics().front().message);
+    }
+}
+
+void FoxgloveDialogue::obeyText(std::string_view text) {
+    using Self = FoxgloveDialogue;
+    static constexpr std::array<Op, 9> kOps{
+        {{"subscribe", &Self::subscribeAll},
+         {"unsubscribe", &Self::unsubscribeAll},
+         {"advertise", &Self::addChannels},
+         {"unadvertise", &Self::removeChannels},
+         {"getParameters", &Self::getParameters},
+         {"setParameters", &Self::setParameters},
+         {"subscribeParameterUpdates", &Self::watchParameters},
+         {"unsubscribeParameterUpdates", &Self::unwatchParameters},
+         {"fetchAsset", &Self::fetchAsset}}};
+    const std::optional<Json> request = parseClientJson(text);
+    if (!request || !request->is_object()) return tell(Level::Error, "this is no JSON object");
+    const std::string name = textOf(member(*request, "op"));
+    const auto* const op =
+        std::find_if(kOps.begin(), kOps.end(), [&](const Op& one) { return one.name == name; });
+    if (op == kOps.end()) return tell(Level::Error, excerpt(name) + " is not served");
+    (this->*op->obey)(*request);
+}
+
+void FoxgloveDialogue::subscribeAll(const Json& request) {
+    for (const Json& one : member(request, "subscriptions")) {
+        const auto key = numberOf(member(one, "id")), channel = numberOf(member(one, "channelId"));
+        const auto topic = feed().entries().find(channel.value_or(0));
+        if (!key || topic == feed().entries().end() || topic->second.channel.isInput()) {
+            tell(Level::Error, "a subscription to an unknown channel");
+            continue;
+        }
+        const std::size_t depth = topic->second.channel.quality.depth;
+        if (!subscribe(*key, {.topic = topic->first, .depth = depth}))
+            return tell(Level::Error, "too many subscriptions");
+    }
+}
+
+void FoxgloveDialogue::unsubscribeAll(const Json& request) {
+    for (const Json& one : member(request, "subscriptionIds"))
+        if (const auto key = numberOf(one)) unsubscribe(*key);
+}
+
+void FoxgloveDialogue::addChannels(const Json& request) {
+    for (const Json& one : member(request, "channels")) {
+        const auto id = numberOf(member(one, "id"));
+        const std::string topic = textOf(member(one, "topic")),
+                          encoding = textOf(member(one, "encoding")),
+                          schema = textOf(member(one, "schemaName"));
+        const auto type = rosTypeNamed(schema);
+        if (!id || (encoding != kJson && encoding != kCdr)) {
+            tell(Level::Error, "a channel needs an id, and the encoding json or cdr");
+        } else if (!type || input(topic, *type) == nullptr) {
+            tell(Level::Warning,
+                 "no messages " + excerpt(schema) + " are read from " + excerpt(topic));
+        } else if (channels_.size() >= kMaxChannels) {
+            return tell(Level::Error, "too many channels");
+        } else {
+            channels_[*id] = {topic, *type, encoding == kJson};
+        }
+    }
+}
+
+void FoxgloveDialogue::removeChannels(const Json& request) {
+    for (const Json& one : member(request, "channelIds"))
+        if (const auto id = numberOf(one)) channels_.erase(*id);
+}
+
+void FoxgloveDialogue::obeyMessage(std::string_view payload) {
+    const auto id = takeNumber(payload);
+    const auto channel = id ? channels_.find(*id) : channels_.end();
+    // The reason was told when the channel was advertised.
+    if (channel == channels_.end()) return;
+    const auto& [topic, type, is_json] = channel->second;
+    const RosChannel* const to = input(topic, type);
+    if (to == nullptr) return tell(Level::Error, "the topic " + excerpt(topic) + " is gone");
+    if (!is_json) return obey(*to, payload);
+    const std::optional<Json> json = parseClientJson(payload);
+    if (!json) return tell(Level::Error, "a message to " + topic + " is no JSON");
+    obey(*to, rosMessage(type, *json));
+}
+
+void FoxgloveDialogue::callService(std::string_view payload) {
+    const auto service = takeNumber(payload), call = takeNumber(payload),
+               length = takeNumber(payload);
+    if (!length || *length > payload.size()) return tell(Level::Error, "a call that is cut off");
+    const std::string encoding(payload.substr(0, *length));
+    const auto fail = [this, service, call](std::string_view why) {
+        JsonWriter json;
+        json.beginObject().key("op").value("serviceCallFailure");
+        json.key("serviceId").value(std::int64_t{*service});
+        json.key("callId").value(std::int64_t{*call}).key("message").value(why).endObject();
+        sendText(json.take());
+    };
+    if (*service >= rosServices().size()) return fail("there is no such service");
+    if (encoding != kJson && encoding != kCdr) return fail("the encoding is json or cdr");
+    if (!mayRequest()) return fail("too many calls at once");
+    request(std::string(rosServices()[*service].request),
+            [this, service, call, encoding, fail](bool is_done, std::string_view text) {
+                if (!is_done) return fail(text);
+                std::string head = binary(FoxgloveOpcode::Response);
+                appendLittle(head, *service);
+                appendLittle(head, *call);
+                appendLittle(head, static_cast<std::uint32_t>(encoding.size()));
+                head += encoding;
+                head += encoding == kJson ? std::string_view("{}") : kRosEmpty;
+                send({.head = std::move(head), .is_text = false});
+            });
+}
+
+// Parameters and assets.
+
+void FoxgloveDialogue::sendParameters(const std::set<std::string>& names, const std::string& id) {
+    JsonWriter json;
+    json.beginObject().key("op").value("parameterValues").key("parameters").beginArray();
+    for (const RosParameter& one : rosParameters(state().simulation())) {
+        if (!names.empty() && !names.contains(one.name)) continue;
+        json.beginObject().key("name").value(one.name).key("value");
+        std::visit([&json](const auto& value) { json.value(value); }, one.value);
+        if (std::holds_alternative<double>(one.value)) json.key("type").value("float64");
+        if (one.value.index() == 2) json.key("type").value("float64_array");
+        json.endObject();
+    }
+    json.endArray();
+    if (!id.empty()) json.key("id").value(id);
+    json.endObject();
+    sendText(json.take());
+}
+
+void FoxgloveDialogue::getParameters(const Json& request) {
+    std::set<std::string> names;
+    for (const Json& one : member(request, "parameterNames")) names.insert(textOf(one));
+    sendParameters(names, textOf(member(request, "id")));
+}
+
+void FoxgloveDialogue::setParameters(const Json& request) {
+    const std::string id = textOf(member(request, "id"));
+    std::set<std::string> names;
+    for (const Json& one : member(request, "parameters")) {
+        const std::string name = textOf(member(one, "name"));
+        const auto line = requestToSet(state().simulation(), name, member(one, "value"));
+        if (!line) {
+            tell(Level::Error, excerpt(name) + " cannot be set to this");
+            continue;
+        }
+        if (!mayRequest()) return tell(Level::Error, "too many parameters at once");
+        names.insert(name);
+        this->request(*line, [this, name, id](bool is_done, std::string_view text) {
+            if (!is_done) tell(Level::Error, std::string(text));
+            if (!id.empty()) sendParameters({name}, id);
+        });
+    }
+}
+
+void FoxgloveDialogue::watchParameters(const Json& request) {
+    for (const Json& one : member(request, "parameterNames"))
+        if (watched_.size() < kMaxWatched) watched_.insert(textOf(one));
+}
+
+void FoxgloveDialogue::unwatchParameters(const Json& request) {
+    for (const Json& one : member(request, "parameterNames")) watched_.erase(textOf(one));
+}
+
+void FoxgloveDialogue::fetchAsset(const Json& request) {
+    const auto id = numberOf(member(request, "requestId"));
+    if (!id) return tell(Level::Error, "an asset needs a requestId");
+    const auto answer = [this, id = *id](const std::shared_ptr<const std::string>& bytes,
+                                         std::string_view why) {
+        std::string head = binary(FoxgloveOpcode::Asset);
+        appendLittle(head, id);
+        head += static_cast<char>(bytes ? 0 : 1);
+        appendLittle(head, static_cast<std::uint32_t>(why.size()));
+        head += why;
+        send({.head = std::move(head), .body = bytes, .is_text = false});
+    };
+    if (textOf(member(request, "uri")) != kRosRoom)
+        return answer(nullptr, "the only asset is package://ispace/room.glb");
+    if (fetches_ >= kMaxFetches) return answer(nullptr, "too many assets at once");
+    ++fetches_;
+    feed().fetchRoom([self = std::weak_ptr(self_), answer](auto mesh) {
+        const auto dialogue = self.lock();
+        if (!dialogue) return;
+        --(*dialogue)->fetches_;
+        if (mesh->empty()) return answer(nullptr, "there is no mesh of this room");
+        answer(mesh, "");
+    });
+}
+
+}  // namespace ispace

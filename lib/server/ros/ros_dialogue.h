@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/server.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "server/ros/ros_feed.h"
+#include "server/session.h"
+#include "server/web/web_dialogue.h"
+
+namespace ispace {
+
+/// A service of the world, of type std_srvs/srv/Empty, and the request that carries it out.
+struct RosService {
+    std::string_view name, request;
+};
+std::span<const RosService> rosServices();
+inline constexpr std::string_view kRosEmptyService = "std_srvs/srv/Empty";
+/// The CDR of its answer: a struct without fields has one byte.
+inline constexpr std::string_view kRosEmpty{"\0\1\0\0\0", 5};
+
+/// A client of topics, whatever its language: subscriptions, orders to robots, services.
+///
+/// Output is bounded: a slow reader loses the oldest messages of each subscription, and its
+/// requests wait while it leaves answers unread. A robot is held while orders come; it stops and is
+/// free again when none has come for kRosSilence.
+class RosDialogue : public WebDialogue {
+  public:
+    RosDialogue(ServerState& state, RosFeed& feed);
+    ~RosDialogue() override;
+
+    /// Presents a token. \returns false if it is wrong
+    bool present(std::string_view token);
+
+    [[nodiscard]] std::size_t longest() const override { return std::size_t{1} << 18U; }
+    [[nodiscard]] bool hasRoom() const override;
+    void stepped() override;
+    void proceed() override;
+    [[nodiscard]] bool waiting() const override { return session_.waiting(); }
+    [[nodiscard]] bool waitsToChange() const override { return session_.waitsToChange(); }
+    std::optional<WebMessage> next() override;
+    [[nodiscard]] bool isOverfull() const override;
+    [[nodiscard]] bool closing() const override { return false; }
+    [[nodiscard]] bool isEngaged() const override {
+        return !subscriptions_.empty() || !driven_.empty();
+    }
+    void dismiss() override;
+    void finish() override;
+
+  protected:
+    struct Subscription {
+        std::uint32_t topic = 0;  ///< number in the feed
+        std::size_t depth = 1;    ///< messages kept for a slow reader, the oldest dropped
+        std::chrono::nanoseconds interval{};  ///< least wall time between two messages
+        std::int64_t last = 0;                ///< number of the last message
+        WallTime last_time{};
+        std::size_t queued = 0;
+    };
+    enum class Level { Info = 0, Warning = 1, Error = 2 };
+
+    /// Writes a message for the client. \param key of the subscription
+    virtual WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
+                             const RosMessage& message) = 0;
+    /// Reports a failure that answers no request.
+    virtual void tell(Level level, const std::string& text) = 0;
+    /// Call after topics have come or gone. Subscriptions to removed topics are already gone.
+    virtual void topicsChanged() = 0;
+
+    [[nodiscard]] RosFeed& feed() { return *feed_; }
+    [[nodiscard]] ServerState& state() { return *state_; }
+    void send(WebMessage message);
+    void sendText(std::string text) { send({.head = std::move(text)}); }
+    /// Replaces an earlier subscription with this key. \returns false if there are too many
+    bool subscribe(std::uint32_t key, Subscription subscription);
+    void unsubscribe(std::uint32_t key);
+    [[nodiscard]] bool hasSubscription(std::uint32_t key) const {
+        return subscriptions_.contains(key);
+    }
+    /// Finds an input topic of this type; null if there is none.
+    [[nodiscard]] const RosChannel* input(std::string_view topic, RosType type) const;
+    /// Carries out a message to a topic. \throws FormatError if it cannot be read
+    void obey(const RosChannel& channel, std::string_view message);
+
+    using Answer = std::function<void(bool is_done, std::string_view text)>;
+    /// Makes a request of the role WORLD. `answer` gets the words after OK, or the error.
+    void request(std::string line, Answer answer);
+    /// False while too many requests are pending for request().
+    [[nodiscard]] bool mayRequest() const;
+    /// True if answers are unsent, which come before all else.
+    [[nodiscard]] bool hasAnswers() const { return !out_.empty(); }
+
+  private:
+    struct Queued {
+        std::uint32_t key;
+        std::shared_ptr<const RosMessage> message;
+    };
+    struct Driven {
+        std::int64_t hold = 0;
+        SimTime last{};
+    };
+    void collect();
+    void enqueue(std::uint32_t key, Subscription& subscription,
+                 const std::shared_ptr<const RosMessage>& message);
+    void drop(std::deque<Queued>::iterator queued);
+    void answerRequests();
+    void takeAnswer();
+    void drive(const std::string& robot, const RosTwist& twist);
+    void place(const std::string& robot, const RosPose& pose);
+    void watch();
+
+    ServerState* state_;
+    RosFeed* feed_;
+    Session session_;  // of the role WORLD
+    std::deque<std::pair<std::string, Answer>> requests_;
+    Answer awaited_;  // of the request under way
+    std::map<std::uint32_t, Subscription> subscriptions_;
+    std::deque<Queued> queue_;
+    std::size_t queue_bytes_ = 0;
+    std::deque<WebMessage> out_;  // answers, sent before the queue
+    std::size_t out_bytes_ = 0;
+    std::map<std::string, Driven> driven_;
+    std::int64_t version_;  // of the feed's topics
+};
+
+/// A robot without orders for this long stops, in simulated time: the teleoperation panel of
+/// Lichtblick repeats its order each second.
+inline constexpr SimTime kRosSilence = std::chrono::milliseconds(1500);
+
+}  // namespace ispace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/server.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "sim/simulation.h"
+
+namespace ispace {
+
+/// A value of the running world by name: `clock.paused`, `clock.rate`, and `ID.at` and
+/// `ID.heading` (metres, degrees) of robots, people, and sensors that nobody carries.
+struct RosParameter {
+    std::string name;
+    std::variant<bool, double, std::vector<double>> value;
+};
+std::vector<RosParameter> rosParameters(const Simulation& simulation);
+
+/// Returns the request that sets a parameter: "SET r1.at=1,2", "PAUSE". Empty if there is no such
+/// parameter, it cannot be set, or the value has another type.
+std::optional<std::string> requestToSet(const Simulation& simulation, const std::string& name,
+                                        const nlohmann::json& value);
+
+}  // namespace ispace

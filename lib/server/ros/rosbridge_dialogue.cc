@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/ros/rosbridge_dialogue.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/error.h"
+#include "base/json_writer.h"
+#include "base/message.h"
+#include "server/ros/ros_api.h"
+#include "server/ros/ros_text.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::size_t kMaxWishes = 1024, kMaxIds = 64, kMaxAdvertised = 256;
+
+const nlohmann::json& memberOf(const nlohmann::json& value, const char* name) {
+    static const nlohmann::json null;
+    const auto found = value.find(name);
+    return found == value.end() ? null : *found;
+}
+
+/// Returns a text, also of a number, as ids may be; "" for anything else.
+std::string wordOf(const nlohmann::json& value, const char* name) {
+    const nlohmann::json& one = memberOf(value, name);
+    if (const auto* const text = one.get_ptr<const std::string*>()) return *text;
+    return one.is_number() ? one.dump() : "";
+}
+
+/// Returns a number from 0 to `most`; 0 if it is absent or negative.
+double figureOf(const nlohmann::json& value, const char* name, double most) {
+    const nlohmann::json& one = memberOf(value, name);
+    return one.is_number() ? std::clamp(one.get<double>(), 0.0, most) : 0;
+}
+
+/// Returns a name with one leading slash, as topics are called here.
+std::string absolute(const std::string& name) { return name.starts_with('/') ? name : "/" + name; }
+
+/// Begins a message of a topic in CBOR; its value is to follow.
+std::string cborPublication(const std::string& topic) {
+    std::string out;
+    appendCborHead(out, CborHead::Map, 3);
+    for (const std::string_view text :
+         {std::string_view("op"), std::string_view("publish"), std::string_view("topic"),
+          std::string_view(topic), std::string_view("msg")})
+        appendCborText(out, text);
+    return out;
+}
+
+}  // namespace
+
+WebMessage RosbridgeDialogue::write(std::uint32_t /*key*/, const RosFeed::Entry& topic,
+                                    const RosMessage& message) {
+    const std::string& name = topic.channel.topic;
+    const auto wish = wishes_.find(name);
+    const Form form = wish == wishes_.end() ? Form::Json : wish->second.form;
+    if (form == Form::Json) {
+        JsonWriter head;
+        head.beginObject().key("op").value("publish").key("topic").value(name).key("msg");
+        return {.head = head.take(), .body = message.json(), .tail = "}"};
+    }
+    std::string head = cborPublication(name);
+    if (form == Form::Cbor)
+        return {.head = std::move(head), .body = message.cbor(), .is_text = false};
+    constexpr std::uint64_t kSecond = 1'000'000'000;
+    appendCborHead(head, CborHead::Map, 3);
+    appendCborText(head, "secs");
+    appendCborHead(head, CborHead::Unsigned, message.time() / kSecond);
+    appendCborText(head, "nsecs");
+    appendCborHead(head, CborHead::Unsigned, message.time() % kSecond);
+    appendCborText(head, "bytes");
+    appendCborHead(head, CborHead::Bytes, message.cdr()->size());
+    return {.head = std::move(head), .body = message.cdr(), .is_text = false};
+}
+
+void RosbridgeDialogue::tell(Level level, const std::string& text, const std::string& id) {
+    constexpr std::array<const char*, 3> kLevels{"info", "warning", "error"};
+    JsonWriter json;
+    json.beginObject().key("op").value("status");
+    json.key("level").value(kLevels[static_cast<std::size_t>(level)]).key("msg").value(text);
+    if (!id.empty()) json.key("id").value(id);
+    json.endObject();
+    sendText(json.take());
+}
+
+struct RosbridgeDialogue::Op {
+    std::string_view name;
+    void (RosbridgeDialogue::*obey)(const Json& request);
+};
+
+void RosbridgeDialogue::receive(std::string_view message, bool is_text) {
+    using Self = RosbridgeDialogue;
+    static constexpr std::array<Op, 9> kOps{{{"subscribe", &Self::subscribeTo},
+                                             {"unsubscribe", &Self::unsubscribeFrom},
+                                             {"advertise", &Self::advertise},
+                                             {"unadvertise", &Self::unadvertise},
+                                             {"publish", &Self::publish},
+                                             {"call_service", &Self::callService},
+                                             {"set_level", &Self::ignore},
+                                             {"status", &Self::ignore},
+                                             {"auth", &Self::ignore}}};
+    // The world may have changed since the last step.
+    feed().sync();
+    if (!is_text) return tell(Level::Error, "requests are JSON, in messages of text");
+    const std::optional<Json> request = parseClientJson(message);
+    if (!request || !request->is_object()) return tell(Level::Error, "this is no JSON object");
+    const std::string name = wordOf(*request, "op"), id = wordOf(*request, "id");
+    const auto* const op =
+        std::find_if(kOps.begin(), kOps.end(), [&](const Op& one) { return one.name == name; });
+    if (op == kOps.end()) return tell(Level::Error, "op " + excerpt(name) + " is not served", id);
+    try {
+        (this->*op->obey)(*request);
+    } catch (const FormatError& error) {
+        tell(Level::Error, error.diagnostics().front().message, id);
+    }
+}
+
+// Topics.
+
+void RosbridgeDialogue::subscribeTo(const Json& request) {
+    constexpr double kMostMilliseconds = 1e6, kMostQueue = 1000;
+    const std::string topic = absolute(wordOf(request, "topic")), id = wordOf(request, "id"),
+                      form = wordOf(request, "compression");
+    if (form == "png") return tell(Level::Error, "compression png is not served", id);
+    const bool is_new = !wishes_.contains(topic);
+    if (is_new && wishes_.size() >= kMaxWishes)
+        return tell(Level::Error, "too many subscriptions", id);
+    Wish& wish = wishes_[topic];
+    if (wish.ids.size() >= kMaxIds) return tell(Level::Error, "too many subscriptions", id);
+    const double wait = figureOf(request, "throttle_rate", kMostMilliseconds);
+    wish.ids[id] = {std::chrono::milliseconds(std::llround(wait)),
+                    static_cast<std::size_t>(figureOf(request, "queue_length", kMostQueue))};
+    wish.form = form == "cbor" ? Form::Cbor : form == "cbor-raw" ? Form::Raw : Form::Json;
+    apply(topic, wish);
+}
+
+/// Subscribes to a topic with the least interval and the longest queue of its requests.
+void RosbridgeDialogue::apply(const std::string& topic, const Wish& wish) {
+    for (const auto& [number, entry] : feed().entries()) {
+        if (entry.channel.topic != topic || entry.channel.isInput()) continue;
+        Subscription subscription{.topic = number, .depth = 0};
+        subscription.interval = std::chrono::nanoseconds::max();
+        for (const auto& [id, one] : wish.ids) {
+            subscription.interval = std::min(subscription.interval, one.interval);
+            subscription.depth = std::max(subscription.depth,
+                                          one.depth > 0 ? one.depth : entry.channel.quality.depth);
+        }
+        static_cast<void>(subscribe(number, subscription));
+    }
+}
+
+void RosbridgeDialogue::unsubscribeFrom(const Json& request) {
+    const std::string topic = absolute(wordOf(request, "topic")), id = wordOf(request, "id");
+    const auto wish = wishes_.find(topic);
+    if (wish == wishes_.end()) return;
+    // Without an id all requests for the topic end.
+    if (id.empty()) wish->second.ids.clear();
+    wish->second.ids.erase(id);
+    if (!wish->second.ids.empty()) return;
+    wishes_.erase(wish);
+    for (const auto& [number, entry] : feed().entries())
+        if (entry.channel.topic == topic) unsubscribe(number);
+}
+
+void RosbridgeDialogue::topicsChanged() {
+    for (const auto& [topic, wish] : wishes_)
+        for (const auto& [number, entry] : feed().entries())
+            if (entry.channel.topic == topic && !hasSubscription(number)) apply(topic, wish);
+}
+
+void RosbridgeDialogue::advertise(const Json& request) {
+    const std::string topic = absolute(wordOf(request, "topic")), id = wordOf(request, "id");
+    const auto type = rosTypeNamed(wordOf(request, "type"));
+    if (!type || input(topic, *type) == nullptr)
+        return tell(
+            Level::Error,
+            "no messages " + excerpt(wordOf(request, "type")) + " are read from " + excerpt(topic),
+            id);
+    if (advertised_.size() >= kMaxAdvertised && !advertised_.contains(topic))
+        return tell(Level::Error, "too many topics are advertised", id);
+    advertised_[topic] = *type;
+}
+
+void RosbridgeDialogue::unadvertise(const Json& request) {
+    advertised_.erase(absolute(wordOf(request, "topic")));
+}
+
+void RosbridgeDialogue::publish(const Json& request) {
+    const std::string topic = absolute(wordOf(request, "topic"));
+    const auto known = advertised_.find(topic);
+    const RosChannel* channel = nullptr;
+    if (known != advertised_.end()) {
+        channel = input(topic, known->second);
+    } else {
+        for (const RosRow& row : rosRows())
+            if (row.decode != nullptr && channel == nullptr) channel = input(topic, row.type);
+    }
+    if (channel == nullptr)
+        return tell(Level::Error, "no messages are read from " + excerpt(topic),
+                    wordOf(request, "id"));
+    obey(*channel, rosMessage(channel->type, memberOf(request, "msg")));
+}
+
+// Services.
+
+void RosbridgeDialogue::callService(const Json& request) {
+    const std::string service = wordOf(request, "service"), id = wordOf(request, "id"),
+                      name = absolute(service);
+    if (const auto values = rosApi(feed(), state().simulation(), std::string_view(name).substr(1),
+                                   memberOf(request, "args")))
+        return answer(id, service, true, *values);
+    const auto services = rosServices();
+    const auto found = std::find_if(services.begin(), services.end(),
+                                    [&](const RosService& one) { return one.name == name; });
+    const auto fail = [this, id, service](std::string_view why) {
+        answer(id, service, false, JsonWriter().value(why).text());
+    };
+    if (found == services.end()) return fail("there is no service " + excerpt(service));
+    if (!mayRequest()) return fail("too many calls at once");
+    this->request(std::string(found->request),
+                  [this, id, service, fail](bool is_done, std::string_view text) {
+                      is_done ? answer(id, service, true, "{}") : fail(text);
+                  });
+}
+
+/// \param values JSON; for a failure the reason as a text of JSON
+void RosbridgeDialogue::answer(const std::string& id, std::string_view service, bool is_done,
+                               std::string_view values) {
+    JsonWriter json;
+    json.beginObject().key("op").value("service_response");
+    if (!id.empty()) json.key("id").value(id);
+    json.key("service").value(service).key("result").value(is_done).key("values");
+    send({.head = json.take(), .body = std::make_shared<const std::string>(values), .tail = "}"});
+}
+
+}  // namespace ispace

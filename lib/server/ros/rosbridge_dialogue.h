@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/server.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+#include "server/ros/ros_dialogue.h"
+
+namespace ispace {
+
+/// The rosbridge protocol, version 2.1: JSON objects with `op`, and messages of topics also in CBOR
+/// or as raw CDR within CBOR, as the subscriber chooses.
+class RosbridgeDialogue final : public RosDialogue {
+  public:
+    RosbridgeDialogue(ServerState& state, RosFeed& feed) : RosDialogue(state, feed) {}
+
+    void receive(std::string_view message, bool is_text) override;
+
+  private:
+    using Json = nlohmann::json;
+    enum class Form { Json, Cbor, Raw };
+    /// The requests of a client for one topic, by their ids; they share its messages.
+    struct Wish {
+        struct One {
+            std::chrono::nanoseconds interval{};
+            std::size_t depth = 0;  ///< 0: that of the topic
+        };
+        std::map<std::string, One> ids;
+        Form form = Form::Json;  ///< of the newest request
+    };
+    struct Op;
+
+    WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
+                     const RosMessage& message) override;
+    void tell(Level level, const std::string& text) override { tell(level, text, ""); }
+    void tell(Level level, const std::string& text, const std::string& id);
+    void topicsChanged() override;
+
+    void subscribeTo(const Json& request);
+    void unsubscribeFrom(const Json& request);
+    void advertise(const Json& request);
+    void unadvertise(const Json& request);
+    void publish(const Json& request);
+    void callService(const Json& request);
+    void ignore(const Json& /*request*/) {}
+    void apply(const std::string& topic, const Wish& wish);
+    void answer(const std::string& id, std::string_view service, bool is_done,
+                std::string_view values);
+
+    std::map<std::string, Wish> wishes_;         // by topic, which may not exist yet
+    std::map<std::string, RosType> advertised_;  // types by topic
+};
+
+}  // namespace ispace

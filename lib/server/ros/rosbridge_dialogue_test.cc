@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/ros/rosbridge_dialogue.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/ros_talk.h"
+
+namespace ispace {
+namespace {
+
+using nlohmann::json;
+using testing::RosTalk;
+
+class BridgeTalk : public RosTalk<RosbridgeDialogue> {
+  public:
+    explicit BridgeTalk(const ServerLimits& limits = RosTalk::limits()) : RosTalk(limits, {}) {}
+
+    void subscribe(const json& more) {
+        json request = {{"op", "subscribe"}, {"id", "s1"}};
+        request.update(more);
+        send(request);
+    }
+    json call(const std::string& service, const json& args = json::object()) {
+        send({{"op", "call_service"}, {"id", "c"}, {"service", service}, {"args", args}});
+        settle();
+        const json answer = text();
+        EXPECT_EQ(answer.value("op", ""), "service_response") << answer;
+        EXPECT_EQ(answer.value("id", ""), "c");
+        return answer;
+    }
+};
+
+TEST(Rosbridge, SaysNothingUnasked) {
+    BridgeTalk talk;
+    talk.step(3);
+    EXPECT_FALSE(talk.next());
+}
+
+TEST(Rosbridge, SendsMessagesOfSubscriptions) {
+    BridgeTalk talk;
+    talk.subscribe({{"topic", "/l1/scan"}, {"type", "sensor_msgs/LaserScan"}});
+    const json first = talk.text();
+    EXPECT_EQ(first["op"], "publish");
+    EXPECT_EQ(first["topic"], "/l1/scan");
+    EXPECT_EQ(first["msg"]["ranges"], json::parse("[null,7.0,null]"));
+    talk.step(3);
+    int count = 0;
+    while (talk.next()) ++count;
+    EXPECT_EQ(count, 3);
+    talk.send({{"op", "unsubscribe"}, {"id", "s1"}, {"topic", "/l1/scan"}});
+    talk.step();
+    EXPECT_FALSE(talk.next());
+}
+
+TEST(Rosbridge, QueuesAsLongAsItIsTold) {
+    BridgeTalk talk;
+    talk.subscribe({{"topic", "/l1/scan"}, {"queue_length", 2}});
+    talk.drain();
+    talk.step(6);
+    EXPECT_EQ(talk.text()["msg"]["header"]["stamp"]["nanosec"], 500'000'000);
+    EXPECT_EQ(talk.text()["msg"]["header"]["stamp"]["nanosec"], 600'000'000);
+    EXPECT_FALSE(talk.next());
+}
+
+TEST(Rosbridge, ThrottlesInWallTime) {
+    BridgeTalk talk;
+    talk.subscribe({{"topic", "/l1/scan"}, {"throttle_rate", 900'000}});
+    talk.step(6);
+    int count = 0;
+    while (talk.next()) ++count;
+    EXPECT_EQ(count, 1);
+    talk.subscribe({{"topic", "/l1/scan"}, {"id", "s2"}});
+    talk.drain();
+    talk.step(2);
+    for (count = 0; talk.next();) ++count;
+    EXPECT_EQ(count, 2) << "the quickest request of a client counts";
+}
+
+TEST(Rosbridge, SendsCbor) {
+    BridgeTalk talk;
+    talk.subscribe({{"topic", "/l1/scan"}, {"compression", "cbor"}});
+    const std::string bytes = talk.next().value_or("");
+    const json message = json::from_cbor(bytes, true, false, json::cbor_tag_handler_t::store);
+    EXPECT_EQ(message["topic"], "/l1/scan");
+    EXPECT_EQ(message["msg"]["ranges"].get_binary().subtype(), 85U);
+    talk.subscribe({{"topic", "/clock"}, {"compression", "cbor-raw"}});
+    const json raw = json::from_cbor(talk.next().value_or(""));
+    EXPECT_EQ(raw["msg"]["secs"], 0);
+    EXPECT_EQ(raw["msg"]["bytes"].get_binary().size(), 12U) << "head and two numbers";
+}
+
+TEST(Rosbridge, PublishedTwistsDrive) {
+    BridgeTalk talk;
+    talk.send({{"op", "advertise"},
+               {"id", "a"},
+               {"topic", "/r1/cmd_vel"},
+               {"type", "geometry_msgs/TwistStamped"}});
+    talk.send({{"op", "publish"},
+               {"topic", "/r1/cmd_vel"},
+               {"msg", {{"twist", {{"linear", {{"x", 0.2}}}}}}}});
+    talk.send({{"op", "publish"}, {"topic", "r2/cmd_vel"}, {"msg", {{"angular", {{"z", 0.5}}}}}});
+    talk.step(10);
+    EXPECT_NEAR(talk.room.world.status(0).speed, 0.2, 1e-9);
+    EXPECT_NEAR(talk.room.world.status(1).rotspeed.radians(), 0.5, 1e-9) << "without advertising";
+    EXPECT_FALSE(talk.next());
+    talk.dialogue.reset();
+    EXPECT_TRUE(talk.state.hold("r1")) << "free when the client is gone";
+    talk.room.simulation.allow(10);
+    for (int i = 0; i < 10; ++i) talk.room.simulation.run({}, std::chrono::nanoseconds(0));
+    EXPECT_EQ(talk.room.world.status(0).speed, 0);
+}
+
+TEST(Rosbridge, CallsServices) {
+    BridgeTalk talk;
+    talk.room.world.command(1, {Verb::Speed, 0.5});
+    talk.step(10);
+    EXPECT_EQ(talk.call("reset")["result"], true) << "without a slash, as roslib has it";
+    EXPECT_EQ(talk.room.world.status(1).pose.position, Point2(2, 1.5));
+    const json failed = talk.call("/resume");
+    EXPECT_EQ(failed["result"], false);
+    EXPECT_NE(failed["values"].get<std::string>().find("STEP"), std::string::npos);
+    EXPECT_EQ(talk.call("/none")["result"], false);
+}
+
+TEST(Rosbridge, ChangesNeedTheirRight) {
+    ServerLimits limits = BridgeTalk::limits();
+    limits.token = "secret";
+    BridgeTalk talk(limits);
+    EXPECT_EQ(talk.call("/reset")["result"], false);
+    EXPECT_FALSE(talk.dialogue->present("wrong"));
+    EXPECT_TRUE(talk.dialogue->present("secret"));
+    EXPECT_EQ(talk.call("/reset")["result"], true);
+}
+
+TEST(Rosbridge, AnswersRosapi) {
+    BridgeTalk talk;
+    const json topics = talk.call("/rosapi/topics")["values"];
+    const auto scan = std::find(topics["topics"].begin(), topics["topics"].end(), "/l1/scan");
+    ASSERT_NE(scan, topics["topics"].end());
+    EXPECT_EQ(topics["types"][static_cast<std::size_t>(scan - topics["topics"].begin())],
+              "sensor_msgs/msg/LaserScan");
+    EXPECT_EQ(topics["topics"].size(), topics["types"].size());
+    EXPECT_EQ(talk.call("rosapi/topic_type", {{"topic", "/tf"}})["values"]["type"],
+              "tf2_msgs/msg/TFMessage");
+    EXPECT_EQ(
+        talk.call("rosapi/topics_for_type", {{"type", "sensor_msgs/LaserScan"}})["values"]["topics"]
+            .size(),
+        2U);
+    EXPECT_EQ(talk.call("rosapi/services")["values"]["services"].size(), 3U);
+    EXPECT_EQ(talk.call("rosapi/nodes")["values"]["nodes"], json::parse(R"(["/simrun"])"));
+    EXPECT_EQ(talk.call("/rosapi/publishers", {{"topic", "/tf"}})["values"]["publishers"].size(),
+              1U);
+    EXPECT_EQ(talk.call("rosapi/get_param", {{"name", "clock.paused"}})["values"]["value"], "true");
+    talk.step(15);
+    EXPECT_EQ(talk.call("rosapi/get_time")["values"]["time"],
+              json({{"sec", 1}, {"nanosec", 500'000'000}}));
+    const json twist = talk.call("rosapi/message_details",
+                                 {{"type", "geometry_msgs/Twist"}})["values"]["typedefs"];
+    ASSERT_EQ(twist.size(), 2U);
+    EXPECT_EQ(twist[0]["fieldtypes"][1], "geometry_msgs/Vector3");
+    EXPECT_EQ(talk.call("rosapi/topics_and_raw_types")["values"]["typedefs_full_text"].size(),
+              topics["topics"].size());
+    EXPECT_EQ(talk.call("rosapi/none")["result"], false);
+}
+
+TEST(Rosbridge, HostileMessagesAreAnswered) {
+    BridgeTalk talk;
+    for (const char* text :
+         {"", "{", "[]", "7", "null", "{}", R"({"op":5})", R"({"op":"fragment"})",
+          R"({"op":"advertise","topic":"/tf","type":"geometry_msgs/Twist"})",
+          R"({"op":"publish","topic":"/tf"})", R"({"op":"publish","topic":"/r1/cmd_vel","msg":[]})",
+          R"({"op":"subscribe","topic":"/tf","compression":"png"})"}) {
+        talk.dialogue->receive(text, true);
+        EXPECT_EQ(talk.text().value("op", ""), "status") << text;
+    }
+    talk.dialogue->receive("{}", false);
+    EXPECT_EQ(talk.text().value("op", ""), "status") << "binary";
+    talk.send({{"op", "subscribe"}, {"topic", 5}, {"throttle_rate", "x"}, {"queue_length", -1}});
+    talk.step();
+    EXPECT_FALSE(talk.next()) << "a topic that does not exist";
+    for (int i = 0; i < 5000; ++i)
+        talk.send({{"op", "subscribe"}, {"topic", "/t" + std::to_string(i)}});
+    EXPECT_EQ(talk.text().value("msg", ""), "too many subscriptions");
+}
+
+TEST(Rosbridge, SubscriptionsAwaitTheirTopic) {
+    BridgeTalk talk;
+    talk.subscribe({{"topic", "/r9/odom"}});
+    talk.step();
+    EXPECT_FALSE(talk.next());
+    talk.room.world.change(testing::scene("ispace size=8,6\n", "robot id=r9 at=0,0\n"));
+    talk.state.sync();
+    talk.stepped();
+    EXPECT_EQ(talk.text().value("topic", ""), "/r9/odom");
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simrun/simrun_ports.h"
+
+#include <csignal>
+#include <optional>
+#include <utility>
+
+#include "base/file.h"
+#include "base/json_writer.h"
+#include "io/exporters.h"
+#include "io/glb/glb_write.h"
+#include "simrun/simrun_run.h"
+
+namespace ispace {
+
+namespace {
+
+/// Draws the map of --to ros, coarser for large rooms, since clients get it in one message.
+RosGrid mapOf(const Scene& scene) {
+    constexpr double kFinest = 0.05, kMostCells = 4e6;
+    const Box2 box = bounds(scene.environment.indoor());
+    double resolution = kFinest;
+    while (box.width() * box.depth() > kMostCells * resolution * resolution) resolution *= 2;
+    const Grid grid = rosMapCells(box, resolution);
+    const std::string picture = writeRosMap(scene, kScanHeight, resolution, "map.pgm").beside;
+    constexpr char kFree = static_cast<char>(254), kOccupied = 0;
+    RosGrid map;
+    map.origin = grid.limits.low;
+    map.resolution = resolution;
+    map.columns = static_cast<std::size_t>(grid.columns);
+    map.cells.reserve(grid.size());
+    // The pixels are at the end, the lowest row last.
+    for (std::size_t row = 0; row < static_cast<std::size_t>(grid.rows); ++row) {
+        const char* const pixels = picture.data() + picture.size() - (row + 1) * map.columns;
+        for (std::size_t i = 0; i < map.columns; ++i)
+            map.cells.push_back(pixels[i] == kFree ? 0 : pixels[i] == kOccupied ? 100 : -1);
+    }
+    return map;
+}
+
+/// Writes the room without sensors, robots and people, which have topics.
+std::string meshOf(const Scene& scene) {
+    Scene room = scene;
+    room.sensors.clear();
+    room.robots.clear();
+    room.people.clear();
+    room.placed.clear();
+    return writeGlb(room, Document());
+}
+
+}  // namespace
+
+RosScenery rosScenery() { return {.map = mapOf, .room = meshOf}; }
+
+ServedAddresses servePorts(Server& server, const SimrunOptions& options, const SceneInput& input) {
+    ServedAddresses out;
+    const std::string title = titleOf(options, input);
+    if (options.web) out.web = server.serveWeb(*options.web, title);
+    const auto serve = [&](RosLanguage language, const std::optional<Endpoint>& endpoint) {
+        return endpoint ? server.serveRos(language, *endpoint, "simrun " + title, rosScenery())
+                        : std::string();
+    };
+    out.foxglove = serve(RosLanguage::Foxglove, options.foxglove);
+    out.rosbridge = serve(RosLanguage::Rosbridge, options.rosbridge);
+    out.devices = serveDevices(server, options.devices);
+    return out;
+}
+
+void announce(const Server& server, const ServedAddresses& addresses) {
+    const DeviceAddresses& devices = addresses.devices;
+    JsonWriter json;
+    json.beginObject().key("schema").value("ispace-simrun/1");
+    json.key("listen").value(server.address());
+    for (const WireProtocol* const protocol : wireProtocols()) {
+        const auto found = devices.find(protocol);
+        const bool is_used = found != devices.end();
+        // The first two are always listed; later ones would surprise old readers.
+        if (!is_used && protocol->name != "p2os" && protocol->name != "scip") continue;
+        json.key(std::string(protocol->name)).beginObject();
+        if (is_used)
+            for (const auto& [id, address] : found->second) json.key(id).value(address);
+        json.endObject();
+    }
+    for (const auto& [name, address] : {std::pair("web", &addresses.web),
+                                        {"foxglove", &addresses.foxglove},
+                                        {"rosbridge", &addresses.rosbridge}})
+        if (!address->empty()) json.key(name).value(*address);
+    json.endObject();
+    writeAll("-", json.take() + '\n');
+    // Clients stay connected when the reader of the warnings has gone.
+    std::signal(SIGPIPE, SIG_IGN);
+}
+
+}  // namespace ispace

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "cli/operands.h"
+#include "server/server.h"
+#include "simrun/simrun_options.h"
+
+namespace ispace {
+
+/// Addresses of the ports besides that of the protocol; "" without.
+struct ServedAddresses {
+    std::string web, foxglove, rosbridge;
+    DeviceAddresses devices;
+};
+/// Opens the ports that options ask for. \throws std::system_error, UsageError naming the option
+ServedAddresses servePorts(Server& server, const SimrunOptions& options, const SceneInput& input);
+
+/// Writes the first line of output: clients can connect now.
+void announce(const Server& server, const ServedAddresses& addresses);
+
+/// Returns writers of the room's map and mesh for clients of topics.
+RosScenery rosScenery();
+
+}  // namespace ispace
