@@ -204,7 +204,8 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
     line.choice("--unknown", import.unknown, {"unknown", "free"},
                 "meaning of shade 205 of a map, which robots write for unknown (default unknown)",
                 Enters::History);
-    line.choice("--units", import.units, kUnits, "unit of a drawing, a mesh or a cloud", Enters::History);
+    line.choice("--units", import.units, kUnits, "unit of a drawing, a mesh or a cloud",
+                Enters::History);
     line.meters("--width-is", import.width_is, 0.01, 100'000,
                 "width of a drawing, from its leftmost to its rightmost wall, instead of its unit",
                 Enters::History);

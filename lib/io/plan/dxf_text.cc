@@ -21,7 +21,7 @@ namespace {
 std::string toUtf8(std::string_view bytes, const std::string& charset) {
     const auto close = [](iconv_t open) { ::iconv_close(open); };
     const iconv_t opened = ::iconv_open("UTF-8", charset.c_str());
-    if (opened == reinterpret_cast<iconv_t>(-1)) return std::string(bytes);
+    if (reinterpret_cast<std::intptr_t>(opened) == -1) return std::string(bytes);
     const std::unique_ptr<void, decltype(close)> converter(opened, close);
     constexpr std::size_t kMostBytes = 4;  // of a character of UTF-8
     std::string in(bytes), out(kMostBytes * bytes.size(), '\0');
