@@ -122,8 +122,8 @@ ISPACE_SIMD_CLONES void bound(const FlatCone& rays, const FlatBox& box, RayBound
         float enter = near_x > near_y ? near_x : near_y;
         const float leave = far_x < far_y ? far_x : far_y;
         enter = enter > 0 ? enter : 0;
-        const float met = enter <= leave ? enter : kNoReturn;
-        bounds[i] = met < bounds[i] ? met : bounds[i];
+        const float nearer = enter < bounds[i] ? enter : bounds[i];
+        bounds[i] = enter <= leave ? nearer : bounds[i];
     }
 }
 
