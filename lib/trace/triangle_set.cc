@@ -226,7 +226,11 @@ void TriangleSet::addTouched(std::size_t surface, Point3 p, double distance,
                              std::vector<Vec3>& normals) const {
     const RoundBody* const round = roundOf(surface);
     if (round == nullptr) {
-        if (this->distance(surface, p) <= distance) normals.push_back(planes_[surface].normal);
+        const Plane& plane = planes_[surface];
+        // Most surfaces of a search are rejected by their planes alone.
+        if (std::fabs(plane.heightOver(p)) <= 2 * distance &&
+            this->distance(surface, p) <= distance)
+            normals.push_back(plane.normal);
         return;
     }
     const double height = round->curve.heightOf(p.onFloor());
