@@ -52,6 +52,35 @@ TEST(Densities, AreasOfClassesAreThoseOfShorterRanges) {
     }
 }
 
+/// Furniture and walls away from the cameras change no share.
+TEST(Densities, NeedTheFloorNearCamerasOnly) {
+    std::string lines = "ispace size=60,40,3\nzone id=z path=-20,-12;4,-12;4,-8;-20,-8\n";
+    for (int i = 0; i < 60; ++i) {
+        const double x = 5 * (i % 10) - 24, y = 6 * (i / 10) - 16;
+        const std::string at = std::to_string(x) + "," + std::to_string(y);
+        lines += "table at=" + at + " size=1,1\nwall from=" + at + " to=" + std::to_string(x + 2) +
+                 "," + std::to_string(y) + " height=1\n";
+    }
+    for (const char* at : {"-20,-11", "2,3.5", "23,14.5"})
+        lines += std::string("camera tilt=-40 fov=80 range=6 at=") + at + ",2.5\n";
+    const Coverage whole = measured(lines), near = measured(lines, {.whole_densities = false});
+    ASSERT_FALSE(near.density_overlays.empty());
+    EXPECT_LT(2 * near.density_overlays[0].edges().size(),
+              whole.density_overlays[0].edges().size());
+    EXPECT_EQ(near.report.densities.seen.exact, whole.report.densities.seen.exact);
+    EXPECT_GT(*near.report.densities.seen.exact, 0.01);
+    for (std::size_t i = 0; i < kClasses; ++i) {
+        EXPECT_EQ(near.report.densities.indoor[i].exact, whole.report.densities.indoor[i].exact);
+        EXPECT_EQ(near.report.densities.free[i].exact, whole.report.densities.free[i].exact);
+        EXPECT_EQ(near.report.zones[0].densities[i].exact,
+                  whole.report.zones[0].densities[i].exact);
+    }
+    // Only the whole floor has its largest gap.
+    const Requirement observed = parseRequirement("observe:99%");
+    EXPECT_NE(checkRequirement(observed, whole).text.find("largest"), std::string::npos);
+    EXPECT_EQ(checkRequirement(observed, near).text.find("largest"), std::string::npos);
+}
+
 TEST(Densities, MeanIsThatOfPlaces) {
     for (const SensorMetrics& sensor : measured(kOfficeCameras).report.sensors) {
         const PictureMetrics& picture = *sensor.picture;
