@@ -24,6 +24,7 @@ RosGrid mapOf(const Scene& scene) {
     const Grid grid = rosMapCells(box, resolution);
     const std::string picture = writeRosMap(scene, kScanHeight, resolution, "map.pgm").beside;
     constexpr char kFree = static_cast<char>(254), kOccupied = 0;
+    constexpr std::int8_t kFreeCell = 0, kOccupiedCell = 100, kUnknownCell = -1;
     RosGrid map;
     map.origin = grid.limits.low;
     map.resolution = resolution;
@@ -33,7 +34,9 @@ RosGrid mapOf(const Scene& scene) {
     for (std::size_t row = 0; row < static_cast<std::size_t>(grid.rows); ++row) {
         const char* const pixels = picture.data() + picture.size() - (row + 1) * map.columns;
         for (std::size_t i = 0; i < map.columns; ++i)
-            map.cells.push_back(pixels[i] == kFree ? 0 : pixels[i] == kOccupied ? 100 : -1);
+            map.cells.push_back(pixels[i] == kFree       ? kFreeCell
+                                : pixels[i] == kOccupied ? kOccupiedCell
+                                                         : kUnknownCell);
     }
     return map;
 }

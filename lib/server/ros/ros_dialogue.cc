@@ -92,7 +92,7 @@ void RosDialogue::enqueue(std::uint32_t key, Subscription& subscription,
     ++subscription.queued;
 }
 
-void RosDialogue::drop(std::deque<Queued>::iterator queued) {
+void RosDialogue::drop(const std::deque<Queued>::const_iterator& queued) {
     --subscriptions_.at(queued->key).queued;
     queue_bytes_ -= queued->message->cdr()->size();
     queue_.erase(queued);

@@ -110,7 +110,7 @@ class RosDialogue : public WebDialogue {
     void collect();
     void enqueue(std::uint32_t key, Subscription& subscription,
                  const std::shared_ptr<const RosMessage>& message);
-    void drop(std::deque<Queued>::iterator queued);
+    void drop(const std::deque<Queued>::const_iterator& queued);
     void answerRequests();
     void takeAnswer();
     void drive(const std::string& robot, const RosTwist& twist);

@@ -24,25 +24,13 @@ using Kind = RosField::Kind;
 /// Calls visit(value of a number's type) for a kind of numbers or bools.
 template <typename Visit>
 void withNumber(Kind kind, Visit visit) {
-    switch (kind) {
-        case Kind::Bool:
-            return visit(bool());
-        case Kind::Int8:
-            return visit(std::int8_t());
-        case Kind::Uint8:
-            return visit(std::uint8_t());
-        case Kind::Int32:
-            return visit(std::int32_t());
-        case Kind::Uint32:
-            return visit(std::uint32_t());
-        case Kind::Float32:
-            return visit(float());
-        case Kind::Float64:
-            return visit(double());
-        case Kind::Text:
-        case Kind::Struct:
-            return;
-    }
+    if (kind == Kind::Bool) visit(bool());
+    if (kind == Kind::Int8) visit(std::int8_t());
+    if (kind == Kind::Uint8) visit(std::uint8_t());
+    if (kind == Kind::Int32) visit(std::int32_t());
+    if (kind == Kind::Uint32) visit(std::uint32_t());
+    if (kind == Kind::Float32) visit(float());
+    if (kind == Kind::Float64) visit(double());
 }
 
 /// Reads one number; a bool is a byte.
@@ -146,7 +134,7 @@ class CborOutput {
             out_ += sizeof(Number) == sizeof(float) ? kFloat : kDouble;
             appendBig(out_, value);
         } else {
-            const std::int64_t wide = value;
+            const std::int64_t wide = std::int64_t{0} + value;
             const bool is_negative = wide < 0;
             appendCborHead(out_, is_negative ? CborHead::Negative : CborHead::Unsigned,
                            static_cast<std::uint64_t>(is_negative ? -1 - wide : wide));
@@ -270,7 +258,9 @@ class FromJson {
         if (value.is_discarded()) {
             const double fallback = parseDouble(field.text_default).value_or(0);
             out_.put(static_cast<Number>(fallback));
-        } else if constexpr (std::is_same_v<Number, bool>) {
+            return;
+        }
+        if constexpr (std::is_same_v<Number, bool>) {
             if (!value.is_boolean()) refuse(field.name, "true or false");
             out_.put(value.get<bool>());
         } else if constexpr (std::is_floating_point_v<Number>) {

@@ -36,6 +36,6 @@ void appendCborHead(std::string& out, CborHead head, std::uint64_t value);
 
 /// Converts JSON to a message: absent fields have their defaults, null numbers are NaN, and times
 /// may have the fields of ROS 1. \throws FormatError naming the field that does not fit
-std::string rosMessage(RosType type, const nlohmann::json& json);
+std::string rosMessage(RosType type, const nlohmann::json& value);
 
 }  // namespace ispace
