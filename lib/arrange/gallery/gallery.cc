@@ -122,13 +122,15 @@ void GallerySolver::raiseBound() {
     }
     ++cover_.rounds;
     std::vector<gallery::WindowVertex> candidates;
-    constexpr std::size_t kMaxPoints = 8;  // of a set
+    constexpr std::size_t kMaxPoints = 8, kMaxCandidates = 20'000;  // of a set; of a round
+    const std::size_t most =
+        std::clamp<std::size_t>(kMaxCandidates / (sets.size() + 1), 1, kMaxPoints);
     for (const WitnessSet& set : sets) {
         Vec2 sum;
         for (const auto& vertex : set.points) sum = sum + (vertex.at - Point2());
         const Point2 middle = Point2() + (1.0 / static_cast<double>(set.points.size())) * sum;
         candidates.push_back({middle, 0});
-        const std::size_t count = std::min(set.points.size(), kMaxPoints);
+        const std::size_t count = std::min(set.points.size(), most);
         candidates.insert(candidates.end(), set.points.begin(),
                           set.points.begin() + static_cast<std::ptrdiff_t>(count));
     }
@@ -148,19 +150,20 @@ void GallerySolver::take(const GuardSearch::Found& found) {
 bool GallerySolver::lowerCover() {
     std::vector<std::uint32_t> before;
     while (cover_.guards.empty() || !progress_.stopped()) {
-        GuardSearch::Found found = search_.coverRows(progress_);
+        GuardSearch::Found found = search_.coverRows(cover_.bound, progress_);
         for (const Region& region : found.missed) {
             const Point2 p = interiorPoint(region);
             search_.addRow(p);
             fresh_.push_back(p);
             for (const Polygon& curve : curvesOf(region))
-                for (const Point2 q : curve) fresh_.push_back(q);
+                fresh_.insert(fresh_.end(), curve.begin(), curve.end());
         }
         take(found);
         if (isDone()) return true;
-        const bool is_small = found.bound <= cover_.bound;
         const bool is_stuck = found.missed.empty() || found.guards == before;
-        if (is_stuck || !is_small || progress_.stopped()) {
+        const bool is_worse = !cover_.guards.empty() && found.guards.size() >= cover_.guards.size();
+        if (is_worse) return false;
+        if (is_stuck || progress_.stopped()) {
             search_.complete(found);
             take(found);
             return isDone();

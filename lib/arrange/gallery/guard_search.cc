@@ -15,7 +15,8 @@ namespace ispace::gallery {
 
 namespace {
 
-constexpr std::uint64_t kSearchSteps = 2000;  // of local search, for each cover
+// Of local search, for each cover.
+constexpr std::uint64_t kSearchSteps = 2000, kLongSearchSteps = 50'000;
 
 /// Regions thinner than this, as area over half of the outline, are slivers: rounding alone leaves
 /// them.
@@ -64,17 +65,20 @@ void GuardSearch::add(Row row) {
     rows_.push_back(std::move(row));
 }
 
-GuardSearch::Found GuardSearch::coverRows(Progress& progress) const {
+GuardSearch::Found GuardSearch::coverRows(std::size_t enough, Progress& progress) const {
     SetCover cover;
     cover.rows = rows_.size();
     cover.columns = seen_;
     cover.costs.assign(seen_.size(), 1);
-    const SetCoverResult result =
-        minimumSetCover(cover, {.steps = kSearchSteps, .tries = 1}, progress);
+    // A cover that is not proven the smallest costs a round at most; proofs would take far longer.
+    SetCoverOptions options{.steps = kSearchSteps, .tries = 1, .proves = false};
+    SetCoverResult result = minimumSetCover(cover, options, progress);
+    options = {.steps = kLongSearchSteps, .tries = 2, .proves = false};
+    if (result.cost > std::max<std::uint64_t>(enough, result.bound) && !progress.stopped())
+        result = minimumSetCover(cover, options, progress);
     Found found;
     if (!result.is_coverable) return found;
     found.guards = result.chosen;
-    found.bound = result.bound;
     measure(found);
     return found;
 }
@@ -98,7 +102,32 @@ bool GuardSearch::isCovered(const Found& found) const {
     return !found.guards.empty() && found.missed_area <= kMissedShare * floor_.area();
 }
 
+void GuardSearch::addGreedily(const std::vector<Point2>& points, Found& found) const {
+    std::vector<std::vector<std::uint32_t>> seen(candidates_.size()), seen_by(points.size());
+    tbb::parallel_for(std::size_t{0}, candidates_.size(), [&](std::size_t i) {
+        for (std::uint32_t p = 0; p < points.size(); ++p)
+            if (candidates_[i].view.mayHold(points[p], 0)) seen[i].push_back(p);
+    });
+    std::vector<std::size_t> counts(candidates_.size());
+    for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
+        counts[i] = seen[i].size();
+        for (const std::uint32_t p : seen[i]) seen_by[p].push_back(i);
+    }
+    std::vector<char> is_seen(points.size());
+    for (;;) {
+        const auto best = std::max_element(counts.begin(), counts.end());
+        if (best == counts.end() || *best == 0) return;
+        const auto guard = static_cast<std::uint32_t>(best - counts.begin());
+        found.guards.push_back(guard);
+        for (const std::uint32_t p : seen[guard]) {
+            if (std::exchange(is_seen[p], 1) != 0) continue;
+            for (const std::uint32_t other : seen_by[p]) --counts[other];
+        }
+    }
+}
+
 void GuardSearch::complete(Found& found) {
+    if (found.guards.empty()) measure(found);
     double before = 2 * floor_.area();
     while (!isCovered(found) && !found.missed.empty() && found.missed_area < before) {
         before = found.missed_area;
@@ -108,22 +137,7 @@ void GuardSearch::complete(Found& found) {
         here.reserve(open.size());
         for (const Point2 p : open) here.push_back({p, 0});
         addCandidates(here);
-        while (!open.empty()) {
-            std::size_t best = 0, most = 0;
-            for (std::size_t i = 0; i < candidates_.size(); ++i) {
-                const auto count =
-                    static_cast<std::size_t>(std::count_if(open.begin(), open.end(), [&](Point2 p) {
-                        return candidates_[i].view.mayHold(p, 0);
-                    }));
-                if (count > most) {
-                    most = count;
-                    best = i;
-                }
-            }
-            if (most == 0) break;
-            found.guards.push_back(static_cast<std::uint32_t>(best));
-            std::erase_if(open, [&](Point2 p) { return candidates_[best].view.mayHold(p, 0); });
-        }
+        addGreedily(open, found);
         measure(found);
     }
     std::sort(found.guards.begin(), found.guards.end());

@@ -36,12 +36,12 @@ class GuardSearch {
     /// A cover of the floor, or of all rows alone.
     struct Found {
         std::vector<std::uint32_t> guards;  ///< candidates; empty: some row is seen by none
-        std::size_t bound = 0;              ///< no fewer candidates see all rows
         std::vector<Region> missed;         ///< regions of the floor, larger than slivers
         double missed_area = 0;             ///< with slivers
     };
-    /// Finds the fewest candidates that see all rows, and the floor that these leave unseen.
-    [[nodiscard]] Found coverRows(Progress& progress) const;
+    /// Finds few candidates that see all rows, and the floor that these leave unseen.
+    /// \param enough guards: fewer are not searched for
+    [[nodiscard]] Found coverRows(std::size_t enough, Progress& progress) const;
     /// Adds guards until the floor is covered: greedily, candidates that see most points of missed
     /// regions, and these points themselves.
     void complete(Found& found);
@@ -60,6 +60,8 @@ class GuardSearch {
     };
     void add(Row row);
     static bool sees(const GuardCandidate& candidate, const Row& row);
+    /// Adds candidates that see these points, those that see most first.
+    void addGreedily(const std::vector<Point2>& points, Found& found) const;
     void measure(Found& found) const;
 
     const Floor& floor_;
