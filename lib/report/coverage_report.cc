@@ -160,6 +160,7 @@ std::string coverageJson(const CoverageReport& report, const ReportParts& parts)
         json.endObject();
     }
     if (report.comparison) write(json, *report.comparison);
+    if (parts.rules != nullptr) writeCameraRules(json, *parts.rules);
     if (parts.robustness != nullptr) writeRobustness(json, *parts.robustness);
     if (parts.run != nullptr) writeRun(json, *parts.run);
     if (parts.advice != nullptr) writeSuggestions(json, *parts.advice);

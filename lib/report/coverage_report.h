@@ -6,6 +6,7 @@
 
 #include "coverage/coverage.h"
 #include "coverage/run_coverage.h"
+#include "report/camera_rules_report.h"
 #include "report/robustness_report.h"
 #include "report/suggestion_report.h"
 
@@ -16,6 +17,7 @@ struct ReportParts {
     const RunCoverage* run = nullptr;
     const Advice* advice = nullptr;
     const Robustness* robustness = nullptr;
+    const CameraRules* rules = nullptr;
 };
 
 /// Writes one JSON object and a newline, schema ispace-coverage/1, with a member for each part.

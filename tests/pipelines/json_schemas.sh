@@ -29,6 +29,8 @@ for layout in ultrasound ranger; do
     coverage "$data/square.env" "$data/$layout.3dm" --any-environment -q --report "$layout.json" >/dev/null
 done
 coverage "$data/zones.env" "$data/domes.3dm" --density 500 --parallax 45 --json >cameras.json
+coverage "$data/zones.env" "$data/domes.3dm" --facing '*,45deg,0=0%' --facing '*,90deg,90' --privacy '*,1500' --json \
+    >faces.json || [ $? -eq 3 ]
 coverage "$data/square.env" "$data/half.3dm" --compare "$data/whole.3dm" --json >compared.json
 coverage "$data/square.env" "$data/half.3dm" --perturb 1cm,1deg --failures 1 --crowd 1 --require 1% --cell 0.5 --json \
     >robust.json

@@ -32,7 +32,7 @@ constexpr const char* kMapOptions[] = {"--to",   "--width", "--color",
 struct Words {
     std::string to, cells_by, color, fans;
     CellWords cells;
-    std::vector<std::string> requirements;
+    std::vector<std::string> requirements, facing, privacy;
 };
 
 /// Parses `30` or `30,3`.
@@ -132,8 +132,9 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    std::vector<const char*> single = {"--report",  "--suggest",  "--compare", "--run",
-                                       "--perturb", "--failures", "--crowd"};
+    std::vector<const char*> single = {"--report", "--suggest", "--compare",
+                                       "--run",    "--perturb", "--failures",
+                                       "--crowd",  "--facing",  "--privacy"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
     static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
@@ -187,6 +188,14 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                "exit with 3 if less is covered, by exact metrics where they are known: 95% of the "
                "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class identify:95%, "
                "identify:NAME=95%",
+               Enters::History);
+    line.texts("--facing", "ZONE,DEG,HEADING[=SHARE]", words.facing,
+               "report the share of a zone where cameras see faces: within this angle of the "
+               "heading in which people walk there; exit with 3 if less than SHARE",
+               Enters::History);
+    line.texts("--privacy", "ZONE[,D]", words.privacy,
+               "exit with 3 if a camera sees some of these zones (globs allowed), or sees it with "
+               "at least D pixels a metre, a number or a density class",
                Enters::History);
     line.file("--junit", "FILE", o.junit,
               "write the results of the requirements there, as XML that CI servers read",
@@ -252,10 +261,13 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     o.requirements.reserve(words.requirements.size());
     for (const std::string& text : words.requirements)
         o.requirements.push_back(parseRequirement(text));
+    for (const std::string& text : words.facing) o.facing.push_back(parseFacing(text));
+    for (const std::string& text : words.privacy) o.privacy.push_back(parsePrivacy(text));
     o.measure.whole_densities =
+        !o.facing.empty() || !o.privacy.empty() ||
         std::any_of(o.requirements.begin(), o.requirements.end(),
                     [](const Requirement& requirement) { return requirement.density; });
-    if (line.given("--junit") && o.requirements.empty())
+    if (line.given("--junit") && o.requirements.empty() && o.privacy.empty())
         throw UsageError("--junit writes what became of requirements: give --require");
     // The reports of a list may go to a file.
     if (isStdout(o.junit) && (o.batch.list.empty() || isStdout(o.common.output)))

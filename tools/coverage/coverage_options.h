@@ -7,6 +7,7 @@
 
 #include "cli/batch.h"
 #include "cli/common_options.h"
+#include "coverage/camera_rules.h"
 #include "coverage/requirement.h"
 #include "coverage/robustness.h"
 #include "report/coverage_formats.h"
@@ -37,6 +38,8 @@ struct CoverageToolOptions {
     std::optional<MountingTolerance> perturb;  ///< of mounting
     int failures = 0;                          ///< number of sensors that fail; 0: not told
     std::optional<CrowdChoice> crowd;
+    std::vector<FacingRule> facing;
+    std::vector<PrivacyRule> privacy;
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of tried poses of a search, for the map; "" without
     std::string run;    ///< folder of a record of robots and people; "" without

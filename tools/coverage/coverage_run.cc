@@ -137,6 +137,24 @@ std::optional<Robustness> robustnessOf(const CoverageToolOptions& options, const
     return robustness;
 }
 
+std::optional<CameraRules> cameraRulesOf(const CoverageToolOptions& options, const Scene& scene,
+                                         const Coverage& coverage) {
+    if (options.facing.empty() && options.privacy.empty()) return std::nullopt;
+    return CameraRules{measureFacing(scene, coverage, options.facing),
+                       measurePrivacy(scene, options.measure.plane, options.privacy)};
+}
+
+std::vector<JunitCase> judge(const CameraRules& rules) {
+    std::vector<JunitCase> verdicts;
+    for (const JudgedRule& rule : judgedRules(rules))
+        if (rule.is_required)
+            verdicts.push_back(
+                {.name = rule.rule,
+                 .outcome = rule.is_met ? JunitCase::Outcome::Met : JunitCase::Outcome::Unmet,
+                 .message = rule.rule + ": " + rule.finding});
+    return verdicts;
+}
+
 void writeProduct(const CoverageToolOptions& options, const SceneInput& input,
                   const Measured& measured) {
     const std::string& output = options.common.output;

@@ -14,6 +14,7 @@
 #include "coverage/coverage_options.h"
 #include "coverage/requirement.h"
 #include "coverage/run_coverage.h"
+#include "report/camera_rules_report.h"
 #include "report/robustness_report.h"
 #include "report/suggestion_report.h"
 
@@ -40,6 +41,14 @@ std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInp
 /// of the scene \throws UsageError as worstFailures() UnmetError as CrowdFloor
 std::optional<Robustness> robustnessOf(const CoverageToolOptions& options, const Scene& scene,
                                        const Coverage& coverage);
+
+/// Computes the results of --facing and --privacy; nullopt without both. \throws UsageError for
+/// unknown zones
+std::optional<CameraRules> cameraRulesOf(const CoverageToolOptions& options, const Scene& scene,
+                                         const Coverage& coverage);
+
+/// Returns a verdict for each rule that requires something.
+std::vector<JunitCase> judge(const CameraRules& rules);
 
 /// Writes the map to -o, with its accompanying file. \pre there is a format
 void writeProduct(const CoverageToolOptions& options, const SceneInput& input,

@@ -47,8 +47,10 @@ SceneInput readInput(const CoverageToolOptions& options) {
 
 /// Reports the requirements that are met, and writes the verdicts on request. \throws UnmetError
 void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
-                   const Coverage& coverage, JunitFile& junit) {
-    const std::vector<JunitCase> verdicts = judge(options.requirements, coverage);
+                   const Coverage& coverage, const CameraRules* rules, JunitFile& junit) {
+    std::vector<JunitCase> verdicts = judge(options.requirements, coverage);
+    if (rules != nullptr)
+        for (JunitCase& verdict : judge(*rules)) verdicts.push_back(std::move(verdict));
     for (const JunitCase& verdict : verdicts)
         if (verdict.outcome == JunitCase::Outcome::Met)
             talk(options.common, "coverage", verdict.message);
@@ -59,7 +61,7 @@ void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
 std::string reportText(const CoverageToolOptions& options, const CoverageReport& report,
                        const ReportParts& parts) {
     if (options.json) return coverageJson(report, parts);
-    return coverageText(report) +
+    return coverageText(report) + (parts.rules == nullptr ? "" : cameraRulesText(*parts.rules)) +
            (parts.robustness == nullptr ? "" : robustnessText(*parts.robustness)) +
            (parts.run == nullptr ? "" : "\n" + runText(*parts.run)) +
            (parts.advice == nullptr ? "" : suggestionsText(*parts.advice));
@@ -110,15 +112,16 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     const std::optional<Advice> advice = suggest(options, input, measured.coverage);
     const std::optional<Robustness> robustness =
         robustnessOf(options, input.scene, measured.coverage);
+    const std::optional<CameraRules> rules = cameraRulesOf(options, input.scene, measured.coverage);
     const ReportParts parts{options.map.run, advice ? &*advice : nullptr,
-                            robustness ? &*robustness : nullptr};
+                            robustness ? &*robustness : nullptr, rules ? &*rules : nullptr};
     if (!options.report.empty())
         writeAll(options.report, reportFile(options, input, measured.coverage, parts));
     writeAll("-", reportText(options, report, parts));
     talk(options.common, "coverage",
          std::to_string(report.sensors.size()) + " sensors measured on " +
              std::to_string(measured.coverage.target.grid.size()) + " cells");
-    checkRequired(options, input, measured.coverage, junit);
+    checkRequired(options, input, measured.coverage, parts.rules, junit);
 }
 
 void coverage(const CoverageToolOptions& options) {

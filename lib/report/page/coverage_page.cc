@@ -221,6 +221,25 @@ PageTable tableOf(std::string caption, std::string sides, std::vector<TextRow> r
     return table;
 }
 
+void addCameraRules(const CoveragePageInput& input, ReportPage& page) {
+    if (input.parts.rules == nullptr) return;
+    PageTable table{"directions of faces, and zones that cameras must not see",
+                    "lll",
+                    {"rule", "result", "measured"},
+                    {}};
+    for (const JudgedRule& rule : judgedRules(*input.parts.rules)) {
+        table.rows.push_back({rule.rule,
+                              !rule.is_required ? "-"
+                              : rule.is_met     ? "met"
+                                                : "not met",
+                              rule.finding});
+        table.tones.push_back(!rule.is_required ? Tone::Plain
+                              : rule.is_met     ? Tone::Good
+                                                : Tone::Bad);
+    }
+    page.sections.push_back({"rules", "Faces and privacy", {std::move(table)}});
+}
+
 void addRobustness(const CoveragePageInput& input, ReportPage& page) {
     if (input.parts.robustness == nullptr) return;
     const Robustness& robustness = *input.parts.robustness;
@@ -307,6 +326,7 @@ ReportPage coveragePage(const CoveragePageInput& input) {
     page.sections.push_back(mapOf(input));
     for (const PageSection& section : input.more) page.sections.push_back(section);
     addRequirements(input, page);
+    addCameraRules(input, page);
     addRobustness(input, page);
     addAdvice(input, page);
     addInstallation(input, page);

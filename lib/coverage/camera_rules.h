@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faces that cameras see from ahead, and zones that they must not see.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coverage/coverage.h"
+#include "scene/scene.h"
+
+namespace ispace {
+
+/// A face at a point of the zone counts as seen by a camera only if the level direction from the
+/// point to the camera is within an angle of the heading in which people walk there.
+struct FacingRule {
+    std::string zone;
+    Angle within, heading;
+    std::optional<double> required = {};  ///< share of the zone
+};
+
+/// Cameras must not see these zones, or only with fewer pixels a metre.
+struct PrivacyRule {
+    std::string zones;   ///< a glob of ids
+    double density = 0;  ///< pixels a metre that are too many; 0: any sight is
+};
+
+/// Parses `entrance,45deg,180` and `zone:entrance,45deg,180=90%`. \throws UsageError
+FacingRule parseFacing(std::string_view text);
+/// Parses `zone:desk*`, `desk*,recognise` and `desk*,125`. \throws UsageError
+PrivacyRule parsePrivacy(std::string_view text);
+
+struct FacingResult {
+    FacingRule rule;
+    double area = 0;                   ///< of the indoor part of the zone, m2
+    std::optional<double> share = {};  ///< of that, seen from ahead; empty if a region is unknown
+};
+
+struct PrivacyResult {
+    std::string zone;
+    double density = 0;
+    double area = 0;                        ///< of the indoor part of the zone, m2
+    std::optional<double> seen = {};        ///< m2; empty if a region is unknown
+    std::vector<std::string> cameras = {};  ///< that see some of it
+};
+
+/// Intersects the view of each camera, as `coverage` has it, with the wedge of points that face it,
+/// and the union with the zone; exact. \throws UsageError for an unknown zone
+std::vector<FacingResult> measureFacing(const Scene& scene, const Coverage& coverage,
+                                        std::span<const FacingRule> rules);
+
+/// Measures the part of each zone that cameras see with so many pixels a metre, in their whole
+/// fields of view on a plane, whatever density is asked for elsewhere; exact. One result for each
+/// zone of each rule. \throws UsageError for a glob that matches no zone
+std::vector<PrivacyResult> measurePrivacy(const Scene& scene, double plane,
+                                          std::span<const PrivacyRule> rules);
+
+/// Returns true if the required share is seen, within rounding; true without one.
+bool isMet(const FacingResult& result);
+/// Returns true unless more than kMinPiece is seen, or the area seen is unknown.
+bool isMet(const PrivacyResult& result);
+
+}  // namespace ispace

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coverage/camera_rules.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "scene/sensor/camera.h"
+#include "support/test_scenes.h"
+
+namespace ispace {
+namespace {
+
+const std::string kTwoZones =
+    "ispace size=10,8,3\nzone id=door path=-1,-1;1,-1;1,1;-1,1\nzone id=desk1 "
+    "path=3,-4;5,-4;5,-2;3,-2\n"
+    "zone id=desk2 path=-5,-4;-4,-4;-4,-3;-5,-3\n";
+/// Looks down and sees all of the room.
+std::string domeAt(const std::string& id, const std::string& at) {
+    return "camera id=" + id + " at=" + at +
+           ",2.9 tilt=-90 projection=omni fov=179 pixels=2000,2000 range=30\n";
+}
+
+Coverage measuredFor(const Scene& scene, double density = 0) {
+    Worlds worlds(scene.environment);
+    CoverageOptions options;
+    options.cells = CellSize{0.25};
+    options.density = density;
+    return measureCoverage(scene, worlds, options);
+}
+
+double facing(const std::string& lines, const char* rule) {
+    const Scene scene = sceneOf(lines);
+    const std::vector<FacingRule> rules = {parseFacing(rule)};
+    const auto results = measureFacing(scene, measuredFor(scene), rules);
+    EXPECT_EQ(results.size(), 1U);
+    EXPECT_NEAR(results.front().area, 4, 1e-6);
+    return results.front().share.value();
+}
+
+TEST(CameraRules, ParseFacingAndPrivacy) {
+    const FacingRule rule = parseFacing("zone:a,b,45deg,180=90%");
+    EXPECT_EQ(rule.zone, "a,b");
+    EXPECT_NEAR(rule.within.degrees(), 45, 1e-12);
+    EXPECT_NEAR(rule.heading.degrees(), 180, 1e-12);
+    EXPECT_EQ(rule.required, 0.9);
+    for (const char* text :
+         {"", "a", "a,45deg", ",45deg,0", "a,0deg,0", "a,181deg,0", "a,x,0", "a,45deg,0=x"})
+        EXPECT_ANY_THROW(parseFacing(text)) << text;
+    EXPECT_EQ(parsePrivacy("zone:desk*").zones, "desk*");
+    EXPECT_EQ(parsePrivacy("desk*").density, 0);
+    EXPECT_EQ(parsePrivacy("desk*,recognise").density, 125);
+    EXPECT_EQ(parsePrivacy("desk*,80").density, 80);
+    for (const char* text : {"", "zone:", "desk,often"})
+        EXPECT_THROW(parsePrivacy(text), UsageError) << text;
+}
+
+TEST(CameraRules, FacesAreSeenFromAhead) {
+    // People walk east; a camera far east sees all faces, one in the west none.
+    EXPECT_NEAR(facing(kTwoZones + domeAt("e", "4.9,0"), "door,45deg,0"), 1, 1e-6);
+    EXPECT_NEAR(facing(kTwoZones + domeAt("w", "-4.9,0"), "door,45deg,0"), 0, 1e-6);
+    EXPECT_NEAR(facing(kTwoZones + domeAt("w", "-4.9,0"), "door,45deg,180"), 1, 1e-6);
+    // Straight above the middle: a quarter of the square lies within 45 degrees to the west.
+    EXPECT_NEAR(facing(kTwoZones + domeAt("m", "0,0"), "door,45deg,0"), 0.25, 1e-6);
+    EXPECT_NEAR(facing(kTwoZones + domeAt("m", "0,0"), "door,90deg,90"), 0.5, 1e-6);
+    EXPECT_NEAR(facing(kTwoZones + domeAt("m", "0,0"), "door,135deg,0"), 0.75, 1e-6);
+    EXPECT_NEAR(facing(kTwoZones + domeAt("m", "0,0"), "door,180deg,17"), 1, 1e-6);
+    // Two cameras add up: the wedges of both sides of the middle.
+    EXPECT_NEAR(facing(kTwoZones + domeAt("m", "0,0") + domeAt("n", "0,0"), "door,45deg,0"), 0.25,
+                1e-6);
+    EXPECT_NEAR(facing(kTwoZones + domeAt("m", "0,0") + domeAt("e", "4.9,0"), "door,45deg,0"), 1,
+                1e-6);
+    EXPECT_EQ(facing(kTwoZones, "door,45deg,0"), 0);  // no camera
+}
+
+TEST(CameraRules, FacingSharesMatchPoints) {
+    const std::string lines = kTwoZones + "pillar at=0.4,0.5 size=0.3,0.3\n" + domeAt("a", "2,3") +
+                              domeAt("b", "-1.2,0.3");
+    const Scene scene = sceneOf(lines);
+    const Coverage coverage = measuredFor(scene);
+    const std::vector<FacingRule> rules = {parseFacing("door,50deg,70")};
+    const double share = measureFacing(scene, coverage, rules).front().share.value();
+    // Without the pillar's shadows it would be larger; count points of the views.
+    int inside = 0, all = 0;
+    Worlds worlds(scene.environment);
+    CoverageOptions options;
+    options.cells = CellSize{0.02};
+    const Coverage fine = measureCoverage(scene, worlds, options);
+    const Grid& grid = fine.target.grid;
+    for (std::size_t cell = 0; cell < grid.size(); ++cell) {
+        const Point2 p = grid.center(cell);
+        if (std::abs(p.x) > 1 || std::abs(p.y) > 1) continue;
+        ++all;
+        bool is_faced = false;
+        for (const SensorView& view : fine.sensors) {
+            const Vec2 way = view.pose.position.onFloor() - p;
+            const double off =
+                wrapped(Angle::radians(std::atan2(way.y, way.x)) - Angle::degrees(70)).degrees();
+            is_faced |= view.cells.test(cell) && std::abs(off) <= 50;
+        }
+        inside += is_faced ? 1 : 0;
+    }
+    EXPECT_NEAR(share, static_cast<double>(inside) / all, 0.01);
+    EXPECT_GT(share, 0.2);
+    EXPECT_LT(share, 0.9);
+}
+
+TEST(CameraRules, RequiredFacingIsJudged) {
+    const Scene scene = sceneOf(kTwoZones + domeAt("m", "0,0"));
+    const Coverage coverage = measuredFor(scene);
+    const std::vector<FacingRule> rules = {parseFacing("door,45deg,0=25%"),
+                                           parseFacing("door,45deg,0=26%")};
+    const auto results = measureFacing(scene, coverage, rules);
+    EXPECT_TRUE(isMet(results[0]));
+    EXPECT_FALSE(isMet(results[1]));
+    const std::vector<FacingRule> unknown = {parseFacing("dor,45deg,0")};
+    EXPECT_THROW(measureFacing(scene, coverage, unknown), UsageError);
+}
+
+TEST(CameraRules, PrivacyIsSightOfTheZone) {
+    const Scene scene = sceneOf(kTwoZones + domeAt("m", "0,0") +
+                                "laser id=l at=4,-3 fov=360\n"
+                                "camera id=away at=4.9,3.9,2.8 heading=180 tilt=-10 fov=40\n");
+    const std::vector<PrivacyRule> rules = {parsePrivacy("zone:desk*"),
+                                            parsePrivacy("desk*,100000")};
+    const auto results = measurePrivacy(scene, 0, rules);
+    ASSERT_EQ(results.size(), 4U);
+    EXPECT_EQ(results[0].zone, "desk1");
+    EXPECT_NEAR(results[0].area, 4, 1e-6);
+    EXPECT_NEAR(results[0].seen.value(), 4, 1e-6);
+    EXPECT_EQ(results[0].cameras, std::vector<std::string>{"m"});
+    EXPECT_FALSE(isMet(results[0]));
+    EXPECT_NEAR(results[1].area, 1, 1e-6);
+    // Nowhere has a picture so many pixels a metre.
+    EXPECT_EQ(results[2].seen.value(), 0);
+    EXPECT_TRUE(results[2].cameras.empty());
+    EXPECT_TRUE(isMet(results[2]));
+    const std::vector<PrivacyRule> unknown = {parsePrivacy("bed*")};
+    EXPECT_THROW(measurePrivacy(scene, 0, unknown), UsageError);
+}
+
+TEST(CameraRules, PrivacyOfALevelIsTheViewAtItsDensity) {
+    const std::string lines =
+        kTwoZones + "camera id=c at=0,3.9,2.8 heading=-60 tilt=-30 fov=80 pixels=1280,720\n";
+    const Scene scene = sceneOf(lines);
+    for (const double density : {25.0, 125.0, 200.0}) {
+        const std::vector<PrivacyRule> rules = {{"desk1", density}};
+        const auto result = measurePrivacy(scene, 0, rules).front();
+        const Coverage limited = measuredFor(scene, density);
+        EXPECT_NEAR(result.seen.value() / result.area,
+                    limited.report.zones[1].coverage.exact.value(), 1e-6)
+            << density;
+    }
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/camera_rules_report.h"
+
+#include <optional>
+
+#include "base/message.h"
+#include "base/number.h"
+#include "report/coverage_report.h"
+
+namespace ispace {
+
+namespace {
+
+std::string ruleDegrees(Angle angle) { return formatDouble(roundSignificant(angle.degrees())); }
+
+void writeNumber(JsonWriter& json, const char* key, const std::optional<double>& value) {
+    json.key(key);
+    if (value)
+        json.value(roundSignificant(*value));
+    else
+        json.null();
+}
+
+JudgedRule judged(const FacingResult& result) {
+    JudgedRule rule{"facing " + printable(result.rule.zone) + " within " +
+                        ruleDegrees(result.rule.within) + " degrees of " +
+                        ruleDegrees(result.rule.heading),
+                    isMet(result), result.rule.required.has_value(), ""};
+    if (!result.share)
+        rule.finding = "is not known: a view is known by cells only";
+    else
+        rule.finding =
+            percentText(*result.share) + " of " + formatFixed(result.area, 2) + " m2 is seen";
+    if (result.rule.required)
+        rule.finding += ", required are " + formatPercent(*result.rule.required);
+    return rule;
+}
+
+JudgedRule judged(const PrivacyResult& result) {
+    JudgedRule rule{"privacy of " + printable(result.zone), isMet(result), true, ""};
+    if (result.density > 0)
+        rule.rule += " from " + formatDouble(result.density) + " pixels a metre";
+    if (!result.seen) {
+        rule.finding = "is not known: a view is known by cells only";
+        return rule;
+    }
+    if (isMet(result)) {
+        rule.finding = "is kept";
+        return rule;
+    }
+    rule.finding = formatFixed(*result.seen, *result.seen < 0.01 ? 4 : 2) + " of " +
+                   formatFixed(result.area, 2) + " m2 is seen";
+    std::string ids;
+    for (const std::string& id : result.cameras) ids += (ids.empty() ? "" : ", ") + printable(id);
+    if (!ids.empty()) rule.finding += " by " + ids;
+    return rule;
+}
+
+}  // namespace
+
+std::vector<JudgedRule> judgedRules(const CameraRules& rules) {
+    std::vector<JudgedRule> all;
+    for (const FacingResult& result : rules.facing) all.push_back(judged(result));
+    for (const PrivacyResult& result : rules.privacy) all.push_back(judged(result));
+    return all;
+}
+
+void writeCameraRules(JsonWriter& json, const CameraRules& rules) {
+    if (!rules.facing.empty()) {
+        json.key("facing").beginArray();
+        for (const FacingResult& result : rules.facing) {
+            json.beginObject();
+            json.key("zone").value(result.rule.zone);
+            writeNumber(json, "within", result.rule.within.degrees());
+            writeNumber(json, "heading", result.rule.heading.degrees());
+            writeNumber(json, "area", result.area);
+            writeNumber(json, "coverage", result.share);
+            if (result.rule.required) writeNumber(json, "required", result.rule.required);
+            json.key("met").value(isMet(result));
+            json.endObject();
+        }
+        json.endArray();
+    }
+    if (rules.privacy.empty()) return;
+    json.key("privacy").beginArray();
+    for (const PrivacyResult& result : rules.privacy) {
+        json.beginObject();
+        json.key("zone").value(result.zone);
+        writeNumber(json, "density", result.density);
+        writeNumber(json, "area", result.area);
+        writeNumber(json, "seen_area", result.seen);
+        json.key("cameras").beginArray();
+        for (const std::string& id : result.cameras) json.value(id);
+        json.endArray();
+        json.key("met").value(isMet(result));
+        json.endObject();
+    }
+    json.endArray();
+}
+
+std::string cameraRulesText(const CameraRules& rules) {
+    std::string text;
+    for (const JudgedRule& rule : judgedRules(rules))
+        text += rule.rule + ": " + rule.finding + '\n';
+    return text.empty() ? "" : '\n' + text;
+}
+
+}  // namespace ispace
