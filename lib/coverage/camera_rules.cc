@@ -35,6 +35,7 @@ Angle angleOf(std::string_view text) {
 std::vector<Zone> matchingZones(const std::string& pattern, const Environment& environment) {
     std::vector<Zone> zones = zonesOf(environment);
     std::vector<std::string> known;
+    known.reserve(zones.size());
     for (const Zone& zone : zones) known.push_back(zone.id);
     const Glob glob(pattern);
     std::erase_if(zones, [&glob](const Zone& zone) { return !glob.matches(zone.id); });

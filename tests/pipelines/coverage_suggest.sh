@@ -44,6 +44,18 @@ for scene in "near-far.env near-far.3dm" "barriers.env barriers.3dm" "ispace.env
 done
 [ "$total" -ge 17 ] || fail "$total suggestions in all"
 
+# Six more scenes: arranged scanners in rooms with corners, furniture and drawings, cameras, a road.
+for room in l-room.env facilities.env open-office.env office.yaml; do
+    arrange "$room" --sensor urg-04lx:2 --candidates 1,1,8 -q -o "${room%.*}.3dm"
+done
+for scene in "l-room.env l-room.3dm" "facilities.env facilities.3dm" "open-office.env open-office.3dm" \
+    "office.yaml office.3dm" "road.env road.3dm" "ispace.env distributed.3dm"; do
+    # shellcheck disable=SC2086
+    suggestions_of $scene --suggest 5 >told
+    count=$(applied <told)
+    [ "$count" -ge 1 ] || fail "no suggestion for $scene"
+done
+
 # The same bytes on any number of threads; text and JSON tell the same commands.
 coverage barriers.env barriers.3dm --suggest 3 -j 1 >one
 coverage barriers.env barriers.3dm --suggest 3 -j 5 >five
