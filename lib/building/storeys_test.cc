@@ -115,6 +115,41 @@ TEST(Building, SurvivesYaml) {
     EXPECT_EQ(again.passages[1].storeys, (std::vector<std::size_t>{0, 1}));
 }
 
+TEST(Building, PartsAndDefaultsHoldInTheirRoom) {
+    const std::string parts =
+        "- storey: {id: a, records: {defaults: {desk: {height: 0.9}}, parts: {p: [desk: {id: d}]}, "
+        "ispace: {size: 8 x 6}, place: {part: p, id: w, at: [1, 1]}}}\n";
+    const StoreyedDocument building =
+        read(parts + "- storey: {id: b, z: 3, records: [{ispace: {size: 8 x 6}}, {desk: {}}]}\n");
+    ASSERT_EQ(building.storeys[0].room->records.size(), 2U);
+    EXPECT_EQ(building.storeys[0].room->records[1].writtenId(), "w/d");
+    EXPECT_DOUBLE_EQ(building.storeys[0].room->records[1].number("height"), 0.9);
+    EXPECT_FALSE(building.storeys[1].room->records[1].has("height"));
+    EXPECT_TRUE(contains(errorOf([&] {
+                             (void)read(parts +
+                                        "- storey: {id: b, z: 3, records: [{place: {part: "
+                                        "p}}]}\n");
+                         }),
+                         "error: unknown part `p`"));
+    // Ids are those of the room, and findings of all rooms come together.
+    const std::string error = errorOf([] {
+        (void)read(
+            "- storey: {id: a, records: [{desk: {id: d}}, {desk: {id: d}}]}\n"
+            "- storey: {id: b, z: 3, records: [{desk: {hight: 1}}]}\n");
+    });
+    EXPECT_TRUE(contains(error, "doubled id `d`"));
+    EXPECT_TRUE(contains(error, "unknown key `hight`"));
+}
+
+TEST(Building, HasAtMostTwoHundredStoreys) {
+    std::string text = "- storey: {records: &room [" + std::string(kRoom) + "]}\n";
+    for (std::size_t i = 1; i < kMaxStoreys; ++i)
+        text += "- storey: {z: " + std::to_string(i) + ", records: *room}\n";
+    EXPECT_EQ(read(text).storeys.size(), kMaxStoreys);
+    EXPECT_TRUE(contains(errorOf([&] { (void)read(text + "- storey: {records: *room}\n"); }),
+                         "more than 200 storeys"));
+}
+
 TEST(Building, DigestIsThatOfRoomsFramesAndPassages) {
     const std::string digest = read(twoStoreys()).digest();
     EXPECT_EQ(digest, read("# a comment\n" + twoStoreys()).digest());

@@ -82,13 +82,18 @@ bool hasPlaced(const StoreyedDocument& building, bool (*is_meant)(const SensorKi
     });
 }
 
-/// Compares the digest that the layout records with the building's, as for rooms.
+/// Compares the digest that the layout records with the building's, as for rooms. \throws
+/// UsageError for a layout of one storey
 void checkDigest(const Document& layout, const StoreyedDocument& building, bool is_operand,
                  std::optional<bool> same_environment, std::vector<Diagnostic>& warnings) {
     const auto recorded = environmentReference(layout);
     if (!same_environment.value_or(true) || !recorded || recorded->digest.empty() ||
         recorded->digest == building.digest())
         return;
+    for (const Storey& storey : building.storeys)
+        if (recorded->digest == environmentDigest(storey.room->records))
+            throw UsageError("the layout was made for the storey " + storey.id +
+                             ": choose it with --storey " + storey.id);
     Diagnostic finding = recorded->record.finding(
         "digest",
         "the layout was made for another building: arrange again, or accept it with "
