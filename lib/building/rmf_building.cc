@@ -66,7 +66,7 @@ class RmfReader {
         is_image_ = word == "reference_image";
     }
 
-    RmfLevel level(const std::string& name, const YamlNode& node) const {
+    [[nodiscard]] RmfLevel level(const std::string& name, const YamlNode& node) const {
         RmfLevel level;
         level.name = name;
         if (const YamlNode* const z = member(node, "elevation")) level.elevation = number(*z);
@@ -119,7 +119,8 @@ class RmfReader {
         return upright(number(*item.items[0]), number(*item.items[1]));
     }
 
-    std::pair<std::size_t, std::size_t> edge(const YamlNode& item, const RmfLevel& level) const {
+    [[nodiscard]] std::pair<std::size_t, std::size_t> edge(const YamlNode& item,
+                                                           const RmfLevel& level) const {
         const auto index = [&](const YamlNode& node) {
             const auto value = parseInteger(node.scalar);
             if (!value || *value < 0 || static_cast<std::size_t>(*value) >= level.vertices.size())
@@ -131,8 +132,8 @@ class RmfReader {
         return {index(*item.items[0]), index(*item.items[1])};
     }
 
-    std::vector<std::pair<std::size_t, std::size_t>> edges(const YamlNode& node, const char* key,
-                                                           const RmfLevel& level) const {
+    [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> edges(
+        const YamlNode& node, const char* key, const RmfLevel& level) const {
         std::vector<std::pair<std::size_t, std::size_t>> edges;
         forEachItem(node, key, 2,
                     [&](const YamlNode& item) { edges.push_back(edge(item, level)); });

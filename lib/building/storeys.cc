@@ -235,6 +235,7 @@ StoreyedDocument makeBuilding(std::vector<StoreyInput> inputs, std::vector<Recor
     StoreyedDocument building;
     Diagnostics findings;
     std::vector<Record> all;
+    all.reserve(inputs.size() + passages.size());
     for (const StoreyInput& input : inputs) all.push_back(input.record);
     all.insert(all.end(), passages.begin(), passages.end());
     const std::vector<std::string> ids = assignIds(all);

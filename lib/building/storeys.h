@@ -76,7 +76,7 @@ struct StoreyInput {
 };
 /// Joins storeys and what connects them, with the notes and warnings of the rooms. \throws
 /// FormatError with all findings, which name `file` as a whole where records have no location
-StoreyedDocument makeBuilding(std::vector<StoreyInput> storeys, std::vector<Record> passages,
+StoreyedDocument makeBuilding(std::vector<StoreyInput> inputs, std::vector<Record> passages,
                               const std::string& file);
 
 /// Reads the records of a building in YAML, and the rooms inline. \param rooms has an entry for

@@ -18,7 +18,7 @@ std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
                                                   const InputRequest& request);
 
 /// Checks, reports on, draws or writes the building, as the options say.
-void writeBuilding(const EnvcOptions& options, StoreyedDocument building,
+void writeBuilding(const EnvcOptions& options, StoreyedDocument document,
                    const ImportReport& report);
 
 }  // namespace ispace
