@@ -124,7 +124,7 @@ TEST_F(Operands, TheDigestOfEachInputIsCompared) {
         request.inputs = inputs;
         request.same_environment = same_environment;
         std::vector<Diagnostic> warnings;
-        readInputs(request, warnings);
+        readInputs(readRawInputs(request), request, warnings);
         return warnings.size();
     };
     EXPECT_EQ(warningsOf({"room.env", "layout.3dm"}), 0U);
