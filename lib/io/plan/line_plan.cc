@@ -3,15 +3,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <iterator>
 #include <map>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/budget.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "base/random.h"
 #include "env/environment.h"
 #include "geom/arrangement.h"
+#include "geom/polygon.h"
 #include "geom/predicates.h"
 #include "io/plan/plan_rooms.h"
 
@@ -21,10 +27,29 @@ namespace {
 
 constexpr double kMaxExtent = 10000;     // metres
 constexpr double kUnitsPerCrossing = 4;  // of Budget
-constexpr double kOpeningReach = 1e-5;   // from its end to its wall
+constexpr double kUnitsPerOverlap = 0.5;
+constexpr double kFreeOverlaps = 64;    // of a line with the boxes of others
+constexpr double kOpeningReach = 1e-5;  // from its end to its wall
 
 /// Sizes of openings where walls are high enough.
 constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
+
+/// Estimates the pairs of lines whose boxes overlap, which each search for crossings and gaps
+/// compares, from a sample; 0 if the sample has too few.
+double sampledOverlaps(std::span<const Segment2> lines) {
+    constexpr std::uint64_t kSamples = 1U << 18;
+    constexpr std::size_t kSureHits = 16;
+    const std::size_t n = lines.size();
+    if (n < 2) return 0;
+    std::size_t hits = 0;
+    for (std::uint64_t i = 0; i < kSamples; ++i) {
+        const std::uint64_t bits = mixedBits(i);
+        hits += bounds(lines[(bits >> 32U) % n]).overlaps(bounds(lines[(bits & 0xffffffffU) % n]));
+    }
+    if (hits < kSureHits) return 0;
+    return static_cast<double>(hits) / kSamples * static_cast<double>(n) * static_cast<double>(n) /
+           2;
+}
 
 /// The lines of a plan, and the kept ones among them.
 class LinePlan {
@@ -33,11 +58,15 @@ class LinePlan {
              const DrawingSource* drawing, ImportRecords& out)
         : sizes_(std::move(shapes.sizes)) {
         DrawnDoors drawn{{}, std::move(shapes.walls)};
-        if (drawing != nullptr) drawn = takeDrawnDoors(std::move(drawn.walls));
+        Budget budget(drawing != nullptr ? drawing->bytes : 0, options.max_work);
+        if (drawing != nullptr) {
+            payFor(pathPieces(drawn.walls), name, budget);
+            drawn = takeDrawnDoors(std::move(drawn.walls));
+        }
         drawn_doors_ = drawn.swings.size();
         paths_ = normalisedLines(std::move(drawn.walls), options.snap.value_or(kDefaultSnap));
         pieces_ = pathPieces(paths_);
-        check(name, options, drawing);
+        check(name, options, drawing, budget);
         std::vector<PlanShape> doors = std::move(shapes.doors);
         doors.insert(doors.end(), std::make_move_iterator(drawn.swings.begin()),
                      std::make_move_iterator(drawn.swings.end()));
@@ -84,8 +113,22 @@ class LinePlan {
     }
 
   private:
-    void check(const std::string& name, const ImportOptions& options,
-               const DrawingSource* drawing) const {
+    /// Pays for lines that lie among many others, before any search compares them.
+    static void payFor(std::span<const Segment2> lines, const std::string& name, Budget& budget) {
+        const double crowd =
+            sampledOverlaps(lines) - kFreeOverlaps * static_cast<double>(lines.size());
+        pay(kUnitsPerOverlap * crowd, "neighbours", name, budget);
+    }
+
+    static void pay(double units, const std::string& cause, const std::string& name,
+                    Budget& budget) {
+        if (!budget.take(static_cast<std::uint64_t>(std::max(0.0, units))))
+            failFile(name, cause + " of the lines make " + budget.excess() +
+                               "; --wall-layer 'A-WALL*' leaves layers out");
+    }
+
+    void check(const std::string& name, const ImportOptions& options, const DrawingSource* drawing,
+               Budget& budget) const {
         const Box2 box = boundsOf(pieces_);
         if (!pieces_.empty() && drawing != nullptr)
             checkScale(std::max(box.width(), box.depth()), *drawing, name, options);
@@ -100,11 +143,8 @@ class LinePlan {
                      "out, for example with --wall-layer 'A-WALL*'");
         if (drawing == nullptr) return;
         // As many as the lines are the corners of outlines.
-        const double excess = std::max(0.0, crossings - static_cast<double>(pieces_.size()));
-        Budget budget(drawing->bytes, options.max_work);
-        if (!budget.take(static_cast<std::uint64_t>(kUnitsPerCrossing * excess)))
-            failFile(name, "crossings of the lines make " + budget.excess() +
-                               "; --wall-layer 'A-WALL*' leaves layers out");
+        pay(kUnitsPerCrossing * (crossings - static_cast<double>(pieces_.size())), "crossings",
+            name, budget);
     }
 
     /// Keeps pieces that openings lie on or touch.

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan/line_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "io/importers.h"
+#include "support/test_dxf.h"
+#include "support/test_import.h"
+
+namespace ispace {
+namespace {
+
+/// A long slanted line, `count` times `count` copies of which lie 3 cm apart.
+std::string crowd(int count) {
+    return drawing(insert("B", "0", 0, 0,
+                          group(70, count) + group(71, count) + group(44, 0.03) + group(45, 0.031)),
+                   block("B", 0, 0, line("0", 0, 0, 50, 50)), 6);
+}
+
+std::string refusal(const std::string& dxf, const ImportOptions& options = {}) {
+    try {
+        readDxf(dxf, "plan.dxf", options, sceneSchemas());
+    } catch (const FormatError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+// The boxes of slanted lines all overlap: searches compare each line with all others.
+TEST(LinePlan, CrowdsOfSlantedLinesArePaidFor) {
+    EXPECT_EQ(refusal(crowd(12)), "");
+    const std::string message = refusal(crowd(60));
+    EXPECT_NE(message.find("neighbours of the lines make more than 10"), std::string::npos)
+        << message;
+    EXPECT_NE(message.find("--max-work"), std::string::npos) << message;
+    ImportOptions options;
+    options.max_work = 100;
+    EXPECT_NE(refusal(crowd(30), options), "");
+}
+
+}  // namespace
+}  // namespace ispace
