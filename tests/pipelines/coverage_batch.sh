@@ -106,7 +106,7 @@ expect_error 2 coverage --batch two -o map.png
 # Each option either works with it, as those do in this file or for any number of scenes, or is refused by name.
 works="--help --version --json --batch --shard --resume --grid --cell --grid-of --height --plane --density --parallax
     --require --junit --same-environment --any-environment --output --quiet --verbose --threads --seed --errors --progress
-    --no-progress --zone --include-files --max-work"
+    --no-progress --zone --include-files --max-work --storey"
 refused="--report=r.json --suggest --compare=half.3dm --run=r -MD --to=png --width=300 --color=sensor --fans=beams
     --trace=two --speeds=30% --perturb=5cm,3deg --failures=1 --crowd=1 --facing=door,45,0 --privacy=desk"
 for option in $refused; do
@@ -124,6 +124,11 @@ for option in "--cell 0.5" "--grid-of beams" "--height 1" "--plane 1" "--paralla
     { coverage -q --json square.env half.3dm $option && coverage -q --json square.env whole.3dm $option; } >ones
     expect_same ones of_two "a batch with $option differs from single runs"
 done
+cp -r "$scenes/house" "$data/house.3dm" .
+printf 'house/house.env house.3dm\n' >storeys
+coverage -q --any-environment --batch storeys --storey upper >of_two
+coverage -q --any-environment --json house/house.env house.3dm --storey upper >ones
+expect_same ones of_two "a batch with --storey differs from single runs"
 expect_error 2 coverage --batch two -o two
 cmp two <(printf 'square.env half.3dm\nsquare.env whole.3dm\n') || fail "the list was replaced"
 
