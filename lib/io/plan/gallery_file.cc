@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -116,6 +117,18 @@ void addExactFence(const Polygon& curve, const ImportOptions& options, ImportRec
     record.set("thickness", options.wall_thickness);
 }
 
+/// A point of the gallery. Fails for a polygon that has none between the doubles of its edges, and
+/// for one that its holes cover.
+Point2 insideOf(const Region& region, const std::string& name) {
+    try {
+        return interiorPoint(region);
+    } catch (const std::invalid_argument&) {
+        failFile(name,
+                 "the polygon leaves no floor, wanted one wider than its edges' rounding and "
+                 "larger than its holes");
+    }
+}
+
 }  // namespace
 
 bool isGalleryFile(std::string_view bytes) {
@@ -136,7 +149,7 @@ Document readGalleryFile(std::string_view bytes, const std::string& name,
     if (options.inside.empty() && options.known_inside.empty()) {
         for (Polygon& hole : region.holes)
             if (signedArea(hole) > 0) std::reverse(hole.begin(), hole.end());
-        const Point2 inside = interiorPoint(region);
+        const Point2 inside = insideOf(region, name);
         out.add("inside", 0).set("at", Tuple{inside.x, inside.y});
     }
     return out.take();

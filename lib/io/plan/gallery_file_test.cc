@@ -49,6 +49,15 @@ TEST(GalleryFile, Refuses) {
               "a.pol: error: the outline: `1e9` is too far away, wanted metres up to 900000\n");
     EXPECT_EQ(errorOf("4 0/1 0/1 4/1 4/1 4/1 0/1 0/1 3/1"),
               "a.pol: error: the outline crosses itself\n");
+    // The height is below the doubles' resolution of points between the corners.
+    EXPECT_EQ(
+        errorOf("4 0/1 0/1 4/19223372036854775807 0/1 4/1 1 0/1 0/11"),
+        "a.pol: error: the polygon leaves no floor, wanted one wider than its edges' rounding "
+        "and larger than its holes\n");
+    EXPECT_EQ(
+        errorOf("4 0/1 0/1 4/1 0/1 4/1 4/1 0/1 4/1 1 4 0/1 0/1 0/1 4/1 4/1 4/1 4/1 0/1"),
+        "a.pol: error: the polygon leaves no floor, wanted one wider than its edges' rounding "
+        "and larger than its holes\n");
     EXPECT_EQ(errorOf("3 0/1 0/1 4/1 4/1 2/1 2/1"), "a.pol: error: the outline encloses no area\n");
     EXPECT_EQ(errorOf("3 0/1 0/1 4/1 0/1 4/1 1/1 1 3 0 0 1"),
               "a.pol: error: hole 1: found the end, wanted a coordinate, a number or a fraction "
