@@ -75,7 +75,8 @@ class Run:
 
 
 def child(work, report):
-    """A process that does work(report) until it is killed."""
+    """A process that does work(report) until it is killed, perhaps before its first step."""
+    open(report, "w", encoding="utf-8").close()
     pid = os.fork()
     if pid:
         return pid
