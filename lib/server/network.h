@@ -13,6 +13,16 @@
 
 namespace ispace {
 
+/// A TCP endpoint; port 0 lets the system choose.
+struct Endpoint {
+    std::string address = "127.0.0.1";
+    std::uint16_t port = 0;
+    bool is_loopback = true;  ///< other machines cannot connect
+};
+/// Parses ADDR:PORT with a numeric address (127.0.0.1, [::1], 0.0.0.0) or localhost. \throws
+/// UsageError
+Endpoint parseEndpoint(const std::string& text);
+
 /// A range of addresses, as in 192.168.1.0/24 or fd00::/8.
 struct Network {
     std::array<std::uint8_t, 16> address{};  ///< IPv4 as ::ffff:a.b.c.d

@@ -2,16 +2,12 @@
 #include "server/server.h"
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/system/system_error.hpp>
 
 #include <fcntl.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <poll.h>
 #include <algorithm>
 #include <atomic>
@@ -24,8 +20,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/message.h"
-#include "base/number.h"
 #include "server/client_connection.h"
 #include "server/device/device_port.h"
 #include "server/ros/ros_feed.h"
@@ -365,122 +359,6 @@ void Server::stopOn(int descriptor) {
                               [data = data_.get()](error_code error) {
                                   if (!error) data->simulation.finish();
                               });
-}
-
-namespace {
-
-constexpr std::int64_t kLastPort = 65535;
-
-bool isPort(std::string_view text) {
-    const bool digits = !text.empty() && std::all_of(text.begin(), text.end(),
-                                                     [](char c) { return c >= '0' && c <= '9'; });
-    return digits && parseInteger(text).value_or(kLastPort + 1) <= kLastPort;
-}
-
-[[noreturn]] void fail(std::string_view text, std::string_view what) {
-    throw UsageError(excerpt(text).append(what));
-}
-
-}  // namespace
-
-Endpoint parseEndpoint(const std::string& text) {
-    const auto colon = text.rfind(':');
-    if (colon == std::string::npos) {
-        std::string hint = " is no ADDR:PORT";
-        if (isPort(text)) hint.append(", did you mean 127.0.0.1:").append(text).append("?");
-        fail(text, hint);
-    }
-    std::string host = text.substr(0, colon);
-    const std::string port = text.substr(colon + 1);
-    if (!isPort(port)) fail(text, " has no port from 0 to 65535 behind the last colon");
-    if (host.empty())
-        fail(text,
-             std::string(" has no address, did you mean 127.0.0.1:").append(port).append("?"));
-    const bool bracketed = host.starts_with('[') && host.ends_with(']');
-    if (bracketed) host = host.substr(1, host.size() - 2);
-    if (host == "localhost" && !bracketed) host = "127.0.0.1";
-    error_code bad;
-    const auto address = asio::ip::make_address(host, bad);
-    if (bad || address.is_v6() != bracketed)
-        fail(text,
-             ": wanted a numeric address or localhost before the port, like 127.0.0.1:8000 "
-             "or [::1]:8000");
-    return {address.to_string(), static_cast<std::uint16_t>(parseInteger(port).value()),
-            address.is_loopback()};
-}
-
-namespace {
-
-namespace asio = boost::asio;
-using asio::ip::tcp;
-using boost::system::error_code;
-
-/// System send buffer of a client: larger ones would hold outdated scans.
-constexpr int kSendBuffer = 1 << 16;
-/// Keepalive: a silent peer is probed after a minute and dropped after another.
-constexpr int kKeepIdle = 60, kKeepInterval = 10, kKeepCount = 6;
-constexpr auto kAcceptPause = std::chrono::milliseconds(100);
-
-template <int kName>
-using TcpOption = asio::detail::socket_option::integer<IPPROTO_TCP, kName>;
-
-void prepare(tcp::socket& socket) {
-    error_code ignored;
-    socket.set_option(tcp::no_delay(true), ignored);
-    socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
-    socket.set_option(tcp::socket::keep_alive(true), ignored);
-    socket.set_option(TcpOption<TCP_KEEPIDLE>(kKeepIdle), ignored);
-    socket.set_option(TcpOption<TCP_KEEPINTVL>(kKeepInterval), ignored);
-    socket.set_option(TcpOption<TCP_KEEPCNT>(kKeepCount), ignored);
-    socket.non_blocking(true, ignored);
-}
-
-}  // namespace
-
-Acceptor::Acceptor(asio::io_context& io, const Endpoint& endpoint, Welcome welcome)
-    : acceptor_(io), pause_(io), welcome_(std::move(welcome)) {
-    try {
-        const tcp::endpoint wanted(asio::ip::make_address(endpoint.address), endpoint.port);
-        acceptor_.open(wanted.protocol());
-        acceptor_.set_option(tcp::acceptor::reuse_address(true));
-        acceptor_.bind(wanted);
-        acceptor_.listen();
-        local_ = acceptor_.local_endpoint();
-    } catch (const boost::system::system_error& error) {
-        std::string where = "cannot listen on ";
-        where.append(endpoint.address).append(":").append(std::to_string(endpoint.port));
-        // Asio's own category knows no std::errc.
-        throw std::system_error(error.code().value(), std::system_category(), where);
-    }
-    accept();
-}
-
-std::string Acceptor::host() const {
-    std::string out = local_.address().to_string();
-    if (local_.address().is_v6()) out.insert(0, 1, '[').append("]");
-    return out;
-}
-
-void Acceptor::close() {
-    error_code ignored;
-    acceptor_.close(ignored);
-    pause_.cancel();
-}
-
-void Acceptor::accept() {
-    acceptor_.async_accept([this](error_code error, tcp::socket socket) {
-        if (error == asio::error::operation_aborted) return;
-        if (!error) {
-            prepare(socket);
-            welcome_(std::move(socket));
-            return accept();
-        }
-        // Out of descriptors, or the client has already gone: retry later.
-        pause_.expires_after(kAcceptPause);
-        pause_.async_wait([this](error_code aborted) {
-            if (!aborted) accept();
-        });
-    });
 }
 
 }  // namespace ispace

@@ -3,10 +3,6 @@
 // lib/server, since it includes Asio.
 #pragma once
 
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
-
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -22,16 +18,6 @@
 #include "sim/world_editor.h"
 
 namespace ispace {
-
-/// A TCP endpoint; port 0 lets the system choose.
-struct Endpoint {
-    std::string address = "127.0.0.1";
-    std::uint16_t port = 0;
-    bool is_loopback = true;  ///< other machines cannot connect
-};
-/// Parses ADDR:PORT with a numeric address (127.0.0.1, [::1], 0.0.0.0) or localhost. \throws
-/// UsageError
-Endpoint parseEndpoint(const std::string& text);
 
 /// Limit on a request's frequency: `rate` a second in the long run, `burst` at once.
 struct RateLimit {
@@ -134,30 +120,6 @@ class Server {
   private:
     struct Data;
     std::unique_ptr<Data> data_;
-};
-
-/// Listens at an endpoint and passes on accepted sockets in non-blocking mode.
-class Acceptor {
-  public:
-    using Welcome = std::function<void(boost::asio::ip::tcp::socket)>;
-
-    /// \throws std::system_error naming the endpoint
-    Acceptor(boost::asio::io_context& io, const Endpoint& endpoint, Welcome welcome);
-
-    /// "127.0.0.1", "[::1]"
-    [[nodiscard]] std::string host() const;
-    /// "127.0.0.1:40123", "[::1]:40123"
-    [[nodiscard]] std::string address() const { return host() + ":" + std::to_string(port()); }
-    [[nodiscard]] std::uint16_t port() const { return local_.port(); }
-    void close();
-
-  private:
-    void accept();
-
-    boost::asio::ip::tcp::acceptor acceptor_;
-    boost::asio::steady_timer pause_;
-    boost::asio::ip::tcp::endpoint local_;
-    Welcome welcome_;
 };
 
 }  // namespace ispace

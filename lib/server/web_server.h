@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "server/acceptor.h"
 #include "server/server.h"
 #include "server/web/web_connection.h"
 #include "server/web/web_dialogue.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/visibility/visibility_query.h"
+#include "geom/visibility/visibility_breadth.h"
 
 #include <gtest/gtest.h>
 

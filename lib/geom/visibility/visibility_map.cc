@@ -22,6 +22,7 @@
 
 #include "base/simd.h"
 #include "geom/visibility/visibility.h"
+#include "geom/visibility/visibility_breadth.h"
 #include "geom/visibility/visibility_mesh.h"
 #include "geom/visibility/visibility_query.h"
 #include "geom/visibility/visibility_rounds.h"

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/acceptor.h"
 #include "server/device/wire_session.h"
 #include "server/server.h"
 #include "server/server_state.h"
