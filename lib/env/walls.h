@@ -80,7 +80,7 @@ struct WallCrossing {
 std::vector<WallCrossing> wallCrossings(std::span<const Element> elements, std::size_t most = 1000);
 
 /// Finds a point where two edges of the closed curve cross; empty without one. Edges that only
-/// touch or overlap do not cross. Sweeps along x: O(n log n) for short edges, O(n^2) at worst.
+/// touch or overlap do not cross. O(n log n)
 std::optional<Point2> selfCrossing(const Polygon& polygon);
 
 }  // namespace ispace
