@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "arrange/search/problem.h"
+#include "arrange/search/search.h"
+#include "base/cell_set.h"
+#include "base/error.h"
+
+namespace ispace {
+
+/// Consecutive cells of a problem.
+struct CellBlock {
+    std::size_t first = 0, end = 0;
+};
+
+/// A problem whose cells hold several cases. A layout has a value in each of them, and the least
+/// counts.
+///
+/// With failures = 0 each block is a case: the same room with other furniture, or other mountings.
+/// With failures = K there is one block, and each set of K sensors that may fail, standing ones
+/// included, is a case. Then one sensor covers a cell of the block, and `problem` is that of
+/// failureProblem(), with copy 1 as the block.
+struct WorstCaseProblem {
+    const Problem* problem = nullptr;
+    std::vector<CellBlock> blocks;
+    int failures = 0;
+    std::vector<CellSet> standing = {};  ///< with failures: cells of each standing sensor
+    std::uint64_t least_total = 0;       ///< with failures: see FailureProblem
+
+    /// Returns the weight of a block.
+    [[nodiscard]] std::uint64_t totalOf(std::size_t block) const;
+};
+
+/// A problem whose value stands for the mean over failures.
+struct FailureProblem {
+    Problem problem;
+    /// Value / least_total is at least the mean share over all failures; equal, and least_total the
+    /// total weight, unless binomials are too large for weights.
+    std::uint64_t least_total = 0;
+};
+
+/// Multiplies the cells of a plain problem (one sensor covers a cell), so that its value is
+/// proportional to the mean over the failures of any K of n sensors. Copy m = 1 ... K + 1 of a cell
+/// is covered by m sensors. A cell that m sensors see survives with the probability 1 - C(n - m, K
+/// - m) / C(n, K), which grows by C(n - m, K - m + 1) / C(n, K) from m - 1 to m: the weights of the
+/// copies. Candidates are those of cells * (K + 1) cells: copy m of cell i is (m - 1) * cells + i.
+/// \param seen number of standing sensors that see each cell
+/// \pre 0 <= failures < sensors; weights below 2^25 in sum
+FailureProblem failureProblem(const Problem& plain, const std::vector<std::uint16_t>& seen,
+                              std::size_t sensors, std::size_t failures);
+
+/// The value of one case, in units of the first block: v * totalOf(0) / totalOf(block), rounded
+/// down.
+struct CaseValue {
+    std::size_t block = 0;
+    std::vector<std::size_t> failed = {};  ///< standing sensors first, then the chosen ones
+    std::uint64_t value = 0;
+};
+
+/// Returns the case with the least value, the first among equals. Repeated choices count once. With
+/// failures at least as many as there are sensors, all fail.
+CaseValue worstCase(const WorstCaseProblem& of, const std::vector<Choice>& chosen);
+
+/// Searches for the layout whose worst case is best; values and bound are those of worstCase().
+///
+/// Blocks: the worst case is at most any weighted mean of the cases, so a search() for a mean
+/// bounds it, and its solution is a start. The weights of the cases follow by multiplicative
+/// updates towards those in which the solutions found are poor (Freund and Schapire, Adaptive game
+/// playing using multiplicative weights, 1999). Failures: the mean over all failures is a bound,
+/// and so is the plain value of the best layout of as many sensors less. Starts are improved by
+/// moves of single sensors, which a few of the worst cases choose and all cases judge. Exact goes
+/// on with a depth-first tree: an upper bound of a node adds to each of these means the largest
+/// gains of as many candidates as are left; it ends with value == bound unless it is stopped.
+///
+/// \pre no budget, and no connection is required
+SearchResult searchWorstCase(const WorstCaseProblem& of, const SearchOptions& options,
+                             Progress& progress);
+
+}  // namespace ispace
