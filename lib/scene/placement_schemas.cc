@@ -19,6 +19,8 @@ namespace {
 
 /// Limits above any robot: metres, metres a second (a second), degrees a second (a second).
 constexpr double kMaxSize = 100, kFastest = 1000, kFastestTurn = 1e5;
+/// Kilograms.
+constexpr double kMaxMass = 1e5;
 
 /// Adds the keys of motion and odometry errors, for simrun --noise.
 void addStrayKeys(std::vector<KeySpec>& keys) {
@@ -180,6 +182,13 @@ Schema robotSchema() {
     schema.keys.push_back(floorAtKey("centre of rotation x,y at the start"));
     schema.keys.push_back(headingKey("where it faces at the start, from +x"));
     addRobotParameters(schema.keys);
+    schema.keys.push_back({.name = "climbs",
+                           .type = KeyType::Flag,
+                           .help = "it goes on stairs, as people do",
+                           .default_value = false});
+    KeySpec mass = positiveKey("mass", Unit::None, "kilograms, for lifts", kMaxMass);
+    mass.default_value = 20.0;
+    schema.keys.push_back(std::move(mass));
     addCourse(schema.keys);
     return schema;
 }

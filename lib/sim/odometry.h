@@ -84,6 +84,13 @@ class Odometer {
         pose_ = pose;
         counts_ = true;
     }
+    /// Goes on from another one after a jump of the mover, which the wheels do not notice.
+    /// \param was pose before it \param now pose after it
+    void goOn(const Odometer& before, const Pose2& was, const Pose2& now) {
+        *this = before;
+        const Pose2 way = relativePose(origin_, was);
+        origin_ = composed(now, relativePose(way, Pose2{}));
+    }
     /// Returns true if the motion or the odometry has errors.
     [[nodiscard]] bool isNoisy() const { return counts_; }
 

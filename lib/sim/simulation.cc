@@ -132,6 +132,7 @@ bool Simulation::seekSome(SimTime time, WallTime until) {
 }
 
 void Simulation::step() {
+    for (const auto& preparer : preparers_) preparer();
     if (replay_ != nullptr)
         replay_->step(*world_);
     else
@@ -141,6 +142,7 @@ void Simulation::step() {
     if (recorder_ != nullptr) recorder_->record(*world_);
     endIfReached();
     if (!finished_) giveScripted();
+    for (Simulation* const other : followers_) other->step();
     for (const auto& observer : observers_) observer();
 }
 
@@ -186,13 +188,32 @@ bool Simulation::isDue(WallTime now) const {
     return clock_.kind != Clock::Kind::Real || (started_ && dueAt() <= now);
 }
 
-std::optional<WallTime> Simulation::flushRecord() {
-    return recorder_ == nullptr ? std::nullopt : recorder_->flushDue(steady_clock::now());
+bool Simulation::finishRecord(WallTime until) {
+    if (recorder_ != nullptr && !recorder_->finishStep(*world_, until)) return false;
+    return std::all_of(followers_.begin(), followers_.end(),
+                       [until](Simulation* other) { return other->finishRecord(until); });
 }
 
-bool Simulation::finishStep(WallTime until) {
-    return world_->readSome(until) && finishRecord(until);
+bool Simulation::awaitsFrames() const {
+    return (recorder_ != nullptr && recorder_->awaitsFrames()) ||
+           std::any_of(followers_.begin(), followers_.end(),
+                       [](const Simulation* other) { return other->awaitsFrames(); });
 }
+
+std::optional<WallTime> Simulation::flushRecord() {
+    auto next = recorder_ == nullptr ? std::nullopt : recorder_->flushDue(steady_clock::now());
+    for (Simulation* const other : followers_)
+        if (const auto its = other->flushRecord()) next = std::min(next.value_or(*its), *its);
+    return next;
+}
+
+bool Simulation::readSome(WallTime until) {
+    return world_->readSome(until) &&
+           std::all_of(followers_.begin(), followers_.end(),
+                       [until](Simulation* other) { return other->readSome(until); });
+}
+
+bool Simulation::finishStep(WallTime until) { return readSome(until) && finishRecord(until); }
 
 std::optional<WallTime> Simulation::run(WallTime now, nanoseconds budget) {
     const auto next = runDue(now, budget);
@@ -206,10 +227,7 @@ std::optional<WallTime> Simulation::runDue(WallTime now, nanoseconds budget) {
     if (follows && !started_) startAt(now);
     if (follows && !paused_) forgive(now);
     const auto end = steady_clock::now() + budget;
-    const auto next_part = [&] {
-        const bool waits = recorder_ != nullptr && recorder_->awaitsFrames();
-        return waits ? flushRecord() : std::optional(now);
-    };
+    const auto next_part = [&] { return awaitsFrames() ? flushRecord() : std::optional(now); };
     // Finishes the last step first, even if the next one is due.
     if (!finishStep(end)) return next_part();
     while (isDue(now)) {

@@ -59,6 +59,15 @@ class Simulation {
     /// the next one are given. It must stay valid until the last step.
     void onStep(std::function<void()> observer) { observers_.push_back(std::move(observer)); }
 
+    /// Adds an observer, called before every step once the last one is recorded: it may change the
+    /// world.
+    void beforeStep(std::function<void()> observer) { preparers_.push_back(std::move(observer)); }
+
+    /// Lets another simulation take a step after each of this one, before observers are called. Its
+    /// own clock, pauses and end have no effect. \pre it has the same step and outlives this one's
+    /// last, and takes no turns by itself
+    void lead(Simulation& other) { followers_.push_back(&other); }
+
     /// Records every step from now on. The recorder must outlive the last one.
     void recordWith(Recorder& recorder) { recorder_ = &recorder; }
 
@@ -69,9 +78,7 @@ class Simulation {
     [[nodiscard]] const Recorder* recorder() const { return recorder_; }
     /// Records the readings of the last step, until about then. \returns true once that is done, or
     /// without a record: the world may then be changed
-    bool finishRecord(WallTime until) {
-        return recorder_ == nullptr || recorder_->finishStep(*world_, until);
-    }
+    bool finishRecord(WallTime until);
     /// Writes out lines of the record pending for 0.1 s, see Recorder::flushDue: for callers that
     /// do not call run().
     std::optional<WallTime> flushRecord();
@@ -145,6 +152,8 @@ class Simulation {
   private:
     std::optional<WallTime> runDue(WallTime now, std::chrono::nanoseconds budget);
     bool finishStep(WallTime until);
+    bool readSome(WallTime until);
+    [[nodiscard]] bool awaitsFrames() const;
     void giveScripted();
     void step();
     void endIfReached();
@@ -167,7 +176,8 @@ class Simulation {
     bool is_in_order_ = false;  // steps must be taken in order
     Clock clock_;
     SimTime until_;
-    std::vector<std::function<void()>> observers_;
+    std::vector<std::function<void()>> observers_, preparers_;
+    std::vector<Simulation*> followers_;  // in lock step
     bool paused_ = false, finished_ = false;
     std::int64_t owed_ = 0;
     std::optional<WallTime> started_;  // wall time of start_time_

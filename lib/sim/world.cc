@@ -285,6 +285,27 @@ void World::change(Scene scene, std::span<const std::string> placed) {
 
 void World::restart(Scene scene) { restart(preparer()(std::move(scene))); }
 
+std::shared_ptr<const CarriedState> World::carried(std::size_t mover) const {
+    const Data& data = *data_;
+    CarriedState state{.ids = data.states[mover].ids, .pose = data.motions[mover].pose};
+    if (mover < data.odometers.size())
+        state.odometer = data.odometers[mover];
+    else
+        state.gait = data.gaits[mover - data.odometers.size()];
+    return std::make_shared<const CarriedState>(std::move(state));
+}
+
+void World::resume(std::size_t mover, const CarriedState& state) {
+    Data& data = *data_;
+    data.states[mover].ids = state.ids;
+    if (mover < data.odometers.size())
+        data.odometers[mover].goOn(state.odometer, state.pose, data.motions[mover].pose);
+    else
+        data.gaits[mover - data.odometers.size()] = state.gait;
+}
+
+int World::issueId(std::size_t mover) { return ++data_->states[mover].ids; }
+
 void World::stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions,
                    std::span<const std::optional<Pose2>> odometries) {
     Data& data = *data_;

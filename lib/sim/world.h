@@ -57,6 +57,7 @@ struct Collision {
     SimTime time{};
 };
 
+struct CarriedState;
 struct WheelOrder;
 struct SceneResources;
 
@@ -222,6 +223,14 @@ class World {
     std::shared_ptr<const void> restart(const NextScene& next);
     /// \param next prepared from the scene of sharedBeginning()
     std::shared_ptr<const void> rewind(const NextScene& next);
+    /// Returns the state that a mover takes along into another world: odometry, gait, the number of
+    /// its commands.
+    [[nodiscard]] std::shared_ptr<const CarriedState> carried(std::size_t mover) const;
+    /// Goes on from there, at the mover's present pose. \pre the state is of the same kind of mover
+    void resume(std::size_t mover, const CarriedState& state);
+    /// Returns a new id for a command of this mover that is carried out by a sequence of others.
+    int issueId(std::size_t mover);
+
     /// Returns the number of changes and restarts so far.
     [[nodiscard]] std::int64_t changes() const;
 

@@ -89,6 +89,14 @@ struct MoverState {
     std::optional<std::size_t> blocked;  // by an element of the environment
 };
 
+/// State of a mover that leaves for another world.
+struct CarriedState {
+    int ids = 0;
+    Pose2 pose = {};         ///< in the world that it leaves
+    Odometer odometer = {};  ///< of a robot
+    Gait gait = {};          ///< of a person
+};
+
 struct World::Data {
     Data(std::shared_ptr<SceneResources> room, SimTime step_length, const RunOptions& run);
 

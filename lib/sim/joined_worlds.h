@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geom/point.h"
+#include "sim/simulation.h"
+
+namespace ispace {
+
+/// A world among others.
+struct JoinedRoom {
+    std::string id;
+    Simulation* simulation = nullptr;  ///< the first one leads the others
+};
+
+/// A point of one of the worlds.
+struct RoomPoint {
+    std::size_t room = 0;
+    Point2 at;
+};
+
+/// A list of points, or the reason why a text is none.
+struct RoomPoints {
+    std::vector<RoomPoint> points = {};
+    std::string fault = {};
+};
+
+/// Parses "upper/1,2;3,4". A point without a room is one of that of the point before, at first of
+/// `room`.
+RoomPoints parseRoomPoints(std::string_view text, std::span<const JoinedRoom> rooms,
+                           std::size_t room);
+
+/// A trip that was asked for, or the reason why it cannot begin.
+struct TripAnswer {
+    std::string refusal = {};  ///< "": it has begun
+    int id = 0;                ///< among the commands of the mover
+    double length = 0;         ///< metres to go by itself, not in lifts
+    std::string via = {};      ///< ids of the passages, separated by commas
+};
+
+/// The end of a trip.
+struct TripEnd {
+    std::string mover;
+    int id = 0;
+    Outcome outcome = Outcome::Done;
+    SimTime time{};
+};
+
+/// A lift at a moment.
+struct LiftState {
+    std::string id, storey;  ///< storey: that of the nearest floor
+    double height = 0;       ///< of its floor, metres
+    double door = 0;         ///< open share of its width
+    std::vector<std::string> riders;
+    std::vector<std::string> calls;  ///< storeys, in the order in which it serves them
+};
+
+/// Worlds that step together, and between which movers go. The ids of movers, and of the sensors
+/// that they carry, are unique in all of them. The server reads worlds through this interface.
+class JoinedWorlds {
+  public:
+    virtual ~JoinedWorlds() = default;
+    /// Returns the rooms: those with a storey of their own first, the lowest first.
+    [[nodiscard]] virtual std::span<const JoinedRoom> rooms() const = 0;
+    /// Returns the room in which a robot or a person is.
+    [[nodiscard]] virtual std::optional<std::size_t> roomOf(std::string_view mover) const = 0;
+    /// Returns the keys of a reply that tell where a mover of a room is: "storey=upper", or
+    /// "storey=upper in=l1 z=2.100".
+    [[nodiscard]] virtual std::string whereText(std::size_t room) const = 0;
+
+    /// Sends a mover by the shortest way to these points, one after another. \param speed m/s; 0:
+    /// the mover's \pre the speed is one that it can go
+    virtual TripAnswer travel(const std::string& mover, std::vector<RoomPoint> goals,
+                              double speed) = 0;
+    /// Sends a mover by a lift to its landing on a storey.
+    virtual TripAnswer ride(const std::string& mover, std::string_view lift,
+                            std::string_view storey) = 0;
+    /// Ends a trip, before another command. \returns the reason why that is impossible now, or ""
+    virtual std::string endTrip(const std::string& mover, Outcome outcome) = 0;
+    /// Calls a lift. \returns the reason why it does not come, or ""
+    virtual std::string call(std::string_view lift, std::string_view storey) = 0;
+    [[nodiscard]] virtual std::vector<LiftState> lifts() const = 0;
+    /// Returns the trips that ended before or in the last step, in order.
+    [[nodiscard]] virtual std::span<const TripEnd> tripEnds() const = 0;
+
+    /// Sets an observer of movers that have gone to another room, called between steps.
+    using Observer =
+        std::function<void(const std::string& mover, std::size_t from, std::size_t to)>;
+    virtual void onMove(Observer observer) = 0;
+};
+
+}  // namespace ispace

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "geom/point.h"
+#include "raster/grid.h"
+#include "sim/collision.h"
+
+namespace ispace {
+
+/// Shortest ways of a circle over a floor, by a grid of the cells in which it is free.
+///
+/// A way leads over sides and corners of cells, costs of which are in the ratio 12 to 17, and is
+/// then straightened where the straight way is free. It keeps kMargin from obstacles besides the
+/// radius. Independent of where movers are.
+class WayFinder {
+  public:
+    static constexpr double kMargin = 0.05, kCell = 0.1;
+
+    /// Tests all cells. \param box to which the ways keep; cells are larger than kCell where it has
+    /// more than a million \pre the obstacles outlive this object
+    WayFinder(const Obstacles& obstacles, const Box2& box, double radius);
+
+    /// Ways from one point to all cells.
+    struct Field {
+        Point2 from;
+        std::vector<std::int32_t> cost;  ///< by cell, kNoWay without a way
+    };
+    static constexpr std::int32_t kNoWay = -1;
+
+    /// Finds the ways from a point; none, if no cell near it is free. O(cells)
+    [[nodiscard]] Field waysFrom(Point2 from) const;
+    /// Returns the length of the way, not yet straightened, in metres; empty without a way.
+    [[nodiscard]] std::optional<double> length(const Field& field, Point2 to) const;
+    /// Returns the points of the way after its first, up to `to`; empty without a way.
+    [[nodiscard]] std::vector<Point2> way(const Field& field, Point2 to) const;
+    /// Returns true if the circle with the margin is free at that point.
+    [[nodiscard]] bool isFree(Point2 p) const;
+    /// Returns true if it is free on the straight way.
+    [[nodiscard]] bool isStraight(Point2 from, Point2 to) const;
+
+  private:
+    [[nodiscard]] std::optional<std::size_t> cellNear(Point2 p) const;
+
+    const Obstacles* obstacles_;
+    double reach_;  // radius and margin
+    Grid grid_;
+    std::vector<std::uint8_t> free_;
+};
+
+}  // namespace ispace

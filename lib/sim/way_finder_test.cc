@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/way_finder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "scene/scene.h"
+#include "support/test_layout.h"
+
+namespace ispace {
+namespace {
+
+/// Two rooms of 4 m x 4 m, joined by a door 0.9 m wide at x = 4, y from 3 to 3.9.
+constexpr const char* kRooms =
+    "fence id=f path=0,0;8,0;8,4;0,4 closed=yes\nfence id=a path=4,0;4,3\n"
+    "fence id=b path=4,3.9;4,4\ninside at=1,1\n";
+
+struct Floor {
+    explicit Floor(const char* text)
+        : scene(testing::scene(text, "")),
+          obstacles(scene.environment, 0.3, nullptr),
+          box(bounds(scene.environment.indoor())) {}
+    Scene scene;
+    Obstacles obstacles;
+    Box2 box;
+};
+
+double lengthOf(Point2 from, const std::vector<Point2>& way) {
+    double sum = 0;
+    for (const Point2 p : way) {
+        sum += distance(from, p);
+        from = p;
+    }
+    return sum;
+}
+
+TEST(WayFinder, GoesThroughTheDoor) {
+    const Floor floor(kRooms);
+    const WayFinder finder(floor.obstacles, floor.box, 0.3);
+    const auto field = finder.waysFrom({1, 1});
+    const std::vector<Point2> way = finder.way(field, {7, 1});
+    ASSERT_FALSE(way.empty());
+    EXPECT_EQ(way.back(), (Point2{7, 1}));
+    // The shortest way of a point passes the end of the wall; a circle goes around it.
+    const double straight = 2 * std::hypot(3, 2);
+    EXPECT_GT(lengthOf({1, 1}, way), straight);
+    EXPECT_LT(lengthOf({1, 1}, way), straight + 0.6);
+    Point2 at{1, 1};
+    for (const Point2 p : way) {
+        EXPECT_TRUE(finder.isStraight(at, p));
+        at = p;
+    }
+    EXPECT_LT(lengthOf({1, 1}, way), *finder.length(field, {7, 1}) + 0.1);
+}
+
+TEST(WayFinder, FindsNoneThroughADoorThatIsTooNarrow) {
+    const Floor floor(kRooms);
+    const WayFinder finder(floor.obstacles, floor.box, 0.45);
+    const auto field = finder.waysFrom({1, 1});
+    EXPECT_FALSE(finder.length(field, {7, 1}));
+    EXPECT_TRUE(finder.way(field, {7, 1}).empty());
+    EXPECT_TRUE(finder.length(field, {1, 3}));
+}
+
+TEST(WayFinder, IsStraightInTheOpen) {
+    const Floor floor(kRooms);
+    const WayFinder finder(floor.obstacles, floor.box, 0.3);
+    EXPECT_EQ(finder.way(finder.waysFrom({1, 1}), {3, 2.2}), (std::vector<Point2>{{3, 2.2}}));
+}
+
+TEST(WayFinder, KnowsNoWayFromWithinWallsOrBeyondTheGrid) {
+    const Floor floor(kRooms);
+    const WayFinder finder(floor.obstacles, floor.box, 0.3);
+    EXPECT_TRUE(finder.way(finder.waysFrom({1e9, 0}), {1, 1}).empty());
+    EXPECT_TRUE(finder.way(finder.waysFrom({1, 1}), {-1e300, 1e300}).empty());
+    EXPECT_TRUE(finder.way(finder.waysFrom({1, 1}), {40, 1}).empty());
+    // To where it stands.
+    EXPECT_EQ(finder.way(finder.waysFrom({1, 1}), {1, 1}), (std::vector<Point2>{{1, 1}}));
+}
+
+}  // namespace
+}  // namespace ispace
