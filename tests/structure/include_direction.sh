@@ -24,7 +24,7 @@ violations() {
         layer("io", "drawing"); layer("trace", "scene"); layer("sense", "trace drawing")
         layer("coverage", "sense"); layer("arrange", "coverage"); layer("report", "arrange io")
         layer("building", "report"); layer("sim", "sense"); layer("server", "sim"); layer("client", "")
-        layer("cli", "server building")
+        layer("passage", "building sim"); layer("cli", "server passage")
         heavy = "^(CGAL/|opencv2/|embree|rtcore|cairo|yaml-cpp/|tiny_gltf|tbb/|oneapi/|openssl/)"
         quiet = "(^|[^A-Za-z0-9_])(std::(cout|cerr|clog|cin)|(printf|fprintf|puts|fputs|putchar|" \
                 "perror|exit|_exit|quick_exit|abort|terminate|getenv|secure_getenv|setenv)[ ]*[(]|" \
@@ -113,6 +113,10 @@ expect lib/arrange/gallery/a.cc '#include "scene/scene.h"' yes
 expect lib/arrange/gallery/a.cc '#include "arrange/search/set_cover.h"' no
 expect lib/trace/a.cc '#include "trace/render/render.h"' yes
 expect lib/sim/a.cc '#include "server/server.h"' yes
+expect lib/building/a.cc '#include "passage/lift.h"' yes
+expect lib/sim/a.cc '#include "passage/lift.h"' yes
+expect lib/server/a.cc '#include "passage/lift.h"' yes
+expect lib/passage/a.cc '#include "sim/world.h"' no
 expect lib/nowhere/a.cc '#include <vector>' yes
 expect lib/geom/a.cc '#include "pose.h"' yes
 expect lib/geom/a.h '#include <CGAL/Arrangement_2.h>' yes

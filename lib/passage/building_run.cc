@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "passage/building_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "base/message.h"
+#include "base/number.h"
+#include "passage/building_run_data.h"
+#include "record/text.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace {
+
+namespace {
+
+bool isMoverRecord(const Record& record) {
+    return record.keyword() == "robot" || record.keyword() == "human";
+}
+
+/// Returns the scene of a storey with the ids of movers and of their sensors across the building.
+std::shared_ptr<const Scene> withWholeIds(const std::shared_ptr<const Scene>& scene,
+                                          const Storey& storey, const DeviceCatalogue& devices) {
+    if (scene->robots.empty() && scene->people.empty()) return scene;
+    std::set<std::string_view> movers;
+    for (std::size_t i = 0; i < scene->records.size(); ++i)
+        if (isMoverRecord(scene->records[i])) movers.insert(scene->ids[i]);
+    std::vector<Record> records = scene->records;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const bool is_carried = records[i].schema().type == RecordType::Placement &&
+                                records[i].schema().find("on") != nullptr && records[i].has("on") &&
+                                movers.contains(records[i].text("on"));
+        if (isMoverRecord(records[i]) || is_carried)
+            records[i] = inBuilding(storey, records[i], scene->ids[i]);
+    }
+    return std::make_shared<const Scene>(makeScene(std::move(records), *scene, devices));
+}
+
+}  // namespace
+
+BuildingRun::Data::Data(const BuildingScene& the_building, const BuildingRunOptions& the_options)
+    : building(the_building), options(the_options), passages(passagesOf(building)) {
+    addRooms();
+    addTravellers();
+    Simulation& leader = *rooms.front().simulation;
+    for (std::size_t i = 1; i < rooms.size(); ++i) leader.lead(*rooms[i].simulation);
+    leader.beforeStep([this] { advance(); });
+}
+
+void BuildingRun::Data::addRoom(Room room, std::shared_ptr<const Scene> scene) {
+    room.world = std::make_unique<World>(std::move(scene), options.step, options.run);
+    const bool leads = rooms.empty();
+    room.simulation = std::make_unique<Simulation>(*room.world, std::vector<TimedCommand>(),
+                                                   leads ? options.clock : Clock{Clock::Kind::Fast},
+                                                   leads ? options.until : std::nullopt);
+    rooms.push_back(std::move(room));
+    joined.push_back({rooms.back().id, rooms.back().simulation.get()});
+}
+
+void BuildingRun::Data::addRooms() {
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const Storey& storey = building.document.storeys[i];
+        addRoom({.id = storey.id, .storey = i},
+                withWholeIds(building.scenes[i], storey, building.devices));
+    }
+    for (std::size_t i = 0; i < passages.size(); ++i) {
+        const StoreyLink& passage = passages[i];
+        first_room.push_back(rooms.size());
+        stops.emplace_back(passage.storeys.size());
+        riders.emplace_back();
+        lifts.emplace_back(passage.is_lift ? passage.lift : LiftModel{.floors = {0, 1}});
+        // Long enough for the largest mover on the farthest landing.
+        constexpr double kLane = 3;
+        const auto scene_of = [&](const Document& room) {
+            return std::make_shared<const Scene>(makeScene(room, nullptr, building.devices));
+        };
+        const std::size_t flights = passage.is_lift ? 1 : passage.storeys.size() - 1;
+        for (std::size_t k = 0; k < flights; ++k)
+            addRoom({.id = flights == 1 ? passage.id : passage.id + '.' + std::to_string(k + 1),
+                     .storey = std::nullopt,
+                     .passage = i,
+                     .flight = k},
+                    scene_of(passage.is_lift
+                                 ? cabinRoom(passage.cabin, passage.frame, kLane)
+                                 : flightRoom(passage.width, passage.length, passage.frame)));
+    }
+}
+
+void BuildingRun::Data::addTravellers() {
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const World& world = *rooms[i].world;
+        const Scene& scene = world.scene();
+        for (const Mover& mover : world.movers()) {
+            Traveller who{.id = mover.id, .room = i};
+            who.size = {mover.model.radius, mover.model.height};
+            who.is_person = mover.is_person;
+            who.max_speed = mover.model.max_speed;
+            who.ability = {
+                .climbs = mover.is_person, .mass = kPersonMass, .speed = mover.model.speed};
+            for (std::size_t k = 0; k < scene.records.size(); ++k) {
+                const Record& record = scene.records[k];
+                if (scene.ids[k] == mover.id)
+                    who.records.insert(who.records.begin(), record);
+                else if (record.schema().type == RecordType::Placement &&
+                         record.schema().find("on") != nullptr && record.has("on") &&
+                         record.text("on") == mover.id)
+                    who.records.push_back(record);
+            }
+            if (!mover.is_person) {
+                who.ability.climbs = who.records.front().flag("climbs");
+                who.ability.mass = who.records.front().number("mass");
+            }
+            if (!ways.contains(who.size))
+                ways.emplace(std::piecewise_construct, std::forward_as_tuple(who.size),
+                             std::forward_as_tuple(building, passages, who.size));
+            travellers.emplace(mover.id, std::move(who));
+        }
+    }
+}
+
+RobotStatus BuildingRun::Data::statusOf(const Traveller& who) const {
+    const World& world = *rooms[who.room].world;
+    return world.status(world.moverNamed(who.id).value());
+}
+
+std::optional<std::size_t> BuildingRun::Data::storeyNamed(std::string_view id) const {
+    for (std::size_t i = 0; i < building.scenes.size(); ++i)
+        if (rooms[i].id == id) return i;
+    return std::nullopt;
+}
+
+std::optional<std::size_t> BuildingRun::Data::liftNamed(std::string_view id) const {
+    for (std::size_t i = 0; i < passages.size(); ++i)
+        if (passages[i].is_lift && passages[i].id == id) return i;
+    return std::nullopt;
+}
+
+bool BuildingRun::Data::isFree(std::size_t room, Point2 at, const Traveller& who) const {
+    constexpr double kApart = 0.02;
+    const World& world = *rooms[room].world;
+    const auto movers = world.movers();
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+        const double reach = movers[i].model.radius + who.size.radius + kApart;
+        if (movers[i].id != who.id && distance(world.status(i).pose.position, at) < reach)
+            return false;
+    }
+    const auto storey = rooms[room].storey;
+    return !storey || !waysOf(who).obstacles(*storey).overlap(at, who.size.radius);
+}
+
+void BuildingRun::Data::change(std::size_t room, std::vector<Record> records,
+                               std::vector<std::string> requests) {
+    World& world = *rooms[room].world;
+    world.change(makeScene(std::move(records), world.scene(), building.devices));
+    for (std::string& request : requests)
+        rooms[room].simulation->tellChange(std::move(request), "");
+}
+
+bool BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose2& pose) {
+    if (!isFree(room, pose.position, who)) return false;
+    const std::size_t from = who.room;
+    World& left = *rooms[from].world;
+    World& entered = *rooms[room].world;
+    const auto state = left.carried(left.moverNamed(who.id).value());
+    Record& own = who.records.front();
+    own.set("at", Tuple{pose.position.x, pose.position.y});
+    own.set("heading", pose.heading.degrees());
+    // The way of its record is one of its first storey.
+    for (const char* key : {"path", "loop", "pause", "walk"}) own.erase(key);
+    std::vector<Record> added = entered.scene().records;
+    std::vector<std::string> requests;
+    for (const Record& record : who.records) {
+        added.push_back(record);
+        requests.push_back("ADD " + formatRecord(record));
+    }
+    change(room, std::move(added), std::move(requests));
+    entered.resume(entered.moverNamed(who.id).value(), *state);
+    std::vector<Record> rest;
+    std::string deleted = "DELETE";
+    const Scene& scene = left.scene();
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        const bool goes =
+            std::any_of(who.records.begin(), who.records.end(),
+                        [&](const Record& record) { return record.writtenId() == scene.ids[i]; });
+        if (goes)
+            deleted += ' ' + scene.ids[i];
+        else
+            rest.push_back(scene.records[i]);
+    }
+    change(from, std::move(rest), {deleted});
+    who.room = room;
+    for (const Observer& observer : observers) observer(who.id, from, room);
+    return true;
+}
+
+BuildingRun::BuildingRun(const BuildingScene& building, const BuildingRunOptions& options)
+    : data_(std::make_unique<Data>(building, options)) {}
+
+BuildingRun::~BuildingRun() = default;
+
+Simulation& BuildingRun::simulation() { return *data_->rooms.front().simulation; }
+
+const World& BuildingRun::world(std::size_t room) const { return *data_->rooms[room].world; }
+
+std::span<const JoinedRoom> BuildingRun::rooms() const { return data_->joined; }
+
+std::optional<std::size_t> BuildingRun::roomOf(std::string_view mover) const {
+    const auto found = data_->travellers.find(mover);
+    return found == data_->travellers.end() ? std::nullopt : std::optional(found->second.room);
+}
+
+std::string BuildingRun::whereText(std::size_t room) const {
+    const Data::Room& in = data_->rooms[room];
+    if (in.storey) return "storey=" + in.id;
+    const StoreyLink& passage = data_->passages[in.passage];
+    const auto storey_id = [&](std::size_t stop) {
+        return data_->building.document.storeys[passage.storeys[stop]].id;
+    };
+    if (!passage.is_lift) return "storey=" + storey_id(in.flight) + " in=" + in.id;
+    const double z = data_->lifts[in.passage].height(in.world->time());
+    const std::vector<double>& floors = passage.lift.floors;
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < floors.size(); ++i)
+        if (std::abs(floors[i] - z) < std::abs(floors[nearest] - z)) nearest = i;
+    return "storey=" + storey_id(nearest) + " in=" + in.id + " z=" + formatFixed(z, 3);
+}
+
+std::string BuildingRun::call(std::string_view lift, std::string_view storey) {
+    const auto which = data_->liftNamed(lift);
+    if (!which) return "no lift " + excerpt(lift);
+    const StoreyLink& passage = data_->passages[*which];
+    for (std::size_t stop = 0; stop < passage.storeys.size(); ++stop)
+        if (data_->building.document.storeys[passage.storeys[stop]].id == storey) {
+            data_->lifts[*which].call(stop);
+            return "";
+        }
+    return passage.id + " does not stop at " + excerpt(storey);
+}
+
+std::vector<LiftState> BuildingRun::lifts() const {
+    std::vector<LiftState> states;
+    const SimTime time = world(0).time();
+    for (std::size_t i = 0; i < data_->passages.size(); ++i) {
+        const StoreyLink& passage = data_->passages[i];
+        if (!passage.is_lift) continue;
+        const Lift& lift = data_->lifts[i];
+        const auto storey_id = [&](std::size_t stop) {
+            return data_->building.document.storeys[passage.storeys[stop]].id;
+        };
+        LiftState state{.id = passage.id,
+                        .storey = storey_id(lift.stop()),
+                        .height = lift.height(time),
+                        .door = lift.opening(time),
+                        .riders = {},
+                        .calls = {}};
+        for (const Mover& mover : world(data_->first_room[i]).movers())
+            state.riders.push_back(mover.id);
+        for (const std::size_t stop : lift.calls()) state.calls.push_back(storey_id(stop));
+        states.push_back(std::move(state));
+    }
+    return states;
+}
+
+std::span<const TripEnd> BuildingRun::tripEnds() const { return data_->ends; }
+
+void BuildingRun::onMove(Observer observer) { data_->observers.push_back(std::move(observer)); }
+
+TripAnswer BuildingRun::travel(const std::string& mover, std::vector<RoomPoint> goals,
+                               double speed) {
+    BuildingTrip trip;
+    trip.goals = std::move(goals);
+    trip.speed = speed;
+    return data_->begin(mover, std::move(trip));
+}
+
+TripAnswer BuildingRun::ride(const std::string& mover, std::string_view lift,
+                             std::string_view storey) {
+    const auto which = data_->liftNamed(lift);
+    if (!which) return {.refusal = "no lift " + excerpt(lift)};
+    const auto found = data_->travellers.find(mover);
+    const StoreyLink& passage = data_->passages[*which];
+    for (std::size_t stop = 0; stop < passage.storeys.size(); ++stop) {
+        const std::size_t at = passage.storeys[stop];
+        if (data_->rooms[at].id != storey) continue;
+        const Landing* const landing = data_->waysOf(found->second).landing(*which, stop);
+        if (landing == nullptr) break;
+        BuildingTrip trip;
+        // It leaves the landing to others.
+        trip.goals = {{at, landing->spots.empty() ? landing->at.position : landing->spots.front()}};
+        trip.only = which;
+        return data_->begin(mover, std::move(trip));
+    }
+    return {.refusal = passage.id + " does not stop at " + excerpt(storey)};
+}
+
+}  // namespace ispace

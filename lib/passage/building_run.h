@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "building/building_scene.h"
+#include "passage/lift.h"
+#include "sim/joined_worlds.h"
+#include "sim/simulation.h"
+#include "sim/world.h"
+
+namespace ispace {
+
+/// Settings of a building's run.
+struct BuildingRunOptions {
+    SimTime step = std::chrono::milliseconds(5);
+    RunOptions run = {};
+    Clock clock = {};
+    std::optional<SimTime> until = {};
+};
+
+/// A building that moves: a world for each storey, for each lift's cabin and for each flight of
+/// stairs, all in lock step.
+///
+/// A mover is in one world at a time. It goes to another one as a change of both, between steps, so
+/// that records and replays of a world hold all that happened there. Cabins and flights have the
+/// coordinates of the building; flights are walked straight ahead, also those that turn. Ids of
+/// movers and of the sensors on them are those across the building, as "ground/r1", wherever they
+/// go; all other ids are plain.
+///
+/// Trips (see JoinedWorlds) take the fastest way by stairs and lifts. Movers wait beside a landing,
+/// one queue for each lift, and enter one by one, those that leave first. A mover in a cabin stands
+/// where it leaves a way out to those that get out before it.
+///
+/// People climb at kSpeedUp and kSpeedDown; a robot only with climbs=yes. A person weighs
+/// kPersonMass (EN 81-20), a robot `mass`. The same building, options and commands give the same
+/// bytes.
+class BuildingRun final : public JoinedWorlds {
+  public:
+    static constexpr double kPersonMass = 75;
+
+    /// \throws FormatError as World does, with the storey
+    BuildingRun(const BuildingScene& building, const BuildingRunOptions& options);
+    ~BuildingRun() override;
+    BuildingRun(const BuildingRun&) = delete;
+    BuildingRun& operator=(const BuildingRun&) = delete;
+
+    /// Returns the simulation that leads all others.
+    [[nodiscard]] Simulation& simulation();
+    /// Returns the worlds in the order of rooms().
+    [[nodiscard]] const World& world(std::size_t room) const;
+
+    [[nodiscard]] std::span<const JoinedRoom> rooms() const override;
+    [[nodiscard]] std::optional<std::size_t> roomOf(std::string_view mover) const override;
+    [[nodiscard]] std::string whereText(std::size_t room) const override;
+    TripAnswer travel(const std::string& mover, std::vector<RoomPoint> goals,
+                      double speed) override;
+    TripAnswer ride(const std::string& mover, std::string_view lift,
+                    std::string_view storey) override;
+    std::string endTrip(const std::string& mover, Outcome outcome) override;
+    std::string call(std::string_view lift, std::string_view storey) override;
+    [[nodiscard]] std::vector<LiftState> lifts() const override;
+    [[nodiscard]] std::span<const TripEnd> tripEnds() const override;
+    void onMove(Observer observer) override;
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+}  // namespace ispace

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/passage: the state of a building's run.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "passage/building_run.h"
+#include "passage/cabin.h"
+#include "passage/storey_ways.h"
+#include "scene/scene.h"
+
+namespace ispace {
+
+/// A robot or a person, wherever it is.
+struct Traveller {
+    std::string id;
+    std::size_t room = 0;
+    MoverSize size = {};
+    MoverAbility ability = {};
+    bool is_person = false;
+    double max_speed = 0;
+    std::vector<Record> records = {};  ///< its own, then those of its sensors
+};
+
+enum class TripState {
+    Setting,   ///< about to begin a leg
+    Walking,   ///< to where it waits, or to the goal
+    Queueing,  ///< it waits for a passage
+    Nearing,   ///< from there to the landing
+    Entering,  ///< into the cabin
+    Riding,
+    Climbing,
+    Leaving,  ///< out of the cabin, to the lane
+    AtEnd     ///< in the lane or on the last step, until the landing is free
+};
+
+struct BuildingTrip {
+    int command = 0;
+    std::vector<RoomPoint> goals;
+    std::size_t goal = 0;
+    std::optional<std::size_t> only;  ///< passage to be used
+    double speed = 0;                 ///< m/s
+    std::vector<Leg> legs;
+    std::size_t leg = 0;
+    TripState state = TripState::Setting;
+    std::deque<Point2> steps;  ///< points of a way that it goes without a look around
+    int running = 0;           ///< id of the command under way in its world; 0: none
+    int attempts = 0;
+    std::optional<Point2> spot;  ///< reserved, in the frame of the storey
+};
+
+/// A stop of a passage: whose turn it is.
+struct Stop {
+    std::deque<std::string> queue;
+    std::string holder;  ///< the mover that enters or has left; "": none
+};
+
+struct BuildingRun::Data {
+    Data(const BuildingScene& the_building, const BuildingRunOptions& the_options);
+
+    struct Room {
+        std::string id;
+        std::optional<std::size_t> storey;    // of a storey
+        std::size_t passage = 0, flight = 0;  // of a cabin or a flight
+        std::unique_ptr<World> world = {};
+        std::unique_ptr<Simulation> simulation = {};
+    };
+
+    void addRooms();
+    void addTravellers();
+    void addRoom(Room room, std::shared_ptr<const Scene> scene);
+    [[nodiscard]] const StoreyWays& waysOf(const Traveller& who) const { return ways.at(who.size); }
+    [[nodiscard]] World& worldOf(const Traveller& who) { return *rooms[who.room].world; }
+    [[nodiscard]] RobotStatus statusOf(const Traveller& who) const;
+    [[nodiscard]] std::optional<std::size_t> storeyNamed(std::string_view id) const;
+    [[nodiscard]] std::optional<std::size_t> liftNamed(std::string_view id) const;
+    [[nodiscard]] std::vector<double> waits() const;
+
+    // Trips.
+    TripAnswer begin(const std::string& mover, BuildingTrip trip);
+    [[nodiscard]] std::optional<Route> routeFrom(const Traveller& who, std::size_t storey,
+                                                 Point2 at, const BuildingTrip& trip,
+                                                 std::size_t goal) const;
+    void advance();
+    void advanceTrip(const std::string& id, BuildingTrip& trip);
+    void advanceLifts();
+    void setOut(Traveller& who, BuildingTrip& trip);
+    void queueUp(Traveller& who, BuildingTrip& trip);
+    void waitTurn(Traveller& who, BuildingTrip& trip);
+    void enter(Traveller& who, BuildingTrip& trip);
+    void enterCabin(Traveller& who, BuildingTrip& trip);
+    void enterFlight(Traveller& who, BuildingTrip& trip);
+    void tryAgain(Traveller& who, BuildingTrip& trip, Outcome outcome);
+    [[nodiscard]] bool isNearLanding(const Traveller& who, const BuildingTrip& trip) const;
+    void climb(Traveller& who, BuildingTrip& trip);
+    void leaveCabin(Traveller& who, BuildingTrip& trip);
+    void step(Traveller& who, BuildingTrip& trip);
+    void arrive(Traveller& who, BuildingTrip& trip);
+    void finish(const std::string& id, Outcome outcome);
+    void release(const std::string& id);
+    void releaseHolders();
+    [[nodiscard]] bool mayHoldOpen(std::size_t lift) const;
+    [[nodiscard]] bool mayPass(const Traveller& who, const StoreyLink& passage, std::size_t room,
+                               bool is_up) const;
+
+    /// Gives a mover a way in its present world.
+    void send(Traveller& who, BuildingTrip& trip, std::vector<Point2> way, double speed);
+    /// Sends it from point to point, turning on the spot: along ways that are known to be free.
+    void sendStraight(Traveller& who, BuildingTrip& trip, std::deque<Point2> way);
+    void goOn(Traveller& who, BuildingTrip& trip);
+    /// Returns how the command ended; empty while it is under way.
+    std::optional<Outcome> ended(const Traveller& who, BuildingTrip& trip) const;
+    /// Moves a mover to another room. \returns false if it is not free there
+    bool move(Traveller& who, std::size_t room, const Pose2& pose);
+    [[nodiscard]] bool isFree(std::size_t room, Point2 at, const Traveller& who) const;
+    void change(std::size_t room, std::vector<Record> records, std::vector<std::string> requests);
+
+    BuildingScene building;
+    BuildingRunOptions options;
+    std::vector<StoreyLink> passages;
+    std::vector<Room> rooms;  // storeys, then the cabin or the flights of each passage
+    std::vector<JoinedRoom> joined;
+    std::vector<std::size_t> first_room;     // of each passage
+    std::vector<Lift> lifts;                 // by passage; unused for stairs
+    std::vector<std::vector<Rider>> riders;  // by passage
+    std::vector<std::vector<Stop>> stops;    // by passage and stop
+    std::map<MoverSize, StoreyWays> ways;
+    std::map<std::string, Traveller, std::less<>> travellers;
+    std::map<std::string, BuildingTrip, std::less<>> trips;
+    std::vector<TripEnd> ends, new_ends;
+    std::vector<Observer> observers;
+};
+
+}  // namespace ispace

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "passage/building_run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "building/storeys.h"
+#include "passage/cabin.h"
+#include "support/test_layout.h"
+
+namespace ispace {
+namespace {
+
+constexpr SimTime kStep = std::chrono::milliseconds(10);
+
+/// Two storeys of 12 m x 8 m, a lift at the left wall and stairs at the lower one. Both have a box
+/// around the cabin with an open front.
+constexpr const char* kBuilding =
+    "- storey: {id: ground, height: 3, records: &room [{fence: {id: f, path: [[0, 0], [12, 0], "
+    "[12, 8], [0, 8]], closed: yes}}, {fence: {id: c, path: [[2.2, 3], [0.2, 3], [0.2, 5], [2.2, "
+    "5]]}}]}\n"
+    "- storey: {id: upper, z: 3, height: 3, records: *room}\n"
+    "- lift: {id: l1, storeys: 'ground,upper', at: [1.2, 4], heading: 0, size: [1.8, 1.8], door: "
+    "1.2, capacity: 300kg}\n"
+    "- stairs: {id: s1, storeys: 'ground,upper', at: [4, 1], heading: 0, size: [1.6, 4]}\n";
+
+BuildingScene buildingOf(const std::string& layout, const std::string& text = kBuilding) {
+    StoreyedDocument document = readBuilding(text, "house.yaml", {});
+    const std::vector<Document> layouts = layoutsOf(testing::layoutDocument(layout), document);
+    return makeBuildingScene(std::move(document), layouts, testing::devices());
+}
+
+BuildingRunOptions optionsOf(SimTime step = kStep) {
+    BuildingRunOptions options;
+    options.step = step;
+    options.clock = {Clock::Kind::Step};
+    return options;
+}
+
+/// Takes a step, with all worlds in it.
+void step(BuildingRun& run) {
+    run.simulation().allow(1);
+    static_cast<void>(
+        run.simulation().run(std::chrono::steady_clock::now(), std::chrono::hours(1)));
+}
+
+Pose2 poseOf(const BuildingRun& run, const std::string& id) {
+    const World& world = run.world(run.roomOf(id).value());
+    return world.status(world.moverNamed(id).value()).pose;
+}
+
+/// Steps until the trip of a mover ends; returns its end, or nothing after `most` seconds.
+std::optional<TripEnd> await(BuildingRun& run, const std::string& id, double most,
+                             const std::function<void()>& look = {}) {
+    while (seconds(run.world(0).time()) < most) {
+        step(run);
+        if (look) look();
+        for (const TripEnd& end : run.tripEnds())
+            if (end.mover == id) return end;
+    }
+    return std::nullopt;
+}
+
+TEST(BuildingRun, HasAWorldForEachStoreyCabinAndFlight) {
+    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const BuildingRun run(building, optionsOf());
+    std::vector<std::string> ids;
+    for (const JoinedRoom& room : run.rooms()) ids.push_back(room.id);
+    EXPECT_EQ(ids, (std::vector<std::string>{"ground", "upper", "l1", "s1"}));
+    EXPECT_EQ(run.roomOf("ground/r1"), 0U);
+    EXPECT_EQ(run.roomOf("r1"), std::nullopt);
+    EXPECT_EQ(run.whereText(1), "storey=upper");
+    EXPECT_EQ(run.whereText(2), "storey=ground in=l1 z=0.000");
+}
+
+TEST(BuildingRun, ARobotTakesTheLift) {
+    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    BuildingRun run(building, optionsOf());
+    const TripAnswer answer = run.travel("ground/r1", {{1, {9, 6}}}, 0);
+    ASSERT_EQ(answer.refusal, "");
+    EXPECT_EQ(answer.via, "l1");
+    EXPECT_EQ(answer.id, 1);
+    std::vector<std::size_t> rooms = {0};
+    const auto end = await(run, "ground/r1", 120, [&] {
+        if (const auto room = run.roomOf("ground/r1"); room != rooms.back()) rooms.push_back(*room);
+    });
+    ASSERT_TRUE(end);
+    EXPECT_EQ(end->outcome, Outcome::Done);
+    EXPECT_EQ(end->id, 1);
+    EXPECT_EQ(rooms, (std::vector<std::size_t>{0, 2, 1}));
+    EXPECT_NEAR(distance(poseOf(run, "ground/r1").position, {9, 6}), 0, 0.02);
+}
+
+TEST(BuildingRun, ARobotClimbsOnlyIfItsRecordSaysSo) {
+    const std::string stairs_only =
+        std::string(kBuilding).substr(0, std::string(kBuilding).find("- lift")) +
+        "- stairs: {id: s1, storeys: 'ground,upper', at: [4, 1], heading: 0, size: [1.6, 4]}\n";
+    const BuildingScene building = buildingOf(
+        "robot id=ground/r1 at=6,4\nrobot id=ground/r2 at=8,4 climbs=yes\n", stairs_only);
+    BuildingRun run(building, optionsOf());
+    EXPECT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).refusal,
+              "no way for ground/r1 to upper/9,6; s1: it does not climb stairs");
+    const TripAnswer answer = run.travel("ground/r2", {{1, {9, 6}}}, 0);
+    EXPECT_EQ(answer.refusal, "");
+    EXPECT_EQ(answer.via, "s1");
+    const auto end = await(run, "ground/r2", 120);
+    ASSERT_TRUE(end);
+    EXPECT_EQ(end->outcome, Outcome::Done);
+    EXPECT_EQ(run.roomOf("ground/r2"), 1U);
+}
+
+/// The time that a person takes for the flight up or down, and the fastest pace on it.
+TEST(BuildingRun, PeopleTakeStairsAtTheirPace) {
+    for (const bool is_up : {true, false}) {
+        const BuildingScene building =
+            buildingOf(is_up ? "human id=ground/h at=6,4\n" : "human id=upper/h at=6,4\n");
+        BuildingRun run(building, optionsOf());
+        const std::string id = is_up ? "ground/h" : "upper/h";
+        ASSERT_EQ(run.travel(id, {{is_up ? 1U : 0U, {9, 6}}}, 0).via, "s1");
+        double entered = -1, left = -1, fastest = 0;
+        const auto end = await(run, id, 60, [&] {
+            const double now = seconds(run.world(0).time());
+            const std::size_t room = run.roomOf(id).value();
+            if (room == 3) {
+                if (entered < 0) entered = now;
+                fastest = std::max(fastest, run.world(3).status(0).speed);
+            } else if (entered >= 0 && left < 0) {
+                left = now;
+            }
+        });
+        ASSERT_TRUE(end);
+        EXPECT_EQ(end->outcome, Outcome::Done);
+        const double pace = is_up ? 0.6 : 0.7;
+        EXPECT_NEAR(fastest, pace, 1e-9);
+        // A person reaches 1.2 m/s in half a second, and stops like that.
+        EXPECT_NEAR(left - entered, 4 / pace + pace / 2.4, 0.3);
+    }
+}
+
+/// Robots that all want to go up: the load of the cabin never exceeds its capacity, and riders
+/// never overlap.
+TEST(BuildingRun, TheCabinHoldsNoMoreThanItsCapacity) {
+    std::string layout;
+    for (int i = 0; i < 6; ++i)
+        layout += "robot id=ground/r" + std::to_string(i) +
+                  " mass=120 at=" + std::to_string(5 + i) + ",6\n";
+    const BuildingScene building = buildingOf(layout);
+    BuildingRun run(building, optionsOf());
+    for (int i = 0; i < 6; ++i)
+        ASSERT_EQ(run.travel("ground/r" + std::to_string(i), {{1, {5.0 + i, 6}}}, 0).refusal, "");
+    std::size_t most = 0;
+    std::map<std::string, Outcome> ends;
+    while (ends.size() < 6 && seconds(run.world(0).time()) < 600) {
+        step(run);
+        most = std::max(most, run.world(2).movers().size());
+        for (const TripEnd& end : run.tripEnds()) ends[end.mover] = end.outcome;
+        ASSERT_TRUE(run.world(2).collisions().empty());
+        const LiftState lift = run.lifts().front();
+        ASSERT_TRUE(lift.door == 0 || lift.height == 0 || lift.height == 3);
+    }
+    EXPECT_EQ(most, 2U);
+    ASSERT_EQ(ends.size(), 6U);
+    for (const auto& [id, outcome] : ends) {
+        EXPECT_EQ(outcome, Outcome::Done) << id;
+        EXPECT_EQ(run.roomOf(id), 1U);
+    }
+}
+
+TEST(BuildingRun, GoesThroughPointsOfSeveralStoreys) {
+    const BuildingScene building = buildingOf("human id=ground/h at=6,4\n");
+    BuildingRun run(building, optionsOf());
+    const TripAnswer answer = run.travel("ground/h", {{1, {9, 6}}, {0, {2.5, 7}}}, 1);
+    EXPECT_EQ(answer.via, "s1,s1");
+    ASSERT_TRUE(await(run, "ground/h", 120));
+    EXPECT_EQ(run.roomOf("ground/h"), 0U);
+    EXPECT_NEAR(distance(poseOf(run, "ground/h").position, {2.5, 7}), 0, 0.02);
+}
+
+TEST(BuildingRun, EndsATripForAnotherCommand) {
+    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    BuildingRun run(building, optionsOf());
+    ASSERT_EQ(run.ride("ground/r1", "l1", "upper").refusal, "");
+    step(run);
+    EXPECT_EQ(run.endTrip("ground/r1", Outcome::Stopped), "");
+    ASSERT_EQ(run.tripEnds().size(), 1U);
+    EXPECT_EQ(run.tripEnds().front().outcome, Outcome::Stopped);
+    // In a cabin it cannot be ended.
+    ASSERT_EQ(run.ride("ground/r1", "l1", "upper").refusal, "");
+    while (run.roomOf("ground/r1") == 0U && seconds(run.world(0).time()) < 60) step(run);
+    EXPECT_EQ(run.endTrip("ground/r1", Outcome::Stopped),
+              "ground/r1 is in l1: it first goes on to a storey");
+    EXPECT_TRUE(await(run, "ground/r1", 120));
+    EXPECT_EQ(run.ride("ground/r1", "l2", "upper").refusal, "no lift `l2`");
+    EXPECT_EQ(run.ride("ground/r1", "l1", "attic").refusal, "l1 does not stop at `attic`");
+}
+
+TEST(BuildingRun, KeepsOdometryAndIdsAcrossRooms) {
+    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    BuildingRun run(building, optionsOf());
+    ASSERT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).id, 1);
+    ASSERT_TRUE(await(run, "ground/r1", 120));
+    // Without noise, and as both storeys have the frame of the building, as if it had gone on foot.
+    const World& world = run.world(1);
+    const Pose2 odometry = world.odometry(0).pose;
+    EXPECT_NEAR(odometry.position.x, 3, 0.02);
+    EXPECT_NEAR(odometry.position.y, 2, 0.02);
+    EXPECT_GT(run.travel("ground/r1", {{0, {9, 6}}}, 0).id, 1);
+}
+
+TEST(BuildingRun, IsTheSameTwice) {
+    const auto way = [] {
+        const BuildingScene building = buildingOf(
+            "robot id=ground/r1 at=6,4\nrobot id=upper/r1 at=6,4\nhuman id=upper/h "
+            "at=8,6\nlaser id=upper/l on=upper/r1 at=0,0,0.2\n");
+        BuildingRun run(building, optionsOf());
+        run.travel("ground/r1", {{1, {9, 6}}}, 0);
+        run.travel("upper/r1", {{0, {9, 6}}}, 0);
+        run.travel("upper/h", {{0, {10, 4}}}, 0);
+        std::string text;
+        for (int i = 0; i < 9000; ++i) {
+            step(run);
+            for (const char* id : {"ground/r1", "upper/r1", "upper/h"}) {
+                const Pose2 pose = poseOf(run, id);
+                text += std::to_string(*run.roomOf(id)) + ' ' + formatDouble(pose.position.x) +
+                        ' ' + formatDouble(pose.position.y) + '\n';
+            }
+        }
+        EXPECT_EQ(run.roomOf("ground/r1"), 1U);
+        EXPECT_EQ(run.roomOf("upper/r1"), 0U);
+        EXPECT_EQ(run.roomOf("upper/h"), 0U);
+        // Its laser comes along.
+        EXPECT_TRUE(run.world(0).sensorNamed("upper/l"));
+        EXPECT_FALSE(run.world(1).sensorNamed("upper/l"));
+        return text;
+    };
+    const std::string first = way();
+    EXPECT_TRUE(first == way());
+}
+
+TEST(Cabin, RidersLeaveAWayOutForOthers) {
+    const Cabin cabin{.width = 1.8, .length = 1.8, .door = 1.2, .capacity = 300};
+    const Rider a{.id = "a", .at = {}, .radius = 0.3, .mass = 100, .stop = 1};
+    std::vector<Rider> riders = {a};
+    riders[0].at = slotIn(cabin, {}, a).value();
+    Rider b = a;
+    b.stop = 2;
+    const auto second = slotIn(cabin, riders, b);
+    ASSERT_TRUE(second);
+    EXPECT_GE(distance(*second, riders[0].at), 0.6);
+    riders.push_back(b);
+    riders[1].at = *second;
+    Rider heavy = a;
+    heavy.mass = 101;
+    EXPECT_FALSE(slotIn(cabin, riders, heavy));
+    Rider wide = a;
+    wide.radius = 0.9;
+    EXPECT_FALSE(slotIn(cabin, {}, wide));
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "passage/building_script.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "record/text.h"
+#include "sim/simulation.h"
+
+namespace ispace {
+
+BuildingScript::BuildingScript(std::string_view text, const std::string& file,
+                               const BuildingRun& run) {
+    Diagnostics findings;
+    LineReader reader(text);
+    constexpr std::string_view kSpeed = "speed=";
+    while (const auto whole = reader.next()) {
+        const std::string_view bytes = whole->substr(0, whole->find('#'));
+        const std::vector<Piece> words = wordsOf(bytes);
+        if (words.empty()) continue;
+        const auto fault = [&](std::size_t word, const std::string& message) {
+            findings.add({file, reader.number(), words[word].column, message});
+        };
+        Line line;
+        const auto time = parseSimTime(words[0].text);
+        if (!time) {
+            fault(0, excerpt(words[0].text) + " is no time in seconds from 0 on");
+            continue;
+        }
+        if (words.size() < 3) {
+            fault(words.size() - 1, "wanted TIME MOVER COMMAND");
+            continue;
+        }
+        line.time = *time;
+        line.mover = words[1].text;
+        const auto room = run.roomOf(line.mover);
+        if (!room) {
+            fault(1, "no robot or person " + excerpt(words[1].text));
+            continue;
+        }
+        const std::string verb = upperCase(words[2].text);
+        const bool has_storey =
+            words.size() > 3 && words[3].text.find('/') != std::string_view::npos;
+        if (verb == "RIDE" && words.size() == 5) {
+            line.lift = words[3].text;
+            line.storey = words[4].text;
+        } else if ((verb == "GOTO" && words.size() > 3) || (verb == "PATH" && has_storey)) {
+            RoomPoints goals = parseRoomPoints(words[3].text, run.rooms(), *room);
+            if (!goals.fault.empty()) fault(3, goals.fault);
+            line.goals = std::move(goals.points);
+            if (words.size() > 4) {
+                const auto speed = words[4].text.starts_with(kSpeed)
+                                       ? parseDouble(words[4].text.substr(kSpeed.size()))
+                                       : std::nullopt;
+                if (!speed || !(*speed > 0) || words.size() > 5)
+                    fault(4, "unexpected " + excerpt(words[4].text) + ": speed=v alone");
+                line.speed = speed.value_or(0);
+            }
+        } else {
+            const auto begin = static_cast<std::size_t>(words[2].text.data() - bytes.data());
+            const ParsedCommand parsed = parseCommand(bytes.substr(begin));
+            if (parsed.command)
+                line.command = *parsed.command;
+            else
+                fault(2, parsed.error.message);
+        }
+        lines_.push_back(std::move(line));
+    }
+    findings.throwIfAny();
+    std::stable_sort(lines_.begin(), lines_.end(),
+                     [](const Line& a, const Line& b) { return a.time < b.time; });
+}
+
+void BuildingScript::give(BuildingRun& run) {
+    const SimTime now = run.world(0).time();
+    for (; next_ < lines_.size() && lines_[next_].time <= now; ++next_) {
+        const Line& line = lines_[next_];
+        if (!line.lift.empty()) {
+            run.ride(line.mover, line.lift, line.storey);
+        } else if (!line.goals.empty()) {
+            run.travel(line.mover, line.goals, line.speed);
+        } else {
+            World& world = run.rooms()[run.roomOf(line.mover).value()].simulation->world();
+            const std::size_t mover = world.moverNamed(line.mover).value();
+            const bool stops = line.command.verb == Verb::Stop;
+            if (world.refusal(mover, line.command).empty() &&
+                run.endTrip(line.mover, stops ? Outcome::Stopped : Outcome::Replaced).empty())
+                world.command(mover, line.command);
+        }
+    }
+}
+
+}  // namespace ispace

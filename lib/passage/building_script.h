@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "passage/building_run.h"
+#include "sim/command.h"
+
+namespace ispace {
+
+/// Commands of a script to the robots and people of a building.
+///
+/// Lines as those of readScript(), with the ids across the building, and besides them
+/// `GOTO STOREY/X,Y`, `PATH STOREY/X,Y;…` and `RIDE LIFT STOREY`. A command that cannot be carried
+/// out when its time has come is skipped, as in Simulation.
+class BuildingScript {
+  public:
+    /// \throws FormatError with all findings (file:line:column)
+    BuildingScript(std::string_view text, const std::string& file, const BuildingRun& run);
+    /// Gives the commands that are due, before each step.
+    void give(BuildingRun& run);
+
+  private:
+    struct Line {
+        SimTime time{};
+        std::string mover;
+        Command command;               // unless it is a trip
+        std::vector<RoomPoint> goals;  // of a trip
+        double speed = 0;
+        std::string lift, storey;  // of a ride
+    };
+    std::vector<Line> lines_;
+    std::size_t next_ = 0;
+};
+
+}  // namespace ispace

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "passage/lift.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace ispace {
+
+namespace {
+
+SimTime timeOf(double duration) {
+    constexpr double kMicroseconds = 1e6;
+    return std::chrono::microseconds(std::llround(duration * kMicroseconds));
+}
+
+}  // namespace
+
+double liftRide(double distance, double speed) {
+    const double a = Lift::kAcceleration;
+    if (distance * a < speed * speed) return 2 * std::sqrt(distance / a);
+    return distance / speed + speed / a;
+}
+
+double liftWay(double distance, double speed, double seconds) {
+    const double a = Lift::kAcceleration;
+    const double whole = liftRide(distance, speed);
+    const double t = std::clamp(seconds, 0.0, whole);
+    const double ramp = std::min(speed / a, whole / 2);
+    if (t <= ramp) return a * t * t / 2;
+    if (t >= whole - ramp) return distance - a * (whole - t) * (whole - t) / 2;
+    return a * ramp * ramp / 2 + a * ramp * (t - ramp);
+}
+
+double doorTime(double width) { return width / 2 / Lift::kLeafSpeed; }
+
+void Lift::call(std::size_t stop) {
+    assert(stop < model_.floors.size());
+    if (std::find(calls_.begin(), calls_.end(), stop) == calls_.end()) calls_.push_back(stop);
+}
+
+void Lift::begin(Phase phase, SimTime time, SimTime length) {
+    phase_ = phase;
+    since_ = time;
+    until_ = time + length;
+}
+
+void Lift::advance(SimTime time, bool held) {
+    const SimTime door = timeOf(doorTime(model_.door));
+    const auto serve = [this] { std::erase(calls_, stop_); };
+    switch (phase_) {
+        case Phase::Waiting:
+            if (calls_.empty()) break;
+            next_ = calls_.front();
+            if (next_ == stop_) {
+                serve();
+                begin(Phase::Opening, time, door);
+            } else {
+                const double way = std::abs(model_.floors[next_] - model_.floors[stop_]);
+                begin(Phase::Riding, time, timeOf(liftRide(way, model_.speed)));
+            }
+            break;
+        case Phase::Opening:
+            if (time >= until_) begin(Phase::Open, time, kDwell);
+            break;
+        case Phase::Open:
+            serve();
+            if (time >= until_ && !held) begin(Phase::Closing, time, door);
+            break;
+        case Phase::Closing:
+            if (time >= until_) begin(Phase::Waiting, time, SimTime(0));
+            break;
+        case Phase::Riding:
+            if (time < until_) break;
+            stop_ = next_;
+            serve();
+            begin(Phase::Opening, time, door);
+            break;
+    }
+}
+
+double Lift::height(SimTime time) const {
+    const double from = model_.floors[stop_];
+    if (phase_ != Phase::Riding) return from;
+    const double way = model_.floors[next_] - from;
+    const double gone = liftWay(std::abs(way), model_.speed, seconds(time - since_));
+    return from + std::copysign(gone, way);
+}
+
+double Lift::opening(SimTime time) const {
+    const double share = std::clamp(seconds(time - since_) / doorTime(model_.door), 0.0, 1.0);
+    switch (phase_) {
+        case Phase::Opening:
+            return share;
+        case Phase::Open:
+            return 1;
+        case Phase::Closing:
+            return 1 - share;
+        case Phase::Waiting:
+        case Phase::Riding:
+            break;
+    }
+    return 0;
+}
+
+}  // namespace ispace

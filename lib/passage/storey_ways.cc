@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "passage/storey_ways.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "base/number.h"
+#include "env/walls.h"
+#include "sim/collision.h"
+
+namespace ispace {
+
+namespace {
+
+/// Width that a mover needs besides its own.
+constexpr double kRoom = 0.1;
+/// Landings lie at most this far from a door or from the end of a flight, in metres.
+constexpr double kFarthestLanding = 1.5, kLandingStep = 0.05;
+/// Waiting movers stand at most this far from the landing, on a grid of this step.
+constexpr double kFarthestSpot = 4, kSpotStep = 0.5;
+constexpr std::size_t kMostSpots = 8;
+/// The floor before a door that waiting movers leave free, metres ahead.
+constexpr double kLeftFree = 2.5;
+
+double loadOf(const Record& record) {
+    if (!record.has("capacity")) return 0;
+    std::string load = record.text("capacity");
+    if (load.ends_with("kg")) load.resize(load.size() - 2);
+    const auto kilograms = parseDouble(load);
+    return kilograms && *kilograms > 0 ? *kilograms : 0;
+}
+
+StoreyLink passageOf(const BuildingScene& building, const StoreyPassage& from) {
+    StoreyLink passage{.id = from.id, .storeys = from.storeys};
+    const Record& record = from.record;
+    const Tuple& size = record.tuple("size");
+    passage.is_lift = record.keyword() == "lift";
+    passage.frame = {pointOf(record.tuple("at")), record.angle("heading")};
+    if (passage.is_lift) {
+        constexpr double kDoor = 0.9;
+        passage.cabin = {
+            .width = size[0],
+            .length = size[1],
+            .door = std::min(size[0], record.has("door") ? record.number("door") : kDoor),
+            .capacity = loadOf(record)};
+        passage.lift = {.floors = {}, .speed = record.number("speed"), .door = passage.cabin.door};
+        for (const std::size_t storey : from.storeys)
+            passage.lift.floors.push_back(building.document.storeys[storey].floor);
+        return passage;
+    }
+    passage.width = size[0];
+    const Point2 ahead = passage.frame * Point2{size[1], 0};
+    passage.top = record.has("top") ? pointOf(record.tuple("top")) : ahead;
+    // Ahead to the end of the steps, and from there to the top: stairs may turn.
+    passage.length = size[1] + distance(ahead, passage.top);
+    return passage;
+}
+
+Pose2 inFrameOf(const Storey& storey, const Pose2& building_pose) {
+    return seenFrom(storey.building_from_storey, building_pose);
+}
+
+}  // namespace
+
+std::vector<StoreyLink> passagesOf(const BuildingScene& building) {
+    std::vector<StoreyLink> passages;
+    for (const StoreyPassage& one : building.document.passages)
+        if (one.storeys.size() > 1 && one.record.keyword() != "shaft")
+            passages.push_back(passageOf(building, one));
+    return passages;
+}
+
+StoreyWays::StoreyWays(const BuildingScene& building, const std::vector<StoreyLink>& passages,
+                       const MoverSize& size)
+    : passages_(&passages), size_(size) {
+    obstacles_.reserve(building.scenes.size());
+    finders_.reserve(building.scenes.size());
+    for (const auto& scene : building.scenes) {
+        const Environment& room = scene->environment;
+        const Obstacles& obstacles = obstacles_.emplace_back(room, size.height, nullptr);
+        finders_.emplace_back(obstacles, bounds(room.indoor()), size.radius);
+    }
+    for (std::size_t i = 0; i < passages.size(); ++i)
+        if (passages[i].is_lift)
+            addLift(building, i);
+        else
+            addStairs(building, i);
+    for (Landing& landing : landings_) addSpots(landing);
+}
+
+void StoreyWays::addLift(const BuildingScene& building, std::size_t index) {
+    const StoreyLink& passage = (*passages_)[index];
+    for (std::size_t stop = 0; stop < passage.storeys.size(); ++stop) {
+        const std::size_t storey = passage.storeys[stop];
+        for (double lane = size_.radius + kRoom; lane <= kFarthestLanding + size_.radius;
+             lane += kLandingStep) {
+            // About to enter, a mover faces the door.
+            const Pose2 before{{passage.cabin.length / 2 + lane, 0}, Angle::degrees(180)};
+            const Pose2 at =
+                inFrameOf(building.document.storeys[storey], placedIn(passage.frame, before));
+            if (!finders_[storey].isFree(at.position)) continue;
+            landings_.push_back({.passage = index,
+                                 .stop = stop,
+                                 .storey = storey,
+                                 .at = at,
+                                 .lane = lane,
+                                 .spots = {},
+                                 .ways = finders_[storey].waysFrom(at.position)});
+            break;
+        }
+    }
+}
+
+void StoreyWays::addStairs(const BuildingScene& building, std::size_t index) {
+    const StoreyLink& passage = (*passages_)[index];
+    constexpr int kDirections = 16;
+    const auto add = [&](std::size_t stop, const Pose2& end) {
+        const std::size_t storey = passage.storeys[stop];
+        const Pose2 from = inFrameOf(building.document.storeys[storey], end);
+        for (double way = 0; way <= kFarthestLanding; way += kLandingStep)
+            for (int k = 0; k < kDirections; ++k) {
+                // First straight away from the steps, then to the sides.
+                const double turn =
+                    180 + (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) * 360.0 / kDirections;
+                const Angle heading = from.heading + Angle::degrees(turn);
+                const Point2 p = Pose2{from.position, heading} * Point2{way, 0};
+                if (!finders_[storey].isFree(p)) continue;
+                landings_.push_back({.passage = index,
+                                     .stop = stop,
+                                     .storey = storey,
+                                     .at = {p, from.heading},
+                                     .lane = 0,
+                                     .spots = {},
+                                     .ways = finders_[storey].waysFrom(p)});
+                return;
+            }
+    };
+    // Inner storeys of stairs have a foot and a top; movers come and go at the foot.
+    for (std::size_t stop = 0; stop < passage.storeys.size(); ++stop) {
+        const bool is_top = stop + 1 == passage.storeys.size();
+        const Angle back = passage.frame.heading + Angle::degrees(180);
+        add(stop, is_top ? Pose2{passage.top, back} : passage.frame);
+    }
+}
+
+const Landing* StoreyWays::landing(std::size_t passage, std::size_t stop) const {
+    for (const Landing& landing : landings_)
+        if (landing.passage == passage && landing.stop == stop) return &landing;
+    return nullptr;
+}
+
+/// Finds points near a landing that leave the way to the passages free.
+void StoreyWays::addSpots(Landing& landing) const {
+    const WayFinder& finder = finders_[landing.storey];
+    const double wide = 2 * size_.radius;
+    std::vector<std::tuple<double, double, double>> found;
+    const int reach = static_cast<int>(kFarthestSpot / kSpotStep);
+    for (int i = -reach; i <= reach; ++i)
+        for (int k = -reach; k <= reach; ++k) {
+            const Point2 p = landing.at.position + Vec2{i * kSpotStep, k * kSpotStep};
+            const bool is_in_way =
+                std::any_of(landings_.begin(), landings_.end(), [&](const Landing& other) {
+                    if (other.storey != landing.storey) return false;
+                    const Point2 local = seenFrom(other.at, {p, Angle()}).position;
+                    const bool is_before = local.x < 0 && local.x > -kLeftFree - wide &&
+                                           std::abs(local.y) < wide + kRoom;
+                    const StoreyLink& passage = (*passages_)[other.passage];
+                    const double deep =
+                        other.lane + (passage.is_lift ? passage.cabin.length : passage.length);
+                    const double half = (passage.is_lift ? passage.cabin.width : passage.width) / 2;
+                    const bool is_within = local.x >= 0 && local.x < deep + size_.radius &&
+                                           std::abs(local.y) < half + size_.radius;
+                    return is_before || is_within ||
+                           distance(p, other.at.position) < wide + 4 * kRoom;
+                });
+            if (is_in_way || !finder.isFree(p)) continue;
+            const auto way = finder.length(landing.ways, p);
+            if (way && *way <= 2 * kFarthestSpot) found.emplace_back(*way, p.x, p.y);
+        }
+    std::sort(found.begin(), found.end());
+    for (const auto& [way, x, y] : found) {
+        const Point2 p{x, y};
+        const bool is_apart =
+            std::all_of(landing.spots.begin(), landing.spots.end(),
+                        [&](Point2 other) { return distance(p, other) >= wide + 3 * kRoom; });
+        if (is_apart) landing.spots.push_back(p);
+        if (landing.spots.size() == kMostSpots) break;
+    }
+}
+
+std::string StoreyWays::refusal(const StoreyLink& passage, const MoverAbility& ability) const {
+    const double wide = 2 * size_.radius + kRoom;
+    if (!passage.is_lift) {
+        if (!ability.climbs) return "it does not climb stairs";
+        return passage.width < wide ? passage.id + " is too narrow for it" : "";
+    }
+    if (passage.cabin.door < wide) return "the door of " + passage.id + " is too narrow for it";
+    const Rider alone{.id = "", .at = {}, .radius = size_.radius, .mass = ability.mass};
+    if (passage.cabin.capacity > 0 && ability.mass > passage.cabin.capacity)
+        return "it is too heavy for " + passage.id;
+    return slotIn(passage.cabin, {}, alone) ? "" : passage.id + " is too small for it";
+}
+
+std::optional<Route> StoreyWays::route(std::size_t from_storey, const WayFinder::Field& ways,
+                                       std::size_t to_storey, Point2 to,
+                                       const MoverAbility& ability, const std::vector<double>& wait,
+                                       std::optional<std::size_t> only) const {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    struct Node {
+        double seconds = kInfinity, length = 0;
+        std::optional<std::size_t> before = {};
+        bool is_done = false;
+    };
+    // Dijkstra over landings; the last node is the goal.
+    const std::size_t goal = landings_.size();
+    std::vector<Node> nodes(goal + 1);
+    const auto improve = [&](std::size_t node, double seconds, double length,
+                             std::optional<std::size_t> before) {
+        if (!(seconds < nodes[node].seconds)) return;
+        nodes[node] = {seconds, length, before, false};
+    };
+    const auto walk = [&](std::optional<std::size_t> from, std::size_t storey,
+                          const WayFinder::Field& field) {
+        const Node start = from ? nodes[*from] : Node{.seconds = 0};
+        const auto reach = [&](std::size_t node, Point2 p) {
+            if (const auto way = finders_[storey].length(field, p))
+                improve(node, start.seconds + *way / ability.speed, start.length + *way, from);
+        };
+        for (std::size_t i = 0; i < goal; ++i)
+            if (landings_[i].storey == storey && i != from) reach(i, landings_[i].at.position);
+        if (storey == to_storey) reach(goal, to);
+    };
+    walk(std::nullopt, from_storey, ways);
+    for (;;) {
+        std::size_t next = goal + 1;
+        for (std::size_t i = 0; i <= goal; ++i)
+            if (!nodes[i].is_done && nodes[i].seconds < kInfinity &&
+                (next > goal || nodes[i].seconds < nodes[next].seconds))
+                next = i;
+        if (next > goal) return std::nullopt;
+        nodes[next].is_done = true;
+        if (next == goal) break;
+        const Landing& here = landings_[next];
+        const StoreyLink& passage = (*passages_)[here.passage];
+        walk(next, here.storey, here.ways);
+        if ((only && *only != here.passage) || !refusal(passage, ability).empty()) continue;
+        for (std::size_t i = 0; i < goal; ++i) {
+            const Landing& there = landings_[i];
+            if (there.passage != here.passage || there.stop == here.stop) continue;
+            if (passage.is_lift) {
+                const double rise =
+                    std::abs(passage.lift.floors[there.stop] - passage.lift.floors[here.stop]);
+                const double doors = 4 * doorTime(passage.cabin.door) + seconds(Lift::kDwell);
+                improve(i,
+                        nodes[next].seconds + wait[here.passage] + doors +
+                            liftRide(rise, passage.lift.speed),
+                        nodes[next].length, next);
+            } else {
+                // One flight after the other.
+                const bool is_next = there.stop + 1 == here.stop || here.stop + 1 == there.stop;
+                const double pace = there.stop > here.stop ? kSpeedUp : kSpeedDown;
+                if (is_next)
+                    improve(i,
+                            nodes[next].seconds + wait[here.passage] +
+                                passage.length / std::min(pace, ability.speed),
+                            nodes[next].length + passage.length, next);
+            }
+        }
+    }
+    Route route{{}, nodes[goal].length, nodes[goal].seconds};
+    for (std::size_t i = goal; nodes[i].before; i = *nodes[i].before) {
+        if (i == goal) continue;
+        const Landing& to_landing = landings_[i];
+        const Landing& from_landing = landings_[*nodes[i].before];
+        if (to_landing.passage == from_landing.passage && to_landing.stop != from_landing.stop)
+            route.legs.insert(route.legs.begin(),
+                              Leg{to_landing.passage, from_landing.stop, to_landing.stop});
+    }
+    return route;
+}
+
+}  // namespace ispace
