@@ -47,17 +47,27 @@ constexpr auto kLastFlush = std::chrono::milliseconds(500);
 }  // namespace
 
 struct Server::Data {
-    Data(Simulation& the_simulation, const Endpoint& endpoint, const ServerLimits& the_limits)
+    Data(Simulation& the_simulation, const Endpoint& endpoint, const ServerLimits& the_limits,
+         JoinedWorlds* joined)
         : simulation(the_simulation),
           limits(the_limits),
           state(the_simulation, the_limits),
           acceptor(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }) {
-        state.makeAside([this] { asio::post(io, [] {}); }, [this] { return isStopped(); });
+        if (joined != nullptr) join(*joined);
+        for (ServerState* const each : states())
+            each->makeAside([this] { asio::post(io, [] {}); }, [this] { return isStopped(); });
     }
     ~Data() {
-        state.endAside();
+        for (ServerState* const each : states()) each->endAside();
         closeAll();
     }
+
+    void join(JoinedWorlds& joined);
+    /// Returns the states of all worlds.
+    [[nodiscard]] std::vector<ServerState*> states();
+    bool collect();
+    bool hasUpdates();
+    [[nodiscard]] bool holdsWorld();
 
     void welcome(tcp::socket socket);
     bool makeRoom();
@@ -75,7 +85,9 @@ struct Server::Data {
 
     Simulation& simulation;
     ServerLimits limits;
-    ServerState state;
+    ServerState state;  // of the world, or of the first one
+    std::list<ServerState> others;
+    ServedRooms rooms;
     bool has_news = false;  // between steps, not sent to all clients yet
     WallTime next_news{};
     asio::io_context io{1};  // one thread runs it
@@ -90,6 +102,42 @@ struct Server::Data {
     DeviceHost host{state};
     std::list<DevicePort> devices;
 };
+
+void Server::Data::join(JoinedWorlds& joined) {
+    rooms.worlds = &joined;
+    rooms.states.push_back(&state);
+    for (const JoinedRoom& room : joined.rooms().subspan(1))
+        rooms.states.push_back(&others.emplace_back(*room.simulation, limits));
+    for (ServerState* const each : rooms.states) each->joinRooms(rooms);
+    joined.onMove([this](const std::string& mover, std::size_t from, std::size_t to) {
+        rooms.states[to]->takeOver(*rooms.states[from], mover);
+    });
+}
+
+std::vector<ServerState*> Server::Data::states() {
+    std::vector<ServerState*> all = {&state};
+    for (ServerState& other : others) all.push_back(&other);
+    return all;
+}
+
+bool Server::Data::collect() {
+    bool has_made = false;
+    for (ServerState* const each : states()) has_made = each->collect() || has_made;
+    return has_made;
+}
+
+bool Server::Data::hasUpdates() {
+    bool has_updates = false;
+    for (ServerState* const each : states()) has_updates = each->hasUpdates() || has_updates;
+    return has_updates;
+}
+
+/// The simulation of the first world has the clock of all.
+bool Server::Data::holdsWorld() {
+    if (others.empty() || !state.mayHold()) return state.holdsWorld();
+    return std::any_of(rooms.states.begin(), rooms.states.end(),
+                       [](const ServerState* each) { return !each->isAtRest(); });
+}
 
 void Server::Data::welcome(tcp::socket socket) {
     sweep();
@@ -142,7 +190,7 @@ void Server::Data::stepped() {
         connection->stepped(may_be_late || steady_clock::now() < end);
     for (DevicePort& device : devices) device.stepped();
     for (WebServer& web : webs) web.stepped();
-    static_cast<void>(state.hasUpdates());
+    static_cast<void>(hasUpdates());
     has_news = false;
     next_news = steady_clock::now() + kNewsEvery;
 }
@@ -169,8 +217,14 @@ std::chrono::nanoseconds Server::Data::turn() const {
     const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay() ||
                           simulation.paused();
     if (!may_hold || (serving == 0 && webs.empty() && devices.empty())) return kTurn;
-    const auto sensors = simulation.world().sensors();
-    const bool has_heavy = std::any_of(sensors.begin(), sensors.end(), isHeavy);
+    const auto has_heavy_sensor = [](Simulation& one) {
+        const auto sensors = one.world().sensors();
+        return std::any_of(sensors.begin(), sensors.end(), isHeavy);
+    };
+    bool has_heavy = has_heavy_sensor(simulation);
+    if (rooms.worlds != nullptr)
+        for (const JoinedRoom& room : rooms.worlds->rooms())
+            has_heavy = has_heavy || has_heavy_sensor(*room.simulation);
     return has_heavy ? std::chrono::nanoseconds(0) : kTurn;
 }
 
@@ -180,7 +234,7 @@ void Server::Data::serveClients() {
     WallTime end = now + kTurn;
     if (const auto due = simulation.due()) end = std::min(end, std::max(*due, now + kShortTurn));
     while (io.poll_one() > 0 && steady_clock::now() < end) continue;
-    const bool has_made = state.collect();
+    const bool has_made = collect();
     for (const auto& connection : connections)
         if (has_made || connection->waiting()) connection->proceed();
     for (WebServer& web : webs) {
@@ -191,7 +245,7 @@ void Server::Data::serveClients() {
         device.serve(steady_clock::now());
         if (has_made) device.stepped();
     }
-    has_news = state.hasUpdates() || has_news;
+    has_news = hasUpdates() || has_news;
     if (has_news && steady_clock::now() >= next_news) stepped();
     if (limits.watchdog.count() > 0) {
         const WallTime since = steady_clock::now() - limits.watchdog;
@@ -206,7 +260,9 @@ void Server::Data::serveClients() {
 void Server::Data::relieve() {
     std::size_t replies = 0;
     for (const auto& connection : connections) replies += connection->memory();
-    if (replies + state.staleBytes() <= limits.unread) return;
+    std::size_t stale = state.staleBytes();
+    for (const ServerState& other : others) stale += other.staleBytes();
+    if (replies + stale <= limits.unread) return;
     const std::size_t share = limits.unread / (limits.clients + kMaxLingering);
     std::vector<std::shared_ptr<ClientConnection>> slow;
     for (const auto& connection : connections)
@@ -214,7 +270,9 @@ void Server::Data::relieve() {
     std::sort(slow.begin(), slow.end(),
               [](const auto& a, const auto& b) { return a->waitingSince() < b->waitingSince(); });
     for (const auto& connection : slow) {
-        if (replies + state.staleBytes() <= limits.unread) return;
+        stale = state.staleBytes();
+        for (const ServerState& other : others) stale += other.staleBytes();
+        if (replies + stale <= limits.unread) return;
         replies -= connection->memory();
         connection->cutOff("ERR 429 too much unread: the slowest readers are disconnected\n");
         replies += connection->memory();
@@ -249,7 +307,11 @@ bool Server::Data::isStopped() {
 
 /// Writes the last step, with its frames unless a signal has ended the run.
 void Server::Data::finishRecord() {
-    while (!simulation.finishRecord(WallTime::max()) && state.await()) continue;
+    while (!simulation.finishRecord(WallTime::max())) {
+        bool has_come = false;
+        for (ServerState* const each : states()) has_come = each->await() || has_come;
+        if (!has_come) break;
+    }
 }
 
 void Server::Data::end() {
@@ -279,8 +341,9 @@ void Server::Data::closeAll() {
     sweep();
 }
 
-Server::Server(Simulation& simulation, const Endpoint& endpoint, const ServerLimits& limits)
-    : data_(std::make_unique<Data>(simulation, endpoint, limits)) {}
+Server::Server(Simulation& simulation, const Endpoint& endpoint, const ServerLimits& limits,
+               JoinedWorlds* joined)
+    : data_(std::make_unique<Data>(simulation, endpoint, limits, joined)) {}
 
 Server::~Server() = default;
 
@@ -314,11 +377,16 @@ std::string Server::serveDevice(const WireProtocol& protocol, const std::string&
         .address();
 }
 
-FrameTaker Server::frameTaker() {
-    return [data = data_.get()](FrameJob job) { data->state.takeFrame(std::move(job)); };
+FrameTaker Server::frameTaker(std::size_t room) {
+    ServerState* const state = data_->states()[room];
+    return [state](FrameJob job) { state->takeFrame(std::move(job)); };
 }
 
-bool Server::isBusy() const { return data_->state.isBusy(); }
+bool Server::isBusy() const {
+    const auto states = data_->states();
+    return std::any_of(states.begin(), states.end(),
+                       [](const ServerState* each) { return each->isBusy(); });
+}
 
 std::size_t Server::clients() const { return data_->serving; }
 
@@ -331,8 +399,8 @@ void Server::run() {
         if (simulation.isDue(steady_clock::now())) data.state.prepareStep();
         // Last before sleeping: pending requests determine the time to wake.
         std::optional<WallTime> next;
-        next = data.state.holdsWorld() ? simulation.flushRecord()
-                                       : simulation.run(steady_clock::now(), data.turn());
+        next = data.holdsWorld() ? simulation.flushRecord()
+                                 : simulation.run(steady_clock::now(), data.turn());
         if (simulation.finished()) break;
         if (const WallTime turn = data.nextTurn(); turn < WallTime::max())
             next = std::min(next.value_or(turn), turn);

@@ -14,6 +14,7 @@
 #include "sense/formats/ros_messages.h"
 #include "server/device/wire_session.h"
 #include "server/network.h"
+#include "sim/joined_worlds.h"
 #include "sim/simulation.h"
 #include "sim/world_editor.h"
 
@@ -75,8 +76,10 @@ struct RosScenery {
 /// in which a connection must choose a role.
 class Server {
   public:
-    /// Starts listening. \throws std::system_error naming the endpoint
-    Server(Simulation& simulation, const Endpoint& endpoint, const ServerLimits& limits = {});
+    /// Starts listening. \param joined serves these worlds, which the simulation leads; may be null
+    /// \throws std::system_error naming the endpoint
+    Server(Simulation& simulation, const Endpoint& endpoint, const ServerLimits& limits = {},
+           JoinedWorlds* joined = nullptr);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;
@@ -100,7 +103,8 @@ class Server {
     std::string serveDevice(const WireProtocol& protocol, const std::string& id,
                             const Endpoint& endpoint);
     /// Returns a function that computes frames of a record in the picture thread.
-    [[nodiscard]] FrameTaker frameTaker();
+    /// \param room of the joined worlds
+    [[nodiscard]] FrameTaker frameTaker(std::size_t room = 0);
     /// True while background threads compute pictures or a change of the world. The destructor
     /// waits for them.
     [[nodiscard]] bool isBusy() const;

@@ -95,6 +95,15 @@ void ServerState::release(std::string_view id, std::int64_t hold) {
         simulation_->world().command(*mover, {Verb::Stop, 0});
 }
 
+void ServerState::takeOver(ServerState& other, const std::string& id) {
+    const auto held = other.held_.find(id);
+    if (held == other.held_.end()) return;
+    held_.insert_or_assign(id, held->second);
+    // Numbers are never reused here.
+    holds_ = std::max(holds_, held->second);
+    other.held_.erase(held);
+}
+
 void ServerState::sync() {
     const World& world = simulation_->world();
     if (std::exchange(seen_changes_, world.changes()) == world.changes()) return;
@@ -131,12 +140,13 @@ ServerState::Text& ServerState::textOf(std::size_t sensor, const ReplyForm& form
     return found != forms.end() ? *found : forms.emplace_back(Text{form, -1, nullptr});
 }
 
-bool ServerState::holdsWorld() const {
+bool ServerState::mayHold() const {
     // A client that steps a paused world expects earlier changes to be complete.
-    const bool may_wait = simulation_->clock().kind != Clock::Kind::Real ||
-                          simulation_->isReplay() || simulation_->paused();
-    return may_wait && !isAtRest();
+    return simulation_->clock().kind != Clock::Kind::Real || simulation_->isReplay() ||
+           simulation_->paused();
 }
+
+bool ServerState::holdsWorld() const { return mayHold() && !isAtRest(); }
 
 void ServerState::runInBackground(BackgroundWorker::Job job) {
     if (workshop_)

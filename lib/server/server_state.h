@@ -17,6 +17,7 @@
 #include "server/background_worker.h"
 #include "server/server.h"
 #include "server/session_sensors.h"
+#include "sim/joined_worlds.h"
 #include "sim/simulation.h"
 #include "sim/world.h"
 #include "sim/world_editor.h"
@@ -114,13 +115,25 @@ struct Seek {
     std::string failure;  ///< the error that stopped the seek; "": no error
 };
 
-/// State shared by all sessions: holds on robots, and the text of the newest scans, formatted once
-/// for all readers.
+class ServerState;
+
+/// The worlds of a run that has several, and the state of each, in the order of their rooms.
+struct ServedRooms {
+    JoinedWorlds* worlds = nullptr;
+    std::vector<ServerState*> states;
+};
+
+/// State shared by all sessions of a world: holds on robots, and the text of the newest scans,
+/// formatted once for all readers.
 class ServerState {
   public:
     explicit ServerState(Simulation& simulation, const ServerLimits& limits = {});
     [[nodiscard]] Simulation& simulation() { return *simulation_; }
     [[nodiscard]] const ServerLimits& limits() const { return limits_; }
+    /// Returns the rooms of the run; null if it has a single world.
+    [[nodiscard]] const ServedRooms* rooms() const { return rooms_; }
+    /// \pre `rooms` outlives this object
+    void joinRooms(const ServedRooms& rooms) { rooms_ = &rooms; }
 
     /// Reserves a robot or person. \returns the number of this hold; empty if another client has it
     std::optional<std::int64_t> hold(std::string_view id);
@@ -128,6 +141,9 @@ class ServerState {
     [[nodiscard]] bool holds(std::string_view id, std::int64_t hold) const;
     /// Stops the mover and releases it.
     void release(std::string_view id, std::int64_t hold);
+
+    /// Takes over the hold on a mover that has come from the world of another state.
+    void takeOver(ServerState& other, const std::string& id);
 
     /// Updates the state after a change of the world. Call after each change.
     void sync();
@@ -193,6 +209,8 @@ class ServerState {
     }
     /// True if no picture, change or seek of the current world is under way.
     [[nodiscard]] bool isAtRest() const { return !isMaking() && !is_changing_ && !seek_; }
+    /// True if clients may expect steps to wait for them: not with the clock Real.
+    [[nodiscard]] bool mayHold() const;
     /// True if the world must not step: the sequence of steps may not depend on computing time.
     [[nodiscard]] bool holdsWorld() const;
     /// Completes finished requests, between steps. \returns false if there were none
@@ -236,6 +254,7 @@ class ServerState {
                const std::function<void(const std::exception_ptr& failure)>& end);
 
     Simulation* simulation_;
+    const ServedRooms* rooms_ = nullptr;
     ServerLimits limits_;
     StepQueue steps_;
     std::map<std::string, std::int64_t, std::less<>> held_;

@@ -130,6 +130,8 @@ std::span<const Session::Request> Session::requests() {
         {"ROTSPEED", "deg/s", Role::Robot, 0, kAny, &C::command},
         {"SIDESPEED", "m/s", Role::Robot, 0, kAny, &C::command},
         {"PATH", "x,y;... [speed=v] [pause=s] [loop=yes]", Role::Robot, 0, kAny, &C::command},
+        {"GOTO", "[storey/]x,y [speed=v]", Role::Robot, 1, 2, &C::goTo},
+        {"RIDE", "lift storey", Role::Robot, 2, 2, &C::ride},
         {"STOP", "", Role::Robot, 0, kAny, &C::command},
         {"STATUS", "", Role::Robot, 0, 0, &C::status},
         {"ODOMETRY", "", Role::Robot, 0, 0, &C::odometry},
@@ -144,6 +146,8 @@ std::span<const Session::Request> Session::requests() {
         {"ROTSPEED", "deg/s", Role::Person, 0, kAny, &C::command},
         {"SIDESPEED", "m/s", Role::Person, 0, kAny, &C::command},
         {"PATH", "x,y;... [speed=v] [pause=s] [loop=yes]", Role::Person, 0, kAny, &C::command},
+        {"GOTO", "[storey/]x,y [speed=v]", Role::Person, 1, 2, &C::goTo},
+        {"RIDE", "lift storey", Role::Person, 2, 2, &C::ride},
         {"STOP", "", Role::Person, 0, kAny, &C::command},
         {"STATUS", "", Role::Person, 0, 0, &C::status},
         {"SCAN", "", Role::Laser, 0, 0, &C::scan},
@@ -158,6 +162,8 @@ std::span<const Session::Request> Session::requests() {
         {"LIST", "", Role::World, 0, 0, &C::list},
         {"TIME", "", Role::World, 0, 0, &C::time},
         {"POSES", "", Role::World, 0, 0, &C::poses},
+        {"LIFTS", "", Role::World, 0, 0, &C::lifts},
+        {"CALL", "lift storey", Role::World, 2, 2, &C::call},
         {"PAUSE", "", Role::World, 0, 0, &C::pause},
         {"RESUME", "", Role::World, 0, 0, &C::resume},
         {"STEP", "[n]", Role::World, 0, 1, &C::step},
@@ -261,6 +267,7 @@ void Session::goOn() {
 void Session::silent() {
     sync();
     if (!drives()) return;
+    if (rooms() != nullptr) rooms()->worlds->endTrip(id_, Outcome::Stopped);
     world().command(subject_, {Verb::Stop, 0});
     sendCompletions();
 }
@@ -361,6 +368,7 @@ bool Session::mayUse(const Request& request) {
 
 /// After changes of the world, the client's robot or sensor may have another index, or be gone.
 void Session::sync() {
+    followRoom();
     state_->sync();
     if (changes_ == world().changes()) return;
     changes_ = world().changes();
@@ -399,9 +407,13 @@ void Session::lose() {
 
 /// Releases the client's robot or person.
 void Session::leave() {
-    if (drives()) state_->release(id_, hold_);
+    if (drives()) {
+        if (rooms() != nullptr) rooms()->worlds->endTrip(id_, Outcome::Stopped);
+        state_->release(id_, hold_);
+    }
     state_->steps().drop(std::exchange(steps_, nullptr));
-    state_->simulation().events().unwant(std::exchange(events_, {}));
+    forEachLog([this](EventLog& log) { log.unwant(events_); });
+    events_.clear();
     seek_.reset();
     held_.clear();
     may_go_on_ = nullptr;
@@ -415,13 +427,18 @@ void Session::leave() {
 
 void Session::sendCompletions() {
     if (running_.empty()) return;
-    for (const CommandEnd& end : world().ends()) {
-        if (end.robot != subject_ || std::erase(running_, end.id) == 0) continue;
-        const bool done = end.outcome == Outcome::Done;
-        out_.append(done ? "DONE id=" : "FAIL id=").append(std::to_string(end.id));
-        if (!done) out_.append(" reason=").append(reasonOf(end.outcome));
-        out_.append(" t=").append(formatMilliseconds(end.time)).append("\n");
-    }
+    const auto send = [this](int id, Outcome outcome, SimTime time) {
+        if (std::erase(running_, id) == 0) return;
+        const bool done = outcome == Outcome::Done;
+        out_.append(done ? "DONE id=" : "FAIL id=").append(std::to_string(id));
+        if (!done) out_.append(" reason=").append(reasonOf(outcome));
+        out_.append(" t=").append(formatMilliseconds(time)).append("\n");
+    };
+    for (const CommandEnd& end : world().ends())
+        if (end.robot == subject_) send(end.id, end.outcome, end.time);
+    if (rooms() == nullptr) return;
+    for (const TripEnd& end : rooms()->worlds->tripEnds())
+        if (end.mover == id_) send(end.id, end.outcome, end.time);
 }
 
 void Session::answerStep() {
@@ -444,6 +461,10 @@ void Session::help(Words /*words*/) {
         if (request.answer == &Session::shutdown && !state_->limits().shutdown) continue;
         if (request.answer == &Session::change && !state_->mayChange()) continue;
         if (request.answer == &Session::seek && !state_->simulation().maySeek()) continue;
+        const bool is_of_rooms =
+            request.answer == &Session::goTo || request.answer == &Session::ride ||
+            request.answer == &Session::call || request.answer == &Session::lifts;
+        if (is_of_rooms && rooms() == nullptr) continue;
         if (request.answer == &Session::token && state_->limits().token.empty()) continue;
         out_.append(separator).append(request.verb);
         if (!request.arguments.empty()) out_.append(" ").append(request.arguments);

@@ -115,6 +115,21 @@ class Session {
     static std::span<const Request> requests();
 
     [[nodiscard]] World& world() const { return state_->simulation().world(); }
+    [[nodiscard]] const ServedRooms* rooms() const { return state_->rooms(); }
+    /// Goes to the world of a robot, person or sensor of several worlds. \returns its id there
+    std::string_view enter(std::string_view id);
+    /// Calls visit(EventLog&) for that of each world.
+    template <typename Visit>
+    void forEachLog(Visit visit) {
+        if (rooms() == nullptr) return visit(state_->simulation().events());
+        for (ServerState* const each : rooms()->states) visit(each->simulation().events());
+    }
+    void followRoom();
+    [[nodiscard]] bool isTrip(Words words) const;
+    void startTrip(Words words);
+    void answerTrip(std::string_view verb, const TripAnswer& answer);
+    [[nodiscard]] std::vector<std::string> idsOfAll(Role role) const;
+    [[nodiscard]] std::string whereText() const;
     static std::string_view verbOf(Role role);
     [[nodiscard]] std::string roleText() const;
     [[nodiscard]] std::string unknownSensor(std::string_view kind, std::string_view id) const;
@@ -162,6 +177,11 @@ class Session {
     void list(Words words);
     void time(Words words);
     void poses(Words words);
+    void posesOfAll();
+    void goTo(Words words);
+    void ride(Words words);
+    void call(Words words);
+    void lifts(Words words);
     void pause(Words words);
     void resume(Words words);
     void seek(Words words);
@@ -194,8 +214,8 @@ class Session {
     // A deferred request, answered once this condition holds.
     std::string held_;
     Condition may_go_on_ = nullptr;
-    EventKinds events_;  // subscribed events
-    std::int64_t next_event_ = 0;
+    EventKinds events_;                      // subscribed events
+    std::vector<std::int64_t> next_events_;  // in each world
     bool has_token_ = false;
     int wrong_tokens_ = 0;
     TokenBucket pauses_, spare_pauses_;

@@ -71,10 +71,13 @@ void Session::events(Words words) {
     }
     if (words.size() == 1) kinds = allEventKinds();
     tellEvents();
-    EventLog& log = state_->simulation().events();
-    log.want(kinds);
-    log.unwant(std::exchange(events_, kinds));
-    next_event_ = log.next();
+    next_events_.clear();
+    forEachLog([&](EventLog& log) {
+        log.want(kinds);
+        log.unwant(events_);
+        next_events_.push_back(log.next());
+    });
+    events_ = kinds;
     out_ += "OK EVENTS kinds=";
     std::string_view separator;
     for (const EventKind kind : events_) {
@@ -98,7 +101,7 @@ void Session::mark(Words words) {
 
 namespace {
 
-void appendEvent(std::string& out, const Event& event) {
+void appendEvent(std::string& out, const Event& event, std::string_view where) {
     const auto add = [&out](std::string_view key, std::string_view value) {
         out.append(" ").append(key).append("=").append(value);
     };
@@ -136,7 +139,7 @@ void appendEvent(std::string& out, const Event& event) {
         case EventKind::Lost:
             break;
     }
-    out += '\n';
+    out.append(where).append("\n");
 }
 
 }  // namespace
@@ -145,16 +148,22 @@ void appendEvent(std::string& out, const Event& event) {
 void Session::tellEvents() {
     constexpr std::size_t kRoom = std::size_t{1} << 16;
     if (events_.empty()) return;
-    const EventLog& log = state_->simulation().events();
-    if (next_event_ < log.first()) {
-        out_.append("EVENT missed t=").append(formatMilliseconds(world().time()));
-        out_.append(" n=").append(std::to_string(log.first() - next_event_)).append("\n");
-        next_event_ = log.first();
-    }
     const std::size_t begin = out_.size();
-    for (; next_event_ < log.next() && out_.size() < begin + kRoom; ++next_event_)
-        if (const Event& event = log.at(next_event_); events_.contains(event.kind))
-            appendEvent(out_, event);
+    std::size_t room = 0;
+    forEachLog([&](const EventLog& log) {
+        std::int64_t& next = next_events_[room];
+        const std::string where =
+            rooms() == nullptr ? "" : " room=" + rooms()->worlds->rooms()[room].id;
+        ++room;
+        if (next < log.first()) {
+            out_.append("EVENT missed t=").append(formatMilliseconds(world().time()));
+            out_.append(" n=").append(std::to_string(log.first() - next)).append("\n");
+            next = log.first();
+        }
+        for (; next < log.next() && out_.size() < begin + kRoom; ++next)
+            if (const Event& event = log.at(next); events_.contains(event.kind))
+                appendEvent(out_, event, where);
+    });
 }
 
 }  // namespace ispace

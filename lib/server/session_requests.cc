@@ -238,9 +238,10 @@ std::string speedsText(const RobotModel& model) {
 }  // namespace
 
 void Session::acquireRobot(Words words) {
-    const auto robot = world().robotNamed(words[1]);
-    if (!robot) return error(404, {unknownThing("robot", words[1], idsOf(world().robots()))});
-    if (!seize(Role::Robot, words[1], *robot)) return;
+    const std::string_view id = enter(words[1]);
+    const auto robot = world().robotNamed(id);
+    if (!robot) return error(404, {unknownThing("robot", words[1], idsOfAll(Role::Robot))});
+    if (!seize(Role::Robot, id, *robot)) return;
     const RobotModel& model = world().robots()[*robot].model;
     out_.append("OK ROBOT ").append(words[1]);
     out_.append(" model=").append(model.model.empty() ? "-" : model.model);
@@ -249,9 +250,10 @@ void Session::acquireRobot(Words words) {
 }
 
 void Session::takePerson(Words words) {
-    const auto person = world().personNamed(words[1]);
-    if (!person) return error(404, {unknownThing("person", words[1], idsOf(world().people()))});
-    if (!seize(Role::Person, words[1], *person)) return;
+    const std::string_view id = enter(words[1]);
+    const auto person = world().personNamed(id);
+    if (!person) return error(404, {unknownThing("person", words[1], idsOfAll(Role::Person))});
+    if (!seize(Role::Person, id, *person)) return;
     const Mover& mover = world().movers()[*person];
     out_.append("OK PERSON ").append(words[1]);
     out_.append(" height=").append(formatDouble(mover.model.height));
@@ -274,6 +276,7 @@ bool Session::seize(Role role, std::string_view id, std::size_t mover) {
 }
 
 void Session::command(Words words) {
+    if (isTrip(words)) return startTrip(words);
     const ParsedCommand parsed = parseCommand(textOf(words));
     if (!parsed.command) {
         const bool range = parsed.error.kind == CommandError::Kind::Range;
@@ -285,6 +288,12 @@ void Session::command(Words words) {
                       "SCAN, or run the scene without --replay"});
     const std::string refusal = world().refusal(subject_, *parsed.command);
     if (!refusal.empty()) return error(416, {refusal});
+    if (rooms() != nullptr) {
+        const bool stops = parsed.command->verb == Verb::Stop;
+        const std::string busy =
+            rooms()->worlds->endTrip(id_, stops ? Outcome::Stopped : Outcome::Replaced);
+        if (!busy.empty()) return error(409, {busy});
+    }
     double value = parsed.command->value;
     if (parsed.command->verb == Verb::Path)  // the whole path, from here
         value +=
@@ -310,7 +319,8 @@ void Session::status(Words /*words*/) {
     out_.append(" rotspeed=").append(measured(status.rotspeed.degrees()));
     out_.append(" accel=").append(formatDouble(status.accel));
     out_.append(" rotaccel=").append(formatDouble(status.rotaccel.degrees()));
-    out_.append(" stall=").append(status.stall ? "1" : "0").append("\n");
+    out_.append(" stall=").append(status.stall ? "1" : "0");
+    out_.append(whereText()).append("\n");
 }
 
 void Session::odometry(Words /*words*/) {
@@ -325,6 +335,7 @@ void Session::odometry(Words /*words*/) {
 
 void Session::takeWorld(Words /*words*/) {
     role_ = Role::World;
+    if (rooms() != nullptr) state_ = rooms()->states.front();
     const Clock& clock = state_->simulation().clock();
     out_.append("OK WORLD t=").append(formatMilliseconds(world().time()));
     out_.append(" dt=").append(formatSimTime(world().stepLength())).append(" clock=");
@@ -343,10 +354,16 @@ void Session::takeWorld(Words /*words*/) {
 }
 
 void Session::list(Words /*words*/) {
-    out_.append("OK LIST robots=").append(joined(idsOf(world().robots()), ","));
-    out_.append(" lasers=").append(joined(laserIdsOf(world()), ","));
-    out_.append(" people=").append(joined(idsOf(world().people()), ","));
-    out_.append(" sensors=").append(joined(idsOf(world().sensors()), ",")).append("\n");
+    out_.append("OK LIST robots=").append(joined(idsOfAll(Role::Robot), ","));
+    out_.append(" lasers=").append(joined(idsOfAll(Role::Laser), ","));
+    out_.append(" people=").append(joined(idsOfAll(Role::Person), ","));
+    out_.append(" sensors=").append(joined(idsOfAll(Role::Sensor), ","));
+    if (rooms() != nullptr) {
+        std::vector<std::string> ids;
+        for (const JoinedRoom& room : rooms()->worlds->rooms()) ids.push_back(room.id);
+        out_.append(" rooms=").append(joined(ids, ","));
+    }
+    out_ += '\n';
 }
 
 void Session::time(Words /*words*/) {
@@ -358,6 +375,7 @@ void Session::time(Words /*words*/) {
 }
 
 void Session::poses(Words /*words*/) {
+    if (rooms() != nullptr) return posesOfAll();
     const auto movers = world().movers();
     const std::size_t robots = world().robots().size();
     out_.append("OK POSES t=").append(formatMilliseconds(world().time()));

@@ -26,6 +26,8 @@ ReplyForm defaultForm(const Sensor& sensor) {
 
 std::string Session::unknownSensor(std::string_view kind, std::string_view id) const {
     std::vector<std::string> known;
+    if (role_ == Role::None && rooms() != nullptr)
+        return unknownThing(kind, id, idsOfAll(kind == "laser" ? Role::Laser : Role::Sensor));
     for (const Sensor& sensor : world().sensors()) {
         if (role_ == Role::Robot && !sensor.isOn(subject_)) continue;
         if (kind != "laser" || sensor.tryAs<Laser>() != nullptr) known.push_back(sensor.id);
@@ -34,11 +36,12 @@ std::string Session::unknownSensor(std::string_view kind, std::string_view id) c
 }
 
 void Session::takeLaser(Words words) {
-    const auto found = world().sensorNamed(words[1]);
+    const std::string_view id = enter(words[1]);
+    const auto found = world().sensorNamed(id);
     if (!found || !world().sensors()[*found].is<Laser>())
         return error(404, {unknownSensor("laser", words[1])});
     role_ = Role::Laser;
-    id_ = words[1];
+    id_ = id;
     keyword_ = "laser";
     subject_ = *found;
     form_ = {};
@@ -49,10 +52,11 @@ void Session::takeLaser(Words words) {
 }
 
 void Session::takeSensor(Words words) {
-    const auto found = world().sensorNamed(words[1]);
+    const std::string_view id = enter(words[1]);
+    const auto found = world().sensorNamed(id);
     if (!found) return error(404, {unknownSensor("sensor", words[1])});
     role_ = Role::Sensor;
-    id_ = words[1];
+    id_ = id;
     subject_ = *found;
     const Sensor& sensor = world().sensors()[subject_];
     keyword_ = kindOf(sensor.model).keyword;

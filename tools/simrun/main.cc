@@ -13,6 +13,7 @@
 #include "scene/findings/findings.h"
 #include "server/server.h"
 #include "sim/world_state.h"
+#include "simrun/simrun_building.h"
 #include "simrun/simrun_options.h"
 #include "simrun/simrun_ports.h"
 #include "simrun/simrun_report.h"
@@ -124,6 +125,7 @@ void simrun(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     limitThreads(options.common.threads);
     claimFiles(options);
+    if (options.drawing.format.empty() && runBuilding(command)) return;
     JunitFile junit("simrun", options.junit);
     junit.during(options.operands, [&] { run(command, junit); });
 }

@@ -133,7 +133,7 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     line_.group("The server");
     declareServer();
     addSceneRules(line_, options_.rules);
-    addStoreyOption(line_, options_.rules, "a run has one");
+    addStoreyOption(line_, options_.rules, "default: all storeys");
     addCommonOptions(
         line_, options_.common,
         "draw the record of --replay there instead of serving it: the ways (.png, .svg, "

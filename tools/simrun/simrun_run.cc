@@ -196,7 +196,7 @@ ServerLimits withinFileLimit(ServerLimits limits, std::size_t others) {
 
 }  // namespace
 
-ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input) {
+ServerLimits limitsOf(const SimrunOptions& options) {
     constexpr std::size_t kOfPort = 64;  // connections of a port for topics
     std::size_t others = options.devices.connections();
     for (const auto& port : {options.foxglove, options.rosbridge}) others += port ? kOfPort : 0;
@@ -207,6 +207,11 @@ ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input) {
             warn(options.common, "simrun",
                  options.token_file + " can be read by other users: chmod 600 makes it yours");
     }
+    return limits;
+}
+
+ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input) {
+    ServerLimits limits = limitsOf(options);
     const std::string& folder = options.load_folder;
     limits.source = std::make_shared<SceneFolder>(folder.empty() ? SceneFolder::of(input) : folder,
                                                   options.rules);

@@ -75,8 +75,10 @@ std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOpti
                                         const Scene& scene, const History& history, bool odometry,
                                         FrameTaker frame_taker);
 
-/// Returns the limits of the server, and the values and files that clients may read. Raises the
-/// limit of open files of this process, as every client takes one.
+/// Returns the limits of the server. Raises the limit of open files of this process, as every
+/// client takes one.
+ServerLimits limitsOf(const SimrunOptions& options);
+/// Likewise, with the values and files that clients may read.
 ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input);
 
 /// Draws the record of --replay to -o, as a picture or a film.
