@@ -77,7 +77,7 @@ std::string Session::whereText() const {
 }
 
 void Session::posesOfAll() {
-    std::string robots, people;
+    std::string robots, people, rooms_of_robots, rooms_of_people;
     std::size_t count = 0;
     for (const JoinedRoom& room : rooms()->worlds->rooms()) {
         const World& one = room.simulation->world();
@@ -85,17 +85,22 @@ void Session::posesOfAll() {
             const bool is_robot = i < one.robots().size();
             if (is_robot) ++count;
             std::string& out = is_robot ? robots : people;
+            std::string& where = is_robot ? rooms_of_robots : rooms_of_people;
             const Pose2 pose = one.status(i).pose;
             if (!out.empty()) out += ';';
+            if (!where.empty()) where += ',';
+            where += room.id;
             out.append(one.movers()[i].id).append(",").append(measured(pose.position.x));
             out.append(",").append(measured(pose.position.y));
-            out.append(",").append(headingText(pose.heading)).append(",").append(room.id);
+            out.append(",").append(headingText(pose.heading));
         }
     }
     out_.append("OK POSES t=").append(formatMilliseconds(world().time()));
     out_.append(" n=").append(std::to_string(count)).append(" poses=").append(robots);
     if (!people.empty()) out_.append(" people=").append(people);
-    out_ += '\n';
+    const bool has_both = !robots.empty() && !people.empty();
+    out_.append(" rooms=").append(rooms_of_robots).append(has_both ? "," : "");
+    out_.append(rooms_of_people).append("\n");
 }
 
 /// True for a PATH with points of storeys.

@@ -116,6 +116,16 @@ class Mover {
         if (options.loop) request += " loop=yes";
         return begin(request);
     }
+    /// Goes by the fastest way to a point of a storey, in the run of a building.
+    /// \param speed m/s; 0: its own
+    Motion goTo(const std::string& storey, const Point& point, double speed = 0) {
+        return begin("GOTO " + storey + "/" + textOf(point.x) + "," + textOf(point.y) +
+                     (speed > 0 ? " speed=" + textOf(speed) : ""));
+    }
+    /// Takes a lift to a storey, in the run of a building.
+    Motion ride(const std::string& lift, const std::string& storey) {
+        return begin("RIDE " + lift + " " + storey);
+    }
     /// Sets a constant speed, m/s, negative backward; keeps the rotation.
     void speed(double metres_per_second) { ask("SPEED " + textOf(metres_per_second)); }
     /// Sets a constant rotation, degrees/s, counter-clockwise; keeps the speed.

@@ -21,6 +21,16 @@ struct Event {
     Fields fields;    ///< id=, into=, zone= and further fields of its kind
 };
 
+/// A lift of a building.
+struct Lift {
+    std::string id;
+    std::string storey;  ///< at which it stands, or from which it rides
+    double height = 0;   ///< of its floor, m
+    double door = 0;     ///< open share of its width
+    std::vector<std::string> riders;
+    std::vector<std::string> calls;  ///< storeys, in the order in which it serves them
+};
+
 /// The simulated world and its clock (role WORLD).
 class World {
   public:
@@ -66,6 +76,28 @@ class World {
             pose.heading = numberOf(parts[3]);
         }
         return poses;
+    }
+
+    /// Returns the lifts of a building.
+    std::vector<Lift> lifts() {
+        std::vector<Lift> lifts;
+        for (const std::string& item : split(ask("LIFTS").fields.text("lifts"), ';')) {
+            const std::vector<std::string> parts = split(item, ',');
+            if (parts.size() != 6) throw ProtocolError("`" + item + "` is no lift");
+            Lift lift;
+            lift.id = parts[0];
+            lift.storey = parts[1];
+            lift.height = numberOf(parts[2]);
+            lift.door = numberOf(parts[3]);
+            lift.riders = split(parts[4], '+');
+            lift.calls = split(parts[5], '+');
+            lifts.push_back(lift);
+        }
+        return lifts;
+    }
+    /// Calls a lift to a storey.
+    void call(const std::string& lift, const std::string& storey) {
+        ask("CALL " + lift + " " + storey);
     }
 
     /// Stops the clock, for all clients.

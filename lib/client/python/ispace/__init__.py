@@ -47,7 +47,7 @@ from .sensors import (
     Ultrasound,
 )
 from .server import Simrun, simrun
-from .world import Event, World
+from .world import Event, Lift, World
 
 __all__ = [
     "Address",
@@ -71,6 +71,7 @@ __all__ = [
     "Gate",
     "LaserSensor",
     "Layout",
+    "Lift",
     "Limits",
     "Load",
     "Mat",

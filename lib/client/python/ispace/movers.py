@@ -139,6 +139,15 @@ class Mover(Client):
             request += f" pause={text_of(pause)}"
         return self._begin(request + (" loop=yes" if loop else ""))
 
+    def go_to(self, storey: str, x: float, y: float, speed: Optional[float] = None) -> Motion:
+        """By the fastest way to a point of a storey, in the run of a building."""
+        request = f"GOTO {storey}/{text_of(x)},{text_of(y)}"
+        return self._begin(request if speed is None else f"{request} speed={text_of(speed)}")
+
+    def ride(self, lift: str, storey: str) -> Motion:
+        """By a lift to a storey, in the run of a building."""
+        return self._begin(f"RIDE {lift} {storey}")
+
     def speed(self, metres_per_second: float) -> None:
         """Sets a lasting speed, negative backward; keeps the rotation."""
         self._ask(f"SPEED {text_of(metres_per_second)}")

@@ -25,6 +25,18 @@ class Event:
     fields: Fields  #: id=, into=, zone= and what else belongs to its kind
 
 
+@dataclass(frozen=True)
+class Lift:
+    """A lift of a building."""
+
+    id: str
+    storey: str  #: at which it stands, or from which it rides
+    height: float  #: of its floor, m
+    door: float  #: open share of its width
+    riders: List[str]
+    calls: List[str]  #: storeys, in the order in which it serves them
+
+
 class World(Client):
     """The simulated world and its clock (role WORLD)."""
 
@@ -64,6 +76,23 @@ class World(Client):
                 raise ProtocolError(f"`{item}` is no pose")
             poses[id] = Pose(*map(number_of, numbers))
         return poses
+
+    def lifts(self) -> List[Lift]:
+        """The lifts of a building."""
+        lifts = []
+        for item in split(self._ask("LIFTS").fields["lifts"], ";"):
+            parts = item.split(",")
+            if len(parts) != 6:
+                raise ProtocolError(f"`{item}` is no lift")
+            id, storey, height, door, riders, calls = parts
+            lifts.append(
+                Lift(id, storey, number_of(height), number_of(door), split(riders, "+"), split(calls, "+"))
+            )
+        return lifts
+
+    def call(self, lift: str, storey: str) -> None:
+        """Calls a lift to a storey."""
+        self._ask(f"CALL {lift} {storey}")
 
     def pause(self) -> None:
         """Stops the clock, for all clients."""
