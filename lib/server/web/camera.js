@@ -10,7 +10,7 @@ class Camera {
   constructor(id, show, fail) {
     Object.assign(this, {id, show, fail});
     this.link = new Link({bytes: (line, bytes) => this.take(line, bytes), close: () => this.end('no connection')});
-    this.link.takeRole(`SENSOR ${id}`).then(answer => {
+    this.link.takeRole(`SENSOR ${Link.whole(id)}`).then(answer => {
       if (answer.startsWith('OK')) this.next();
       else this.end(complaint(answer));
     });

@@ -7,11 +7,18 @@ function isAnswer(line) {
 }
 
 export class Link {
+  /** The rooms of a building and the one that is shown; none and '' where the run has one world. */
+  static rooms = [];
+  static room = '';
+  /** The id of something in the room, as requests want it. */
+  static whole(id) { return Link.room && !id.includes('/') ? `${Link.room}/${id}` : id; }
+
   /** on: {open, close(code), line(text), json(object), bytes(line, bytes)}, all optional */
   constructor(on = {}) {
     this.on = on;
     this.waiting = [];  // of each request without an answer, who wants it
-    this.socket = new WebSocket(`ws://${location.host}/ws`);
+    const room = Link.rooms.indexOf(Link.room);
+    this.socket = new WebSocket(`ws://${location.host}/ws${room > 0 ? `/${room}` : ''}`);
     this.socket.binaryType = 'arraybuffer';
     this.socket.onopen = () => this.on.open?.();
     this.socket.onclose = event => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: what is shown, and what people do with it.
-import {Link, complaint} from './link.js';
+import {Link, complaint, keysOf} from './link.js';
 import {View} from './view.js';
 import {Plan} from './plan.js';
 import {Movers} from './movers.js';
@@ -28,6 +28,7 @@ function connect() {
         if (answer.startsWith('ERR')) tell(complaint(answer), true);
         else {
           link.ask('EVENTS');
+          link.ask('LIST').then(listRooms);
           seekBar.open(link);
         }
       });
@@ -46,6 +47,26 @@ function connect() {
     },
   });
 }
+
+/** The rooms of a building, to choose from. */
+function listRooms(answer) {
+  const rooms = keysOf(answer).rooms?.split(',') ?? [];
+  if (rooms.length === 0 || Link.rooms.length > 0) return;
+  Link.rooms = rooms;
+  Link.room = rooms[0];
+  part('rooms').replaceChildren(...rooms.map(room => new Option(room)));
+  part('rooms').hidden = false;
+}
+
+part('rooms').addEventListener('change', () => {
+  Link.room = part('rooms').value;
+  selected = null;
+  fitted = false;
+  const old = link;
+  old.on = {};
+  old.close();
+  connect();
+});
 
 function takeScene(scene) {
   const id = selected?.id;

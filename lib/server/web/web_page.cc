@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/message.h"
+#include "base/number.h"
 #include "server/session.h"
 
 namespace ispace {
@@ -144,15 +145,46 @@ void PageDialogue::finish() {
 
 }  // namespace
 
+WebPage::WebPage(ServerState& state, const std::string& title) {
+    const ServedRooms* const rooms = state.rooms();
+    if (rooms == nullptr) {
+        rooms_.push_back({&state, WebFrames(state.simulation(), title)});
+        return;
+    }
+    for (std::size_t i = 0; i < rooms->states.size(); ++i) {
+        ServerState& one = *rooms->states[i];
+        const std::string& id = rooms->worlds->rooms()[i].id;
+        rooms_.push_back({&one, WebFrames(one.simulation(), title + ", " + id)});
+    }
+}
+
+WallTime WebPage::look(WallTime now) {
+    WallTime next = WallTime::max();
+    for (Room& room : rooms_) {
+        room.frames.look(now);
+        next = std::min(next, room.frames.nextLook());
+    }
+    return next;
+}
+
 WebAdmission WebPage::open(const WebRequest& request) {
-    if (request.target != kSocketPath) return {.status = 404, .why = "the WebSocket is /ws"};
+    std::string_view number = request.target;
+    const bool is_socket = number.starts_with(kSocketPath);
+    if (is_socket) number.remove_prefix(kSocketPath.size());
+    const auto room = number.empty()            ? std::optional<std::int64_t>(0)
+                      : number.starts_with('/') ? parseInteger(number.substr(1))
+                                                : std::nullopt;
+    if (!is_socket || !room || *room < 0 || *room >= static_cast<std::int64_t>(rooms_.size()))
+        return {.status = 404, .why = "the WebSocket is /ws"};
     if (!origin_->mayConnect(request.origin))
         return {.status = 403, .why = "only the page of this server may connect"};
-    return {.dialogue = std::make_unique<PageDialogue>(*state_, frames_)};
+    Room& chosen = rooms_[static_cast<std::size_t>(*room)];
+    return {.dialogue = std::make_unique<PageDialogue>(*chosen.state, chosen.frames)};
 }
 
 void WebPage::lookAtEnd() {
-    frames_.look(std::max(std::chrono::steady_clock::now(), frames_.nextLook()));
+    for (Room& room : rooms_)
+        room.frames.look(std::max(std::chrono::steady_clock::now(), room.frames.nextLook()));
 }
 
 }  // namespace ispace

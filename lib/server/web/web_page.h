@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/server_state.h"
 #include "server/web/web_dialogue.h"
@@ -17,12 +18,12 @@ namespace ispace {
 ///
 /// Each message there holds one or more requests of the Simulator TCP Protocol, answered by a
 /// Session, and one addition: FRAME is answered by the next frame, a JSON object, as soon as it is
-/// newer than the last one; a new scene is sent before it.
+/// newer than the last one; a new scene is sent before it. In a run with several worlds, /ws/N is
+/// about that of room N.
 class WebPage final : public WebSite {
   public:
     /// \param title of the page, e.g. base name of ENV
-    WebPage(ServerState& state, std::string title)
-        : state_(&state), frames_(state.simulation(), std::move(title)) {}
+    WebPage(ServerState& state, const std::string& title);
 
     void settle(const std::string& host, std::uint16_t port) override {
         origin_.emplace(host, port);
@@ -34,15 +35,15 @@ class WebPage final : public WebSite {
         return webFile(path);
     }
     WebAdmission open(const WebRequest& request) override;
-    WallTime look(WallTime now) override {
-        frames_.look(now);
-        return frames_.nextLook();
-    }
+    WallTime look(WallTime now) override;
     void lookAtEnd() override;
 
   private:
-    ServerState* state_;
-    WebFrames frames_;
+    struct Room {
+        ServerState* state;
+        WebFrames frames;
+    };
+    std::vector<Room> rooms_;  // at least one
     std::optional<WebOrigin> origin_;
 };
 
