@@ -259,10 +259,10 @@ void FoxgloveDialogue::obeyMessage(std::string_view payload) {
     const auto& [topic, type, is_json] = channel->second;
     const RosChannel* const to = input(topic, type);
     if (to == nullptr) return tell(Level::Error, "the topic " + excerpt(topic) + " is gone");
-    if (!is_json) return obey(*to, payload);
+    if (!is_json) return orders().obey(*to, payload);
     const std::optional<Json> json = parseClientJson(payload);
     if (!json) return tell(Level::Error, "a message to " + topic + " is no JSON");
-    obey(*to, rosMessage(type, *json));
+    orders().obey(*to, rosMessage(type, *json));
 }
 
 void FoxgloveDialogue::callService(std::string_view payload) {
@@ -279,18 +279,18 @@ void FoxgloveDialogue::callService(std::string_view payload) {
     };
     if (*service >= rosServices().size()) return fail("there is no such service");
     if (encoding != kJson && encoding != kCdr) return fail("the encoding is json or cdr");
-    if (!mayRequest()) return fail("too many calls at once");
-    request(std::string(rosServices()[*service].request),
-            [this, service, call, encoding, fail](bool is_done, std::string_view text) {
-                if (!is_done) return fail(text);
-                std::string head = binary(FoxgloveOpcode::Response);
-                appendLittle(head, *service);
-                appendLittle(head, *call);
-                appendLittle(head, static_cast<std::uint32_t>(encoding.size()));
-                head += encoding;
-                head += encoding == kJson ? std::string_view("{}") : kRosEmpty;
-                send({.head = std::move(head), .is_text = false});
-            });
+    if (!orders().mayRequest()) return fail("too many calls at once");
+    orders().request(std::string(rosServices()[*service].request),
+                     [this, service, call, encoding, fail](bool is_done, std::string_view text) {
+                         if (!is_done) return fail(text);
+                         std::string head = binary(FoxgloveOpcode::Response);
+                         appendLittle(head, *service);
+                         appendLittle(head, *call);
+                         appendLittle(head, static_cast<std::uint32_t>(encoding.size()));
+                         head += encoding;
+                         head += encoding == kJson ? std::string_view("{}") : kRosEmpty;
+                         send({.head = std::move(head), .is_text = false});
+                     });
 }
 
 // Parameters and assets.
@@ -328,9 +328,9 @@ void FoxgloveDialogue::setParameters(const Json& request) {
             tell(Level::Error, excerpt(name) + " cannot be set to this");
             continue;
         }
-        if (!mayRequest()) return tell(Level::Error, "too many parameters at once");
+        if (!orders().mayRequest()) return tell(Level::Error, "too many parameters at once");
         names.insert(name);
-        this->request(*line, [this, name, id](bool is_done, std::string_view text) {
+        orders().request(*line, [this, name, id](bool is_done, std::string_view text) {
             if (!is_done) tell(Level::Error, std::string(text));
             if (!id.empty()) sendParameters({name}, id);
         });

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,47 +13,37 @@
 #include <utility>
 
 #include "server/ros/ros_feed.h"
-#include "server/session.h"
+#include "server/ros/ros_orders.h"
 #include "server/web/web_dialogue.h"
 
 namespace ispace {
 
-/// A service of the world, of type std_srvs/srv/Empty, and the request that carries it out.
-struct RosService {
-    std::string_view name, request;
-};
-std::span<const RosService> rosServices();
-inline constexpr std::string_view kRosEmptyService = "std_srvs/srv/Empty";
-/// The CDR of its answer: a struct without fields has one byte.
-inline constexpr std::string_view kRosEmpty{"\0\1\0\0\0", 5};
-
-/// A client of topics, whatever its language: subscriptions, orders to robots, services.
+/// A client of topics at a socket, whatever its language: subscriptions, orders, services.
 ///
 /// Output is bounded: a slow reader loses the oldest messages of each subscription, and its
-/// requests wait while it leaves answers unread. A robot is held while orders come; it stops and is
-/// free again when none has come for kRosSilence.
+/// requests wait while it leaves answers unread.
 class RosDialogue : public WebDialogue {
   public:
     RosDialogue(ServerState& state, RosFeed& feed);
     ~RosDialogue() override;
 
     /// Presents a token. \returns false if it is wrong
-    bool present(std::string_view token);
+    bool present(std::string_view token) { return orders_.present(token); }
 
     [[nodiscard]] std::size_t longest() const override { return std::size_t{1} << 18U; }
     [[nodiscard]] bool hasRoom() const override;
     void stepped() override;
-    void proceed() override;
-    [[nodiscard]] bool waiting() const override { return session_.waiting(); }
-    [[nodiscard]] bool waitsToChange() const override { return session_.waitsToChange(); }
+    void proceed() override { orders_.proceed(); }
+    [[nodiscard]] bool waiting() const override { return orders_.waiting(); }
+    [[nodiscard]] bool waitsToChange() const override { return orders_.waitsToChange(); }
     std::optional<WebMessage> next() override;
     [[nodiscard]] bool isOverfull() const override;
     [[nodiscard]] bool closing() const override { return false; }
     [[nodiscard]] bool isEngaged() const override {
-        return !subscriptions_.empty() || !driven_.empty();
+        return !subscriptions_.empty() || orders_.isDriving();
     }
     void dismiss() override;
-    void finish() override;
+    void finish() override { orders_.finish(); }
 
   protected:
     struct Subscription {
@@ -87,14 +76,7 @@ class RosDialogue : public WebDialogue {
     }
     /// Finds an input topic of this type; null if there is none.
     [[nodiscard]] const RosChannel* input(std::string_view topic, RosType type) const;
-    /// Carries out a message to a topic. \throws FormatError if it cannot be read
-    void obey(const RosChannel& channel, std::string_view message);
-
-    using Answer = std::function<void(bool is_done, std::string_view text)>;
-    /// Makes a request of the role WORLD. `answer` gets the words after OK, or the error.
-    void request(std::string line, Answer answer);
-    /// False while too many requests are pending for request().
-    [[nodiscard]] bool mayRequest() const;
+    [[nodiscard]] RosOrders& orders() { return orders_; }
     /// True if answers are unsent, which come before all else.
     [[nodiscard]] bool hasAnswers() const { return !out_.empty(); }
 
@@ -103,36 +85,20 @@ class RosDialogue : public WebDialogue {
         std::uint32_t key;
         std::shared_ptr<const RosMessage> message;
     };
-    struct Driven {
-        std::int64_t hold = 0;
-        SimTime last{};
-    };
     void collect();
     void enqueue(std::uint32_t key, Subscription& subscription,
                  const std::shared_ptr<const RosMessage>& message);
     void drop(const std::deque<Queued>::const_iterator& queued);
-    void answerRequests();
-    void takeAnswer();
-    void drive(const std::string& robot, const RosTwist& twist);
-    void place(const std::string& robot, const RosPose& pose);
-    void watch();
 
     ServerState* state_;
     RosFeed* feed_;
-    Session session_;  // of the role WORLD
-    std::deque<std::pair<std::string, Answer>> requests_;
-    Answer awaited_;  // of the request under way
+    RosOrders orders_;
     std::map<std::uint32_t, Subscription> subscriptions_;
     std::deque<Queued> queue_;
     std::size_t queue_bytes_ = 0;
     std::deque<WebMessage> out_;  // answers, sent before the queue
     std::size_t out_bytes_ = 0;
-    std::map<std::string, Driven> driven_;
     std::int64_t version_;  // of the feed's topics
 };
-
-/// A robot without orders for this long stops, in simulated time: the teleoperation panel of
-/// Lichtblick repeats its order each second.
-inline constexpr SimTime kRosSilence = std::chrono::milliseconds(1500);
 
 }  // namespace ispace

@@ -203,7 +203,7 @@ void RosbridgeDialogue::publish(const Json& request) {
     if (channel == nullptr)
         return tell(Level::Error, "no messages are read from " + excerpt(topic),
                     wordOf(request, "id"));
-    obey(*channel, rosMessage(channel->type, memberOf(request, "msg")));
+    orders().obey(*channel, rosMessage(channel->type, memberOf(request, "msg")));
 }
 
 // Services.
@@ -221,11 +221,11 @@ void RosbridgeDialogue::callService(const Json& request) {
         answer(id, service, false, JsonWriter().value(why).text());
     };
     if (found == services.end()) return fail("there is no service " + excerpt(service));
-    if (!mayRequest()) return fail("too many calls at once");
-    this->request(std::string(found->request),
-                  [this, id, service, fail](bool is_done, std::string_view text) {
-                      is_done ? answer(id, service, true, "{}") : fail(text);
-                  });
+    if (!orders().mayRequest()) return fail("too many calls at once");
+    orders().request(std::string(found->request),
+                     [this, id, service, fail](bool is_done, std::string_view text) {
+                         is_done ? answer(id, service, true, "{}") : fail(text);
+                     });
 }
 
 /// \param values JSON; for a failure the reason as a text of JSON

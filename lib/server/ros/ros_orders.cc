@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/ros/ros_orders.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::size_t kMaxRequests = 16;
+
+}  // namespace
+
+std::span<const RosService> rosServices() {
+    static constexpr std::array<RosService, 3> kServices{
+        {{"/reset", "RESET"}, {"/pause", "PAUSE"}, {"/resume", "RESUME"}}};
+    return kServices;
+}
+
+RosOrders::RosOrders(ServerState& state, std::function<void(const std::string&)> tell)
+    : state_(&state), tell_(std::move(tell)), session_(state) {}
+
+RosOrders::~RosOrders() {
+    state_->sync();
+    for (const auto& [robot, driven] : driven_) state_->release(robot, driven.hold);
+}
+
+bool RosOrders::present(std::string_view token) {
+    const bool is_word = token.find_first_of(" \t\r\n") == std::string_view::npos;
+    if (!is_word || token.empty()) return false;
+    session_.request("TOKEN " + std::string(token));
+    return session_.take().starts_with("OK");
+}
+
+bool RosOrders::mayRequest() const { return requests_.size() < kMaxRequests; }
+
+void RosOrders::stepped() {
+    session_.stepped();
+    watch();
+    answerRequests();
+}
+
+void RosOrders::proceed() {
+    session_.proceed();
+    answerRequests();
+}
+
+void RosOrders::finish() {
+    session_.finish();
+    takeAnswer();
+    requests_.clear();
+}
+
+void RosOrders::request(std::string line, Answer answer) {
+    requests_.emplace_back(std::move(line), std::move(answer));
+    answerRequests();
+}
+
+void RosOrders::answerRequests() {
+    takeAnswer();
+    while (!requests_.empty() && !awaited_ && !session_.waiting()) {
+        auto [line, answer] = std::move(requests_.front());
+        requests_.pop_front();
+        awaited_ = std::move(answer);
+        if (!session_.hasRole()) {
+            session_.request("WORLD");
+            if (session_.hasRole()) static_cast<void>(session_.take());
+        }
+        // Without the role, its refusal is the answer.
+        if (session_.hasRole()) session_.request(line);
+        takeAnswer();
+    }
+}
+
+/// Hands the answer of the request under way to its asker.
+void RosOrders::takeAnswer() {
+    std::string text = session_.take();
+    if (text.empty() || !awaited_) return;
+    if (text.ends_with('\n')) text.pop_back();
+    const bool is_done = text.starts_with("OK ");
+    constexpr std::string_view kError = "ERR 404 ";
+    std::exchange(awaited_, nullptr)(
+        is_done, std::string_view(text).substr(is_done ? 3 : std::min(kError.size(), text.size())));
+}
+
+void RosOrders::obey(const RosChannel& channel, std::string_view message) {
+    const RosOrder order = channel.row->decode(channel.type, message);
+    const std::string robot = state_->simulation().world().robots()[channel.subject].id;
+    if (state_->simulation().isReplay())
+        return tell_("this run is a replay: robots go as recorded");
+    if (const auto* twist = std::get_if<RosTwist>(&order)) return drive(robot, *twist);
+    place(robot, std::get<RosPose>(order));
+}
+
+void RosOrders::drive(const std::string& robot, const RosTwist& twist) {
+    World& world = state_->simulation().world();
+    if (!std::isfinite(twist.forward + twist.left + twist.turn.radians()))
+        return tell_("the speeds of " + robot + " must be numbers");
+    state_->sync();
+    const auto index = world.robotNamed(robot);
+    Driven& driven = driven_[robot];
+    if (driven.hold == 0 || !state_->holds(robot, driven.hold)) {
+        const auto hold = state_->hold(robot);
+        if (!hold || !index) {
+            driven_.erase(robot);
+            return tell_("robot " + robot + " is held by another client");
+        }
+        driven.hold = *hold;
+    }
+    driven.last = world.time();
+    const RobotModel& model = world.robots()[*index].model;
+    const auto give = [&](Verb verb, double value, double most) {
+        const Command command{.verb = verb, .value = std::clamp(value, -most, most)};
+        if (world.refusal(*index, command).empty()) world.command(*index, command);
+    };
+    give(Verb::Speed, twist.forward, model.max_speed);
+    give(Verb::Rotspeed, twist.turn.degrees(), model.max_rotspeed.degrees());
+    if (model.drive == Drive::Omni) give(Verb::Sidespeed, twist.left, model.max_sidespeed);
+}
+
+void RosOrders::place(const std::string& robot, const RosPose& pose) {
+    const Point2 at = pose.pose.position;
+    const double heading = pose.pose.heading.degrees();
+    if (!pose.frame.empty() && pose.frame != kRosWorld)
+        return tell_("the pose of " + robot + " is wanted in the frame map");
+    if (!std::isfinite(at.x + at.y + heading))
+        return tell_("the pose of " + robot + " must be numbers");
+    if (!mayRequest()) return tell_("too many poses at once");
+    const auto answer = [this](bool is_done, std::string_view text) {
+        if (!is_done) tell_(std::string(text));
+    };
+    request("SET " + robot + ".at=" + formatDouble(at.x) + "," + formatDouble(at.y), answer);
+    request("SET " + robot + ".heading=" + formatDouble(heading), answer);
+}
+
+/// Stops robots that get no more orders.
+void RosOrders::watch() {
+    if (driven_.empty()) return;
+    const SimTime now = state_->simulation().world().time();
+    state_->sync();
+    for (auto robot = driven_.begin(); robot != driven_.end();) {
+        const SimTime since = now - robot->second.last;
+        if (since >= SimTime(0) && since < kRosSilence) {
+            ++robot;
+            continue;
+        }
+        state_->release(robot->first, robot->second.hold);
+        robot = driven_.erase(robot);
+    }
+}
+
+}  // namespace ispace

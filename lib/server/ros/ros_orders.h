@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/server.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "server/ros/ros_topics.h"
+#include "server/server_state.h"
+#include "server/session.h"
+
+namespace ispace {
+
+/// A service of the world, of type std_srvs/srv/Empty, and the request that carries it out.
+struct RosService {
+    std::string_view name, request;
+};
+std::span<const RosService> rosServices();
+inline constexpr std::string_view kRosEmptyService = "std_srvs/srv/Empty";
+/// The CDR of its answer: a struct without fields has one byte.
+inline constexpr std::string_view kRosEmpty{"\0\1\0\0\0", 5};
+
+/// A robot without orders for this long stops, in simulated time: the teleoperation panel of
+/// Lichtblick repeats its order each second.
+inline constexpr SimTime kRosSilence = std::chrono::milliseconds(1500);
+
+/// Orders of one client of topics to robots, and its requests to the world.
+///
+/// A robot is held while orders come; it stops and is free again when none has come for
+/// kRosSilence.
+class RosOrders {
+  public:
+    /// \param tell reports a failure that answers no request
+    RosOrders(ServerState& state, std::function<void(const std::string& error)> tell);
+    RosOrders(const RosOrders&) = delete;
+    RosOrders& operator=(const RosOrders&) = delete;
+    ~RosOrders();
+
+    /// Presents a token. \returns false if it is wrong
+    bool present(std::string_view token);
+    /// Carries out a message to a topic. \throws FormatError if it cannot be read
+    void obey(const RosChannel& channel, std::string_view message);
+
+    using Answer = std::function<void(bool is_done, std::string_view text)>;
+    /// Makes a request of the role WORLD. `answer` gets the words after OK, or the error.
+    void request(std::string line, Answer answer);
+    /// False while too many requests are pending for request().
+    [[nodiscard]] bool mayRequest() const;
+
+    /// Call after each step or change of the world.
+    void stepped();
+    /// Call after other clients were served.
+    void proceed();
+    [[nodiscard]] bool waiting() const { return session_.waiting(); }
+    [[nodiscard]] bool waitsToChange() const { return session_.waitsToChange(); }
+    [[nodiscard]] bool isDriving() const { return !driven_.empty(); }
+    /// Call at the end of the run.
+    void finish();
+
+  private:
+    struct Driven {
+        std::int64_t hold = 0;
+        SimTime last{};
+    };
+    void answerRequests();
+    void takeAnswer();
+    void drive(const std::string& robot, const RosTwist& twist);
+    void place(const std::string& robot, const RosPose& pose);
+    void watch();
+
+    ServerState* state_;
+    std::function<void(const std::string&)> tell_;
+    Session session_;  // of the role WORLD
+    std::deque<std::pair<std::string, Answer>> requests_;
+    Answer awaited_;  // of the request under way
+    std::map<std::string, Driven> driven_;
+};
+
+}  // namespace ispace
