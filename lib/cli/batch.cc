@@ -12,6 +12,7 @@
 #include <pugixml.hpp>
 #include <set>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "base/error.h"
@@ -290,6 +291,17 @@ void nameProducts(const BatchRun& run, std::vector<BatchJob>& jobs) {
         if (!folder.empty()) std::filesystem::create_directories(folder);
 }
 
+/// Rejects pipes and devices unopened: a list is a file that names others. Other errors are left to
+/// the readers. \throws FormatError
+void checkKinds(const BatchJob& job) {
+    for (const std::string& name : job.operands) {
+        std::error_code error;
+        const auto status = std::filesystem::status(name, error);
+        if (std::filesystem::is_other(status))
+            throw FormatError({displayName(name), 0, 0, "it is no regular file"});
+    }
+}
+
 JobOutcome outcomeOf(const BatchRun& run, const BatchJob& job, const JobWork& work) {
     JobOutcome outcome;
     CommonOptions common = run.common;
@@ -298,6 +310,7 @@ JobOutcome outcomeOf(const BatchRun& run, const BatchJob& job, const JobWork& wo
     common.messages = [&outcome](const std::string& text) { outcome.messages.push_back(text); };
     try {
         if (!job.wrong.empty()) throw UsageError(job.wrong);
+        checkKinds(job);
         work(job, common, outcome);
     } catch (...) {
         const ToolFailure failure = currentFailure();

@@ -91,6 +91,18 @@ for tool in arrange scan; do
         grep -q 'a part is a regular file' err || fail "$(cat err)"
     done
 done
+# Rooms of storeys, and jobs of lists.
+for file in pipe /dev/zero; do
+    printf '#env 1\nstorey id=a file=%s\n' "$file" >storeys.env
+    refused envc storeys.env --check
+    printf '%s\n' "$file" >list
+    for words in "coverage --batch list" "scan --batch list -o new/" \
+        "arrange --batch list --sensor laser:1 -o new/"; do
+        # shellcheck disable=SC2086
+        expect_status 1 timeout 10 $words
+        grep -q "list:1: $file: error: it is no regular file" err || fail "$words: $(cat err)"
+    done
+done
 # Operands may be any file.
 envc <(cat room.env) --info >by_pipe
 envc room.env --info | sed 's/room.env/room/' >by_name

@@ -33,7 +33,7 @@ NAMED = [f"envc @{suffix} --to env -o new.env" for suffix in IMPORTS] + [
     "scan @", "scan room.env @", "scan room.env laser.3dm -o @", "scan room.env --poses @ --model laser --to csv",
     "scan --run @", "scan --merge @ -o new.jsonl", "scan room.env laser.3dm --frames 2 --resume -o @.csv",
     "coverage @ laser.3dm", "coverage room.env @", "coverage --batch @", "coverage room.env laser.3dm --compare @",
-    "coverage --batch list", "coverage room.env laser.3dm --run @", "coverage room.env laser.3dm --trace @ -o new.png",
+    "coverage room.env laser.3dm --run @", "coverage room.env laser.3dm --trace @ -o new.png",
     "coverage room.env laser.3dm --require 1% --junit @", "coverage room.env laser.3dm --report @.json",
     "coverage room.env laser.3dm --to png -o @",
     "simrun @ SERVED", "simrun room.env @ SERVED", "simrun room.env robots.3dm SERVED --script @",
@@ -57,6 +57,10 @@ INSIDE = [
     ("in.env", "#env 1\n" + FENCE + "mesh file={}\n", ["envc in.env --to env", "coverage in.env laser.3dm"]),
     ("in.env", "#env 1\n" + FENCE + "mesh file={}.obj\n", ["envc in.env --to glb -o new.glb"]),
     ("in.yaml", "- include: {}\n", ["envc in.yaml --to env"]),
+    ("in.env", "#env 1\nstorey id=a file={}\nstorey id=b file=room.env z=3\n", ["envc in.env --info", "coverage in.env laser.3dm"]),
+    ("in.yaml", "- storey: {{id: a, records: [include: {}]}}\n", ["envc in.yaml --check", "scan in.yaml laser.3dm"]),
+    ("in.txt", "{} laser.3dm\nroom.env {}\n",
+     ["coverage --batch in.txt", "scan --batch in.txt -o new/", "arrange --batch in.txt PLACING -o new/"]),
     ("in.yaml", "image: {}\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n",
      ["envc in.yaml --to env"]),
     ("in.world", SDF, ["envc in.world --to env"]),
@@ -103,8 +107,7 @@ def make_kinds(folder):
 class Field:
     def __init__(self, lab):
         self.lab, self.folder = lab, lab.inputs("inputs")
-        for name, text in (("laser.3dm", "#3dm 1\nlaser id=l1 at=0,0\n"), ("world.sdf", SDF.format("model://m")),
-                           ("list", "special laser.3dm\nroom.env special\n")):
+        for name, text in (("laser.3dm", "#3dm 1\nlaser id=l1 at=0,0\n"), ("world.sdf", SDF.format("model://m"))):
             self.write(name, text)
         for argv in (["simrun", "room.env", "robots.3dm", "--clock", "fast", "--until", "0.1", "--record", "run"],):
             lab.run(argv, self.folder)
