@@ -9,6 +9,7 @@ import time
 
 import clients
 import grammar
+import topics
 
 STYLES = ("polite", "polite", "polite", "polite", "flood", "deaf", "half", "slow", "vanish", "noise", "web")
 MOST_AHEAD = 8  # requests of a polite client that wait for a reply
@@ -167,10 +168,13 @@ class Attacker:
         self.socket = None
 
 
-def attack(port, web, seed, count, report):
-    """Runs until killed; writes a line to `report` for each violation, and the number of requests sent."""
+def attack(ports, seed, count, report):
+    """Runs until killed; writes a line to `report` for each violation, and the number of requests sent. A third of the
+    attackers are clients of topics."""
     r = random.Random(seed)
-    attackers = [Attacker(r, port, web) for _ in range(count)]
+    kinds = [r.choice(("foxglove", "rosbridge")) if i % 3 == 2 else "" for i in range(count)]
+    attackers = [topics.TopicAttacker(r, kind, ports[kind]) if kind else Attacker(r, ports["listen"], ports["web"])
+                 for kind in kinds]
     sent, told = 0, time.monotonic()
     while os.getppid() != 1:
         attacker = r.choice(attackers)

@@ -132,6 +132,10 @@ class Watch:
     def __init__(self, port):
         self.client, self.slowest, self.asked = Client(port, "WORLD", patience=60), 0.0, 0
 
+    def time(self):
+        """The time of the world in seconds."""
+        return float(re.match(rb"OK TIME t=([0-9.]+)", self.client.ask("TIME"))[1])
+
     def ask(self, pause=0.02):
         begin = time.monotonic()
         time.sleep(pause)

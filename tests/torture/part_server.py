@@ -14,6 +14,7 @@ import attackers
 import clients
 import lab as labs
 import part_kills
+import topics
 
 MOST_WAIT = 1.0          # seconds
 # Bytes of the whole run, from the sums of ispace-protocol(7): during a change two worlds of half a gigabyte each, 64
@@ -28,6 +29,7 @@ MODES = (("real, recorded", ["--clock", "real", "--record", "run"]), ("real", ["
          ("fast", ["--clock", "fast"]), ("one thread", ["--clock", "real", "-j", "1"]),
          ("recorded fast", ["--clock", "fast", "--record", "run"]))
 READERS = ("LASER honest_laser", "SENSOR eye")
+BEAMS = 361  # of honest_laser
 
 
 class Run:
@@ -39,7 +41,8 @@ class Run:
         read_end, write_end = os.pipe()
         self.process = lab.start(["simrun", "hall.env", "layout.3dm", "--load", ".", "--max-clients", "300",
                                   "--web", "127.0.0.1:0", "--scip", "honest_laser=0", "--cola", "eye_laser=0",
-                                  "--mjpeg", "eye=0", "--record-limit", "2G", *options], folder, out=write_end, err=self.said)
+                                  "--mjpeg", "eye=0", "--foxglove", "127.0.0.1:0", "--rosbridge", "127.0.0.1:0",
+                                  "--record-limit", "2G", *options], folder, out=write_end, err=self.said)
         os.close(write_end)
         with os.fdopen(read_end, encoding="utf-8") as first:
             line = first.readline()
@@ -48,8 +51,9 @@ class Run:
             with open(self.said.name, encoding="utf-8") as text:
                 raise SystemExit("torture: simrun does not start: " + text.read())
         self.announced = json.loads(line)
-        self.port = int(self.announced["listen"].rpartition(":")[2])
-        self.page = int(re.search(r":(\d+)", self.announced["web"][5:])[1])
+        self.ports = {kind: int(re.search(r":(\d+)", self.announced[kind].split("//")[-1])[1])
+                      for kind in ("listen", "web", "foxglove", "rosbridge")}
+        self.port, self.page = self.ports["listen"], self.ports["web"]
         self.pid = self.process.pid
 
     def port_of(self, kind):
@@ -89,10 +93,10 @@ def child(work, report):
         os._exit(0)
 
 
-def read_stream(port, role, report):
+def read_stream(role, connect, report):
     seen = 0
     try:
-        reader = clients.StreamReader(port, role)
+        reader = connect()
         while True:
             reader.read()
             if reader.seen > seen:
@@ -138,12 +142,16 @@ class Siege:
         r = random.Random(f"{lab.seed} server {number}")
         self.watch = clients.Watch(self.run.port)
         for role in READERS:
-            self.add(role, lambda report, role=role: read_stream(self.run.port, role, report))
+            self.add(role, lambda report, role=role: read_stream(
+                role, lambda: clients.StreamReader(self.run.port, role), report))
+        for kind in topics.PROTOCOLS:
+            self.add(kind, lambda report, kind=kind: read_stream(
+                kind, lambda: topics.TopicReader(kind, self.run.ports[kind], BEAMS), report))
         time.sleep(0.3)
         for i in range(2):
             seed, count = r.random(), r.choice((4, 12, 40))
             self.add(f"attackers {i}", lambda report, seed=seed, count=count: attackers.attack(
-                self.run.port, self.run.page, seed, count, report))
+                self.run.ports, seed, count, report))
 
     def add(self, name, work):
         path = os.path.join(self.folder, name.replace(" ", "-") + ".report")
@@ -193,12 +201,17 @@ class Siege:
 
 
 def check_places(lab):
-    """64 WebSockets that answer pings and take no role, and silent clients at each device port: others get in."""
+    """64 WebSockets that answer pings and take no role, silent clients and half handshakes at each other port: others
+    get in."""
     folder = os.path.join(lab.folder, "places")
     write_scenes(folder)
     run = Run(lab, folder, ["--clock", "real"])
     sockets = [clients.WebSocket(run.page) for _ in range(64)]
     devices = {kind: [clients.Client(run.port_of(kind)) for _ in range(8)] for kind in ("scip", "cola", "mjpeg")}
+    for kind in topics.PROTOCOLS:
+        devices[kind] = [clients.Client(run.ports[kind]) for _ in range(64)]
+        for client in devices[kind][:48]:
+            client.socket.sendall(topics.handshake(run.ports[kind], topics.PROTOCOLS[kind])[:random.choice((-1, None))])
     end = time.monotonic() + 2.5
     while time.monotonic() < end:
         for web in sockets:
@@ -224,13 +237,41 @@ def check_places(lab):
     tries("SCIP behind 8 silent clients", lambda: ask("scip", b"VV\n", b"VV"))
     tries("CoLa behind 8 silent clients", lambda: ask("cola", b"\x02sRN DeviceIdent\x03", b"sRA"))
     tries("MJPEG behind 8 silent clients", lambda: ask("mjpeg", b"GET / HTTP/1.0\r\n\r\n", b"HTTP/1."))
+    for kind in topics.PROTOCOLS:
+        tries(f"{kind} behind 64 silent clients", lambda kind=kind: topics.connects(kind, run.ports[kind]))
     for client in [*sockets, *(client for held in devices.values() for client in held)]:
         client.socket.close()
     run.end("places")
 
 
+def check_hoards(lab):
+    """Clients of topics with thousands of subscriptions each that never read delay neither the world nor others."""
+    folder = os.path.join(lab.folder, "hoards")
+    write_scenes(folder)
+    run = Run(lab, folder, ["--clock", "real"])
+    watch = clients.Watch(run.port)
+    hoards = [topics.hoard(kind, run.ports[kind]) for kind in topics.PROTOCOLS for _ in range(40)]
+    lab.count("hoards", len(hoards))
+    begin = time.monotonic()
+    first, waited = watch.time(), 0
+    while time.monotonic() < begin + 4:
+        waited = max(waited, watch.ask())
+    pace = (watch.time() - first) / (time.monotonic() - begin)
+    if waited > labs.allowed(MOST_WAIT):
+        lab.violated(f"hoards: TIME waited {waited:.1f} s")
+    if pace < 0.5 / labs.allowed(1):
+        lab.violated(f"hoards: the world goes at {pace:.2f} of its pace")
+    for one in hoards:
+        one.close()
+    took = run.end("hoards")
+    if took > labs.allowed(MOST_WAIT):
+        lab.violated(f"hoards: TERM took {took:.1f} s")
+    lab.say(f"hoards: TIME {1000 * waited:.0f} ms, pace {pace:.2f}, TERM {1000 * took:.0f} ms")
+
+
 def run(lab):
     check_places(lab)
+    check_hoards(lab)
     number = 0
     while lab.left() > 3:
         siege = Siege(lab, number)

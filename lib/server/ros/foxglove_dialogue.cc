@@ -81,15 +81,31 @@ void FoxgloveDialogue::greet(const std::string& title, const std::string& sessio
 }
 
 void FoxgloveDialogue::advertise() {
-    std::set<std::uint32_t> present;
+    const RosFeed::Entries& entries = feed().entries();
+    JsonWriter gone;
+    gone.beginObject().key("op").value("unadvertise").key("channelIds").beginArray();
+    bool has_gone = false;
+    for (auto known = advertised_.begin(); known != advertised_.end();) {
+        if (entries.contains(*known)) {
+            ++known;
+            continue;
+        }
+        has_gone = true;
+        gone.value(std::int64_t{*known});
+        known = advertised_.erase(known);
+    }
+    gone.endArray().endObject();
+    const bool is_first = newest_ == 0;
     JsonWriter json;
     json.beginObject().key("op").value("advertise").key("channels").beginArray();
     bool has_new = false;
-    for (const auto& [number, entry] : feed().entries()) {
+    // Numbers grow: those after the newest known one are new.
+    for (auto at = entries.upper_bound(newest_); at != entries.end(); ++at) {
+        const auto& [number, entry] = *at;
+        newest_ = number;
         if (entry.channel.isInput()) continue;
-        present.insert(number);
-        if (advertised_.contains(number)) continue;
         has_new = true;
+        advertised_.insert(advertised_.end(), number);
         json.beginObject().key("id").value(std::int64_t{number});
         json.key("topic").value(entry.channel.topic).key("encoding").value(kCdr);
         json.key("schemaName").value(nameOf(entry.channel.type));
@@ -97,18 +113,8 @@ void FoxgloveDialogue::advertise() {
         json.key("schema").value(rosDefinition(entry.channel.type)).endObject();
     }
     json.endArray().endObject();
-    JsonWriter gone;
-    gone.beginObject().key("op").value("unadvertise").key("channelIds").beginArray();
-    bool has_gone = false;
-    for (const std::uint32_t number : advertised_) {
-        if (present.contains(number)) continue;
-        has_gone = true;
-        gone.value(std::int64_t{number});
-    }
-    gone.endArray().endObject();
     if (has_gone) sendText(gone.take());
-    if (has_new || advertised_.empty()) sendText(json.take());
-    advertised_ = std::move(present);
+    if (has_new || is_first) sendText(json.take());
 }
 
 void FoxgloveDialogue::advertiseServices() {
@@ -213,6 +219,10 @@ void FoxgloveDialogue::subscribeAll(const Json& request) {
         const auto topic = feed().entries().find(channel.value_or(0));
         if (!key || topic == feed().entries().end() || topic->second.channel.isInput()) {
             tell(Level::Error, "a subscription to an unknown channel");
+            continue;
+        }
+        if (readsElsewhere(topic->first, *key)) {
+            tell(Level::Warning, "another subscription has this channel");
             continue;
         }
         const std::size_t depth = topic->second.channel.quality.depth;

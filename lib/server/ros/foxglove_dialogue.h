@@ -64,6 +64,7 @@ class FoxgloveDialogue final : public RosDialogue {
     void sendParameters(const std::set<std::string>& names, const std::string& id);
 
     std::set<std::uint32_t> advertised_;
+    std::uint32_t newest_ = 0;  // number of a topic that was advertised or is an input
     std::map<std::uint32_t, ClientChannel> channels_;
     std::set<std::string> watched_;  // parameters
     bool was_paused_ = false;

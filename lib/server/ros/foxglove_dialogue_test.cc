@@ -102,6 +102,45 @@ TEST(Foxglove, SlowReadersLoseTheOldestMessages) {
     EXPECT_EQ(last, 4'000'000'000U) << "the newest is among them";
 }
 
+TEST(Foxglove, AChannelHasOneSubscription) {
+    FoxgloveTalk talk;
+    talk.subscribe(1, "/clock");
+    talk.subscribe(2, "/clock");
+    EXPECT_EQ(talk.ask("status")["message"], "another subscription has this channel");
+    talk.subscribe(1, "/clock");
+    talk.send({{"op", "unsubscribe"}, {"subscriptionIds", {1}}});
+    talk.subscribe(2, "/clock");
+    talk.drain();
+    talk.step();
+    EXPECT_EQ(numberAt<std::uint32_t>(talk.binary(1), 1), 2U);
+}
+
+TEST(Foxglove, SubscriptionsOfAllClientsAreBounded) {
+    FoxgloveTalk talk;
+    const auto number = talk.channel("/clock")["id"].get<std::uint32_t>();
+    while (!talk.feed.isFull()) talk.feed.want(number);
+    talk.subscribe(1, "/clock");
+    EXPECT_EQ(talk.ask("status")["message"], "too many subscriptions");
+    talk.feed.unwant(number);
+    talk.subscribe(1, "/clock");
+    EXPECT_TRUE(talk.dialogue->isEngaged());
+}
+
+TEST(Foxglove, OneLargeAnswerMayWait) {
+    constexpr std::size_t kLarge = 5'000'000;
+    FoxgloveTalk talk(RosTalk<FoxgloveDialogue>::limits(),
+                      {.room = [](const Scene&) { return std::string(kLarge, 'm'); }});
+    const auto fetch = [&] {
+        talk.send({{"op", "fetchAsset"}, {"uri", "package://ispace/room.glb"}, {"requestId", 3}});
+    };
+    fetch();
+    talk.send({{"op", "getParameters"}, {"parameterNames", {"r1.at"}}});
+    EXPECT_FALSE(talk.dialogue->isOverfull());
+    fetch();
+    fetch();
+    EXPECT_TRUE(talk.dialogue->isOverfull());
+}
+
 TEST(Foxglove, TwistsDriveUntilTheySilence) {
     FoxgloveTalk talk;
     talk.advertise(5, "/r1/cmd_vel", "geometry_msgs/Twist");

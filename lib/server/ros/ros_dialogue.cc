@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <utility>
 
 namespace ispace {
@@ -18,31 +19,36 @@ constexpr std::size_t kMaxQueue = std::size_t{1} << 23U, kMaxAnswers = std::size
 RosDialogue::RosDialogue(ServerState& state, RosFeed& feed)
     : state_(&state),
       feed_(&feed),
-      orders_(state, [this](const std::string& error) { tell(Level::Error, error); }),
-      version_(feed.version()) {}
+      orders_(state, [this](const std::string& error) { tell(Level::Error, error); }) {
+    feed.enter();
+    version_ = feed.version();
+}
 
 RosDialogue::~RosDialogue() {
     for (const auto& [key, subscription] : subscriptions_) feed_->unwant(subscription.topic);
+    feed_->leave();
 }
 
 bool RosDialogue::hasRoom() const {
     return orders_.mayRequest() && out_bytes_ <= state_->limits().pending;
 }
 
-bool RosDialogue::isOverfull() const { return out_.size() > 1 && out_bytes_ > kMaxAnswers; }
+bool RosDialogue::isOverfull() const { return out_bytes_ > kMaxAnswers + largest_; }
 
 void RosDialogue::send(WebMessage message) {
     out_bytes_ += message.size();
+    largest_ = std::max(largest_, message.size());
     out_.push_back(std::move(message));
 }
 
 bool RosDialogue::subscribe(std::uint32_t key, Subscription subscription) {
     unsubscribe(key);
-    if (subscriptions_.size() >= kMaxSubscriptions) return false;
+    if (subscriptions_.size() >= kMaxSubscriptions || feed_->isFull()) return false;
     const auto topic = feed_->entries().find(subscription.topic);
     if (topic == feed_->entries().end()) return true;
     feed_->want(subscription.topic);
-    Subscription& own = subscriptions_.emplace(key, subscription).first->second;
+    keys_[subscription.topic] = key;
+    Subscription& own = subscriptions_.emplace(key, std::move(subscription)).first->second;
     if (topic->second.newest) enqueue(key, own, topic->second.newest);
     return true;
 }
@@ -50,9 +56,8 @@ bool RosDialogue::subscribe(std::uint32_t key, Subscription subscription) {
 void RosDialogue::unsubscribe(std::uint32_t key) {
     const auto found = subscriptions_.find(key);
     if (found == subscriptions_.end()) return;
-    while (found->second.queued > 0)
-        drop(std::find_if(queue_.begin(), queue_.end(),
-                          [key](const Queued& one) { return one.key == key; }));
+    while (!found->second.queued.empty()) dropOldest(found->second);
+    keys_.erase(found->second.topic);
     feed_->unwant(found->second.topic);
     subscriptions_.erase(found);
 }
@@ -65,20 +70,20 @@ void RosDialogue::enqueue(std::uint32_t key, Subscription& subscription,
     if (!is_first && now - subscription.last_time < subscription.interval) return;
     subscription.last = message->number();
     subscription.last_time = now;
-    if (subscription.queued >= subscription.depth)
-        drop(std::find_if(queue_.begin(), queue_.end(),
-                          [key](const Queued& one) { return one.key == key; }));
+    if (subscription.queued.size() >= subscription.depth) dropOldest(subscription);
     while (!queue_.empty() && queue_bytes_ + message->cdr()->size() > kMaxQueue)
-        drop(queue_.begin());
+        dropOldest(subscriptions_.at(queue_.front().key));
     queue_.push_back({key, message});
     queue_bytes_ += message->cdr()->size();
-    ++subscription.queued;
+    subscription.queued.push_back(std::prev(queue_.end()));
 }
 
-void RosDialogue::drop(const std::deque<Queued>::const_iterator& queued) {
-    --subscriptions_.at(queued->key).queued;
-    queue_bytes_ -= queued->message->cdr()->size();
-    queue_.erase(queued);
+/// Drops the oldest message of a subscription. \pre it has one
+void RosDialogue::dropOldest(Subscription& subscription) {
+    const auto oldest = subscription.queued.front();
+    subscription.queued.pop_front();
+    queue_bytes_ -= oldest->message->cdr()->size();
+    queue_.erase(oldest);
 }
 
 std::optional<WebMessage> RosDialogue::next() {
@@ -90,8 +95,9 @@ std::optional<WebMessage> RosDialogue::next() {
     }
     while (!queue_.empty()) {
         const auto [key, message] = queue_.front();
-        const auto topic = feed_->entries().find(subscriptions_.at(key).topic);
-        drop(queue_.begin());
+        Subscription& subscription = subscriptions_.at(key);
+        const auto topic = feed_->entries().find(subscription.topic);
+        dropOldest(subscription);
         if (topic != feed_->entries().end()) return write(key, topic->second, *message);
     }
     return std::nullopt;
@@ -121,13 +127,14 @@ void RosDialogue::stepped() {
 void RosDialogue::dismiss() {
     queue_.clear();
     queue_bytes_ = 0;
-    for (auto& [key, subscription] : subscriptions_) subscription.queued = 0;
+    for (auto& [key, subscription] : subscriptions_) subscription.queued.clear();
 }
 
 const RosChannel* RosDialogue::input(std::string_view topic, RosType type) const {
-    for (const auto& [number, entry] : feed_->entries())
-        if (entry.channel.isInput() && entry.channel.topic == topic && entry.channel.type == type)
-            return &entry.channel;
+    for (const std::uint32_t number : feed_->numbersOf(topic)) {
+        const RosChannel& channel = feed_->entries().at(number).channel;
+        if (channel.isInput() && channel.type == type) return &channel;
+    }
     return nullptr;
 }
 

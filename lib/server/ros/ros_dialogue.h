@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -46,13 +47,17 @@ class RosDialogue : public WebDialogue {
     void finish() override { orders_.finish(); }
 
   protected:
+    struct Queued {
+        std::uint32_t key;
+        std::shared_ptr<const RosMessage> message;
+    };
     struct Subscription {
         std::uint32_t topic = 0;  ///< number in the feed
         std::size_t depth = 1;    ///< messages kept for a slow reader, the oldest dropped
         std::chrono::nanoseconds interval{};  ///< least wall time between two messages
         std::int64_t last = 0;                ///< number of the last message
         WallTime last_time{};
-        std::size_t queued = 0;
+        std::deque<std::list<Queued>::const_iterator> queued = {};  ///< oldest first
     };
     enum class Level { Info = 0, Warning = 1, Error = 2 };
 
@@ -69,10 +74,16 @@ class RosDialogue : public WebDialogue {
     void send(WebMessage message);
     void sendText(std::string text) { send({.head = std::move(text)}); }
     /// Replaces an earlier subscription with this key. \returns false if there are too many
+    /// \pre no other subscription has the topic
     bool subscribe(std::uint32_t key, Subscription subscription);
     void unsubscribe(std::uint32_t key);
     [[nodiscard]] bool hasSubscription(std::uint32_t key) const {
         return subscriptions_.contains(key);
+    }
+    /// Returns true if a subscription with another key has the topic.
+    [[nodiscard]] bool readsElsewhere(std::uint32_t topic, std::uint32_t key) const {
+        const auto found = keys_.find(topic);
+        return found != keys_.end() && found->second != key;
     }
     /// Finds an input topic of this type; null if there is none.
     [[nodiscard]] const RosChannel* input(std::string_view topic, RosType type) const;
@@ -81,24 +92,21 @@ class RosDialogue : public WebDialogue {
     [[nodiscard]] bool hasAnswers() const { return !out_.empty(); }
 
   private:
-    struct Queued {
-        std::uint32_t key;
-        std::shared_ptr<const RosMessage> message;
-    };
     void collect();
     void enqueue(std::uint32_t key, Subscription& subscription,
                  const std::shared_ptr<const RosMessage>& message);
-    void drop(const std::deque<Queued>::const_iterator& queued);
+    void dropOldest(Subscription& subscription);
 
     ServerState* state_;
     RosFeed* feed_;
     RosOrders orders_;
     std::map<std::uint32_t, Subscription> subscriptions_;
-    std::deque<Queued> queue_;
+    std::map<std::uint32_t, std::uint32_t> keys_;  // of subscriptions, by topic
+    std::list<Queued> queue_;                      // oldest first
     std::size_t queue_bytes_ = 0;
-    std::deque<WebMessage> out_;  // answers, sent before the queue
-    std::size_t out_bytes_ = 0;
-    std::int64_t version_;  // of the feed's topics
+    std::deque<WebMessage> out_;               // answers, sent before the queue
+    std::size_t out_bytes_ = 0, largest_ = 0;  // of one answer so far
+    std::int64_t version_;                     // of the feed's topics
 };
 
 }  // namespace ispace

@@ -10,6 +10,13 @@
 
 namespace ispace {
 
+namespace {
+
+/// Subscriptions of all clients of a port.
+constexpr std::size_t kMostSubscriptions = 16384;
+
+}  // namespace
+
 std::shared_ptr<const std::string> RosMessage::json() const {
     if (!json_) json_ = std::make_shared<const std::string>(rosJson(type_, *cdr_));
     return json_;
@@ -50,13 +57,37 @@ void RosFeed::sync() {
     }
     is_changed = is_changed || entries.size() != entries_.size();
     entries_ = std::move(entries);
-    if (is_changed) ++version_;
+    if (!is_changed) return;
+    ++version_;
+    numbers_.clear();
+    wanted_.clear();
+    subscriptions_ = 0;
+    for (const auto& [number, entry] : entries_) {
+        numbers_[entry.channel.topic].push_back(number);
+        subscriptions_ += entry.wanted;
+        if (entry.wanted > 0) wanted_.insert(number);
+    }
 }
+
+void RosFeed::enter() {
+    sync();
+    ++clients_;
+}
+
+std::span<const std::uint32_t> RosFeed::numbersOf(std::string_view topic) const {
+    const auto found = numbers_.find(topic);
+    if (found == numbers_.end()) return {};
+    return found->second;
+}
+
+bool RosFeed::isFull() const { return subscriptions_ >= kMostSubscriptions; }
 
 void RosFeed::want(std::uint32_t number) {
     const auto found = entries_.find(number);
     if (found == entries_.end()) return;
     if (found->second.wanted++ == 0) found->second.period = -1;
+    wanted_.insert(number);
+    ++subscriptions_;
     update(found->second);
     takeFrames();
 }
@@ -65,13 +96,16 @@ void RosFeed::unwant(std::uint32_t number) {
     const auto found = entries_.find(number);
     if (found == entries_.end() || found->second.wanted == 0) return;
     // The next first reader must not get an old message.
-    if (--found->second.wanted == 0) found->second.newest = nullptr;
+    --subscriptions_;
+    if (--found->second.wanted > 0) return;
+    found->second.newest = nullptr;
+    wanted_.erase(number);
 }
 
 void RosFeed::stepped() {
+    if (clients_ == 0 && wanted_.empty()) return;
     sync();
-    for (auto& [number, entry] : entries_)
-        if (entry.wanted > 0) update(entry);
+    for (const std::uint32_t number : wanted_) update(entries_.at(number));
     takeFrames();
 }
 
@@ -169,10 +203,11 @@ void RosFeed::takeFrames() {
     if (is_taking_) return;
     const World& world = state_->simulation().world();
     std::set<std::size_t> due;
-    for (const auto& [number, entry] : entries_) {
+    for (const std::uint32_t number : wanted_) {
+        const Entry& entry = entries_.at(number);
         const std::size_t sensor = entry.channel.subject;
-        if (entry.wanted > 0 && entry.channel.sensor != nullptr &&
-            isHeavy(world.sensors()[sensor]) && entry.period != world.period(sensor))
+        if (entry.channel.sensor != nullptr && isHeavy(world.sensors()[sensor]) &&
+            entry.period != world.period(sensor))
             due.insert(sensor);
     }
     if (due.empty()) return;
@@ -187,9 +222,10 @@ void RosFeed::takeFrame(std::size_t sensor) {
     is_taking_ = true;
     const World& world = state_->simulation().world();
     const auto messages = std::make_shared<std::map<std::uint32_t, std::string>>();
-    for (const auto& [number, entry] : entries_)
-        if (entry.wanted > 0 && entry.channel.sensor != nullptr && entry.channel.subject == sensor)
-            messages->emplace(number, "");
+    for (const std::uint32_t number : wanted_) {
+        const RosChannel& channel = entries_.at(number).channel;
+        if (channel.sensor != nullptr && channel.subject == sensor) messages->emplace(number, "");
+    }
     std::vector<std::pair<std::uint32_t, const RosTopic*>> topics;
     for (const auto& [number, message] : *messages)
         topics.emplace_back(number, entries_[number].channel.sensor);

@@ -7,7 +7,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/ros/ros_topics.h"
@@ -65,11 +68,18 @@ class RosFeed {
     };
     using Entries = std::map<std::uint32_t, Entry>;
     [[nodiscard]] const Entries& entries() const { return entries_; }
+    /// Returns the numbers of the topics of this name: input topics may have several types.
+    [[nodiscard]] std::span<const std::uint32_t> numbersOf(std::string_view topic) const;
+    /// A client comes, which needs the topics of the world as it is now, and goes.
+    void enter();
+    void leave() { --clients_; }
     /// Changes when topics come or go.
     [[nodiscard]] std::int64_t version() const { return version_; }
     /// Subscribes to a topic, and cancels a subscription; unknown numbers are ignored.
     void want(std::uint32_t number);
     void unwant(std::uint32_t number);
+    /// Returns true if all clients together have as many subscriptions as they may.
+    [[nodiscard]] bool isFull() const;
 
     [[nodiscard]] const RosFrames& frames() const { return *frames_; }
     /// Computes the mesh of the room in the background. `deliver` gets "" on failure.
@@ -87,6 +97,9 @@ class RosFeed {
     RosScenery scenery_;
     std::optional<RosFrames> frames_;
     Entries entries_;
+    std::map<std::string, std::vector<std::uint32_t>, std::less<>> numbers_;  // by topic
+    std::set<std::uint32_t> wanted_;                                          // topics
+    std::size_t clients_ = 0, subscriptions_ = 0;
     std::uint32_t next_number_ = 1;
     std::int64_t version_ = 0, messages_ = 0;
     std::int64_t changes_ = -1;  // change count of the world that entries_ describe

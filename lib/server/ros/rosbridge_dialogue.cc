@@ -141,8 +141,9 @@ void RosbridgeDialogue::subscribeTo(const Json& request) {
 
 /// Subscribes to a topic with the least interval and the longest queue of its requests.
 void RosbridgeDialogue::apply(const std::string& topic, const Wish& wish) {
-    for (const auto& [number, entry] : feed().entries()) {
-        if (entry.channel.topic != topic || entry.channel.isInput()) continue;
+    for (const std::uint32_t number : feed().numbersOf(topic)) {
+        const RosFeed::Entry& entry = feed().entries().at(number);
+        if (entry.channel.isInput()) continue;
         Subscription subscription{.topic = number, .depth = 0};
         subscription.interval = std::chrono::nanoseconds::max();
         for (const auto& [id, one] : wish.ids) {
@@ -150,7 +151,8 @@ void RosbridgeDialogue::apply(const std::string& topic, const Wish& wish) {
             subscription.depth = std::max(subscription.depth,
                                           one.depth > 0 ? one.depth : entry.channel.quality.depth);
         }
-        static_cast<void>(subscribe(number, subscription));
+        if (!subscribe(number, std::move(subscription)))
+            tell(Level::Error, "too many subscriptions");
     }
 }
 
@@ -163,14 +165,18 @@ void RosbridgeDialogue::unsubscribeFrom(const Json& request) {
     wish->second.ids.erase(id);
     if (!wish->second.ids.empty()) return;
     wishes_.erase(wish);
-    for (const auto& [number, entry] : feed().entries())
-        if (entry.channel.topic == topic) unsubscribe(number);
+    for (const std::uint32_t number : feed().numbersOf(topic)) unsubscribe(number);
 }
 
 void RosbridgeDialogue::topicsChanged() {
-    for (const auto& [topic, wish] : wishes_)
-        for (const auto& [number, entry] : feed().entries())
-            if (entry.channel.topic == topic && !hasSubscription(number)) apply(topic, wish);
+    // Numbers grow: those after the newest known one are new.
+    const RosFeed::Entries& entries = feed().entries();
+    for (auto entry = entries.upper_bound(newest_); entry != entries.end(); ++entry) {
+        newest_ = entry->first;
+        const auto wish = wishes_.find(entry->second.channel.topic);
+        if (wish != wishes_.end() && !hasSubscription(entry->first))
+            apply(wish->first, wish->second);
+    }
 }
 
 void RosbridgeDialogue::advertise(const Json& request) {

@@ -52,6 +52,7 @@ class RosbridgeDialogue final : public RosDialogue {
                 std::string_view values);
 
     std::map<std::string, Wish> wishes_;         // by topic, which may not exist yet
+    std::uint32_t newest_ = 0;                   // number of the last topic seen
     std::map<std::string, RosType> advertised_;  // types by topic
 };
 
