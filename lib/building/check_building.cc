@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 
+#include "base/budget.h"
 #include "base/number.h"
 #include "building/building_scene.h"
 #include "env/environment.h"
@@ -26,6 +28,8 @@ constexpr double kTouches = 0.02;
 constexpr std::array kBeforeDoor = {0.4, 0.8};
 /// Storeys may overlap by this, metres and square metres.
 constexpr double kHeightTolerance = 1e-3, kAreaTolerance = 0.01;
+/// Corners of outlines that are compared, of all pairs of storeys: less than a second.
+constexpr std::uint64_t kMostCompared = 1'000'000;
 
 /// True if a person can step from `from` to `to`: free floor, and no wall between.
 bool isWay(const Environment& room, Point2 from, Point2 to) {
@@ -156,41 +160,61 @@ class BuildingCheck {
             report(passage, "path", "crosses itself near " + placeText(*crossing));
     }
 
-    [[nodiscard]] std::vector<Polygon> outlines(std::size_t i) const {
+    /// Outlines of the rooms of a storey, in the building.
+    struct Floor {
         std::vector<Polygon> outlines;
+        Box2 box;
+        std::size_t corners = 0;
+    };
+
+    [[nodiscard]] Floor floorOf(std::size_t i) const {
+        Floor floor;
         for (const Region& part : room(i).indoor().parts) {
             Polygon outline = part.outline;
-            for (Point2& p : outline) p = storey(i).building_from_storey * p;
-            outlines.push_back(std::move(outline));
+            for (Point2& p : outline) floor.box.add(p = storey(i).building_from_storey * p);
+            floor.corners += outline.size();
+            floor.outlines.push_back(std::move(outline));
         }
-        return outlines;
+        return floor;
     }
 
     /// True if the storeys lie above each other, at least in part.
-    [[nodiscard]] bool shareFloor(std::size_t a, std::size_t b) const {
-        const std::vector<Polygon> upper = outlines(b);
-        for (const Polygon& outline : outlines(a)) {
+    [[nodiscard]] static bool shareArea(const Floor& a, const Floor& b) {
+        for (const Polygon& outline : a.outlines) {
             const Region whole{outline, {}};
             double left = 0;
-            for (const Region& part : difference(whole, upper)) left += part.area();
+            for (const Region& part : difference(whole, b.outlines)) left += part.area();
             if (whole.area() - left > kAreaTolerance) return true;
         }
         return false;
     }
 
+    /// Reports the lowest storey that each one reaches into.
     void checkHeights() {
-        for (std::size_t a = 0; a < building_.scenes.size(); ++a)
-            for (std::size_t b = a + 1; b < building_.scenes.size(); ++b) {
-                const double top = storey(a).floor + building_.height(a);
-                if (top <= storey(b).floor + kHeightTolerance || !shareFloor(a, b)) continue;
-                Diagnostic finding = storey(a).record.finding(
-                    storey(a).height ? "height" : "id",
-                    "storeys " + storey(a).id + " and " + storey(b).id + " overlap: " +
-                        storey(a).id + " reaches up to " + lengthText(top) + " m, and " +
-                        storey(b).id + " begins at " + lengthText(storey(b).floor) + " m");
-                finding.severity = Severity::Warning;
-                found_.push_back(std::move(finding));
+        std::vector<Floor> floors;
+        for (std::size_t i = 0; i < building_.scenes.size(); ++i) floors.push_back(floorOf(i));
+        Budget work(0, {kMostCompared});
+        for (std::size_t a = 0; a < floors.size(); ++a) {
+            const double top = storey(a).floor + building_.height(a);
+            for (std::size_t b = a + 1; b < floors.size(); ++b) {
+                if (top <= storey(b).floor + kHeightTolerance) break;  // lowest first
+                if (!floors[a].box.meets(floors[b].box)) continue;
+                if (!work.take(floors[a].corners + floors[b].corners))
+                    return reportHeight(a, "too many storeys reach into others to compare all");
+                if (!shareArea(floors[a], floors[b])) continue;
+                reportHeight(a, "storeys " + storey(a).id + " and " + storey(b).id +
+                                    " overlap: " + storey(a).id + " reaches up to " +
+                                    lengthText(top) + " m, and " + storey(b).id + " begins at " +
+                                    lengthText(storey(b).floor) + " m");
+                break;
             }
+        }
+    }
+
+    void reportHeight(std::size_t i, const std::string& message) {
+        Diagnostic finding = storey(i).record.finding(storey(i).height ? "height" : "id", message);
+        finding.severity = Severity::Warning;
+        found_.push_back(std::move(finding));
     }
 
     const BuildingScene& building_;

@@ -308,6 +308,25 @@ TEST(BuildingCheck, FindsStoreysThatOverlapInHeight) {
               1U);
 }
 
+TEST(BuildingCheck, ComparesABoundedNumberOfStoreys) {
+    // Angles in each other, with a jagged side: all boxes meet, no areas.
+    std::string path = "[0, 0], [300, 0], [300, 1], [1, 1], [1, 300]";
+    for (int i = 0; i < 500; ++i)
+        path += ", [" + std::string(i % 2 == 0 ? "0" : "0.2") + ", " +
+                std::to_string(300 - 0.5 * i) + ']';
+    std::string text;
+    for (int i = 0; i < 100; ++i) {
+        const std::string at = std::to_string(1.5 * i);
+        text += "- storey: {id: s" + std::to_string(i) + ", at: [" + at + ", " + at +
+                "], records: " +
+                (i == 0 ? "&room [fence: {closed: yes, path: [" + path + "]}]" : "*room") + "}\n";
+    }
+    EXPECT_EQ(findingsIn(text),
+              std::vector<std::string>({"too many storeys reach into others to compare all"}));
+    // One finding for each storey.
+    EXPECT_EQ(findingsIn(twoStoreys("- storey: {id: top, z: 2, records: *room}\n", 1)).size(), 2U);
+}
+
 TEST(BuildingCheck, FindsShaftsWithoutArea) {
     const auto shaft = [](const std::string& path) {
         return findingsIn(
