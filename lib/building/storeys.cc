@@ -41,6 +41,21 @@ bool hasStoreyLine(std::string_view bytes) {
     return false;
 }
 
+/// Returns true if the first line of content may begin a list or map of YAML. Meshes in text hold
+/// words of buildings in comments, and are large.
+bool beginsAsYaml(std::string_view bytes) {
+    LineReader lines(bytes);
+    while (const auto line = lines.next()) {
+        const std::string_view text = trimmed(*line);
+        if (text.empty() || text.starts_with('#') || text.starts_with('%') || text == "---")
+            continue;
+        return std::string_view("-[{?&!").find(text.front()) != std::string_view::npos ||
+               text.ends_with(':') || text.find(": ") != std::string_view::npos ||
+               text.find(":\t") != std::string_view::npos;
+    }
+    return false;
+}
+
 /// Returns true for YAML with the keyword at its top, and for sites of Open-RMF.
 bool hasStoreyNode(std::string_view bytes) {
     try {
@@ -204,7 +219,7 @@ bool isBuilding(std::string_view bytes) {
     if (isRecordText(bytes)) return hasStoreyLine(bytes);
     constexpr std::size_t kLooked = 4096;
     if (bytes.substr(0, kLooked).find('\0') != std::string_view::npos || isIfc(bytes)) return false;
-    return xmlRootName(bytes).empty() && hasStoreyNode(bytes);
+    return xmlRootName(bytes).empty() && beginsAsYaml(bytes) && hasStoreyNode(bytes);
 }
 
 std::string StoreyedDocument::digest() const {

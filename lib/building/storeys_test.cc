@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -87,6 +88,18 @@ TEST(Building, IsToldFromRooms) {
     EXPECT_FALSE(isBuilding("storeys: 3\n"));
     EXPECT_FALSE(isBuilding(""));
     EXPECT_FALSE(isBuilding("- storey: {unclosed"));
+}
+
+TEST(Building, MeshesAreToldByTheirFirstLine) {
+    std::string mesh = "# 2000000 vertices of a storey\no hall\n";
+    for (int i = 0; i < 2'000'000; ++i) mesh += "v 1 2 3.5\n";
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_FALSE(isBuilding(mesh));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+    for (const char* text : {"# c\n---\nstorey: {id: a}\n", "storey:\n  id: a\n",
+                             "%YAML 1.2\n---\n- storey: {id: a}\n", "{storey: {id: a}}",
+                             "[{\"storey\": {}}]", "levels:\n  L1:\n    vertices: []\n"})
+        EXPECT_TRUE(isBuilding(text)) << text;
 }
 
 TEST(Building, SortsStoreysByHeightAndSharesEqualRooms) {
