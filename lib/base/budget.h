@@ -9,6 +9,14 @@
 
 namespace ispace {
 
+class Budget;
+
+/// Limits of a budget besides the size of its input.
+struct WorkLimit {
+    std::optional<std::uint64_t> max = {};  ///< of --max-work, replaces the bound by size
+    Budget* whole = nullptr;  ///< pays as well: that of the building the input is part of
+};
+
 /// Bounds the work and memory that reading one input may take.
 ///
 /// A few bytes can request any amount of work: blocks inserted in a grid, groups that use groups,
@@ -21,9 +29,8 @@ class Budget {
     static constexpr std::uint64_t kPerByte = 4;           ///< added for each byte of the input
     static constexpr std::uint64_t kMost = 20'000'000;     ///< for any input, without --max-work
 
-    /// \param bytes of the input \param max_work of --max-work, replaces the bound by size
-    explicit Budget(std::size_t bytes, std::optional<std::uint64_t> max_work = {})
-        : max_work_(max_work) {
+    /// \param bytes of the input
+    explicit Budget(std::size_t bytes, const WorkLimit& limit = {}) : given_(limit) {
         grant(bytes);
     }
 
@@ -31,31 +38,41 @@ class Budget {
     void grant(std::size_t bytes) {
         bytes_ += std::min<std::uint64_t>(bytes, kMost);  // no overflow
         limit_ =
-            max_work_.value_or(std::min(kMost, kMinValue + kPerByte * std::min(bytes_, kMost)));
+            given_.max.value_or(std::min(kMost, kMinValue + kPerByte * std::min(bytes_, kMost)));
     }
 
     [[nodiscard]] std::uint64_t limit() const { return limit_; }
-    [[nodiscard]] std::uint64_t left() const { return limit_ - spent_; }
+    [[nodiscard]] std::uint64_t left() const {
+        const std::uint64_t own = limit_ - spent_;
+        return given_.whole == nullptr ? own : std::min(own, given_.whole->left());
+    }
 
     /// Takes units before work is done. \return false, without taking any, if fewer are left
     [[nodiscard]] bool take(std::uint64_t units) {
-        if (units > left()) return false;
+        if (units > limit_ - spent_ || (given_.whole != nullptr && !given_.whole->take(units))) {
+            is_exceeded_ = true;
+            return false;
+        }
         spent_ += units;
         return true;
     }
+    /// Returns true if units were refused.
+    [[nodiscard]] bool isExceeded() const { return is_exceeded_; }
 
     /// Takes units for text that is copied or read again.
     static constexpr std::uint64_t unitsOf(std::size_t bytes) { return bytes / 64; }
 
     /// Ends a message: "more than 1000000 units of work (`--max-work 2000000` allows more)".
     [[nodiscard]] std::string excess() const {
+        if (given_.whole != nullptr && given_.whole->isExceeded()) return given_.whole->excess();
         return "more than " + std::to_string(limit_) + " units of work (`--max-work " +
                std::to_string(2 * limit_) + "` allows more)";
     }
 
   private:
-    std::optional<std::uint64_t> max_work_;
+    WorkLimit given_;
     std::uint64_t bytes_ = 0, limit_ = 0, spent_ = 0;
+    bool is_exceeded_ = false;
 };
 
 }  // namespace ispace

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/budget.h"
 #include "building/storeys.h"
 #include "io/importers.h"
 
@@ -23,9 +24,10 @@ bool isRmfSite(const YamlNode& top);
 /// - Doors are gaps between ends of walls and become open doors. All closed rooms are kept.
 /// - Lifts become `lift` records with the first of their doors; those that stop at one level are
 ///   left out, and so are models, lanes and floors.
+/// \param work of the site, for all levels
 /// \throws FormatError with the line, and as the importers of plans
 StoreyedDocument readRmfSite(const YamlNode& top, const std::string& operand,
-                             const ImportOptions& options);
+                             const ImportOptions& options, Budget& work);
 
 /// Reads all storeys of an IFC building that have walls or spaces, see readIfc().
 ///

@@ -117,7 +117,7 @@ std::vector<Record> withDigests(std::vector<Record> records) {
 }  // namespace
 
 std::vector<Record> readBuildingYaml(std::string_view bytes, const std::string& operand,
-                                     const ImportOptions& options,
+                                     const ImportOptions& options, Budget& work,
                                      std::vector<std::shared_ptr<const Document>>& rooms) {
     RecordCollector collector(operand, buildingSchemas());
     const auto tree = parseYaml(bytes, operand);
@@ -129,7 +129,7 @@ std::vector<Record> readBuildingYaml(std::string_view bytes, const std::string& 
         if (room != nullptr && std::find(nodes.begin(), nodes.end(), room) == nodes.end())
             nodes.push_back(room);
     std::vector<Document> documents = readYamlNodes(
-        nodes, {bytes.size(), operand, sceneSchemas(), options.max_work, options.includes});
+        nodes, {bytes.size(), operand, sceneSchemas(), {work.limit(), &work}, options.includes});
     std::map<const YamlNode*, std::shared_ptr<const Document>> made;
     for (std::size_t i = 0; i < nodes.size(); ++i)
         made[nodes[i]] = std::make_shared<const Document>(std::move(documents[i]));

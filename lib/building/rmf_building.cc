@@ -3,13 +3,16 @@
 // measurements, and lifts.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
@@ -30,8 +33,13 @@ using Kind = YamlNode::Kind;
 constexpr double kDefaultScale = 0.05;
 /// Ends of walls closer than this are joined, metres: they are drawn by hand.
 constexpr double kSnap = 0.05;
+/// Units of Budget for a wall or door, which becomes part of a room.
+constexpr std::uint64_t kEdgeWork = 16;
+/// Of a fiducial, which is looked up by name.
+constexpr std::uint64_t kFiducialWork = 4;
 constexpr const char* kWalls = "walls";
 constexpr const char* kDoors = "doors";
+constexpr const char* kFiducials = "fiducials";
 
 /// Finds the value of a key; null if the node is no map or has no such key.
 const YamlNode* member(const YamlNode& map, std::string_view key) {
@@ -57,7 +65,8 @@ struct RmfLevel {
 /// Reads the nodes of a site.
 class RmfReader {
   public:
-    RmfReader(const std::string& name, const YamlNode& top) : name_(name) {
+    RmfReader(const std::string& name, const YamlNode& top, Budget& work)
+        : name_(name), work_(work) {
         const YamlNode* const system = member(top, "coordinate_system");
         const std::string word = system == nullptr ? "reference_image" : system->scalar;
         if (word != "reference_image" && word != "cartesian_meters")
@@ -74,7 +83,7 @@ class RmfReader {
                     [&](const YamlNode& item) { level.vertices.push_back(point(item)); });
         level.walls = edges(node, kWalls, level);
         level.doors = edges(node, kDoors, level);
-        forEachItem(node, "fiducials", 3, [&](const YamlNode& item) {
+        forEachItem(node, kFiducials, 3, [&](const YamlNode& item) {
             level.fiducials.emplace(item.items[2]->scalar, point(item));
         });
         if (const YamlNode* const models = member(node, "models"))
@@ -107,6 +116,13 @@ class RmfReader {
     void forEachItem(const YamlNode& level, const char* key, std::size_t least, Visit visit) const {
         const YamlNode* const list = member(level, key);
         if (list == nullptr) return;
+        // An alias lists the same items again.
+        const std::string_view name(key);
+        const std::uint64_t each = name == kWalls || name == kDoors ? kEdgeWork
+                                   : name == kFiducials             ? kFiducialWork
+                                                                    : 1;
+        if (!work_.take(each * list->items.size()))
+            fail(*list, "`" + std::string(key) + "` of the levels make " + work_.excess());
         for (const YamlNode* const item : list->items) {
             if (item->kind != Kind::List || item->items.size() < least)
                 fail(*item, "`" + std::string(key) + "`: wanted lists of " + std::to_string(least) +
@@ -166,6 +182,7 @@ class RmfReader {
     }
 
     const std::string& name_;
+    Budget& work_;
     bool is_image_ = true;
 };
 
@@ -299,8 +316,10 @@ bool isRmfSite(const YamlNode& top) {
 }
 
 StoreyedDocument readRmfSite(const YamlNode& top, const std::string& operand,
-                             const ImportOptions& options) {
-    const RmfReader reader(operand, top);
+                             const ImportOptions& import, Budget& work) {
+    ImportOptions options = import;
+    options.max_work.whole = &work;
+    const RmfReader reader(operand, top, work);
     const YamlNode& nodes = *member(top, "levels");
     std::vector<RmfLevel> levels;
     std::vector<std::string> notes;

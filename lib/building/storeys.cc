@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
@@ -124,9 +125,11 @@ std::vector<std::size_t> storeysOf(const Record& record, const std::vector<Store
 /// Reads the rooms of files, each once.
 class RoomFiles {
   public:
-    RoomFiles(const std::string& operand, const ImportOptions& options)
-        : operand_(operand), options_(options) {
+    /// \param work of the building, which pays for its rooms
+    RoomFiles(const std::string& operand, const ImportOptions& options, Budget& work)
+        : operand_(operand), options_(options), work_(work) {
         options_.storey.clear();
+        options_.max_work.whole = &work;
     }
 
     /// \throws FormatError, std::system_error
@@ -139,6 +142,8 @@ class RoomFiles {
         return known->second;
     }
     [[nodiscard]] std::vector<std::string> takeSources() { return std::move(sources_); }
+    /// Returns true if the building has no work left for further rooms.
+    [[nodiscard]] bool isOver() const { return work_.isExceeded(); }
 
   private:
     [[noreturn]] static void refuse(const Record& record, const std::string& message) {
@@ -162,6 +167,7 @@ class RoomFiles {
     std::shared_ptr<const Document> readRoom(const Record& record, const std::string& name,
                                              const std::string& path) {
         const std::string bytes = readAll(path, InputKind::Regular);
+        work_.grant(bytes.size());
         if (isBuilding(bytes))
             refuse(record, "a storey is one room, and " + excerpt(name) + " is a building");
         Document room = parseDocument(bytes, path, options_, sceneSchemas());
@@ -180,6 +186,7 @@ class RoomFiles {
 
     const std::string& operand_;
     ImportOptions options_;
+    Budget& work_;
     std::map<std::string, std::shared_ptr<const Document>> rooms_;  // by canonical path
     std::vector<std::string> sources_;
 };
@@ -202,6 +209,7 @@ void readRooms(const std::vector<Record>& records, RoomFiles& files,
                 rooms[i] = files.read(record);
             } catch (const FormatError& error) {
                 findings.add(error);
+                if (files.isOver()) break;
             }
     }
     findings.throwIfAny();
@@ -302,6 +310,7 @@ StoreyedDocument readBuilding(std::string_view bytes, const std::string& operand
                               const ImportOptions& options) {
     const auto compiled = glbOtherText(bytes);
     const std::string_view text = compiled ? std::string_view(*compiled) : bytes;
+    Budget work(text.size(), options.max_work);
     Document head;
     std::vector<std::shared_ptr<const Document>> rooms;
     if (isRecordText(text)) {
@@ -309,11 +318,11 @@ StoreyedDocument readBuilding(std::string_view bytes, const std::string& operand
         rooms.resize(head.records.size());
     } else {
         const auto tree = parseYaml(text, operand);
-        if (isRmfSite(tree->top())) return readRmfSite(tree->top(), operand, options);
+        if (isRmfSite(tree->top())) return readRmfSite(tree->top(), operand, options, work);
         head = readYamlHead(text, operand);
-        head.records = readBuildingYaml(text, operand, options, rooms);
+        head.records = readBuildingYaml(text, operand, options, work, rooms);
     }
-    RoomFiles files(operand, options);
+    RoomFiles files(operand, options, work);
     readRooms(head.records, files, rooms);
     std::map<const Document*, std::shared_ptr<const Document>> loaded;
     std::vector<StoreyInput> storeys;

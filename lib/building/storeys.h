@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/budget.h"
 #include "geom/pose.h"
 #include "io/importers.h"
 #include "record/record.h"
@@ -79,10 +80,10 @@ struct StoreyInput {
 StoreyedDocument makeBuilding(std::vector<StoreyInput> inputs, std::vector<Record> passages,
                               const std::string& file);
 
-/// Reads the records of a building in YAML, and the rooms inline. \param rooms has an entry for
-/// each record; null: not inline
+/// Reads the records of a building in YAML, and the rooms inline. \param work of the building
+/// \param rooms has an entry for each record; null: not inline
 std::vector<Record> readBuildingYaml(std::string_view bytes, const std::string& operand,
-                                     const ImportOptions& options,
+                                     const ImportOptions& options, Budget& work,
                                      std::vector<std::shared_ptr<const Document>>& rooms);
 
 /// Writes a building as YAML with its rooms inline; equal rooms are aliases. \param compiled

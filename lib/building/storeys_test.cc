@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "building/building_scene.h"
@@ -205,6 +206,46 @@ TEST(Building, ReadsFilesInItsFolderOnce) {
     EXPECT_TRUE(contains(
         errorOf([&] { readBuilding("#env 1\nstorey id=a file=best.3dm\n", name, options); }),
         "is a layout"));
+}
+
+TEST(Building, ItsRoomsShareOneBudget) {
+    const TemporaryFolder folder;
+    const std::string crowd =
+        "ispace: {size: [8, 6]}\ncube: {size: 0.1, repeat: {count: 500, step: [0, 0]}}\n";
+    std::string storeys = "#env 1\n";
+    for (int i = 0; i < 4; ++i) {
+        const std::string file = "r" + std::to_string(i) + ".yaml";
+        folder.write(file, crowd);
+        storeys += "storey file=" + file + " z=" + std::to_string(3 * i) + '\n';
+    }
+    const std::string name = folder.write("house.env", "");
+    ImportOptions options;
+    options.max_work.max = 14'000;
+    const std::string error = errorOf([&] { readBuilding(storeys, name, options); });
+    EXPECT_TRUE(contains(error,
+                         "r2.yaml:2:1: error: parts and repetitions make more than 14000 "
+                         "units of work (`--max-work 28000` allows more)"))
+        << error;
+    EXPECT_FALSE(contains(error, "r3.yaml")) << "one error";
+    options.max_work.max = 40'000;
+    EXPECT_EQ(readBuilding(storeys, name, options).storeys.size(), 4U);
+}
+
+TEST(Building, LevelsOfASitePayForAliases) {
+    std::string levels;
+    for (int i = 0; i < 3; ++i)
+        levels += "  L" + std::to_string(i) + ": {elevation: " + std::to_string(3 * i) +
+                  ", vertices: " +
+                  (i == 0 ? "&v [[0, 0], [8, 0], [8, 6], [0, 6]], walls: &w "
+                            "[[0, 1], [1, 2], [2, 3], [3, 0]]}\n"
+                          : "*v, walls: *w}\n");
+    const std::string site = "coordinate_system: cartesian_meters\nlevels:\n" + levels;
+    ImportOptions options;
+    options.max_work.max = 200;
+    const std::string error = errorOf([&] { readBuilding(site, "b.yaml", options); });
+    EXPECT_TRUE(contains(error, "`walls` of the levels make more than 200 units of work")) << error;
+    options.max_work.max = 300;
+    EXPECT_EQ(readBuilding(site, "b.yaml", options).storeys.size(), 3U);
 }
 
 TEST(Building, RejectsWhatJoinsNoStoreys) {

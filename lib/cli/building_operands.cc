@@ -59,7 +59,7 @@ namespace {
 ImportOptions importOf(const SceneRules& rules) {
     ImportOptions options;
     options.includes = rules.includes;
-    options.max_work = rules.max_work;
+    options.max_work.max = rules.max_work;
     addModelFolders(options);
     return options;
 }

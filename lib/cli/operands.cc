@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 ImportOptions defaultImport(const SceneRules& rules, ImportReport* report) {
     ImportOptions options;
     options.includes = rules.includes;
-    options.max_work = rules.max_work;
+    options.max_work.max = rules.max_work;
     options.storey = rules.storey;
     addModelFolders(options);
     options.report = report;

@@ -111,7 +111,7 @@ TEST(DxfSpline, SurvivesDamage) {
     surviveDamage(drawing(circle(2000)), [](const std::string& bytes) {
         ImportOptions options;
         options.units = "mm";
-        options.max_work = 5000;
+        options.max_work.max = 5000;
         read(bytes, options);
     });
 }

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/budget.h"
 #include "drawing/plan/found_rooms.h"
 #include "geom/polygon.h"
 #include "geom/pose.h"
@@ -67,7 +68,7 @@ struct ImportOptions {
     std::vector<std::string> window_layers;  ///< globs; default: no layer
     std::vector<std::string> model_folders;  ///< of SDF, see SdfFiles; relative to the current one
     bool points = false;                     ///< points of an ARIA map become obstacles
-    std::optional<std::uint64_t> max_work;   ///< of --max-work, see Budget; default: by the size
+    WorkLimit max_work;                      ///< see Budget
     IncludeFiles includes = IncludeFiles::InFolder;  ///< of YAML
     FoundRooms* found = nullptr;     ///< receives the rooms of plans, kept or not; may be null
     ImportReport* report = nullptr;  ///< null: choices are notes, doubts are dropped

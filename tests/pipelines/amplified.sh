@@ -30,6 +30,8 @@ refused dxf_empty_block 60000 plan.dxf
 refused dxf_empty_polylines 60000 plan.dxf
 refused dxf_circles_of_nothing 60000 plan.dxf
 refused dxf_crossing 120000 plan.dxf
+refused dxf_drawn_crossing 120000 plan.dxf
+quick dxf_drawn_outline 900000
 quick dxf_crossing 40000
 quick dxf_crossing_blocks 2000
 quick dxf_crossing_blocks 60000
@@ -41,6 +43,9 @@ refused sdf_same 400000 model.sdf
 refused sdf_nested 4000 model.sdf
 refused yaml_parts 15000 room.yaml
 refused yaml_repeats 15000 room.yaml
+refused house_rooms 15000 'r[0-9]*.yaml'
+refused house_inline 15000 house.yaml
+refused rmf_aliases 16000 house.building.yaml
 
 # Done once, or in one pass.
 quick svg_style 89000
@@ -58,6 +63,21 @@ grep -q ': error: #[0-9]*: mapped shapes make more than [0-9]* units of work' er
 quick gltf_instances 400000
 grep -q 'nodes that repeat meshes make more than [0-9]* units of work' err || fail "another error: $(cat err)"
 quick env_coincident_things 800000
+for family in env_comb env_comb_zone pol_comb pol_star pol_holes; do
+    quick "$family" 800000
+done
+for family in house_aliases house_passages house_unknown rmf_fiducials; do
+    quick "$family" 90000
+done
+for family in batch_jobs batch_words batch_quotes; do
+    list=$(amplify write "$family" 90000 "$family")
+    for command in "coverage --batch" "scan -o outputs/ --batch" "arrange -o outputs/ --sensor laser:1 --batch"; do
+        status=0
+        # shellcheck disable=SC2086
+        (ulimit -t 2 && exec $command "$list") >out 2>err || status=$?
+        [ "$status" -eq 1 ] || fail "status $status of $command with $family: $(tail -n 1 err)"
+    done
+done
 refused sdf_apart 60000 model.sdf
 
 # The bound is lifted and lowered.

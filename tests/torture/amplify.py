@@ -94,6 +94,33 @@ def dxf_crossing_blocks(size):
     return dxf({"B": repeated(circle, size)}, ROOM_OF_LINES + insert("B", 0, 20, 20))
 
 
+def drawn_room(entities):
+    """A drawing with the layers of those that envc writes."""
+    layers = [part for name in ("walls", "doors", "windows", "objects") for part in ("0", "LAYER", "2", name, "70", "0", "62", "7")]
+    plan = dxf({}, entities)["plan.dxf"]
+    tables = "\n".join(["0", "SECTION", "2", "TABLES", "0", "TABLE", "2", "LAYER", *layers, "0", "ENDTAB", "0", "ENDSEC", ""])
+    return {"plan.dxf": plan.replace("0\nSECTION\n2\nBLOCKS", tables + "0\nSECTION\n2\nBLOCKS", 1)}
+
+
+def on_layer(entity, name):
+    return [*entity[:3], name, *entity[4:]]
+
+
+WALLS_OF_ROOM = [part for i in range(0, len(ROOM_OF_LINES), 12) for part in on_layer(ROOM_OF_LINES[i:i + 12], "walls")]
+
+
+def dxf_drawn_crossing(size):
+    return drawn_room(WALLS_OF_ROOM + repeated(lambda i: on_layer(circle(i), "walls"), size))
+
+
+def dxf_drawn_outline(size):
+    """A footprint with very many corners."""
+    count = size // 32
+    corners = [part for i in range(count) for part in
+               ("10", f"{4 + math.cos(6.2 * i / count):.6f}", "20", f"{3 + math.sin(6.2 * i / count) / 2:.6f}")]
+    return drawn_room(WALLS_OF_ROOM + ["0", "LWPOLYLINE", "8", "floors", "90", str(count), "70", "1", *corners])
+
+
 def svg(body, style=""):
     return {"plan.svg": '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
                         'width="8000mm" height="6000mm" viewBox="0 0 800 600">\n' + style + '<g id="walls">\n'
@@ -381,10 +408,139 @@ def ifc_mapped_walls(size):
     return ifc(body)
 
 
-PREFIXES = ("dxf_", "svg_", "sdf_", "env_", "yaml_", "gltf_", "ifc_")
+def teeth(size, row):
+    """Points of a comb with teeth over its whole width; row(x, y) writes one."""
+    count = max(2, size // 2 // len(row(1.2345, 5.4321)))
+    points = [(0, 0)]
+    for i in range(count):
+        points += [(9, 7 * i / count), (1, 7 * (i + 0.5) / count)]
+    return [row(x, y) for x, y in [*points, (0, 8)]]
+
+
+def env_comb(size):
+    return {"room.env": "#env 1\nfence closed=yes path=" + ";".join(teeth(size, lambda x, y: f"{x:g},{y:.4f}")) + "\n"}
+
+
+def env_comb_zone(size):
+    return {"room.env": "#env 1\nispace size=20,20\nzone id=z path=" +
+                        ";".join(teeth(size, lambda x, y: f"{x:g},{y:.4f}")) + "\n"}
+
+
+def fractions(points):
+    return f"{len(points)} " + " ".join(points)
+
+
+def pol_comb(size):
+    return {"gallery.pol": fractions(teeth(size, lambda x, y: f"{x}/1 {y * 10000:.0f}/10000")) + "\n"}
+
+
+def pol_star(size):
+    """A polygon that crosses itself with each edge."""
+    count = size // 26 | 1
+    turns = [2 * math.pi * i * (count // 2) / count for i in range(count)]
+    return {"gallery.pol": fractions([f"{5000 * math.cos(t):.0f}/1000 {5000 * math.sin(t):.0f}/1000" for t in turns]) + "\n"}
+
+
+def pol_holes(size):
+    """Holes that lie on each other."""
+    hole = "3 1/1 1/1 2/1 1/1 1/1 2/1 "
+    return {"gallery.pol": "4 0/1 0/1 9/1 0/1 9/1 9/1 0/1 9/1 " + f"{size // len(hole)} " + hole * (size // len(hole)) + "\n"}
+
+
+STOREYS = 200  # of a building, at most
+
+
+def house_rooms(size):
+    """Storeys whose rooms repeat, each in a file."""
+    cube = "- cube: {at: [1, 1], size: 0.1, repeat: {count: 60000, step: [0, 0]}}\n"
+    room = "- ispace: {size: [8, 6]}\n"
+    count = min(STOREYS, size // 150)
+    files = {"house.env": "#env 1\n" + "".join(f"storey id=s{i} file=r{i}.yaml z={i * 3}\n" for i in range(count))}
+    files.update({f"r{i}.yaml": room + cube * max(1, (size - 35 * count) // count // len(cube)) for i in range(count)})
+    return files
+
+
+def house_inline(size):
+    """The same in one file."""
+    cube = "{cube: {at: [1, 1], size: 0.1, repeat: {count: 60000, step: [0, 0]}}}, "
+    count = min(STOREYS, size // 150)
+    cubes = cube * max(1, size // count // len(cube))
+    return {"house.yaml": "".join(f"- storey: {{id: s{i}, z: {3 * i}, records: [{cubes}ispace: {{size: [8, 6]}}]}}\n"
+                                  for i in range(count))}
+
+
+def house_aliases(size):
+    """One large room of all storeys."""
+    cube = "{cube: {at: [1, 1], size: 0.1}}, "
+    return {"house.yaml": "- storey: {id: s, records: &r [" + cube * (size // len(cube)) + "{ispace: {size: [8, 6]}}]}\n" +
+                          "".join(f"- storey: {{id: s{i}, z: {3 * i + 3}, records: *r}}\n" for i in range(STOREYS - 1))}
+
+
+def house_of_storeys(more):
+    return {"house.env": "#env 1\n" + "".join(f"storey id=s{i} file=r.env z={i * 3}\n" for i in range(STOREYS)) + more,
+            "r.env": "#env 1\nispace size=8,6\n"}
+
+
+def house_passages(size):
+    """Stairs through all storeys."""
+    stairs = f"stairs storeys={','.join(f's{i}' for i in range(STOREYS))} at=1,1 size=1.2,3\n"
+    return house_of_storeys(stairs * max(1, size // len(stairs)))
+
+
+def house_unknown(size):
+    """Passages between storeys that the building lacks."""
+    shaft = f"shaft storeys=s1,t{'b' * 40} path=1,1;2,1;2,2\n"
+    return house_of_storeys(shaft * (size // len(shaft)))
+
+
+def rmf(levels):
+    return {"house.building.yaml": "name: b\ncoordinate_system: cartesian_meters\nlevels:\n" + levels + "lifts: {}\n"}
+
+
+def rmf_aliases(size):
+    """A grid of walls in all levels, and vertices to the size."""
+    vertices, walls = [[0, 0], [80, 0], [80, 60], [0, 60]], [[0, 1], [1, 2], [2, 3], [3, 0]]
+    for i in range(120):
+        vertices += [[i / 2, 1], [i / 2, 59]] if i % 2 else [[1, i / 2], [79, i / 2]]
+        walls.append([len(vertices) - 2, len(vertices) - 1])
+    vertices += [[1, 1]] * max(0, (size - 18_000) // 8)
+    return rmf("".join(f"  L{i}:\n    elevation: {3 * i}\n    vertices: " +
+                       (f"&v {vertices}\n    walls: &w {walls}\n" if i == 0 else "*v\n    walls: *w\n")
+                       for i in range(STOREYS)))
+
+
+def rmf_fiducials(size):
+    """Levels that are laid on each other by thousands of points."""
+    points = "[" + ", ".join(f"[{i}, {i}, f{i}]" for i in range(size // 22)) + "]"
+    return rmf("".join(f"  L{i}:\n    elevation: {3 * i}\n    vertices: [[0, 0], [8, 0], [8, 6], [0, 6]]\n"
+                       "    walls: [[0, 1], [1, 2], [2, 3], [3, 0]]\n"
+                       f"    fiducials: {'&f ' + points if i == 0 else '*f'}\n" for i in range(STOREYS)))
+
+
+def batch_jobs(size):
+    """Jobs that fail, each with its message."""
+    return {"list": "none.env none.3dm\n" * (size // 18)}
+
+
+def batch_words(size):
+    return {"list": "a " * (size // 2) + "\n"}
+
+
+def batch_quotes(size):
+    return {"list": ('"' + "\\" * 60 + '" "b"\n') * (size // 67)}
+
+
+PREFIXES = ("dxf_", "svg_", "sdf_", "env_", "pol_", "house_", "rmf_", "yaml_", "gltf_", "ifc_", "batch_")
 FAMILIES = {name: make for name, make in globals().items()
             if callable(make) and name.startswith(PREFIXES) and name not in
-            ("sdf_box", "sdf_includes", "ifc_box", "gltf_mesh")}
+            ("sdf_box", "sdf_includes", "ifc_box", "gltf_mesh", "house_of_storeys")}
+
+
+def command(envc, family, operand):
+    """The command that reads such a file."""
+    if family.startswith("batch_"):
+        return [os.path.join(os.path.dirname(envc), "coverage"), "--batch", operand]
+    return [envc, "--info", operand]
 
 
 def write(name, size, folder):
@@ -467,7 +623,7 @@ class Growth:
     def measure(self, envc, family, size, seconds):
         with tempfile.TemporaryDirectory() as folder:
             operand, total = write(family, size, folder)
-            status, spent, memory, said = run([envc, "--info", operand], seconds)
+            status, spent, memory, said = run(command(envc, family, operand), seconds)
         if self.status in (0, 1):
             self.status, self.said = status, said
         return total, spent, memory

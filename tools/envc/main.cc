@@ -58,7 +58,7 @@ InputRequest requestOf(const EnvcOptions& options, FoundRooms* found, ImportRepo
     request.import.load_files = request.compiles;
     request.added = addedRecords(options.edits, sceneSchemas());
     request.import.includes = options.rules.includes;
-    request.import.max_work = options.rules.max_work;
+    request.import.max_work.max = options.rules.max_work;
     request.same_environment = options.rules.same_environment;
     request.may_be_empty = !options.edits.empty();
     return request;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
@@ -201,6 +202,9 @@ std::vector<Cells> cellsOf(const std::vector<Point2>& points) {
     return blocks;
 }
 
+/// Bytes of a line in a map, about.
+constexpr std::size_t kBytesPerLine = 20;
+
 class AriaPlan {
   public:
     AriaPlan(AriaMap map, const std::string& name, const ImportOptions& options, ImportRecords& out)
@@ -213,7 +217,12 @@ class AriaPlan {
                      ? "a map without lines: nothing is a wall"
                      : "a map of points alone, without LINES: nothing is a wall; draw lines in "
                        "Mapper3, or export the points as a picture");
-        if (crossTooOften(lines)) fail("the lines cross each other too often to be walls");
+        const double crossings = sampledCrossings(lines);
+        if (crossTooOften(lines, crossings))
+            fail("the lines cross each other too often to be walls");
+        Budget budget(kBytesPerLine * map_.lines.size(), options.max_work);
+        if (!payForCrossings(crossings, lines.size(), options.rooms, budget))
+            fail("crossings of the lines make " + budget.excess());
         if (options.simplify.value_or(0) > 0) {
             paths_ = simplifiedPaths(joinedAtEnds(paths_), *options.simplify);
             lines = pathPieces(paths_);

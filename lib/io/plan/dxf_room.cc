@@ -2,6 +2,7 @@
 // Reads drawings that writeDxf() made, or that use its layer names.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <initializer_list>
 #include <limits>
 #include <numbers>
@@ -38,17 +39,21 @@ Footprint boxAlong(const Polygon& polygon, Vec2 along) {
             false};
 }
 
-/// The smallest box along one of its sides.
+/// Sides of one outline along which boxes are tried.
+constexpr std::size_t kMostSides = 500;
+
+/// The smallest box along one of its sides; of a curve with very many, along some of them.
 Footprint boxAround(const Polygon& polygon) {
     Footprint best;
     double least = std::numeric_limits<double>::infinity();
-    forEachEdge(polygon, [&](const Segment2& edge) {
-        if (edge.a == edge.b) return;
-        const Footprint box = boxAlong(polygon, edge.b - edge.a);
-        if (box.length * box.width >= least) return;
+    for (std::size_t i = 0; i < polygon.size(); i += 1 + polygon.size() / kMostSides) {
+        const Vec2 side = polygon[i + 1 == polygon.size() ? 0 : i + 1] - polygon[i];
+        if (side == Vec2()) continue;
+        const Footprint box = boxAlong(polygon, side);
+        if (box.length * box.width >= least) continue;
         least = box.length * box.width;
         best = box;
-    });
+    }
     best.is_exact = std::abs(std::abs(signedArea(polygon)) - least) <=
                     kCornerTolerance * (best.length + best.width);
     return best;

@@ -251,7 +251,7 @@ TEST(Dxf, BlocksInBlocksEnd) {
             .find("blocks and curves of the drawing make more"),
         std::string::npos);
     ImportOptions few;
-    few.max_work = 9;
+    few.max_work.max = 9;
     const std::string two = drawing(rectangle("W", 0, 0, 4, 3) + rectangle("V", 0, 0, 4, 3), "", 6);
     EXPECT_EQ(
         errorOf(two, few),
@@ -435,7 +435,7 @@ TEST(Dxf, SurvivesDamage) {
     ImportOptions options;
     options.door_layers = {"D*"};
     options.window_layers = {"G"};
-    options.max_work = 3000;
+    options.max_work.max = 3000;
     const std::string dxf =
         drawing(rectangle("W", 0, 0, 4, 3) + line("D1", 1, 0, 2, 0) + line("G", 1, 3, 2, 3) +
                     arc("D1", 4, 1, 1, 90, 180) +

@@ -25,11 +25,10 @@ namespace ispace {
 
 namespace {
 
-constexpr double kMaxExtent = 10000;     // metres
-constexpr double kUnitsPerCrossing = 4;  // of Budget
-constexpr double kUnitsPerOverlap = 0.5;
-constexpr double kFreeOverlaps = 64;    // of a line with the boxes of others
-constexpr double kOpeningReach = 1e-5;  // from its end to its wall
+constexpr double kMaxExtent = 10000;      // metres
+constexpr double kUnitsPerOverlap = 0.5;  // of Budget
+constexpr double kFreeOverlaps = 64;      // of a line with the boxes of others
+constexpr double kOpeningReach = 1e-5;    // from its end to its wall
 
 /// Sizes of openings where walls are high enough.
 constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
@@ -59,10 +58,8 @@ class LinePlan {
         : sizes_(std::move(shapes.sizes)) {
         DrawnDoors drawn{{}, std::move(shapes.walls)};
         Budget budget(drawing != nullptr ? drawing->bytes : 0, options.max_work);
-        if (drawing != nullptr) {
-            payFor(pathPieces(drawn.walls), name, budget);
-            drawn = takeDrawnDoors(std::move(drawn.walls));
-        }
+        payFor(pathPieces(drawn.walls), name, drawing != nullptr, budget);
+        if (drawing != nullptr) drawn = takeDrawnDoors(std::move(drawn.walls));
         drawn_doors_ = drawn.swings.size();
         paths_ = normalisedLines(std::move(drawn.walls), options.snap.value_or(kDefaultSnap));
         pieces_ = pathPieces(paths_);
@@ -114,17 +111,19 @@ class LinePlan {
 
   private:
     /// Pays for lines that lie among many others, before any search compares them.
-    static void payFor(std::span<const Segment2> lines, const std::string& name, Budget& budget) {
+    static void payFor(std::span<const Segment2> lines, const std::string& name, bool has_layers,
+                       Budget& budget) {
         const double crowd =
             sampledOverlaps(lines) - kFreeOverlaps * static_cast<double>(lines.size());
-        pay(kUnitsPerOverlap * crowd, "neighbours", name, budget);
+        const double units = std::max(0.0, kUnitsPerOverlap * crowd);
+        if (!budget.take(static_cast<std::uint64_t>(units)))
+            refuse("neighbours", name, has_layers, budget);
     }
 
-    static void pay(double units, const std::string& cause, const std::string& name,
-                    Budget& budget) {
-        if (!budget.take(static_cast<std::uint64_t>(std::max(0.0, units))))
-            failFile(name, cause + " of the lines make " + budget.excess() +
-                               "; --wall-layer 'A-WALL*' leaves layers out");
+    [[noreturn]] static void refuse(const std::string& cause, const std::string& name,
+                                    bool has_layers, const Budget& budget) {
+        failFile(name, cause + " of the lines make " + budget.excess() +
+                           (has_layers ? "; --wall-layer 'A-WALL*' leaves layers out" : ""));
     }
 
     void check(const std::string& name, const ImportOptions& options, const DrawingSource* drawing,
@@ -141,10 +140,8 @@ class LinePlan {
             failFile(name,
                      "the lines cross each other too often to be walls: leave layers of hatching "
                      "out, for example with --wall-layer 'A-WALL*'");
-        if (drawing == nullptr) return;
-        // As many as the lines are the corners of outlines.
-        pay(kUnitsPerCrossing * (crossings - static_cast<double>(pieces_.size())), "crossings",
-            name, budget);
+        if (!payForCrossings(crossings, pieces_.size(), options.rooms, budget))
+            refuse("crossings", name, drawing != nullptr, budget);
     }
 
     /// Keeps pieces that openings lie on or touch.

@@ -36,7 +36,7 @@ TEST(LinePlan, CrowdsOfSlantedLinesArePaidFor) {
         << message;
     EXPECT_NE(message.find("--max-work"), std::string::npos) << message;
     ImportOptions options;
-    options.max_work = 100;
+    options.max_work.max = 100;
     EXPECT_NE(refusal(crowd(30), options), "");
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -36,6 +37,9 @@ constexpr std::array<double, 3> kSharesInside{0.01, 0.501, 0.99};
 /// Walls cross a few others; hatching and terrain cross hundreds.
 constexpr double kManyCrossings = 20;
 constexpr double kFewCrossings = 200'000;
+
+constexpr double kUnitsPerCrossing = 4;  // of Budget
+constexpr double kUnitsPerRoom = 12;     // that a crossing makes
 
 Point2 middleOf(const Segment2& s) { return s.a + 0.5 * (s.b - s.a); }
 
@@ -331,6 +335,12 @@ std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const
 
 bool crossTooOften(std::span<const Segment2> lines, double crossings) {
     return crossings > std::max(kFewCrossings, kManyCrossings * static_cast<double>(lines.size()));
+}
+
+bool payForCrossings(double crossings, std::size_t lines, RoomChoice rooms, Budget& budget) {
+    const double each = kUnitsPerCrossing + (rooms == RoomChoice::All ? kUnitsPerRoom : 0);
+    const double units = each * (crossings - static_cast<double>(lines));
+    return budget.take(static_cast<std::uint64_t>(std::max(0.0, units)));
 }
 
 }  // namespace ispace

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/budget.h"
 #include "geom/arrangement.h"
 #include "geom/planar_map.h"
 #include "geom/polygon.h"
@@ -91,6 +92,11 @@ bool crossTooOften(std::span<const Segment2> lines, double crossings);
 inline bool crossTooOften(std::span<const Segment2> lines) {
     return crossTooOften(lines, sampledCrossings(lines));
 }
+
+/// Takes units of work for crossings beyond one a line; as many are the corners of outlines.
+/// \param rooms All: a room that each of them makes costs, too
+/// \return false if fewer are left
+bool payForCrossings(double crossings, std::size_t lines, RoomChoice rooms, Budget& budget);
 
 /// Computes the floor that a disc sweeps when it moves from `start` without crossing a wall, as
 /// pieces of `rooms` with rounded corners; the radius is met within 1 %. Empty if the disc does not

@@ -345,7 +345,7 @@ TEST(Svg, SurvivesDamage) {
         [](const std::string& bytes) {
             ImportOptions options;
             options.units = "m";
-            options.max_work = 2000;
+            options.max_work.max = 2000;
             read(bytes, options);
         });
 }

@@ -123,8 +123,7 @@ std::vector<std::string> SdfFiles::pathsOf(pugi::xml_node node, std::string_view
 }
 
 SdfFiles::SdfFiles(std::string_view bytes, std::string name,
-                   std::span<const std::string> model_folders,
-                   std::optional<std::uint64_t> max_work)
+                   std::span<const std::string> model_folders, const WorkLimit& max_work)
     : roots_{"", "models", "../models"}, budget_(bytes.size(), max_work) {
     std::error_code ignored;
     const fs::path home = fs::absolute(name == "-" ? "." : fs::path(name).parent_path(), ignored);

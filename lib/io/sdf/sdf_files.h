@@ -59,7 +59,7 @@ class SdfFiles {
     /// \param model_folders relative to the current one \param max_work see Budget
     /// \throws FormatError with the line: bad XML
     SdfFiles(std::string_view bytes, std::string name, std::span<const std::string> model_folders,
-             std::optional<std::uint64_t> max_work);
+             const WorkLimit& max_work);
 
     [[nodiscard]] pugi::xml_node root() const { return files_.front()->xml.root(); }
 

@@ -176,7 +176,7 @@ TEST(SdfImport, HostileWorldsAreRefused) {
     for (int i = 0; i < 1000; ++i) deep += "</model>";
     EXPECT_NE(errorOf(worldOf(deep)).find("nested more than 64 deep"), std::string::npos);
     ImportOptions few;
-    few.max_work = 170;
+    few.max_work.max = 170;
     const std::string box = boxModel("m", "", "1 1 1");
     EXPECT_THROW(readSdf(worldOf(box + box + box), "test.sdf", few, sceneSchemas()), FormatError);
     // Entities are not expanded.

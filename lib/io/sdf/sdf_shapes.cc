@@ -24,7 +24,7 @@ constexpr std::size_t kShapeWork = 80, kPointWork = 10;
 class SdfReader {
   public:
     SdfReader(std::string_view bytes, const std::string& name,
-              std::span<const std::string> model_folders, std::optional<std::uint64_t> max_work)
+              std::span<const std::string> model_folders, const WorkLimit& max_work)
         : files_(bytes, name, model_folders, max_work) {}
 
     SdfWorld read() {
@@ -152,8 +152,7 @@ class SdfReader {
 }  // namespace
 
 SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
-                       std::span<const std::string> model_folders,
-                       std::optional<std::uint64_t> max_work) {
+                       std::span<const std::string> model_folders, const WorkLimit& max_work) {
     return SdfReader(bytes, name, model_folders, max_work).read();
 }
 

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/budget.h"
 #include "geom/polygon.h"
 #include "geom/rotation.h"
 
@@ -59,7 +60,6 @@ struct SdfWorld {
 /// that are missing or depend on each other, models nested too deep, includes that include
 /// themselves, more work than the budget has
 SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
-                       std::span<const std::string> model_folders,
-                       std::optional<std::uint64_t> max_work);
+                       std::span<const std::string> model_folders, const WorkLimit& max_work);
 
 }  // namespace ispace

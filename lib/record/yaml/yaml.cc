@@ -382,8 +382,7 @@ Document readYamlHead(std::string_view bytes, const std::string& name) {
 }
 
 Document readYaml(std::string_view bytes, const std::string& name, const Schemas& schemas,
-                  const FileReader& read, std::optional<std::uint64_t> max_work,
-                  IncludeFiles includes) {
+                  const FileReader& read, const WorkLimit& max_work, IncludeFiles includes) {
     RecordCollector collector(name, schemas);
     YamlReader reader(collector, name, read, includes);
     YamlScene scene = reader.read(bytes);
@@ -401,12 +400,11 @@ std::vector<Document> readYamlNodes(std::span<const YamlNode* const> nodes,
     YamlReader reader(collector, source.name, {}, source.includes);
     reader.grant(source.bytes);
     std::vector<Document> documents(nodes.size());
-    const std::uint64_t work = Budget(source.bytes, source.max_work).limit();
-    const std::uint64_t share = work / std::max<std::size_t>(nodes.size(), 1);
+    Budget whole(source.bytes, source.max_work);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         Document& document = documents[i];
         document.records =
-            expandItems(reader.read(*nodes[i]), collector, Budget(source.bytes, share));
+            expandItems(reader.read(*nodes[i]), collector, Budget(0, {whole.limit(), &whole}));
         findDoubledIds(document.records, collector.findings());
     }
     collector.findings().throwIfAny();

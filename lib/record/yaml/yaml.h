@@ -74,7 +74,7 @@ enum class IncludeFiles {
 ///         of YamlIncludes, and parts and repetitions that exceed the Budget, which counts both
 ///         copies and placements
 Document readYaml(std::string_view bytes, const std::string& name, const Schemas& schemas,
-                  const FileReader& read = {}, std::optional<std::uint64_t> max_work = {},
+                  const FileReader& read = {}, const WorkLimit& max_work = {},
                   IncludeFiles includes = IncludeFiles::InFolder);
 
 struct YamlNode;
@@ -91,7 +91,7 @@ struct YamlSource {
     std::size_t bytes = 0;  ///< size of the file
     const std::string& name;
     const Schemas& schemas;
-    std::optional<std::uint64_t> max_work = {};  ///< of the file; documents get equal parts
+    WorkLimit max_work = {};  ///< of the documents together
     IncludeFiles includes = IncludeFiles::InFolder;
 };
 /// Reads a document below each of these nodes, as readYaml() does below the top of a file; parts
