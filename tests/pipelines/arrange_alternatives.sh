@@ -45,7 +45,7 @@ arrange "${job[@]}" --heat heat.svg -q -o best.3dm
 has 'gain of laser., after 0 placed' <heat.svg || fail "no map of the first sensor"
 has 'gain of laser., after 1 placed' <heat-2.svg || fail "no map of the second sensor"
 [ ! -e heat-3.svg ] || fail "a third map"
-expect_error 2 arrange arrange "${job[@]}" --heat heat.jpg -o x.3dm
+expect_error 2 arrange "${job[@]}" --heat heat.jpg -o x.3dm
 
 # The same bytes on any number of threads.
 mkdir one five
@@ -55,7 +55,7 @@ for file in best.3dm best-2.3dm best-3.3dm; do
     expect_same one/$file five/$file "alternatives depend on the threads"
 done
 
-expect_error 2 arrange arrange "${job[@]}" --alternatives 2
-expect_error 2 arrange arrange "${job[@]}" --alternatives 2 --target 50% -o x.3dm
-expect_error 2 arrange arrange "${job[@]}" --alternatives 0 -o x.3dm
-expect_error 2 arrange arrange "${job[@]}" --alternatives 2 --shard 1/2 -o x.part
+expect_error 2 arrange "${job[@]}" --alternatives 2
+expect_error 2 arrange "${job[@]}" --alternatives 2 --target 50% -o x.3dm
+expect_error 2 arrange "${job[@]}" --alternatives 0 -o x.3dm
+expect_error 2 arrange "${job[@]}" --alternatives 2 --shard 1/2 -o x.part

@@ -74,8 +74,8 @@ simrun crowded.env walkers.3dm --clock fast --until 1 --record run -q
 coverage --run run --crowd run --json >told.json
 [ "$(told coverage exact)" = True ] || fail "figures of a run are not exact"
 
-expect_error 2 coverage coverage barriers.env barriers.3dm --crowd run
-expect_error 2 coverage coverage barriers.env barriers.3dm --crowd some
-expect_error 2 coverage coverage barriers.env barriers.3dm --perturb 5cm
-expect_error 2 coverage coverage barriers.env barriers.3dm --failures 0
-expect_error 2 coverage coverage --batch list --failures 1
+expect_error 2 coverage barriers.env barriers.3dm --crowd run
+expect_error 2 coverage barriers.env barriers.3dm --crowd some
+expect_error 2 coverage barriers.env barriers.3dm --perturb 5cm
+expect_error 2 coverage barriers.env barriers.3dm --failures 0
+expect_error 2 coverage --batch list --failures 1

@@ -30,8 +30,8 @@ expect_status 0 coverage room.env dome.3dm --privacy 'desk*,inspect'
 expect_status 0 coverage room.env dome.3dm --privacy desk1,100000 --report rules.html
 has 'privacy of desk1' <rules.html || fail "no rule in the report"
 
-expect_error 2 coverage coverage room.env dome.3dm --privacy bed
-expect_error 2 coverage coverage room.env dome.3dm --privacy desk1,often
-expect_error 2 coverage coverage room.env dome.3dm --facing door,45deg
-expect_error 2 coverage coverage room.env dome.3dm --facing door,0deg,0
-expect_error 2 coverage coverage --batch list --privacy desk1
+expect_error 2 coverage room.env dome.3dm --privacy bed
+expect_error 2 coverage room.env dome.3dm --privacy desk1,often
+expect_error 2 coverage room.env dome.3dm --facing door,45deg
+expect_error 2 coverage room.env dome.3dm --facing door,0deg,0
+expect_error 2 coverage --batch list --privacy desk1

@@ -85,5 +85,5 @@ grep -q "^replace.*--set dear.model=urg-04lx --set dear.cost=1000" told || fail 
 grep -q '"saved":4000' told.json || fail "the saving is not told"
 [ "$(applied <told)" -ge 2 ] || fail "no two suggestions"
 
-expect_error 2 coverage coverage barriers.env barriers.3dm --suggest=0
-expect_error 2 coverage coverage --batch list --suggest
+expect_error 2 coverage barriers.env barriers.3dm --suggest=0
+expect_error 2 coverage --batch list --suggest

@@ -123,7 +123,7 @@ arrange -q room.env --sensor urg-04lx:2 --report found.json -o found.3dm
 coverage -q room.env found.3dm --json >measured.json
 expect_same found.json measured.json "the reports of arrange and coverage"
 arrange -q room.env --sensor urg-04lx:2 --shard 1/2 -o one.part
-expect_error 2 arrange arrange -q room.env --sensor urg-04lx:2 --shard 1/2 --report found.html -o one.part
+expect_error 2 arrange -q room.env --sensor urg-04lx:2 --shard 1/2 --report found.html -o one.part
 arrange -q room.env --sensor urg-04lx:2 --shard 2/2 -o two.part
 arrange -q --merge one.part two.part --report merged.json -o merged.3dm
 expect_same found.json merged.json "the report of a merge"
@@ -152,7 +152,7 @@ for page in room.html run.html found.html; do
     if command -v xmllint >/dev/null; then xmllint --noout "$page" || fail "$page is not well-formed"; fi
 done
 
-expect_error 2 coverage coverage room.env layout.3dm --report page.txt
+expect_error 2 coverage room.env layout.3dm --report page.txt
 ln -s /dev/full full.html
 status=0
 coverage -q room.env layout.3dm --report full.html >text 2>err || status=$?
