@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coverage/coverage_building.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -90,14 +91,24 @@ std::vector<JunitCase> judgeBuilding(const CoverageToolOptions& options,
     return verdicts;
 }
 
+/// Returns the scale of redundancy that the maps of all storeys share.
+std::uint32_t scaleOf(const BuildingCoverage& coverage) {
+    std::uint32_t scale = 0;
+    for (const Coverage& storey : coverage.storeys)
+        scale = std::max(scale, redundancyScale(storey.report));
+    return scale;
+}
+
 /// Draws all storeys on one page.
 void writePanels(const CoverageToolOptions& options, const BuildingInput& input,
                  const BuildingCoverage& coverage) {
     std::vector<Picture> panels;
+    const std::uint32_t scale = scaleOf(coverage);
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         MapOptions map = options.map;
         map.format = *options.format->picture;
         map.title = input.building.document.storeys[i].id;
+        map.redundancy_scale = scale;
         panels.push_back(coverageMap(*input.building.scenes[i], coverage.storeys[i], map));
     }
     Picture page = panelsOf(panels);
@@ -115,6 +126,7 @@ void writeFiles(const CoverageToolOptions& options, const BuildingInput& input,
         CoverageToolOptions own = options;
         own.common.output = fileOf(options.common.output, storey.id);
         own.map.title = storey.id;
+        own.map.redundancy_scale = scaleOf(coverage);
         claimOutput(own.common.output, "the map of a storey");
         SceneInput room{*input.building.scenes[i], *storey.room, input.layout, {}, {}, {}, {}};
         writeProduct(own, room, {coverage.storeys[i], {}});

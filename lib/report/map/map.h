@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,12 +32,18 @@ struct MapOptions {
     std::string title = {};  ///< e.g. base name of ENV; "" for no title
     MapColor color = MapColor::Redundancy;
     FanStyle fans = FanStyle::Contours;
+    /// Colours of redundancy reach at least to so many sensors: maps of one page have one scale,
+    /// the largest redundancyScale() of them.
+    std::uint32_t redundancy_scale = 0;
     /// Poses that a search tried: positions coloured by the best value there, below the sensors.
     std::vector<TriedPose> trace = {};
     /// Coverage of a recorded run: ways coloured by the number of sensors that saw them, and rings
     /// where sight was lost; null: no run. It outlives the options.
     const RunCoverage* run = nullptr;
 };
+
+/// Returns the number of sensors to which the colours of a map by itself reach.
+std::uint32_t redundancyScale(const CoverageReport& report);
 
 /// Draws the plan as a picture, as drawCoverageMap() writes it.
 Picture coverageMap(const Scene& scene, const Coverage& coverage, const MapOptions& options,

@@ -105,7 +105,7 @@ Curves curvesOfSet(const MapPicture& map, const CoveredSet& set) {
 }
 
 void drawRedundancy(Picture& picture, const MapPicture& map) {
-    const Shades shades = shadesFor(map.coverage.report);
+    const Shades shades = shadesFor(map.coverage.report, map.options.redundancy_scale);
     // Each class is drawn over the lower ones, which avoids visible seams.
     for (int shade = 1; shade <= shades.count; ++shade)
         picture.area(seenCurves(map, shades.least(shade)), {shades.color(shade)});
@@ -244,14 +244,19 @@ std::vector<Polygon> drawable(const MapPicture& map, const std::vector<Curve>& c
     return drawable(map, std::move(polygons));
 }
 
-Shades shadesFor(const CoverageReport& report) {
-    constexpr std::uint32_t kMaxShades = 6;
+std::uint32_t redundancyScale(const CoverageReport& report) {
     constexpr double kMinShare = 1e-6;  // slivers of exact regions do not count as a class
     const std::vector<double>& shares =
         report.redundancy_exact ? *report.redundancy_exact : report.redundancy;
     std::uint32_t most = 1;
     for (std::uint32_t k = 1; k < shares.size(); ++k)
         if (shares[k] > kMinShare) most = k;
+    return most;
+}
+
+Shades shadesFor(const CoverageReport& report, std::uint32_t scale) {
+    constexpr std::uint32_t kMaxShades = 6;
+    const std::uint32_t most = std::max(redundancyScale(report), scale);
     Shades shades;
     shades.width = (most + kMaxShades - 1) / kMaxShades;
     shades.count = shades.of(most);

@@ -222,6 +222,12 @@ TEST(MapFloor, ClassesComeFromExactSharesWhereTheyAreKnown) {
     EXPECT_EQ(shadesFor(report).count, 2);
     report.redundancy_exact = {0.5, 0.5, 1e-12};  // rounding makes no class
     EXPECT_EQ(shadesFor(report).count, 1);
+    // A page of maps has one scale: a sensor has one colour, however many see floor elsewhere.
+    EXPECT_EQ(redundancyScale(report), 1U);
+    const Shades shared = shadesFor(report, 3), other = shadesFor({.redundancy = {0, 0, 0, 1}});
+    EXPECT_EQ(shared.count, other.count);
+    EXPECT_EQ(shared.color(1), other.color(1));
+    EXPECT_NE(shared.color(1), shadesFor(report).color(1));
     const Shades wide{4, 5};
     EXPECT_EQ(wide.least(1), 1U);
     EXPECT_EQ(wide.least(2), 5U);

@@ -82,7 +82,7 @@ Metric shareSeenBy(const CoverageReport& report, std::size_t first, std::size_t 
     return metric;
 }
 
-LegendBlock shadesBlock(const CoverageReport& report) {
+LegendBlock shadesBlock(const CoverageReport& report, std::uint32_t scale) {
     LegendBlock block = metricBlock("Floor seen by", report.redundancy_exact.has_value());
     const auto add = [&](Color color, std::string text, std::size_t first, std::size_t end) {
         LegendItem item{Sign::Patch, color, palette::kObjectEdge, std::move(text), ""};
@@ -91,14 +91,15 @@ LegendBlock shadesBlock(const CoverageReport& report) {
     };
     add(palette::kFloor, "no sensor", 0, 1);
     if (report.redundancy.size() < 2) return block;
-    const Shades shades = shadesFor(report);
-    for (int shade = 1; shade <= shades.count; ++shade) {
+    const Shades shades = shadesFor(report, scale);
+    const int used = shades.of(redundancyScale(report));
+    for (int shade = 1; shade <= used; ++shade) {
         const std::uint32_t first = shades.least(shade), last = first + shades.width - 1;
         std::string text;
         if (shades.width > 1) text = std::to_string(first).append("–");
         text.append(std::to_string(last)).append(last == 1 ? " sensor" : " sensors");
         // The last class is open: it includes numbers too rare for a class.
-        const std::size_t end = shade == shades.count ? report.redundancy.size() : last + 1;
+        const std::size_t end = shade == used ? report.redundancy.size() : last + 1;
         add(shades.color(shade), std::move(text), first, end);
     }
     return block;
@@ -370,7 +371,7 @@ std::vector<LegendBlock> legendBlocks(const MapPicture& map) {
     else if (map.options.color == MapColor::Density)
         blocks.push_back(densityBlock(report));
     else
-        blocks.push_back(shadesBlock(report));
+        blocks.push_back(shadesBlock(report, map.options.redundancy_scale));
     blocks.push_back(sensorsBlock(map));
     if (!map.options.trace.empty()) blocks.push_back(triedBlock(map.options.trace));
     if (map.options.run != nullptr) blocks.push_back(runBlock(*map.options.run));

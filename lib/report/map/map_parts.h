@@ -61,8 +61,9 @@ struct Shades {
     }
     [[nodiscard]] Color color(int shade) const { return sequentialColor(shade, count); }
 };
-/// Chooses classes by the redundancy of a report, exact if known.
-Shades shadesFor(const CoverageReport& report);
+/// Chooses classes by the redundancy of a report, exact if known, or for a scale that reaches
+/// farther.
+Shades shadesFor(const CoverageReport& report, std::uint32_t scale = 0);
 
 /// Returns the colour of a set and its sensors, of the floor that it alone sees (MapColor::Sensor),
 /// and of its stripes on shared floor.
