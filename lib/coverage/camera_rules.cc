@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <numbers>
 #include <utility>
 #include <variant>
 
@@ -12,6 +14,7 @@
 #include "base/number.h"
 #include "coverage/metrics.h"
 #include "coverage/visible_area.h"
+#include "env/zone.h"
 #include "record/schema.h"
 #include "scene/sensor/camera.h"
 
@@ -29,6 +32,15 @@ Angle angleOf(std::string_view text) {
     KeySpec key;
     key.unit = Unit::Angle;
     return Angle::degrees(std::get<double>(parseValue(key, text)));
+}
+
+bool isAngle(std::string_view text) {
+    try {
+        static_cast<void>(angleOf(text));
+        return true;
+    } catch (const std::exception&) {
+        return false;
+    }
 }
 
 /// Returns the zones that match. \throws UsageError if none does
@@ -94,8 +106,8 @@ std::vector<Curve> facedPart(const std::vector<Curve>& view, const Polygon& wedg
 }  // namespace
 
 FacingRule parseFacing(std::string_view text) {
-    const std::string wanted =
-        '`' + std::string(text) + "` is not ZONE,DEG,HEADING[=SHARE], as in entrance,45deg,180=90%";
+    const std::string wanted = '`' + std::string(text) +
+                               "` is not ZONE,DEG[,HEADING][=SHARE], as in entrance,45deg,180=90%";
     FacingRule rule;
     std::string_view rest = withoutPrefix(text);
     if (const auto equals = rest.rfind('='); equals != std::string_view::npos) {
@@ -104,12 +116,17 @@ FacingRule parseFacing(std::string_view text) {
         rest = rest.substr(0, equals);
     }
     const auto last = rest.rfind(',');
-    const auto first = last == std::string_view::npos || last == 0 ? std::string_view::npos
-                                                                   : rest.rfind(',', last - 1);
-    if (first == std::string_view::npos || first == 0) throw UsageError(wanted);
-    rule.zone = rest.substr(0, first);
-    rule.within = angleOf(rest.substr(first + 1, last - first - 1));
-    rule.heading = angleOf(rest.substr(last + 1));
+    if (last == std::string_view::npos || rest.front() == ',') throw UsageError(wanted);
+    const auto first = rest.rfind(',', last - 1);
+    // `a,45deg` ends with an angle after a name, `a,45deg,180` with two angles.
+    rule.is_by_doors =
+        first == std::string_view::npos || !isAngle(rest.substr(first + 1, last - first - 1));
+    const auto end = rule.is_by_doors ? last : first;
+    rule.zone = rest.substr(0, end);
+    const std::string_view within =
+        rest.substr(end + 1, rule.is_by_doors ? std::string_view::npos : last - first - 1);
+    rule.within = angleOf(within);
+    if (!rule.is_by_doors) rule.heading = angleOf(rest.substr(last + 1));
     if (!(rule.within.degrees() > 0 && rule.within.degrees() <= 180))
         throw UsageError('`' + std::string(text) +
                          "`: the angle is not above 0, up to 180 degrees");
@@ -130,14 +147,76 @@ PrivacyRule parsePrivacy(std::string_view text) {
     return rule;
 }
 
+std::vector<std::string> privateZones(const PrivacyRule& rule, const Environment& environment) {
+    std::vector<std::string> ids;
+    for (const Zone& zone : matchingZones(rule.zones, environment)) ids.push_back(zone.id);
+    return ids;
+}
+
+namespace {
+
+/// Returns the heading in which people walk through a door into the zone; empty if it is not on the
+/// border.
+std::optional<Angle> headingInto(const Environment& environment, const Zone& zone,
+                                 const Doorway& door) {
+    const Point2 middle = door.line.a + 0.5 * (door.line.b - door.line.a);
+    const Vec2 way = door.line.b - door.line.a;
+    const Vec2 across = (1 / length(way)) * Vec2{-way.y, way.x};
+    std::optional<Angle> heading;
+    for (const double side : {1.0, -1.0}) {
+        const Point2 inside = middle + side * (kAtDoor + door.thickness / 2) * across;
+        if (locate(zone.outline, inside) != Side::Inside ||
+            environment.indoorIndex().locate(inside) != Side::Inside)
+            continue;
+        if (heading) return std::nullopt;  // on both sides
+        heading = wrapped(
+            Angle::degrees(std::atan2(side * across.y, side * across.x) * 180 / std::numbers::pi));
+    }
+    return heading;
+}
+
+}  // namespace
+
+std::vector<FacingRule> facingIn(const Environment& environment,
+                                 std::span<const FacingRule> rules) {
+    std::vector<FacingRule> all;
+    for (const FacingRule& rule : rules)
+        for (const Zone& zone : matchingZones(rule.zone, environment)) {
+            FacingRule own = rule;
+            own.zone = zone.id;
+            if (!rule.is_by_doors) {
+                all.push_back(own);
+                continue;
+            }
+            own.is_by_doors = false;
+            const std::size_t before = all.size();
+            for (const Doorway& door : doorwaysOf(environment))
+                if (const auto heading = headingInto(environment, zone, door)) {
+                    own.heading = *heading;
+                    all.push_back(own);
+                }
+            if (all.size() == before)
+                throw UsageError("no door is on the border of zone " + printable(zone.id) +
+                                 ": give the heading of people, as in " + zone.id + ",45deg,180");
+        }
+    return all;
+}
+
+bool isFaced(const FacingRule& rule, Point2 place, Point2 camera) {
+    constexpr double kRounding = 1e-9;  // degrees
+    const Vec2 to = camera - place;
+    const double heading = std::atan2(to.y, to.x) * 180 / std::numbers::pi;
+    const Angle off = wrapped(Angle::degrees(heading) - rule.heading);
+    return std::abs(off.degrees()) <= rule.within.degrees() + kRounding;
+}
+
 std::vector<FacingResult> measureFacing(const Scene& scene, const Coverage& coverage,
                                         std::span<const FacingRule> rules) {
     std::vector<FacingResult> results;
     const Box2& limits = scene.environment.limits();
-    for (const FacingRule& rule : rules) {
+    for (const FacingRule& rule : facingIn(scene.environment, rules)) {
         for (const Zone& zone : matchingZones(rule.zone, scene.environment)) {
             FacingResult result{rule};
-            result.rule.zone = zone.id;
             std::vector<std::vector<Curve>> faced;
             bool is_known = true;
             for (const SensorView& view : coverage.sensors) {

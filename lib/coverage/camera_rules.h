@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coverage/coverage.h"
+#include "env/environment.h"
 #include "scene/scene.h"
 
 namespace ispace {
@@ -19,6 +20,7 @@ struct FacingRule {
     std::string zone;
     Angle within, heading;
     std::optional<double> required = {};  ///< share of the zone
+    bool is_by_doors = false;             ///< `heading` follows from doors, see facingIn()
 };
 
 /// Cameras must not see these zones, or only with fewer pixels a metre.
@@ -27,8 +29,21 @@ struct PrivacyRule {
     double density = 0;  ///< pixels a metre that are too many; 0: any sight is
 };
 
-/// Parses `entrance,45deg,180` and `zone:entrance,45deg,180=90%`. \throws UsageError
+/// Parses `entrance,45deg,180` and `zone:entrance,45deg,180=90%`; without heading it is that of
+/// doors. \throws UsageError
 FacingRule parseFacing(std::string_view text);
+/// Largest distance of a door's opening from the zones that it leads into, metres.
+constexpr double kAtDoor = 0.3;
+/// Returns a rule for each zone that matches and, without a heading, for each door on its border:
+/// people walk into the zone, straight through the door. A door is on the border of a zone if it is
+/// within kAtDoor of it and indoor floor of the zone lies on one side of the door alone.
+/// \throws UsageError for an unknown zone, and for one without such a door
+std::vector<FacingRule> facingIn(const Environment& environment, std::span<const FacingRule> rules);
+/// Returns true if a camera at this point sees faces at a point of the zone from ahead.
+bool isFaced(const FacingRule& rule, Point2 place, Point2 camera);
+/// Returns the ids of the zones of a rule of privacy. \throws UsageError for a glob that matches
+/// none
+std::vector<std::string> privateZones(const PrivacyRule& rule, const Environment& environment);
 /// Parses `zone:desk*`, `desk*,recognise` and `desk*,125`. \throws UsageError
 PrivacyRule parsePrivacy(std::string_view text);
 

@@ -46,8 +46,13 @@ TEST(CameraRules, ParseFacingAndPrivacy) {
     EXPECT_NEAR(rule.within.degrees(), 45, 1e-12);
     EXPECT_NEAR(rule.heading.degrees(), 180, 1e-12);
     EXPECT_EQ(rule.required, 0.9);
+    EXPECT_FALSE(rule.is_by_doors);
+    const FacingRule by_doors = parseFacing("a,b,45deg=90%");
+    EXPECT_EQ(by_doors.zone, "a,b");
+    EXPECT_NEAR(by_doors.within.degrees(), 45, 1e-12);
+    EXPECT_TRUE(by_doors.is_by_doors);
     for (const char* text :
-         {"", "a", "a,45deg", ",45deg,0", "a,0deg,0", "a,181deg,0", "a,x,0", "a,45deg,0=x"})
+         {"", "a", "a,x", ",45deg", ",45deg,0", "a,0deg,0", "a,181deg,0", "a,x,0", "a,45deg,0=x"})
         EXPECT_ANY_THROW(parseFacing(text)) << text;
     EXPECT_EQ(parsePrivacy("zone:desk*").zones, "desk*");
     EXPECT_EQ(parsePrivacy("desk*").density, 0);
@@ -55,6 +60,35 @@ TEST(CameraRules, ParseFacingAndPrivacy) {
     EXPECT_EQ(parsePrivacy("desk*,80").density, 80);
     for (const char* text : {"", "zone:", "desk,often"})
         EXPECT_THROW(parsePrivacy(text), UsageError) << text;
+}
+
+TEST(CameraRules, HeadingsFollowFromTheDoorsOfAZone) {
+    // A door in the north wall, one in the east wall, and one between the two halves of a zone.
+    const std::string room =
+        "fence id=f path=-4,-3;4,-3;4,3;-4,3 closed=yes\nwall id=w from=0,-3 to=0,0\n"
+        "door id=north from=-2.5,3 to=-1.5,3\ndoor id=east from=4,1.5 to=4,2.5\n"
+        "door id=within from=0,-2.5 to=0,-1.5\n"
+        "zone id=entrance path=-3,1.5;-1,1.5;-1,2.9;-3,2.9\nzone id=corner "
+        "path=-3,1;4,1;4,3;-3,3\nzone id=south path=-3,-3;3,-3;3,-1;-3,-1\n"
+        "zone id=left path=-3,-3;-0.1,-3;-0.1,-1;-3,-1\n";
+    const Scene scene = sceneOf(room);
+    const auto headings = [&](const char* zone) {
+        std::vector<double> all;
+        const FacingRule rule = parseFacing(std::string(zone) + ",45deg");
+        for (const FacingRule& own : facingIn(scene.environment, {&rule, 1}))
+            all.push_back(std::round(own.heading.degrees()));
+        return all;
+    };
+    EXPECT_EQ(headings("entrance"), std::vector<double>{-90});
+    EXPECT_EQ(headings("corner"), (std::vector<double>{-90, 180}));
+    EXPECT_EQ(headings("left"), std::vector<double>{180});
+    EXPECT_THROW(headings("south"), UsageError);  // floor on both sides
+    EXPECT_THROW(headings("bed"), UsageError);
+    FacingRule rule = parseFacing("entrance,45deg,-90");
+    EXPECT_TRUE(isFaced(rule, {-2, 2}, {-2, 0}));
+    EXPECT_TRUE(isFaced(rule, {-2, 2}, {-1, 1}));
+    EXPECT_FALSE(isFaced(rule, {-2, 2}, {-0.9, 1}));
+    EXPECT_FALSE(isFaced(rule, {-2, 2}, {-2, 3}));
 }
 
 TEST(CameraRules, FacesAreSeenFromAhead) {

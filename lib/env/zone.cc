@@ -140,12 +140,7 @@ namespace {
 constexpr std::string_view kDoor = "door:";
 constexpr int kChords = 16;  // per quarter circle
 
-/// A door's id, and the rectangle of its opening in the floor.
-struct Doorway {
-    std::string id;
-    Segment2 line;
-    double thickness = 0;
-};
+}  // namespace
 
 std::vector<Doorway> doorwaysOf(const Environment& environment) {
     const std::vector<Element>& elements = environment.elements();
@@ -165,6 +160,8 @@ std::vector<Doorway> doorwaysOf(const Environment& environment) {
     }
     return doors;
 }
+
+namespace {
 
 /// Returns all points within the distance of the doorway, counter-clockwise.
 Polygon around(const Doorway& door, double distance_from_it) {

@@ -33,6 +33,15 @@ NamedZone readZone(std::string_view text, const Environment& environment);
 /// \throws UsageError as readZone(), for a bad distance, and if no door matches
 std::vector<NamedZone> readZones(std::string_view text, const Environment& environment);
 
+/// A door's id, and the rectangle of its opening in the floor.
+struct Doorway {
+    std::string id;
+    Segment2 line;
+    double thickness = 0;
+};
+/// Returns the doors, in the order of their records.
+std::vector<Doorway> doorwaysOf(const Environment& environment);
+
 /// Returns records for these zones, skipping zones that are records already; those at doors have
 /// the id DOOR-zone, or DOOR-zone-2 and so on. \throws UsageError as readZones()
 std::vector<Record> zoneRecords(std::span<const std::string> texts, const Environment& environment,

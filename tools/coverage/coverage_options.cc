@@ -189,9 +189,10 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class identify:95%, "
                "identify:NAME=95%",
                Enters::History);
-    line.texts("--facing", "ZONE,DEG,HEADING[=SHARE]", words.facing,
+    line.texts("--facing", "ZONE,DEG[,HEADING][=SHARE]", words.facing,
                "report the share of a zone where cameras see faces: within this angle of the "
-               "heading in which people walk there; exit with 3 if less than SHARE",
+               "heading in which people walk there, by default through the doors on its border; "
+               "exit with 3 if less than SHARE",
                Enters::History);
     line.texts("--privacy", "ZONE[,D]", words.privacy,
                "exit with 3 if a camera sees some of these zones (globs allowed), or sees it with "
