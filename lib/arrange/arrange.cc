@@ -57,6 +57,7 @@ void writeModel(const MeasuredScene& model, std::ostream& mps) {
 
 SearchResult find(const MeasuredScene& model, Arrangement& result, Progress& progress) {
     const ArrangeOptions& options = model.options();
+    if (model.isWorstCase()) return searchWorstCase(model.cases(), model.searchOptions(), progress);
     if (!options.target) return search(model.problem(), model.searchOptions(), progress);
     MinimumCostCover cover = minimumCostCover(model.problem(), model.valueFor(*options.target),
                                               model.searchOptions(), progress);
@@ -117,10 +118,12 @@ void measure(Arrangement& result, MeasuredScene& model) {
     if (result.exact_share && *result.exact_share < 1 - kMissedShare) result.is_reached = false;
     const std::vector<CountedView> views =
         model.viewsOf(std::span(whole.sensors).subspan(model.scene().sensors.size()));
-    if (!options.judges_inside || !(model.target().grid == measured.target.grid))
+    if (!options.robust.isAsked() &&
+        (!options.judges_inside || !(model.target().grid == measured.target.grid)))
         result.value = model.share(model.valueOf(views));
     result.is_value_by_cells = result.value && options.judges_inside && !options.beam_step &&
-                               options.weights.isUniform() && options.redundancy == 1;
+                               options.weights.isUniform() && options.redundancy == 1 &&
+                               !options.robust.isAsked() && options.facing.empty();
     for (const Objective& row : objectives())
         if (row.report != nullptr && row.is_asked(options)) row.report(model, views, result);
     if (options.beam_step) result.value = result.candidate_value;
@@ -268,7 +271,8 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     takeEachOnce(chosen);
     if (found.best.value > 0) {
         model.spreadRedundant(chosen);
-        found.best.value = ispace::valueOf(problem, chosen);
+        found.best.value = model.isWorstCase() ? worstCase(model.cases(), chosen).value
+                                               : ispace::valueOf(problem, chosen);
     }
     result.is_complete = model.isComplete() && found.is_complete;
     result.candidates = model.candidates();
@@ -293,15 +297,49 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
 
 }  // namespace
 
+namespace {
+
+/// Measures the privacy of a layout, and forbids the poses of placed cameras that see zones.
+std::vector<PrivacyResult> forbidWhatSees(const Scene& scene,
+                                          const std::vector<SensorGroup>& groups,
+                                          const Arrangement& found, ArrangeOptions& options) {
+    std::vector<PrivacyResult> results =
+        measurePrivacy(withPlaced(scene, groups, found.sensors), options.plane, options.privacy);
+    std::set<std::string> seeing;
+    for (const PrivacyResult& result : results)
+        if (!isMet(result)) seeing.insert(result.cameras.begin(), result.cameras.end());
+    for (const Placement& placement : found.sensors)
+        if (seeing.count(placement.sensor) > 0) options.mount.forbidden.push_back(placement.pose);
+    return results;
+}
+
+}  // namespace
+
 Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
                     const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
     // Candidates, bounds and all results are computed for sensors with limited coverage.
     Scene limited = scene;
     for (Sensor& sensor : limited.sensors) limitCovered(sensor.model, options);
     std::vector<SensorGroup> limited_groups = groups;
-    for (SensorGroup& group : limited_groups) limitCovered(group.model, options);
+    for (SensorGroup& group : limited_groups) {
+        group.whole = group.model;
+        limitCovered(group.model, options);
+    }
     if (options.over_poses) return arrangeOverPoses(limited, limited_groups, options, progress);
-    return arrangeLimited(limited, limited_groups, options, progress, mps);
+    if (options.privacy.empty())
+        return arrangeLimited(limited, limited_groups, options, progress, mps);
+    // Cells may miss what the exact regions see.
+    constexpr std::size_t kMostRounds = 100;
+    ArrangeOptions stricter = options;
+    for (std::size_t round = 1;; ++round) {
+        Arrangement found = arrangeLimited(limited, limited_groups, stricter, progress, mps);
+        const std::size_t before = stricter.mount.forbidden.size();
+        found.privacy = forbidWhatSees(scene, groups, found, stricter);
+        for (Arrangement& other : found.alternatives)
+            other.privacy = forbidWhatSees(scene, groups, other, stricter);
+        if (stricter.mount.forbidden.size() == before || progress.stopped() || round == kMostRounds)
+            return found;
+    }
 }
 
 namespace {

@@ -12,11 +12,13 @@
 #include <vector>
 
 #include "arrange/placement_rules.h"
+#include "arrange/robust.h"
 #include "arrange/search/search.h"
 #include "arrange/sensor_group.h"
 #include "arrange/tried_pose.h"
 #include "base/error.h"
 #include "base/message.h"
+#include "coverage/camera_rules.h"
 #include "coverage/target.h"
 #include "scene/scene.h"
 
@@ -62,6 +64,7 @@ struct MountRules {
     std::vector<Angle> tilts = {};
     double clearance = 0;
     std::vector<NamedZone> keep_out = {}, keep_in = {};
+    std::vector<Pose3> forbidden = {};  ///< candidates that are left out
 };
 
 struct ArrangeOptions {
@@ -81,6 +84,12 @@ struct ArrangeOptions {
     FloorWeights weights;
     int redundancy = 1;  ///< a cell is covered if this many sensors see it
     bool is_connected = false;
+    RobustChoice robust;
+    /// Cameras must not see these zones. Candidates that see a cell of one are left out; layouts
+    /// that see more than kMinPiece are searched again without the cameras that do.
+    std::vector<PrivacyRule> privacy;
+    /// In these zones floor counts only where a camera sees faces. Headings are known.
+    std::vector<FacingRule> facing;
     std::optional<double> target;  ///< share to reach at minimum cost
     bool over_poses = false;       ///< prove the number of sensors over all poses
     std::optional<double> budget;
@@ -171,6 +180,12 @@ struct Arrangement {
     /// are covered.
     std::optional<double> exact_share;
     std::optional<PosesProof> over_poses;  ///< with ArrangeOptions::over_poses
+
+    /// Of the written poses; the bound is that of the worst case, or of the mean.
+    std::optional<RobustValues> robust;
+
+    /// With ArrangeOptions::privacy: of the whole layout, exact.
+    std::vector<PrivacyResult> privacy;
 
     /// Ids of sensors that can all be removed without loss of value.
     std::vector<std::string> idle;

@@ -14,6 +14,8 @@
 #include <variant>
 #include <vector>
 
+#include "arrange/case_room.h"
+#include "arrange/facing_cells.h"
 #include "arrange/sensor_group.h"
 #include "base/error.h"
 #include "base/number.h"
@@ -88,6 +90,30 @@ class Counted {
     std::vector<std::uint32_t> end_;   // [i]: the end of the last counted cell before i
 };
 
+/// Copies the parts between sorted limits so that part i begins at limits[i]; the last part stays.
+/// Limits that rounding made equal have an empty part between them.
+void inOrderOf(std::span<const Angle> limits, std::span<const Angle> sorted, const CellParts& seen,
+               CellParts& parts) {
+    parts.runs.clear();
+    parts.first.assign(1, 0);
+    const auto add = [&](std::size_t part) {
+        for (std::uint32_t r = seen.first[part]; r < seen.first[part + 1]; ++r)
+            parts.runs.push_back(seen.runs[r]);
+    };
+    const auto index_of = [&](Angle limit) {
+        return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), limit) -
+                                        sorted.begin());
+    };
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        const std::size_t begin = index_of(limits[i]);
+        const bool is_empty = limits.size() > 1 && limits[i] == limits[(i + 1) % limits.size()];
+        if (!is_empty) add(begin);
+        parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+    }
+    add(sorted.size());
+    parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+}
+
 }  // namespace
 
 struct CandidateViews::Data {
@@ -99,6 +125,8 @@ struct CandidateViews::Data {
     bool is_round, looks_in_slice;
     std::optional<Counted> counted = {};
     const RayWorld* beam_world = nullptr;  // of lasers that see by beams; else null
+    const SiteErrors* errors = nullptr;    // of mounting; null: none
+    const FacingCells* facing = nullptr;   // null: none
 
     [[nodiscard]] std::size_t headingsOf(const Site& site) const {
         return is_round ? 1 : site.headings.size();
@@ -107,7 +135,23 @@ struct CandidateViews::Data {
         Sensor sensor{"", device, mount};
         sensor.pose.position = {site.place.x, site.place.y, mount.position.z};
         sensor.pose.heading = site.headings[heading];
+        if (errors != nullptr) sensor.pose = errors->mounted(sensor);
         return sensor;
+    }
+    /// Computes the cells of a level laser between these limits, which turn with its mounting.
+    void lookBySector(const Site& site, std::span<const Angle> limits, CellParts& parts) const {
+        const double range = std::get<Laser>(device).max_range;
+        if (errors == nullptr) return cellsBySector(grid, *level, site.place, range, limits, parts);
+        const Pose3 pose = at(site, 0).pose;
+        const Angle turn = pose.heading - site.headings[0];
+        std::vector<Angle> turned;
+        for (const Angle limit : limits) turned.push_back(wrapped(limit + turn));
+        std::vector<Angle> sorted = turned;
+        std::sort(sorted.begin(), sorted.end());
+        sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+        CellParts seen;
+        cellsBySector(grid, *level, pose.position.onFloor(), range, sorted, seen);
+        inOrderOf(turned, sorted, seen, parts);
     }
     /// Computes the cells of each heading, one part each, and an empty part shared by all.
     void lookAtPlane(const Site& site, CellParts& parts) const {
@@ -137,12 +181,15 @@ struct CandidateViews::Data {
 
 CandidateViews::CandidateViews(const VisibleArea& sight, const Grid& grid,
                                const SensorModel& device, const Pose3& mount,
-                               const CellSet* counted, const std::optional<ByBeams>& by_beams)
+                               const CellSet* counted, const std::optional<ByBeams>& by_beams,
+                               const SiteErrors* errors, const FacingCells* facing)
     : data_(new Data{grid, sight, sight.levelAt(mount.position.z), device, mount,
                      isOmnidirectional(device, mount), scansSlice(Sensor{"", device, mount}),
                      counted != nullptr && counted->count() < counted->size()
                          ? std::optional<Counted>(*counted)
                          : std::nullopt}) {
+    data_->errors = errors;
+    data_->facing = facing;
     sight.prepare({"", device, mount});
     if (!by_beams || !data_->looks_in_slice) return;
     data_->looks_in_slice = false;
@@ -188,10 +235,11 @@ std::vector<std::size_t> sitesSpreadOver(std::span<const Site> sites, std::size_
 /// progress says stop, scans only a sample of the other sites, so that candidates exist everywhere.
 class Scanner {
   public:
-    Scanner(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
+    Scanner(PosedCandidates& set, std::span<const StackedViews> stack, std::span<const Site> sites,
             std::size_t least, Progress& progress, const SearchShare& share)
         : set_(set),
-          data_(views.data()),
+          stack_(stack),
+          data_(stack.front().views->data()),
           sites_(sites),
           progress_(progress),
           share_(share),
@@ -320,15 +368,39 @@ class Scanner {
     }
 
     void lookFrom(std::size_t i) {
+        if (stack_.size() == 1 && stack_.front().firsts == std::vector<std::size_t>{0})
+            return lookIn(data_, i, parts_[i]);
+        std::vector<CellParts> views(stack_.size());
+        for (std::size_t k = 0; k < stack_.size(); ++k)
+            lookIn(stack_[k].views->data(), i, views[k]);
+        stack(views, parts_[i]);
+    }
+
+    void lookIn(const CandidateViews::Data& data, std::size_t i, CellParts& parts) const {
         const Site& site = sites_[turns_[i]];
         assert(!site.headings.empty());
-        if (data_.looks_in_slice)
-            cellsBySector(data_.grid, *data_.level, site.place,
-                          std::get<Laser>(data_.device).max_range, sectors_[sectors_of_[i]].limits,
-                          parts_[i]);
+        if (data.looks_in_slice)
+            data.lookBySector(site, sectors_[sectors_of_[i]].limits, parts);
         else
-            data_.lookAtPlane(site, parts_[i]);
-        if (data_.counted) data_.counted->keepIn(parts_[i]);
+            data.lookAtPlane(site, parts);
+        if (data.counted) data.counted->keepIn(parts);
+        if (data.facing != nullptr) data.facing->keepFaces(data.device, site.place, parts);
+    }
+
+    /// Joins the views of all cases, part by part.
+    void stack(std::span<const CellParts> views, CellParts& parts) const {
+        parts.runs.clear();
+        parts.first.assign(1, 0);
+        for (std::size_t part = 0; part < views.front().size(); ++part) {
+            for (std::size_t k = 0; k < views.size(); ++k)
+                for (const std::size_t first : stack_[k].firsts) {
+                    const auto shift = static_cast<std::uint32_t>(first);
+                    for (std::uint32_t r = views[k].first[part]; r < views[k].first[part + 1]; ++r)
+                        parts.runs.push_back(
+                            {views[k].runs[r].first + shift, views[k].runs[r].end + shift});
+                }
+            parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+        }
     }
 
     void add(std::size_t i) {
@@ -346,7 +418,8 @@ class Scanner {
     }
 
     PosedCandidates& set_;
-    const CandidateViews::Data& data_;
+    std::span<const StackedViews> stack_;
+    const CandidateViews::Data& data_;  // of the first
     std::span<const Site> sites_;
     Progress& progress_;
     const SearchShare& share_;
@@ -367,10 +440,35 @@ bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<
                    std::size_t max_bytes, Progress& progress, std::size_t least,
                    const SearchShare& share) {
     assert(set.cells() == views.data().grid.size());
+    const StackedViews one{&views};
+    return addCandidates(set, std::span(&one, 1), sites, max_bytes, progress, least, share);
+}
+
+bool addCandidates(PosedCandidates& set, std::span<const StackedViews> stack,
+                   std::span<const Site> sites, std::size_t max_bytes, Progress& progress,
+                   std::size_t least, const SearchShare& share) {
     progress.begin("scanning candidates", static_cast<std::int64_t>(sites.size()));
-    const bool is_complete = Scanner(set, views, sites, least, progress, share).run(max_bytes);
+    const bool is_complete = Scanner(set, stack, sites, least, progress, share).run(max_bytes);
     progress.end();
     return is_complete;
+}
+
+std::vector<Site> sitesOutOfSight(const CandidateViews& views, std::span<const Site> sites) {
+    const CandidateViews::Data& data = views.data();
+    std::vector<Site> out(sites.begin(), sites.end());
+    tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) {
+        tbb::this_task_arena::isolate([&] {
+            CellParts parts;
+            data.lookAtPlane(out[i], parts);
+            if (data.counted) data.counted->keepIn(parts);
+            std::vector<Angle> headings;
+            for (std::size_t k = 0; k < data.headingsOf(out[i]); ++k)
+                if (parts.first[k] == parts.first[k + 1]) headings.push_back(out[i].headings[k]);
+            out[i].headings = std::move(headings);
+        });
+    });
+    std::erase_if(out, [](const Site& site) { return site.headings.empty(); });
+    return out;
 }
 
 Laser withBeamStep(Laser laser, Angle step) {

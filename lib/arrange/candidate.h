@@ -50,6 +50,9 @@ class PosedCandidates : public CandidateSet {
     std::vector<Angle> headings_;  // by candidate
 };
 
+class FacingCells;
+class SiteErrors;
+
 /// Computes the cells of a grid that a kind of sensor sees from any site, mounted at one height
 /// with one tilt and roll: the cells that VisibleArea::cellsOf() returns for a sensor there, unless
 /// by beams. Thread-safe.
@@ -65,9 +68,12 @@ class CandidateViews {
     /// \param counted the cells with weight; null: all. Views contain arbitrary subsets of the
     ///        other cells, which saves memory
     /// \param by_beams empty: lasers in a slice see their whole visible area
+    /// \param errors of mounting; null: sensors have the poses of their candidates
+    /// \param facing cells in which only faces count; null: none
     CandidateViews(const VisibleArea& sight, const Grid& grid, const SensorModel& device,
                    const Pose3& mount, const CellSet* counted = nullptr,
-                   const std::optional<ByBeams>& by_beams = {});
+                   const std::optional<ByBeams>& by_beams = {}, const SiteErrors* errors = nullptr,
+                   const FacingCells* facing = nullptr);
     ~CandidateViews();
     CandidateViews(const CandidateViews&) = delete;
     CandidateViews& operator=(const CandidateViews&) = delete;
@@ -100,6 +106,21 @@ constexpr std::size_t kMinPlaces = 64;
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
                    std::size_t max_bytes, Progress& progress, std::size_t least = kMinPlaces,
                    const SearchShare& share = SearchShare());
+
+/// The views of one case, and where its cells begin in the set, see CaseRoom.
+struct StackedViews {
+    const CandidateViews* views = nullptr;
+    std::vector<std::size_t> firsts = {0};
+};
+/// The same for several cases: a candidate sees its cells in all of them.
+/// \pre the views are of one device, height, tilt and roll
+bool addCandidates(PosedCandidates& set, std::span<const StackedViews> stack,
+                   std::span<const Site> sites, std::size_t max_bytes, Progress& progress,
+                   std::size_t least, const SearchShare& share);
+
+/// Returns the sites without the headings from which a sensor sees a counted cell, and without
+/// sites that have no heading left.
+std::vector<Site> sitesOutOfSight(const CandidateViews& views, std::span<const Site> sites);
 
 /// Returns the laser as a search scans with it at the thesis' "reso" (section 4.2): one scan of its
 /// whole sweep, with beams `step` apart from its first beam on; 0: the laser's step. A laser that

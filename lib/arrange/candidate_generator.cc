@@ -7,9 +7,13 @@
 #include <map>
 
 #include "arrange/candidate.h"
+#include "arrange/case_room.h"
 #include "arrange/strategy.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "coverage/camera_rules.h"
+#include "env/zone.h"
+#include "scene/sensor/camera.h"
 
 namespace ispace {
 
@@ -63,13 +67,32 @@ struct CandidatePool::Data {
     CandidateWeights weights;
     const ArrangeOptions& options;
     Progress& progress;
+    CaseRooms rooms;
+    const FacingCells* facing;
     VisibleArea sight;
     std::map<double, std::unique_ptr<SiteValidity>> validities = {};
+    std::map<double, std::vector<std::unique_ptr<SiteValidity>>> other_validities = {};
     std::size_t bytes = 0;  // of the sets built so far
 
     const SiteValidity& validityAt(double height) {
         std::unique_ptr<SiteValidity>& validity = validities[height];
-        if (validity != nullptr) return *validity;
+        if (validity == nullptr)
+            validity = std::make_unique<SiteValidity>(environment, rulesAt(height));
+        return *validity;
+    }
+
+    /// Returns true for sites that are valid in all rooms but the first, too.
+    bool isValidElsewhere(double height, Point2 place) {
+        if (options.robust.of != RobustChoice::Of::Rooms) return true;
+        auto& others = other_validities[height];
+        for (std::size_t i = others.size() + 1; i < rooms.size(); ++i)
+            others.push_back(
+                std::make_unique<SiteValidity>(rooms[i]->scene.environment, rulesAt(height)));
+        return std::all_of(others.begin(), others.end(),
+                           [&](const auto& validity) { return validity->isValid(place); });
+    }
+
+    [[nodiscard]] SiteRules rulesAt(double height) const {
         const MountRules& mount = options.mount;
         SiteRules rules;
         rules.height = height;
@@ -78,8 +101,7 @@ struct CandidatePool::Data {
         for (const NamedZone& zone : mount.keep_out) rules.keep_out.push_back(zone.outline);
         for (const NamedZone& zone : mount.keep_in) rules.keep_in.push_back(zone.outline);
         if (mount.on == MountOn::Wall) rules.wall_within = std::max(options.dist, kOffWall) + 1e-6;
-        validity = std::make_unique<SiteValidity>(environment, std::move(rules));
-        return *validity;
+        return rules;
     }
 
     [[nodiscard]] MountOn mountOf(const SensorClass& kind) const {
@@ -142,6 +164,9 @@ struct CandidatePool::Data {
         for (SitesAtHeight& level : levels) {
             proposed += level.sites.size();
             level.sites = validSites(validityAt(level.height), level.sites, progress);
+            std::erase_if(level.sites, [&](const Site& site) {
+                return !isValidElsewhere(level.height, site.place);
+            });
             valid += level.sites.size();
         }
         if (valid == 0) throw UnmetError(noPlaceText(kind, proposed));
@@ -176,6 +201,60 @@ struct CandidatePool::Data {
         return text;
     }
 
+    /// Removes candidates that see a cell of a private zone, and those that are forbidden.
+    [[nodiscard]] std::vector<Site> allowedSites(const SensorClass& kind, const Pose3& mount,
+                                                 const std::vector<Site>& sites) const {
+        const SensorModel& whole = kind.whole ? *kind.whole : kind.model;
+        const auto* camera = std::get_if<Camera>(&whole);
+        if (camera == nullptr || options.privacy.empty()) return sites;
+        std::vector<Site> allowed = sites;
+        for (Site& site : allowed)
+            for (const Pose3& pose : options.mount.forbidden)
+                if (pose.position == Point3{site.place.x, site.place.y, mount.position.z} &&
+                    pose.tilt == mount.tilt)
+                    std::erase(site.headings, pose.heading);
+        std::erase_if(allowed, [](const Site& site) { return site.headings.empty(); });
+        for (const PrivacyRule& rule : options.privacy) {
+            const CellSet cells = cellsOf(rule);
+            if (cells.empty()) continue;
+            const CandidateViews views(sight, target.grid, withDensity(*camera, rule.density),
+                                       mount, &cells);
+            allowed = sitesOutOfSight(views, allowed);
+        }
+        return allowed;
+    }
+
+    /// Returns the cells of the zones of a rule.
+    [[nodiscard]] CellSet cellsOf(const PrivacyRule& rule) const {
+        CellSet cells(target.grid.size());
+        for (const std::string& zone : privateZones(rule, environment)) {
+            const std::vector<double> inside =
+                weightsOfCells(target, {.targets = {readZone(zone, environment)}, .weights = {}});
+            for (std::size_t i = 0; i < inside.size(); ++i)
+                if (inside[i] > 0) cells.set(i);
+        }
+        return cells;
+    }
+
+    /// Adds candidates with views in the room, or in all rooms of a robust search.
+    bool look(PosedCandidates& set, const CandidateViews& views, const SensorClass& kind,
+              const Pose3& mount, std::span<const Site> sites, std::size_t least) {
+        if (rooms.empty())
+            return addCandidates(set, views, sites, options.max_bytes - bytes, progress, least,
+                                 options.search.share);
+        std::vector<std::unique_ptr<CandidateViews>> all;
+        std::vector<StackedViews> stack;
+        for (const auto& room : rooms) {
+            room->worlds.prepare(mount);
+            all.push_back(std::make_unique<CandidateViews>(
+                room->sight, room->target.grid, kind.model, mount, &room->counted, std::nullopt,
+                room->errors ? &*room->errors : nullptr));
+            stack.push_back({all.back().get(), room->firsts});
+        }
+        return addCandidates(set, stack, sites, options.max_bytes - bytes, progress, least,
+                             options.search.share);
+    }
+
     /// Adds candidates at these sites for each tilt. Returns false if progress says stop: then adds
     /// about `least` sites, shared out over all levels and tilts.
     bool addLevels(PosedCandidates& set, const SensorClass& kind,
@@ -194,11 +273,11 @@ struct CandidatePool::Data {
                 if (options.beam_step)
                     by_beams.emplace(CandidateViews::ByBeams{worlds, *options.beam_step});
                 const CandidateViews views(sight, target.grid, kind.model, mount, &weights.counted,
-                                           by_beams);
+                                           by_beams, nullptr, facing);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
-                if (!addCandidates(set, views, level.sites, options.max_bytes - bytes, progress,
-                                   share, options.search.share))
-                    is_complete = false;
+                const std::vector<Site> sites = allowedSites(kind, mount, level.sites);
+                if (sites.empty()) continue;
+                if (!look(set, views, kind, mount, sites, share)) is_complete = false;
             }
         return is_complete;
     }
@@ -231,7 +310,7 @@ struct CandidatePool::Data {
                     break;
                 }
                 const Point2 place = onNanometres(draw(k++));
-                if (!validity.isValid(place)) continue;
+                if (!validity.isValid(place) || !isValidElsewhere(height, place)) continue;
                 places.push_back(place);
                 ++drawn.places;
                 progress.advance(1);
@@ -280,6 +359,7 @@ struct CandidatePool::Data {
             if (!addLevels(set, kind, first.levels, is_first ? kMinPlaces : 0) ||
                 !first.is_complete)
                 return false;
+            if (set.size() == own) continue;  // all are forbidden
             const Best start = bestFrom(set, own);
             if (start.value == 0) continue;
             const double scope =
@@ -303,19 +383,21 @@ struct CandidatePool::Data {
 
 CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
                              CandidateWeights weights, const ArrangeOptions& options,
-                             Progress& progress)
+                             Progress& progress, CaseRooms rooms, const FacingCells* facing)
     : data_(new Data{environment,
                      worlds,
                      target,
                      std::move(weights),
                      options,
                      progress,
+                     rooms,
+                     facing,
                      {environment, options.plane, &worlds}}) {}
 
 CandidatePool::~CandidatePool() = default;
 
 CandidatePool::Made CandidatePool::make(const SensorClass& kind) {
-    Made made{std::make_unique<PosedCandidates>(data_->target.grid.size())};
+    Made made{std::make_unique<PosedCandidates>(data_->weights.left.size())};
     const bool is_random =
         data_->options.strategy == Strategy::Random && data_->options.mount.on != MountOn::Frame;
     made.is_complete = is_random

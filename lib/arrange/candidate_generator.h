@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,16 +16,22 @@ namespace ispace {
 
 /// Cell weights that guide candidate generation.
 struct CandidateWeights {
-    CellSet counted;                  ///< cells with weight
+    CellSet counted;                  ///< cells with weight, of the target's grid
     std::vector<std::uint32_t> left;  ///< weights of the cells not covered yet, else 0
 };
+
+struct CaseRoom;
+class FacingCells;
+/// Rooms in which candidates look, instead of the environment alone; empty: not robust.
+using CaseRooms = std::span<const std::unique_ptr<CaseRoom>>;
 
 /// Builds candidates by the strategy and the mount rules of the options.
 class CandidatePool {
   public:
     /// Stores references.
     CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
-                  CandidateWeights weights, const ArrangeOptions& options, Progress& progress);
+                  CandidateWeights weights, const ArrangeOptions& options, Progress& progress,
+                  CaseRooms rooms = {}, const FacingCells* facing = nullptr);
     ~CandidatePool();
     CandidatePool(const CandidatePool&) = delete;
     CandidatePool& operator=(const CandidatePool&) = delete;

@@ -76,10 +76,15 @@ MeasuredScene::MeasuredScene(const Scene& scene, const std::vector<SensorGroup>&
     problem_.weights = integerWeights(cellWeights(target_, options));
     total_ = problem_.totalWeight();
     if (total_ == 0) throw UnmetError(nothingText(target_, options.weights));
+    CellSet counted = countedCells(problem_);
+    setUnits();
+    if (!options.facing.empty()) facing_.emplace(scene.environment, target_, options.facing);
     setMultiplicities(standing);
-    pool_ = std::make_unique<CandidatePool>(scene.environment, worlds_, target_,
-                                            CandidateWeights{countedCells(problem_), weightsLeft()},
-                                            options, progress);
+    rooms_ = caseRoomsOf(scene, options);
+    if (!rooms_.empty()) stackRooms();
+    pool_ = std::make_unique<CandidatePool>(
+        scene.environment, worlds_, target_, CandidateWeights{std::move(counted), weightsLeft()},
+        options, progress, rooms_, facing_ ? &*facing_ : nullptr);
     addKinds();
 }
 
@@ -93,24 +98,36 @@ void MeasuredScene::mustBeAffordable() const {
 }
 
 /// Four receivers count as one sensor; in the presence of receivers, others have multiplicity 4.
-void MeasuredScene::setMultiplicities(const Coverage& standing) {
+void MeasuredScene::setUnits() {
     const auto is_partial = [](const auto& sensor) { return isPartial(sensor.model); };
     const bool listens = std::any_of(scene_.sensors.begin(), scene_.sensors.end(), is_partial) ||
                          std::any_of(kinds_.begin(), kinds_.end(), is_partial);
     unit_ = listens ? static_cast<int>(kMinReceivers) : 1;
     problem_.required = unit_ * options_.redundancy;
-    problem_.achieved.assign(target_.grid.size(), 0);
-    problem_.standing = CellSet(target_.grid.size());
-    for (const SensorView& view : standing.sensors) {
-        const int part = view.isPartial() ? 1 : unit_;
-        view.cells.forEach([&](std::size_t cell) {
-            problem_.achieved[cell] =
-                static_cast<std::uint16_t>(std::min(problem_.achieved[cell] + part, 0xffff));
-        });
-        problem_.standing |= view.cells;
-    }
     problem_.is_connected = options_.is_connected;
     problem_.budget = options_.budget;
+}
+
+void MeasuredScene::countStanding(const std::vector<SensorView>& views, std::size_t first,
+                                  std::vector<std::uint16_t>& achieved) const {
+    for (const SensorView& view : views) {
+        const int part = view.isPartial() ? 1 : unit_;
+        CellSet cells = view.cells;
+        if (facing_)
+            facing_->keepFaces(scene_.sensors[view.index].model, view.pose.position.onFloor(),
+                               cells);
+        cells.forEach([&](std::size_t cell) {
+            achieved[first + cell] =
+                static_cast<std::uint16_t>(std::min(achieved[first + cell] + part, 0xffff));
+        });
+    }
+}
+
+void MeasuredScene::setMultiplicities(const Coverage& standing) {
+    problem_.achieved.assign(target_.grid.size(), 0);
+    countStanding(standing.sensors, 0, problem_.achieved);
+    problem_.standing = CellSet(target_.grid.size());
+    for (const SensorView& view : standing.sensors) problem_.standing |= view.cells;
 }
 
 void MeasuredScene::addKinds() {
@@ -118,11 +135,14 @@ void MeasuredScene::addKinds() {
         CandidatePool::Made made = pool_->make(kind);
         is_complete_ = is_complete_ && made.is_complete;
         if (made.set->size() == 0)
-            throw UnmetError("stopped before there was any candidate for " + kind.id);
+            throw UnmetError(made.is_complete && !options_.privacy.empty()
+                                 ? "no place for " + kind.id + ": all see zones of --privacy"
+                                 : "stopped before there was any candidate for " + kind.id);
         sets_.push_back(std::move(made.set));
         problem_.kinds.push_back(
             {sets_.back().get(), kind.most, kind.cost, isPartial(kind.model) ? 1 : unit_});
     }
+    cases_.problem = &problem_;
     if (options_.budget || options_.target) return;
     for (const Placement& sensor : sensorsToPlace(groups_, kinds_))
         problem_.order.push_back(sensor.kind);
@@ -170,12 +190,19 @@ std::vector<Placement> MeasuredScene::placementsOf(const std::vector<Choice>& ch
 
 std::vector<CountedView> MeasuredScene::viewsOf(std::span<const Sensor> sensors) const {
     std::vector<CountedView> views(sensors.size());
-    for (const Sensor& sensor : sensors) sight_.prepare(sensor);
+    for (const Sensor& sensor : sensors) {
+        sight_.prepare(sensor);
+        for (const auto& room : rooms_) room->sight.prepare(room->mounted(sensor));
+    }
     tbb::parallel_for(std::size_t{0}, sensors.size(), [&](std::size_t i) {
         // A thread that waits for a level in here must not begin with another sensor.
         tbb::this_task_arena::isolate([&] {
-            views[i] = {sight_.cellsOf(target_.grid, sensors[i]),
+            views[i] = {rooms_.empty() ? sight_.cellsOf(target_.grid, sensors[i])
+                                       : stackedCellsOf(sensors[i]),
                         isPartial(sensors[i].model) ? 1 : unit_};
+            if (facing_)
+                facing_->keepFaces(sensors[i].model, sensors[i].pose.position.onFloor(),
+                                   views[i].cells);
         });
     });
     return views;

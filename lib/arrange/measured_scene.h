@@ -7,13 +7,17 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "arrange/arrange.h"
 #include "arrange/candidate_generator.h"
+#include "arrange/case_room.h"
+#include "arrange/facing_cells.h"
 #include "arrange/search/problem.h"
+#include "arrange/search/worst_case.h"
 #include "arrange/sensor_group.h"
 #include "arrange/tried_pose.h"
 #include "base/cell_set.h"
@@ -64,7 +68,22 @@ class MeasuredScene {
     /// Returns the validity test for sites at this height.
     const SiteValidity& validityAt(double height) { return pool_->validityAt(height); }
 
-    /// Converts a value of the problem to a share of the total weight.
+    /// Returns the rooms of the cases, each with its cells in the problem; empty: not robust.
+    [[nodiscard]] CaseRooms rooms() const { return rooms_; }
+    /// Returns the cases of a robust search.
+    /// \pre rooms() is not empty
+    [[nodiscard]] const WorstCaseProblem& cases() const { return cases_; }
+    /// Returns the values of these sensors in the cases.
+    [[nodiscard]] RobustValues robustValuesOf(std::span<const CountedView> views,
+                                              std::span<const Placement> sensors) const;
+    /// Returns true if the search maximises the worst case; its values are those of worstCase().
+    [[nodiscard]] bool isWorstCase() const {
+        const bool is_plain =
+            options_.robust.of == RobustChoice::Of::Failures && options_.robust.failures == 0;
+        return !rooms_.empty() && options_.robust.is_worst && !is_plain;
+    }
+
+    /// Converts a value of the search to a share of the total weight.
     [[nodiscard]] double share(std::uint64_t value) const;
     /// Returns the smallest value that is at least this share, up to rounding.
     [[nodiscard]] std::uint64_t valueFor(double share) const;
@@ -100,7 +119,14 @@ class MeasuredScene {
 
   private:
     void mustBeAffordable() const;
+    void setUnits();
+    void countStanding(const std::vector<SensorView>& views, std::size_t first,
+                       std::vector<std::uint16_t>& achieved) const;
     void setMultiplicities(const Coverage& standing);
+    [[nodiscard]] CellSet stackedCellsOf(const Sensor& sensor) const;
+    /// Sets the cells of all cases, and their weights.
+    void stackRooms();
+    void stackFailures();
     void addKinds();
 
     const Scene& scene_;
@@ -110,6 +136,10 @@ class MeasuredScene {
     VisibleArea sight_;
     std::vector<SensorClass> kinds_;
     int unit_ = 1;  ///< multiplicity of sensors other than receivers
+    std::optional<FacingCells> facing_;
+    std::vector<std::unique_ptr<CaseRoom>> rooms_;
+    WorstCaseProblem cases_;
+    std::vector<std::string> standing_ids_;  ///< of cases_.standing
     Target target_;
     Problem problem_;
     std::uint64_t total_ = 0;

@@ -33,6 +33,12 @@ void reportShare(const MeasuredScene& model, std::span<const CountedView> views,
     result.value = model.share(model.valueOf(views));
 }
 
+void reportRobust(const MeasuredScene& model, std::span<const CountedView> views,
+                  Arrangement& result) {
+    result.robust = model.robustValuesOf(views, result.sensors);
+    result.value = model.isWorstCase() ? result.robust->worst : result.robust->mean;
+}
+
 void reportCost(const MeasuredScene& model, std::span<const CountedView> /*views*/,
                 Arrangement& result) {
     // Few sums, and few roundings, kind by kind.
@@ -65,6 +71,14 @@ constexpr Objective kObjectives[] = {
      .option = "--redundancy",
      .is_asked = [](Options options) { return options.redundancy > 1; },
      .report = reportShare},
+    {.name = "facing",
+     .option = "--facing",
+     .is_asked = [](Options options) { return !options.facing.empty(); },
+     .report = reportShare},
+    {.name = "robust",
+     .option = "--robust",
+     .is_asked = [](Options options) { return options.robust.isAsked(); },
+     .report = reportRobust},
     {.name = "cost",
      .option = "--budget",
      .is_asked = [](Options) { return true; },

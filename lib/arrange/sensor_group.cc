@@ -111,8 +111,8 @@ std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups, bool ap
         const SensorGroup& group = groups[i];
         const double cost = group.record.number("cost");
         const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const SensorClass& kind) {
-            return !apart && kind.model == group.model && kind.cost == cost &&
-                   kind.record.angle("tilt") == group.record.angle("tilt") &&
+            return !apart && kind.model == group.model && kind.whole == group.whole &&
+                   kind.cost == cost && kind.record.angle("tilt") == group.record.angle("tilt") &&
                    kind.record.angle("roll") == group.record.angle("roll");
         });
         if (same != kinds.end()) {
@@ -126,7 +126,8 @@ std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups, bool ap
                              kindName(group, kinds),
                              cost,
                              apart ? 1 : group.most,
-                             {i}});
+                             {i},
+                             group.whole});
     }
     return kinds;
 }

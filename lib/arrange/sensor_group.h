@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +24,8 @@ struct SensorGroup {
     std::string id;           ///< empty: the next free ids of its keyword
     bool is_pending = false;  ///< of the scene; else new
     int most = 1;
+    /// The model before objectives limit the floor that it covers; empty: the same.
+    std::optional<SensorModel> whole = {};
 };
 
 /// Returns all sensors to be placed: the unplaced ones of the scene, then `added`. `open`: the
@@ -42,8 +45,9 @@ struct SensorClass {
     Record record;   ///< of the first sensor
     std::string id;  ///< for messages and as a seed of its random sites
     double cost = 1;
-    int most = 0;                          ///< over all its groups
-    std::vector<std::size_t> groups = {};  ///< ascending
+    int most = 0;                           ///< over all its groups
+    std::vector<std::size_t> groups = {};   ///< ascending
+    std::optional<SensorModel> whole = {};  ///< of its groups
 };
 
 /// Returns the kinds of these groups, in order of first appearance; `apart`: one for each sensor.

@@ -451,6 +451,18 @@ std::string fileInHistory(const std::string& operand) {
     return isStream(operand) && !is_folder ? "-" : shellQuote(baseName(operand));
 }
 
+std::string filesInHistory(const std::string& list) {
+    const auto colon = list.find(':');
+    if (colon == std::string::npos) return shellQuote(list);
+    std::string names = list.substr(0, colon + 1);
+    for (std::size_t at = colon + 1; at <= list.size();) {
+        const std::size_t end = std::min(list.find(',', at), list.size());
+        names += (at == colon + 1 ? "" : ",") + baseName(list.substr(at, end - at));
+        at = end + 1;
+    }
+    return shellQuote(names);
+}
+
 }  // namespace
 
 std::string CommandLine::historyLine(const std::vector<std::string>& operands) const {
@@ -461,7 +473,9 @@ std::string CommandLine::historyLine(const std::vector<std::string>& operands) c
             line += ' ' + name;
             if (value == nullptr) return;
             line += ' ';
-            line += entry.enters == Enters::BaseName ? fileInHistory(*value) : shellQuote(*value);
+            line += entry.enters == Enters::BaseName    ? fileInHistory(*value)
+                    : entry.enters == Enters::BaseNames ? filesInHistory(*value)
+                                                        : shellQuote(*value);
         });
     return line;
 }

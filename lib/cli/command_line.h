@@ -16,8 +16,8 @@
 namespace ispace {
 
 /// Form in which an option enters the history line of the product: only options that change its
-/// bytes do, a file by its base name.
-enum class Enters { History, BaseName, Nothing };
+/// bytes do, a file by its base name, and so the files of a list, `word:FILE,FILE`.
+enum class Enters { History, BaseName, BaseNames, Nothing };
 
 /// A rule for make that lists the sources of the product.
 struct DependencyOptions {

@@ -122,6 +122,23 @@ TEST(CommandLine, HistoryNamesFilesWithoutTheirFolders) {
     }
 }
 
+TEST(CommandLine, HistoryNamesTheFilesOfAListWithoutTheirFolders) {
+    for (const auto& [given, named] :
+         {std::pair("rooms:/tmp/a.env,b/c d.env", "'rooms:a.env,c d.env'"),
+          {"rooms:a.env", "rooms:a.env"},
+          {"failures:1", "failures:1"},
+          {"mounting:5cm,3deg", "mounting:5cm,3deg"},
+          {"none", "none"},
+          {"none:", "none:"}}) {
+        CommandLine line("tool", "ENV", "A tool.");
+        std::string list;
+        line.text("--robust", "WHAT", list, "cases", Enters::BaseNames);
+        const std::vector<const char*> words = {"tool", "--robust", given};
+        line.parse(static_cast<int>(words.size()), words.data());
+        EXPECT_EQ(line.historyLine({}), std::string("tool --robust ") + named);
+    }
+}
+
 TEST(CommandLine, UsageErrorsHintAtWhatWasMeant) {
     EXPECT_NE(Tool().errorOf({"--stratgy", "grid"}).find("did you mean `--strategy`"),
               std::string::npos);

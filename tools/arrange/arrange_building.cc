@@ -29,10 +29,14 @@ void mustBeAboutBuildings(const ArrangeToolOptions& options, const BuildingInput
     if (options.how.target) option = "--target";
     if (options.how.budget) option = "--budget";
     if (options.how.refine) option = "--refine";
+    if (options.how.robust.isAsked())
+        option = options.how.robust.of == RobustChoice::Of::Crowd ? "--crowd" : "--robust";
     if (!zones.targets.empty()) option = "--zone";
     if (!zones.weights.empty()) option = "--weight";
     if (!zones.keep_out.empty()) option = "--keep-out";
     if (!zones.keep_in.empty()) option = "--keep-in";
+    if (!zones.facing.empty()) option = "--facing";
+    if (!zones.privacy.empty()) option = "--privacy";
     if (!options.places_file.empty()) option = "--places";
     if (!options.fixed.empty()) option = "--fixed";
     if (!options.trace_file.empty()) option = "--trace";

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <sstream>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -76,6 +77,39 @@ double readGap(const std::string& text) {
     return gap;
 }
 
+/// Parses `rooms:FILE,FILE`, `failures:K` and `mounting:5cm,3deg`. \param rooms receives files
+RobustChoice readRobust(const std::string& text, std::vector<std::string>& rooms) {
+    const auto colon = text.find(':');
+    const std::string word = text.substr(0, colon);
+    const std::string rest = colon == std::string::npos ? "" : text.substr(colon + 1);
+    RobustChoice robust;
+    rooms.clear();
+    if (word == "rooms" && !rest.empty()) {
+        robust.of = RobustChoice::Of::Rooms;
+        std::istringstream list(rest + ',');
+        for (std::string file; std::getline(list, file, ',');) {
+            if (file.empty()) throw UsageError('`' + text + "` has an empty file name");
+            rooms.push_back(file);
+        }
+        return robust;
+    }
+    if (word == "failures") {
+        const auto count = parseInteger(rest);
+        if (!count || *count < 0 || *count > kMostFailures)
+            throw UsageError('`' + rest + "` is not a number of failures up to " +
+                             std::to_string(kMostFailures));
+        robust.of = RobustChoice::Of::Failures;
+        robust.failures = static_cast<int>(*count);
+        return robust;
+    }
+    if (word == "mounting") {
+        robust.of = RobustChoice::Of::Mounting;
+        robust.tolerance = parseTolerance(rest);
+        return robust;
+    }
+    throw UsageError('`' + text + "` is not rooms:FILE[,FILE...], failures:K or mounting:M,DEG");
+}
+
 template <typename Value, std::size_t kCount>
 std::vector<std::string> wordsOf(const Value (&values)[kCount]) {
     std::vector<std::string> words;
@@ -123,6 +157,8 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     addMountOptions();
     line_.group("Goals");
     addGoalOptions();
+    line_.group("Robustness");
+    addRobustOptions();
     line_.group("Search");
     addSearchOptions();
     line_.group("Further files");
@@ -244,6 +280,15 @@ void ArrangeCommand::addGoalOptions() {
         },
         "spend at most this, at cost= per sensor (default 1); COUNT is then a maximum",
         Enters::History);
+    line_.texts("--facing", "ZONE,DEG[,HEADING]", options_.zones.facing,
+                "floor of this zone counts only where a camera sees faces: within this angle of "
+                "the heading in which people walk there, by default through the doors on its "
+                "border",
+                Enters::History);
+    line_.texts("--privacy", "ZONE[,D]", options_.zones.privacy,
+                "no camera may see these zones (globs allowed), or see them with at least D pixels "
+                "a metre, a number or a density class",
+                Enters::History);
     line_.meters("--plane", how.plane, 0, 1000,
                  "height of the plane that all sensors but level lasers cover, 0 is the floor",
                  Enters::History);
@@ -259,6 +304,33 @@ void ArrangeCommand::addGoalOptions() {
         "no: without the thesis' Insider Judge sensors may stand outside the room, and all "
         "of the rectangle about it counts (fig. 4.8; default yes)",
         Enters::History);
+}
+
+void ArrangeCommand::addRobustOptions() {
+    line_.parsed(
+        "--robust", "WHAT",
+        [this](const std::string& text) {
+            options_.how.robust = readRobust(text, options_.robust_rooms);
+        },
+        "find a layout that holds in several cases: rooms:FILE[,FILE...], this room and the same "
+        "with other furniture or doors; failures:K, any K sensors fail; mounting:M,DEG, as in "
+        "mounting:5cm,3deg, random errors of mounting",
+        Enters::BaseNames);
+    constexpr int kMostPeople = 1000;
+    line_.parsed(
+        "--crowd", "N",
+        [this](const std::string& text) {
+            options_.how.robust = {.of = RobustChoice::Of::Crowd,
+                                   .is_worst = false,
+                                   .people = static_cast<int>(readNumber(
+                                       text, 0, kMostPeople, "a number of people up to 1000"))};
+        },
+        "maximise the expected coverage with N people in the way of sight, at random positions",
+        Enters::History);
+    line_.choice("--case", words_.robust_case, {"worst", "mean"},
+                 "maximise the value in the worst case (default of --robust) or the mean over the "
+                 "cases (default of --crowd)",
+                 Enters::History);
 }
 
 void ArrangeCommand::addSearchOptions() {

@@ -17,6 +17,8 @@ namespace ispace {
 struct ZoneWords {
     std::vector<std::string> targets, keep_out, keep_in;
     std::vector<std::string> weights;  ///< ZONE=W
+    std::vector<std::string> facing;   ///< ZONE,DEG[,HEADING]
+    std::vector<std::string> privacy;  ///< ZONE[,D]
 };
 
 struct ArrangeToolOptions {
@@ -27,6 +29,7 @@ struct ArrangeToolOptions {
     ArrangeOptions how;
     ZoneWords zones;
     std::string places_file;
+    std::vector<std::string> robust_rooms;  ///< of --robust rooms:
     std::string trace_file, curve_file, mps_file, report_file, heat_file;
     std::optional<double> time_limit;  ///< seconds
     BatchOptions batch;
@@ -48,19 +51,22 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void addStrategyOption(const StrategyRow& row, const StrategyOption& option);
     void addMountOptions();
     void addGoalOptions();
+    void addRobustOptions();
     void addSearchOptions();
     void addFileOptions();
     void addShareOptions();
     void settle();
     void settleStrategy();
     void settleProof();
+    void settleRobust();
+    void settleCameraRules();
     void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;
     void settleFiles() const;
     void settleBatch();
 
     /// Words of options that are converted once all options are known.
     struct Words {
-        std::string effort, strategy, optimize, mount, judge, share, proof;
+        std::string effort, strategy, optimize, mount, judge, share, proof, robust_case;
         CellWords cells;
     };
     Words words_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrange/arrange_report.h"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -61,13 +62,17 @@ void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
                const Arrangement& arrangement) {
     const std::string& file = options.heat_file;
     const std::string suffix = suffixOf(file);
-    for (std::size_t i = 0; i < arrangement.gains.size(); ++i) {
+    // The last map, with the most sensors, sets the colours of all.
+    std::uint32_t scale = 0;
+    for (std::size_t i = arrangement.gains.size(); i-- > 0;) {
         const GainMap& gains = arrangement.gains[i];
         const Scene scene = withPlaced(work.input.scene, work.groups, gains.before);
         Worlds worlds(scene.environment);
         const Coverage coverage = measureCoverage(
             scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
+        scale = std::max(scale, redundancyScale(coverage.report));
         MapOptions map;
+        map.redundancy_scale = scale;
         map.format = suffix == "svg"   ? PictureFormat::Svg
                      : suffix == "pdf" ? PictureFormat::Pdf
                                        : PictureFormat::Png;
@@ -78,6 +83,18 @@ void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
     }
 }
 
+std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangement& arrangement) {
+    if (work.how.facing.empty() && work.how.privacy.empty()) return std::nullopt;
+    CameraRules rules{{}, arrangement.privacy};
+    if (work.how.facing.empty()) return rules;
+    const Scene scene = withPlaced(work.input.scene, work.groups, arrangement.sensors);
+    Worlds worlds(scene.environment);
+    const Coverage coverage = measureCoverage(
+        scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
+    rules.facing = measureFacing(scene, coverage, work.how.facing);
+    return rules;
+}
+
 std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& work,
                        const Arrangement& arrangement, const Document& layout,
                        const std::string& command) {
@@ -85,8 +102,12 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
     Worlds worlds(scene.environment);
     const Coverage coverage = measureCoverage(
         scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
-    if (suffixOf(options.report_file) == "json") return coverageJson(coverage.report);
+    const CameraRules rules{measureFacing(scene, coverage, work.how.facing), arrangement.privacy};
+    ReportParts parts;
+    if (!rules.facing.empty() || !rules.privacy.empty()) parts.rules = &rules;
+    if (suffixOf(options.report_file) == "json") return coverageJson(coverage.report, parts);
     CoveragePageInput page{scene, coverage, "", command};
+    page.parts = parts;
     if (work.input.environment_operand != "-") page.name = baseName(work.input.environment_operand);
     page.more.push_back(resultOf(options, work, arrangement));
     const ReportPage pages = coveragePage(page);

@@ -2,9 +2,11 @@
 // The page of --report.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "arrange/arrange_run.h"
+#include "report/camera_rules_report.h"
 
 namespace ispace {
 
@@ -18,5 +20,8 @@ void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
 std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& work,
                        const Arrangement& arrangement, const Document& layout,
                        const std::string& command);
+
+/// Judges --facing and --privacy on the written layout, by exact regions; empty without them.
+std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangement& arrangement);
 
 }  // namespace ispace

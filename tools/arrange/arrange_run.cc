@@ -57,6 +57,29 @@ void takeZones(const ArrangeToolOptions& options, const Environment& environment
     }
 }
 
+/// Reads the rooms of --robust, each with the layout.
+void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
+    if (options.robust_rooms.empty()) return;
+    RobustChoice& robust = work.how.robust;
+    robust.name = baseName(work.input.environment_operand);
+    for (const std::string& file : options.robust_rooms) {
+        if (isStream(file)) throw UsageError("--robust rooms: stdin is not read: give files");
+        SceneRequest request{{file}, options.rules, false};
+        request.rules.same_environment = false;
+        if (!work.input.layout_operand.empty())
+            request.operands.push_back(work.input.layout_operand);
+        SceneInput room = readScene(request);
+        if (!options.fixed.empty() && room.layout) {
+            room.layout = withoutPlaces(*room.layout, options.fixed);
+            room.scene = makeScene(room.environment, &*room.layout,
+                                   devicesFor({&room.environment, &*room.layout}), &room.scene);
+        }
+        warnOfImport(options.common, "arrange", room);
+        for (const std::string& source : filesOf(room)) work.files.push_back(source);
+        robust.rooms.push_back({baseName(file), std::make_shared<Scene>(std::move(room.scene))});
+    }
+}
+
 }  // namespace
 
 ArrangeWork readWork(const ArrangeToolOptions& options) {
@@ -86,6 +109,10 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
         throw UsageError("nothing to place: give --sensor, or a LAYOUT with a sensor without `at`");
     takeZones(options, input.scene.environment, work.how);
     work.files = filesOf(input);
+    takeRooms(options, work);
+    work.how.facing = facingIn(input.scene.environment, options.how.facing);
+    for (const PrivacyRule& rule : options.how.privacy)
+        static_cast<void>(privateZones(rule, input.scene.environment));
     if (!options.places_file.empty()) {
         work.places = options.places_file == "-" ? readStdin() : readAll(options.places_file);
         work.how.list =
@@ -247,6 +274,34 @@ std::string cellsGapText(const Arrangement& arrangement) {
            " (--cell M sets the size of cells)\n";
 }
 
+/// Reports the values in the cases.
+std::string robustText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    const RobustValues& values = *arrangement.robust;
+    const RobustChoice& robust = how.robust;
+    std::string text;
+    if (robust.of == RobustChoice::Of::Failures) {
+        for (const std::string& id : values.failed)
+            text.append(text.empty() ? "without " : " and ").append(printable(id));
+        if (text.empty()) text = "without failures";
+        text += ", the worst failure, " + percentText(values.worst) + "; mean over all failures " +
+                percentText(values.mean);
+        return "arrange: " + text + '\n';
+    }
+    if (robust.of == RobustChoice::Of::Rooms) {
+        for (std::size_t i = 0; i < values.names.size(); ++i)
+            text.append(text.empty() ? "in " : ", ")
+                .append(printable(values.names[i]) + ' ' + percentText(values.shares[i]));
+    } else {
+        text = "in " + std::to_string(values.shares.size()) +
+               (robust.of == RobustChoice::Of::Crowd
+                    ? " crowds of " +
+                          counted(static_cast<std::size_t>(robust.people), "person", "people")
+                    : " mountings");
+    }
+    return "arrange: " + text + "; worst " + percentText(values.worst) + ", mean " +
+           percentText(values.mean) + '\n';
+}
+
 /// Reports a proof over all poses.
 std::string posesText(const Arrangement& arrangement) {
     constexpr int kDigits = 3;
@@ -308,6 +363,7 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
                            "; none fewer than " + formatDouble(*arrangement.least)) +
                 " of these candidates can\n";
     }
+    if (arrangement.robust) text += robustText(how, arrangement);
     if (how.budget)
         text += "arrange: cost " + formatDouble(arrangement.cost) + " of a budget of " +
                 formatDouble(*how.budget) + '\n';

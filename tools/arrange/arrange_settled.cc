@@ -2,6 +2,7 @@
 // Conversion and checks of options, once all of them are read.
 #include <algorithm>
 #include <iterator>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "arrange/search/search_share.h"
 #include "base/error.h"
 #include "cli/outputs.h"
+#include "coverage/camera_rules.h"
 #include "report/curve_chart.h"
 
 namespace ispace {
@@ -64,6 +66,8 @@ void ArrangeCommand::settle() {
             "--refine measures what is in view of the indoor floor: leave out --reso and "
             "--judge no");
     settleProof();
+    settleRobust();
+    settleCameraRules();
     how.wants_curve = !options_.curve_file.empty();
     how.wants_trace = !options_.trace_file.empty();
     how.wants_gains = !options_.heat_file.empty();
@@ -90,6 +94,60 @@ void ArrangeCommand::settleProof() {
                 "--proof poses tries no candidates, and all of the floor counts: leave out " +
                 std::string(option));
     if (how.mount.heights.size() > 1) throw UsageError("--proof poses: give one height with --z");
+}
+
+void ArrangeCommand::settleRobust() {
+    RobustChoice& robust = options_.how.robust;
+    if (!robust.isAsked()) {
+        if (line_.given("--case"))
+            throw UsageError("--case is about --robust and --crowd: give one of them, too");
+        return;
+    }
+    if (line_.given("--robust") && line_.given("--crowd"))
+        throw UsageError("--robust and --crowd are about different cases: leave out one");
+    if (line_.given("--case")) robust.is_worst = words_.robust_case == "worst";
+    const std::string name = line_.given("--crowd") ? "--crowd" : "--robust";
+    constexpr const char* kOfOneCase[] = {"--refine", "--connected", "--reso",   "--judge",
+                                          "--proof",  "--shard",     "--resume", "--batch"};
+    for (const char* option : kOfOneCase)
+        if (line_.given(option))
+            throw UsageError(name + " searches in several cases: leave out " + option);
+    constexpr const char* kOfMean[] = {"--target", "--budget",     "--curve", "--alternatives",
+                                       "--heat",   "--export-mps", "--trace"};
+    for (const char* option : kOfMean)
+        if (line_.given(option) && robust.is_worst)
+            throw UsageError(std::string(option) +
+                             " is not about the worst case: give --case mean, or leave it out");
+    if (robust.of != RobustChoice::Of::Failures) return;
+    for (const char* option : {"--target", "--budget", "--curve", "--redundancy"})
+        if (line_.given(option))
+            throw UsageError(
+                "--robust failures is about a given number of sensors, of which one "
+                "covers floor: leave out " +
+                std::string(option));
+}
+
+void ArrangeCommand::settleCameraRules() {
+    ArrangeOptions& how = options_.how;
+    for (const std::string& text : options_.zones.facing)
+        how.facing.push_back(ofOption("--facing", [&] { return parseFacing(text); }));
+    for (const std::string& text : options_.zones.privacy)
+        how.privacy.push_back(ofOption("--privacy", [&] { return parsePrivacy(text); }));
+    for (const FacingRule& rule : how.facing)
+        if (rule.required)
+            throw UsageError("--facing: a share is asked for by --target; leave out =SHARE");
+    const auto refuse = [this](const std::string& rule, std::span<const char* const> others) {
+        for (const char* other : others)
+            if (line_.given(other))
+                throw UsageError(rule + " and " + other + " do not go together: leave out one");
+    };
+    constexpr const char* kNotFacing[] = {"--refine", "--robust", "--crowd", "--proof", "--judge"};
+    constexpr const char* kNotPrivate[] = {"--refine", "--proof", "--shard", "--resume",
+                                           "--export-mps"};
+    if (!how.facing.empty()) refuse("--facing", kNotFacing);
+    if (!how.privacy.empty()) refuse("--privacy", kNotPrivate);
+    if (!how.privacy.empty() && how.robust.of == RobustChoice::Of::Rooms)
+        throw UsageError("--privacy is about one room: leave out --robust rooms");
 }
 
 void ArrangeCommand::checkStrategyOption(const StrategyRow& row,

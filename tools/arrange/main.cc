@@ -58,10 +58,13 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
 
 /// Reports the layout, and unmet requests.
 void report(const ArrangeToolOptions& options, const ArrangeWork& work,
-            const Arrangement& arrangement) {
+            const Arrangement& arrangement, const CameraRules* rules) {
     if (!options.common.quiet)
         writeLines("arrange", reportText(work.how, arrangement) +
                                   alternativesText(options.common.output, arrangement));
+    if (rules != nullptr)
+        for (const JudgedRule& rule : judgedRules(*rules))
+            tell(options.common, "arrange", rule.rule + ": " + rule.finding);
     const auto asked = static_cast<std::size_t>(work.how.alternatives);
     if (const std::size_t count = arrangement.alternatives.size(); count < asked)
         tell(options.common, "arrange",
@@ -70,6 +73,17 @@ void report(const ArrangeToolOptions& options, const ArrangeWork& work,
     talk(options.common, "arrange",
          "total effective area " + formatFixed(arrangement.area, 2) + " m2, cost " +
              formatDouble(arrangement.cost));
+}
+
+/// \throws UnmetError as checkGoals(), and for a rule of cameras that is not met
+void checkAll(const ArrangeToolOptions& options, const ArrangeWork& work,
+              const Arrangement& arrangement, const std::optional<CameraRules>& rules) {
+    checkGoals(options, work, arrangement);
+    std::string unmet;
+    for (const JudgedRule& rule : rules ? judgedRules(*rules) : std::vector<JudgedRule>())
+        if (rule.is_required && !rule.is_met)
+            unmet.append(unmet.empty() ? "" : "; ").append(rule.rule + ": " + rule.finding);
+    if (!unmet.empty()) throw UnmetError(unmet);
 }
 
 /// Reports that a signal left no product, and ends by it.
@@ -100,6 +114,18 @@ Arrangement search(const ArrangeToolOptions& options, const ArrangeWork& work, S
     return arrangement;
 }
 
+/// Reserves the further files of --heat, if the number of sensors is known.
+void claimHeat(const ArrangeToolOptions& options, const ArrangeWork& work) {
+    if (options.heat_file.empty() || options.how.target || options.how.budget) return;
+    int sensors = 0;
+    for (const SensorGroup& group : work.groups) sensors += group.most;
+    for (int i = 2; i <= sensors; ++i) {
+        const std::string file = numberedFile(options.heat_file, static_cast<std::size_t>(i));
+        claimOutput(file, "a map of --heat");
+        mustBeWritable(file);
+    }
+}
+
 /// \param parts those of a merge, or null
 void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts) {
     const ArrangeToolOptions& options = command.options();
@@ -118,6 +144,7 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
         claimOutput(file, "an alternative");
         mustBeWritable(file);
     }
+    claimHeat(options, work);
     for (const std::string* file :
          {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file,
           &options.report_file, &options.heat_file})
@@ -142,15 +169,16 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     }
     if (results && !results->trouble().empty())
         warn(options.common, "arrange", "what was done could not be kept: " + results->trouble());
+    const auto rules = shard ? std::nullopt : cameraRulesOf(work, arrangement);
     if (shard)
         writeDependencies(options.common, work.files);
     else
-        report(options, work, arrangement);
+        report(options, work, arrangement, rules ? &*rules : nullptr);
     if (signal != 0) endBySignal(signal);
     if (shard)
         talk(options.common, "arrange", "shard " + shard->text() + " is written");
     else
-        checkGoals(options, work, arrangement);
+        checkAll(options, work, arrangement, rules);
 }
 
 /// Arranges the sensors of one scene of a list.
@@ -173,7 +201,7 @@ void arrangeJob(const ArrangeCommand& command, const BatchJob& job, const Common
     json.key("candidates").value(found.candidates).key("unplaced").value(found.unplaced);
     json.key("reached").value(found.is_reached).key("complete").value(found.is_complete);
     outcome.line = json.endObject().take() + '\n';
-    checkGoals(options, work, found);
+    checkAll(options, work, found, cameraRulesOf(work, found));
 }
 
 void arrangeSensors(const ArrangeCommand& command) {

@@ -47,36 +47,51 @@ void forEachPart(const std::vector<std::size_t>& set, Visit visit) {
 
 }  // namespace
 
-CaseValues::CaseValues(const WorstCaseProblem& of, std::vector<Choice> chosen)
-    : of_(&of), chosen_(withoutRepeats(chosen)), values_(of.blocks.size()) {
-    for (std::size_t b = 0; b < of.blocks.size(); ++b) totals_.push_back(of.totalOf(b));
+CaseValues::CaseValues(const WorstCaseProblem& of, const std::vector<Choice>& chosen) : of_(&of) {
+    countStanding();
     const Problem& problem = *of.problem;
-    counts_.resize(problem.cells());
-    if (of.failures > 0) {
-        views_ = of.standing;
-        for (const CellSet& view : views_) view.forEach([&](std::size_t cell) { ++counts_[cell]; });
-        for (const Choice& choice : chosen_)
-            views_.push_back(problem.kinds[choice.kind].candidates->cellsOf(choice.candidate));
-    } else if (!problem.achieved.empty()) {
-        counts_.assign(problem.achieved.begin(), problem.achieved.end());
-    }
-    for (const Choice& choice : chosen_) {
+    for (const Choice& choice : withoutRepeats(chosen)) {
         const Kind& kind = problem.kinds[choice.kind];
         const auto added = static_cast<std::uint32_t>(of.failures > 0 ? 1 : kind.multiplicity);
         kind.candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
             for (std::uint32_t i = run.first; i < run.end; ++i) counts_[i] += added;
         });
+        if (of.failures > 0) views_.push_back(kind.candidates->cellsOf(choice.candidate));
     }
     countBlocks();
-    if (of.failures > 0) collectShared();
+}
+
+CaseValues::CaseValues(const WorstCaseProblem& of, std::span<const SensorCells> sensors)
+    : of_(&of) {
+    countStanding();
+    for (const SensorCells& sensor : sensors) {
+        const auto added = static_cast<std::uint32_t>(of.failures > 0 ? 1 : sensor.multiplicity);
+        sensor.cells->forEach([&](std::size_t cell) { counts_[cell] += added; });
+        if (of.failures > 0) views_.push_back(*sensor.cells);
+    }
+    countBlocks();
+}
+
+void CaseValues::countStanding() {
+    const Problem& problem = *of_->problem;
+    counts_.resize(problem.cells());
+    for (std::size_t b = 0; b < of_->blocks.size(); ++b) totals_.push_back(of_->totalOf(b));
+    if (of_->failures > 0) {
+        views_ = of_->standing;
+        for (const CellSet& view : views_) view.forEach([&](std::size_t cell) { ++counts_[cell]; });
+    } else if (!problem.achieved.empty()) {
+        counts_.assign(problem.achieved.begin(), problem.achieved.end());
+    }
 }
 
 void CaseValues::countBlocks() {
     const Problem& problem = *of_->problem;
     const auto required = static_cast<std::uint32_t>(of_->failures > 0 ? 1 : problem.required);
+    values_.resize(of_->blocks.size());
     for (std::size_t b = 0; b < of_->blocks.size(); ++b)
         for (std::size_t i = of_->blocks[b].first; i < of_->blocks[b].end; ++i)
             if (counts_[i] >= required) values_[b] += problem.weights[i];
+    if (of_->failures > 0) collectShared();
 }
 
 std::vector<std::uint32_t> CaseValues::sensorsAt(std::size_t cell) const {

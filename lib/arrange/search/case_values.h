@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "arrange/search/problem.h"
@@ -16,7 +17,9 @@ namespace ispace {
 class CaseValues {
   public:
     /// O(cells + cells that the sensors see)
-    CaseValues(const WorstCaseProblem& of, std::vector<Choice> chosen);
+    CaseValues(const WorstCaseProblem& of, const std::vector<Choice>& chosen);
+    /// The same for sensors with these cells of the problem.
+    CaseValues(const WorstCaseProblem& of, std::span<const SensorCells> sensors);
 
     [[nodiscard]] CaseValue worst() const;
     /// Returns the values of the blocks without failures, in units of the first block.
@@ -35,13 +38,13 @@ class CaseValues {
     /// Weight by the sensors that see it, ascending; floor that more sensors see than may fail is
     /// left out.
     using Shared = std::map<std::vector<std::uint32_t>, std::uint64_t>;
+    void countStanding();
     void countBlocks();
     void collectShared();
     [[nodiscard]] std::vector<std::uint32_t> sensorsAt(std::size_t cell) const;
     [[nodiscard]] std::uint64_t lostWithout(const std::vector<std::size_t>& failed) const;
 
     const WorstCaseProblem* of_;
-    std::vector<Choice> chosen_;
     std::vector<std::uint64_t> totals_;  // of the blocks
     std::vector<std::uint64_t> values_;  // of the blocks, without failures
     std::vector<std::uint32_t> counts_;  // multiplicity of each cell

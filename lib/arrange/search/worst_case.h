@@ -61,6 +61,12 @@ struct CaseValue {
     std::uint64_t value = 0;
 };
 
+/// Cells of a problem that a placed sensor sees.
+struct SensorCells {
+    const CellSet* cells = nullptr;
+    int multiplicity = 1;
+};
+
 /// Returns the case with the least value, the first among equals. Repeated choices count once. With
 /// failures at least as many as there are sensors, all fail.
 CaseValue worstCase(const WorstCaseProblem& of, const std::vector<Choice>& chosen);

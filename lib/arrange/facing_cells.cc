@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/facing_cells.h"
+
+#include <utility>
+#include <variant>
+
+#include "base/error.h"
+#include "env/zone.h"
+
+namespace ispace {
+
+FacingCells::FacingCells(const Environment& environment, const Target& target,
+                         std::span<const FacingRule> rules)
+    : grid_(target.grid), rules_(rules.begin(), rules.end()), all_(target.grid.size()) {
+    for (const FacingRule& rule : rules_) {
+        const std::vector<double> weights =
+            weightsOfCells(target, {.targets = {readZone(rule.zone, environment)}, .weights = {}});
+        CellSet& cells = cells_.emplace_back(target.grid.size());
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            if (weights[i] > 0) cells.set(i);
+        all_ |= cells;
+    }
+}
+
+bool FacingCells::isKept(bool is_camera, Point2 place, std::size_t cell) const {
+    if (!all_.test(cell)) return true;
+    if (!is_camera) return false;
+    const Point2 center = grid_.center(cell);
+    for (std::size_t i = 0; i < rules_.size(); ++i)
+        if (cells_[i].test(cell) && isFaced(rules_[i], center, place)) return true;
+    return false;
+}
+
+void FacingCells::keepFaces(const SensorModel& sensor, Point2 place, CellSet& cells) const {
+    const bool is_camera = std::holds_alternative<Camera>(sensor);
+    CellSet seen = cells;
+    seen &= all_;
+    seen.forEach([&](std::size_t cell) {
+        if (!isKept(is_camera, place, cell)) cells.reset(cell);
+    });
+}
+
+void FacingCells::keepFaces(const SensorModel& sensor, Point2 place, CellParts& parts) const {
+    const bool is_camera = std::holds_alternative<Camera>(sensor);
+    std::vector<CellRun> runs;
+    std::vector<std::uint32_t> first = {0};
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        for (std::uint32_t r = parts.first[part]; r < parts.first[part + 1]; ++r) {
+            std::uint32_t begin = parts.runs[r].first;
+            for (std::uint32_t i = begin; i < parts.runs[r].end; ++i) {
+                if (isKept(is_camera, place, i)) continue;
+                if (begin < i) runs.push_back({begin, i});
+                begin = i + 1;
+            }
+            if (begin < parts.runs[r].end) runs.push_back({begin, parts.runs[r].end});
+        }
+        first.push_back(static_cast<std::uint32_t>(runs.size()));
+    }
+    parts.runs = std::move(runs);
+    parts.first = std::move(first);
+}
+
+}  // namespace ispace
