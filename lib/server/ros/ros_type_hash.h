@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "sense/formats/ros_types.h"
+
+namespace ispace {
+
+/// Computes the hash by which nodes of ROS 2, since Iron, compare their definitions of a type
+/// (REP 2016): "RIHS01_" and 64 digits.
+std::string rosTypeHash(RosType type);
+
+}  // namespace ispace

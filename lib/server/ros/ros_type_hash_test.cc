@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/ros/ros_type_hash.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+namespace ispace {
+namespace {
+
+// As `ros2 topic info -v` of Jazzy prints them: nested types, lists, arrays, bytes, no fields.
+TEST(RosTypeHash, EqualsThatOfRos) {
+    constexpr std::pair<RosType, const char*> kKnown[] = {
+        {RosType::Twist, "9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a"},
+        {RosType::TwistStamped, "5f0fcd4f81d5d06ad9b4c4c63e3ea51b82d6ae4d0558f1d475229b1121db6f64"},
+        {RosType::LaserScan, "64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828"},
+        {RosType::Odometry, "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"},
+        {RosType::OccupancyGrid,
+         "8d348150c12913a31ee0ec170fbf25089e4745d17035792a1ba94d6f0bc0cfc7"},
+        {RosType::CameraInfo, "b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275"},
+        {RosType::MarkerArray, "86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf"},
+        {RosType::DiagnosticArray,
+         "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"},
+        {RosType::Empty, "20b625256f32d5dbc0d04fee44f43c41e51c70d3502f84b4a08e7a9c26a96312"}};
+    for (const auto& [type, hash] : kKnown)
+        EXPECT_EQ(rosTypeHash(type), "RIHS01_" + std::string(hash)) << nameOf(type);
+}
+
+}  // namespace
+}  // namespace ispace
