@@ -23,6 +23,7 @@
 #include "server/client_connection.h"
 #include "server/device/device_port.h"
 #include "server/ros/ros_feed.h"
+#include "server/ros/ros_node.h"
 #include "server/ros/ros_site.h"
 #include "server/web/web_page.h"
 #include "server/web_server.h"
@@ -71,6 +72,7 @@ struct Server::Data {
 
     void welcome(tcp::socket socket);
     bool makeRoom();
+    [[nodiscard]] RosFeed& feedOf(RosScenery scenery);
     void stepped();
     [[nodiscard]] WallTime nextTurn() const;
     [[nodiscard]] std::chrono::nanoseconds turn() const;
@@ -98,6 +100,7 @@ struct Server::Data {
     std::vector<std::shared_ptr<ClientConnection>> connections;  // in order of arrival
     std::atomic<std::size_t> serving = 0;
     std::optional<RosFeed> feed;
+    std::optional<RosNode> node;
     std::list<WebServer> webs;
     DeviceHost host{state};
     std::list<DevicePort> devices;
@@ -178,6 +181,12 @@ bool Server::Data::makeRoom() {
     return false;
 }
 
+/// Returns the feed that all clients of topics share. \param scenery of the first call
+RosFeed& Server::Data::feedOf(RosScenery scenery) {
+    if (!feed) feed.emplace(state, std::move(scenery));
+    return *feed;
+}
+
 void Server::Data::stepped() {
     // Writing to a thousand clients takes longer than the next step may be late. Only a clock that
     // waits leaves each client a turn before the next scan. A few are always served: load from
@@ -190,6 +199,7 @@ void Server::Data::stepped() {
         connection->stepped(may_be_late || steady_clock::now() < end);
     for (DevicePort& device : devices) device.stepped();
     for (WebServer& web : webs) web.stepped();
+    if (node) node->stepped();
     static_cast<void>(hasUpdates());
     has_news = false;
     next_news = steady_clock::now() + kNewsEvery;
@@ -207,6 +217,10 @@ WallTime Server::Data::nextTurn() const {
     }
     for (const DevicePort& device : devices) may_change = may_change || device.waitsToChange();
     for (const WebServer& web : webs) may_change = may_change || web.waitsToChange();
+    if (node) {
+        may_change = may_change || node->waitsToChange();
+        next = std::min(next, node->nextSend().value_or(next));
+    }
     if (const auto change = state.nextChange(); may_change && change)
         next = std::min(next, *change);
     return next;
@@ -216,7 +230,7 @@ WallTime Server::Data::nextTurn() const {
 std::chrono::nanoseconds Server::Data::turn() const {
     const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay() ||
                           simulation.paused();
-    if (!may_hold || (serving == 0 && webs.empty() && devices.empty())) return kTurn;
+    if (!may_hold || (serving == 0 && webs.empty() && devices.empty() && !node)) return kTurn;
     const auto has_heavy_sensor = [](Simulation& one) {
         const auto sensors = one.world().sensors();
         return std::any_of(sensors.begin(), sensors.end(), isHeavy);
@@ -240,6 +254,10 @@ void Server::Data::serveClients() {
     for (WebServer& web : webs) {
         if (has_made) web.stepped();
         web.serve();
+    }
+    if (node) {
+        if (has_made) node->stepped();
+        node->serve();
     }
     for (DevicePort& device : devices) {
         device.serve(steady_clock::now());
@@ -319,6 +337,7 @@ void Server::Data::end() {
     for (const auto& connection : connections) connection->end();
     for (WebServer& web : webs) web.end();
     for (DevicePort& device : devices) device.end();
+    if (node) node->end();
     sweep();
     const auto busy = [this] {
         return !connections.empty() ||
@@ -361,11 +380,18 @@ std::string Server::serveWeb(const Endpoint& endpoint, const std::string& title)
 std::string Server::serveRos(RosLanguage language, const Endpoint& endpoint,
                              const std::string& title, RosScenery scenery) {
     Data& data = *data_;
-    if (!data.feed) data.feed.emplace(data.state, std::move(scenery));
-    auto site =
-        std::make_unique<RosSite>(data.state, *data.feed, language, title, endpoint.is_loopback);
+    auto site = std::make_unique<RosSite>(data.state, data.feedOf(std::move(scenery)), language,
+                                          title, endpoint.is_loopback);
     return "ws://" +
            data.webs.emplace_back(data.io, endpoint, data.limits, std::move(site)).address();
+}
+
+void Server::serveDds(std::uint32_t domain, RosScenery scenery) {
+    Data& data = *data_;
+    data.node.emplace(data.state, data.feedOf(std::move(scenery)),
+                      DdsSettings{.domain = domain,
+                                  .allowed = data.limits.allowed,
+                                  .wake = [&io = data.io] { asio::post(io, [] {}); }});
 }
 
 std::string Server::serveDevice(const WireProtocol& protocol, const std::string& id,

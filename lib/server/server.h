@@ -54,7 +54,7 @@ struct ServerLimits {
     RateLimit wrong_tokens = {10, 10};
     /// A robot or person stops when its client has been silent this long; 0: never.
     std::chrono::nanoseconds watchdog{};
-    /// Networks that may use device ports, besides this machine.
+    /// Networks that may use device ports and DDS, besides this machine.
     std::vector<Network> allowed;
     bool wall_clock = false;  ///< clocks of devices show wall time instead of simulated time
 };
@@ -97,6 +97,10 @@ class Server {
     /// \returns "ws://127.0.0.1:8765" \throws std::system_error naming the endpoint
     std::string serveRos(RosLanguage language, const Endpoint& endpoint, const std::string& title,
                          RosScenery scenery = {});
+    /// Takes part in a domain of DDS as a node of ROS 2, for this machine and
+    /// ServerLimits::allowed. Call at most once, before run(). \param scenery as for serveRos()
+    /// \throws FormatError if the module is missing, std::runtime_error
+    void serveDds(std::uint32_t domain, RosScenery scenery = {});
     /// Serves a robot or sensor through the protocol of a real device at a separate endpoint. Call
     /// before run(). \returns "127.0.0.1:10940"
     /// \throws UsageError if the world has no such device, std::system_error naming the endpoint

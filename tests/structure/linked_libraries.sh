@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Each library costs time at every start: OpenCV's core and imgproc with the 15 they need some 4 ms,
 # its imgcodecs, with GDAL and 140 more, 59 ms; Cairo, with those of X11 and fonts, 1.7 ms. So no tool
-# links them: modules do, which are opened when a picture is drawn, or written as JPEG. No tool links
+# links them: modules do, which are opened when a picture is drawn, or written as JPEG, or ROS 2 is spoken. No tool links
 # assimp or decodes with OpenCV, which some files make crash: programs do that are started for each file.
 . "$(dirname "$0")/../pipelines/common.sh"
 
-heavy='libopencv|libGL|liblapack|libgdal|libcrypto|libcairo|libX11|libfontconfig|libfreetype'
+heavy='libddsc|libiceoryx|libopencv|libGL|liblapack|libgdal|libcrypto|libcairo|libX11|libfontconfig|libfreetype'
 max_libraries=16
 module=$binary_dir/lib/ispace/pictures.so
 ldd "$module" >module.ldd
@@ -39,6 +39,19 @@ status=0
 "$envc" "$data/room.env" --to svg >out 2>err || status=$?
 [ "$status" -eq 1 ] || fail "status $status without the module for drawing"
 grep -q 'drawing needs Cairo (Debian: libcairo2): .*drawing.so' err || fail "no hint: $(cat err)"
+
+# The same for the module that speaks DDS.
+if [ -e "$binary_dir/lib/ispace/dds.so" ]; then
+    ldd "$binary_dir/lib/ispace/dds.so" >module.ldd
+    grep -q libddsc module.ldd || fail "the module for DDS does without Cyclone: $(cat module.ldd)"
+fi
+cp "$binary_dir/bin/simrun" moved/bin
+mkdir moved/share
+ln -s "$source_dir/share" moved/share/ispace
+status=0
+"$scratch/moved/bin/simrun" "$data/room.env" --ros2 --until 0 >out 2>err || status=$?
+[ "$status" -eq 1 ] || fail "status $status without the module for DDS"
+grep -q 'ros2 needs Cyclone DDS (Debian: libddsc0debian): .*dds.so' err || fail "no hint: $(cat err)"
 
 # The same for the program that reads meshes, when one is met.
 "$envc" "$data/room.env" --to env >/dev/null

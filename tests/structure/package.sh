@@ -38,6 +38,10 @@ for page in man1/ispace.1 man1/ispace-sweep.1 man5/ispace-env.5 man5/ispace-3dm.
 done
 if found=$(grep -rlF -e "$source_dir" -e "$binary_dir" root); then fail "the build's path is in $found"; fi
 dpkg-deb -f one/ispace_*.deb Recommends | has 'libopencv-imgcodecs' || fail "OpenCV's pictures are not recommended"
+if [ -e "$binary_dir/lib/ispace/dds.so" ]; then
+    dpkg-deb -f one/ispace_*.deb Recommends | has 'libddsc' || fail "Cyclone DDS is not recommended"
+    if dpkg-deb -f one/ispace_*.deb Depends | grep ddsc; then fail "Cyclone DDS is needed"; fi
+fi
 dpkg-deb -f one/ispace_*.deb Depends | has 'libcairo2' || fail "Cairo, which a module links, is not needed"
 if dpkg-deb -f one/ispace_*.deb Depends | grep imgcodecs; then fail "OpenCV's pictures are needed"; fi
 

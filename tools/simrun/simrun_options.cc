@@ -43,13 +43,13 @@ void DevicePortOptions::declare(CommandLine& line) {
                    texts_[protocol], std::string(protocol->help), Enters::Nothing);
     if (texts_.empty()) return;
     line.texts("--allow", "CIDR", allowed_,
-               "machines that may use such ports besides this one, e.g. 192.168.1.0/24",
+               "machines that may use such ports and --ros2 besides this one, e.g. 192.168.1.0/24",
                Enters::Nothing);
     line.choice("--device-clock", clock_, {"simulated", "wall"},
                 "what time stamps of such ports count (default simulated)", Enters::Nothing);
 }
 
-void DevicePortOptions::take(const CommandLine& line, ServerLimits& limits) {
+void DevicePortOptions::take(const CommandLine& line, bool has_others, ServerLimits& limits) {
     for (const WireProtocol* const protocol : wireProtocols()) {
         for (const std::string& text : texts_[protocol]) {
             DevicePortOption port =
@@ -67,10 +67,12 @@ void DevicePortOptions::take(const CommandLine& line, ServerLimits& limits) {
             ports_.push_back(std::move(port));
         }
     }
-    for (const char* option : {"--allow", "--device-clock"})
-        if (ports_.empty() && !texts_.empty() && line.given(option))
+    for (const char* option : {"--allow", "--device-clock"}) {
+        const bool is_heeded = has_others && std::string_view(option) == "--allow";
+        if (ports_.empty() && !texts_.empty() && !is_heeded && line.given(option))
             throw UsageError(std::string(option) +
                              " is about ports of devices, and none is asked for");
+    }
     for (const std::string& text : allowed_)
         limits.allowed.push_back(ofOption("--allow", [&text] { return parseNetwork(text); }));
     limits.wall_clock = clock_ == "wall";
@@ -302,9 +304,9 @@ void SimrunCommand::takeDrawing() {
         throw UsageError(
             "-o is a picture or a film of a record: give --replay DIR (a run writes to --record "
             "DIR)");
-    std::vector<std::string> of_runs{"--record",   "--expect",    "--clock",
-                                     "--hold",     "--listen",    "--web",
-                                     "--foxglove", "--rosbridge", "--port-file"};
+    std::vector<std::string> of_runs{"--record", "--expect",   "--clock",    "--hold",
+                                     "--listen", "--web",      "--foxglove", "--rosbridge",
+                                     "--ros2",   "--port-file"};
     for (const WireProtocol* const protocol : wireProtocols())
         of_runs.push_back("--" + std::string(protocol->name));
     for (const std::string& option : of_runs)
@@ -391,6 +393,10 @@ void SimrunCommand::declareRos() {
         "--rosbridge", "[ADDR:]PORT",
         [&o](const std::string& text) { o.rosbridge = parsePortOf(text); },
         "serve topics of ROS 2 to clients of rosbridge there (by custom 9090)", Enters::Nothing);
+    constexpr int kLastDomain = 232;
+    line_.countOr("--ros2", o.ros_domain, 0, 0, kLastDomain,
+                  "be a node of ROS 2 in this domain, over DDS, for programs of this machine",
+                  Enters::Nothing);
 }
 
 void SimrunCommand::takeServer() {
@@ -398,7 +404,7 @@ void SimrunCommand::takeServer() {
     o.limits.shutdown = o.shutdown.value_or(true);
     o.limits.changes = o.changes.value_or(true);
     o.limits.token_first = !o.listen.is_loopback;
-    o.devices.take(line_, o.limits);
+    o.devices.take(line_, o.ros_domain.has_value(), o.limits);
     for (const auto& [option, endpoint] :
          {std::pair("--foxglove", o.foxglove), {"--rosbridge", o.rosbridge}})
         if (endpoint && !endpoint->is_loopback && o.token_file.empty())

@@ -27,8 +27,9 @@ struct DevicePortOption {
 class DevicePortOptions {
   public:
     void declare(CommandLine& line);
-    /// Stores the options after parsing. \throws UsageError
-    void take(const CommandLine& line, ServerLimits& limits);
+    /// Stores the options after parsing. \param has_others ports besides these heed --allow
+    /// \throws UsageError
+    void take(const CommandLine& line, bool has_others, ServerLimits& limits);
     [[nodiscard]] const std::vector<DevicePortOption>& ports() const { return ports_; }
     /// Returns the number of simultaneous connections to device ports.
     [[nodiscard]] std::size_t connections() const;
@@ -76,6 +77,7 @@ struct SimrunOptions {
     std::string port_file;  ///< "" without
     Endpoint listen;
     std::optional<Endpoint> web, foxglove, rosbridge;
+    std::optional<int> ros_domain;  ///< of --ros2
     std::optional<bool> shutdown, changes;
     std::string token_file;   ///< "" without
     std::string load_folder;  ///< "": that of the scene

@@ -65,6 +65,10 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const S
     };
     out.foxglove = serve(RosLanguage::Foxglove, options.foxglove);
     out.rosbridge = serve(RosLanguage::Rosbridge, options.rosbridge);
+    if (options.ros_domain) {
+        server.serveDds(static_cast<std::uint32_t>(*options.ros_domain), rosScenery());
+        out.ros_domain = options.ros_domain;
+    }
     out.devices = serveDevices(server, options.devices);
     return out;
 }
@@ -88,6 +92,7 @@ void announce(const Server& server, const ServedAddresses& addresses) {
                                         {"foxglove", &addresses.foxglove},
                                         {"rosbridge", &addresses.rosbridge}})
         if (!address->empty()) json.key(name).value(*address);
+    if (addresses.ros_domain) json.key("ros2").value(*addresses.ros_domain);
     json.endObject();
     writeAll("-", json.take() + '\n');
     // Clients stay connected when the reader of the warnings has gone.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "cli/operands.h"
@@ -12,6 +13,7 @@ namespace ispace {
 /// Addresses of the ports besides that of the protocol; "" without.
 struct ServedAddresses {
     std::string web, foxglove, rosbridge;
+    std::optional<int> ros_domain;  ///< of DDS
     DeviceAddresses devices;
 };
 /// Opens the ports that options ask for. \throws std::system_error, UsageError naming the option

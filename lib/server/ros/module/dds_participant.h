@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Interface between lib/server and the module that links Cyclone DDS.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/network.h"
+
+namespace ispace {
+
+/// A topic as DDS knows it: "rt/scan", "sensor_msgs::msg::dds_::LaserScan_".
+struct DdsTopic {
+    std::string name, type;
+    std::size_t depth = 1;    ///< messages kept
+    bool is_reliable = true;  ///< else best effort
+    bool is_latched = false;  ///< later readers get the last message
+    std::string user_data = {};
+};
+
+struct DdsSettings {
+    std::uint32_t domain = 0;
+    /// Machines that may take part, besides this one. None: no packet leaves this machine.
+    std::vector<Network> allowed = {};
+    /// Called by threads of DDS when changed() has become true.
+    std::function<void()> wake = {};
+};
+
+using DdsGuid = std::array<std::uint8_t, 16>;
+
+/// A participant of DDS with its writers and readers, by numbers. Messages are CDR with its head.
+/// All functions are for one thread, and none waits for peers.
+class DdsParticipant {
+  public:
+    DdsParticipant() = default;
+    DdsParticipant(const DdsParticipant&) = delete;
+    DdsParticipant& operator=(const DdsParticipant&) = delete;
+    /// Ends all threads of DDS.
+    virtual ~DdsParticipant() = default;
+
+    /// \throws std::runtime_error
+    virtual int addWriter(const DdsTopic& topic) = 0;
+    virtual int addReader(const DdsTopic& topic) = 0;
+    virtual void remove(int end) = 0;
+    [[nodiscard]] virtual DdsGuid guid() const = 0;
+    [[nodiscard]] virtual DdsGuid guid(int end) const = 0;
+
+    /// True once after readers have come or gone, or messages have arrived.
+    virtual bool changed() = 0;
+    [[nodiscard]] virtual bool isRead(int writer) const = 0;
+    /// Sends a message, or drops it if slow readers leave no room.
+    virtual void write(int writer, std::string_view message) = 0;
+    /// Returns the messages that have arrived, at most the topic's depth.
+    virtual std::vector<std::string> take(int reader) = 0;
+};
+
+/// The module's function. \throws std::runtime_error with a message for people
+using OpenDds = void(const DdsSettings& settings, std::unique_ptr<DdsParticipant>& out);
+constexpr const char* kOpenDds = "ispaceOpenDds";
+
+}  // namespace ispace

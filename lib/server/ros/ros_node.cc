@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/ros/ros_node.h"
+
+#include <algorithm>
+#include <chrono>
+#include <span>
+#include <utility>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "raster/codec.h"
+#include "sense/formats/cdr.h"
+#include "server/ros/ros_type_hash.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::size_t kServiceDepth = 10;
+/// A peer's socket holds some 90 packets by custom, which the scans of a hundred robots exceed at
+/// once.
+constexpr std::size_t kBurst = std::size_t{1} << 15U;
+constexpr auto kPause = std::chrono::milliseconds(1);
+/// Before the content of requests and answers, nodes over Cyclone have the client and a number.
+constexpr std::size_t kServiceHeader = 16;
+
+std::unique_ptr<DdsParticipant> openModule(const DdsSettings& settings) {
+    std::string error;
+    void* const found = moduleSymbol("dds.so", kOpenDds, error);
+    if (found == nullptr)
+        throw FormatError(Diagnostic{
+            "", 0, 0, "--ros2 needs Cyclone DDS (Debian: libddsc0debian): " + printable(error)});
+    std::unique_ptr<DdsParticipant> out;
+    reinterpret_cast<OpenDds*>(found)(settings, out);
+    return out;
+}
+
+/// Appends a node's description as since Iron: ids have 16 bytes.
+void putIds(CdrWriter& out, const std::vector<DdsGuid>& ids) {
+    out.count(ids.size());
+    for (const DdsGuid& id : ids) out.array(std::span<const std::uint8_t>(id));
+}
+
+}  // namespace
+
+std::string ddsTopicOf(std::string_view prefix, std::string_view topic) {
+    return std::string(prefix) + std::string(topic);
+}
+
+std::string ddsTypeOf(std::string_view type) {
+    std::string out;
+    const std::size_t last = type.rfind('/') + 1;
+    for (const char c : type.substr(0, last)) c == '/' ? out += "::" : out += c;
+    return out.append("dds_::").append(type.substr(last)).append("_");
+}
+
+RosNode::RosNode(ServerState& state, RosFeed& feed, const DdsSettings& settings)
+    : RosNode(state, feed, openModule(settings)) {}
+
+RosNode::RosNode(ServerState& state, RosFeed& feed, std::unique_ptr<DdsParticipant> participant)
+    : feed_(&feed),
+      orders_(state, [](const std::string& /*error*/) {}),
+      participant_(std::move(participant)) {
+    graph_ =
+        participant_->addWriter({.name = "ros_discovery_info",
+                                 .type = ddsTypeOf("rmw_dds_common/msg/ParticipantEntitiesInfo"),
+                                 .is_latched = true});
+    addServices();
+    sync();
+}
+
+RosNode::~RosNode() {
+    for (const auto& [topic, end] : ends_)
+        if (end.is_wanted) feed_->unwant(topic);
+}
+
+void RosNode::addServices() {
+    const std::string type = ddsTypeOf(kRosEmptyService);
+    for (const RosService& service : rosServices()) {
+        const auto topic = [&](const char* prefix, const char* side, const char* end) {
+            return DdsTopic{.name = ddsTopicOf(prefix, service.name) + side,
+                            .type = type + end,
+                            .depth = kServiceDepth};
+        };
+        services_.push_back({.request = std::string(service.request),
+                             .reader = participant_->addReader(topic("rq", "Request", "Request_")),
+                             .writer = participant_->addWriter(topic("rr", "Reply", "Response_"))});
+    }
+}
+
+/// Adapts to the topics of a changed world.
+void RosNode::sync() {
+    feed_->sync();
+    if (std::exchange(version_, feed_->version()) == feed_->version()) return;
+    std::erase_if(ends_, [this](const auto& one) {
+        if (feed_->entries().contains(one.first)) return false;
+        participant_->remove(one.second.number);
+        return true;
+    });
+    for (const auto& [number, entry] : feed_->entries())
+        if (!ends_.contains(number)) add(number, entry.channel);
+    tellGraph();
+}
+
+void RosNode::add(std::uint32_t topic, const RosChannel& channel) {
+    const DdsTopic dds{.name = ddsTopicOf("rt", channel.topic),
+                       .type = ddsTypeOf(nameOf(channel.type)),
+                       .depth = channel.quality.depth,
+                       // A reader of best effort accepts writers of both kinds; a reliable writer
+                       // serves readers of both.
+                       .is_reliable = !channel.isInput(),
+                       .is_latched = channel.quality.is_latched,
+                       .user_data = "typehash=" + rosTypeHash(channel.type) + ";"};
+    const bool is_input = channel.isInput();
+    const int number = is_input ? participant_->addReader(dds) : participant_->addWriter(dds);
+    ends_[topic] = {.number = number, .is_input = is_input};
+}
+
+/// Names the node and its topics, for `ros2 node list`.
+void RosNode::tellGraph() {
+    std::vector<DdsGuid> readers, writers;
+    for (const auto& [topic, end] : ends_) {
+        (end.is_input ? readers : writers).push_back(participant_->guid(end.number));
+    }
+    for (const Service& service : services_) {
+        readers.push_back(participant_->guid(service.reader));
+        writers.push_back(participant_->guid(service.writer));
+    }
+    CdrWriter out;
+    const DdsGuid own = participant_->guid();
+    out.array(std::span<const std::uint8_t>(own)).count(1).put("/").put("simrun");
+    putIds(out, readers);
+    putIds(out, writers);
+    participant_->write(graph_, out.take());
+}
+
+void RosNode::lookForReaders() {
+    for (auto& [topic, end] : ends_) {
+        if (end.is_input) continue;
+        const bool is_read = participant_->isRead(end.number);
+        if (std::exchange(end.is_wanted, is_read) == is_read) continue;
+        is_read ? feed_->want(topic) : feed_->unwant(topic);
+    }
+}
+
+/// Sends new messages, in turn, until a burst is full; the rest follows after a pause.
+void RosNode::send() {
+    const WallTime now = std::chrono::steady_clock::now();
+    if (now < next_send_) return;
+    std::size_t sent = 0;
+    const auto send_from = [&](auto end, auto last) {
+        for (; end != last; ++end) {
+            if (!end->second.is_wanted) continue;
+            const auto& newest = feed_->entries().at(end->first).newest;
+            if (!newest || end->second.last == newest->number()) continue;
+            if (sent > 0 && sent + newest->cdr()->size() > kBurst) return end;
+            participant_->write(end->second.number, *newest->cdr());
+            end->second.last = newest->number();
+            sent += newest->cdr()->size();
+        }
+        return last;
+    };
+    const auto first = ends_.lower_bound(turn_);
+    auto stopped = send_from(first, ends_.end());
+    has_unsent_ = stopped != ends_.end();
+    if (!has_unsent_) {
+        stopped = send_from(ends_.begin(), first);
+        has_unsent_ = stopped != first;
+    }
+    turn_ = has_unsent_ ? stopped->first : 0;
+    if (has_unsent_) next_send_ = now + kPause;
+}
+
+void RosNode::stepped() {
+    if (!participant_) return;
+    sync();
+    feed_->stepped();
+    send();
+    orders_.stepped();
+}
+
+void RosNode::serve() {
+    if (!participant_) return;
+    orders_.proceed();
+    if (!participant_->changed()) {
+        if (!has_unsent_) return;
+        sync();
+        return send();
+    }
+    sync();
+    lookForReaders();
+    send();
+    takeOrders();
+    takeRequests();
+}
+
+void RosNode::takeOrders() {
+    for (const auto& [topic, end] : ends_) {
+        if (!end.is_input) continue;
+        for (const std::string& message : participant_->take(end.number)) {
+            feed_->sync();  // an earlier order may have changed the world
+            const auto found = feed_->entries().find(topic);
+            if (found == feed_->entries().end()) break;
+            try {
+                orders_.obey(found->second.channel, message);
+            } catch (const FormatError&) {
+                continue;  // too short: no order
+            }
+        }
+    }
+}
+
+void RosNode::takeRequests() {
+    for (const Service& service : services_) {
+        for (const std::string& message : participant_->take(service.reader)) {
+            if (!orders_.mayRequest()) continue;
+            // Nodes over Fast DDS have no such header, and do not find an answer without their own.
+            const bool has_header = message.size() > kCdrHead.size() + kServiceHeader;
+            std::string answer(kCdrHead);
+            answer += std::string_view(message).substr(std::min(message.size(), kCdrHead.size()),
+                                                       has_header ? kServiceHeader : 0);
+            answer += '\0';
+            orders_.request(service.request,
+                            [self = std::weak_ptr(self_), has_header, writer = service.writer,
+                             answer = std::move(answer)](bool is_done, std::string_view /*text*/) {
+                                const auto node = self.lock();
+                                if (!node || !is_done || !has_header || !(*node)->participant_)
+                                    return;
+                                (*node)->participant_->write(writer, answer);
+                            });
+        }
+    }
+}
+
+void RosNode::end() {
+    orders_.finish();
+    participant_.reset();
+}
+
+}  // namespace ispace
