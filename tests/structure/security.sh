@@ -15,6 +15,7 @@ wrong() {
                 pipeline) [ -e "$source_dir/tests/pipelines/$name.sh" ] ;;
                 torture) [ -e "$source_dir/tests/torture/part_$name.py" ] ;;
                 structure) [ -e "$source_dir/tests/structure/$name.sh" ] ;;
+                dds) [ -e "$source_dir/tests/dds/$name.py" ] ;;
                 golden) compgen -G "$source_dir/tests/${name/.//}*" >/dev/null ;;
                 [A-Z]*) grep -rqE --include='*_test.cc' "^TEST(_[FP])?\($suite, ${name/\*/}" "$source_dir/lib" ;;
             esac || echo "$suite.$name"
