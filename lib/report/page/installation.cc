@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -96,10 +97,28 @@ std::string degrees(Angle angle) {
     return text == "-0" ? "0" : text;
 }
 
-std::string wallText(const Installation& one, std::size_t which) {
+/// Returns the direction of a wall from a sensor, "+y" or "37 deg": a fence has several sides.
+std::string sideText(Vec2 to) {
+    if (to == Vec2{}) return "";
+    constexpr double kTolerance = 0.05;  // degrees, as the heading is rounded
+    const double angle = std::atan2(to.y, to.x) * 180 / std::numbers::pi;
+    constexpr std::pair<double, const char*> kAxes[] = {
+        {0, "+x"}, {90, "+y"}, {180, "-x"}, {-180, "-x"}, {-90, "-y"}};
+    for (const auto& [axis, name] : kAxes)
+        if (std::abs(angle - axis) < kTolerance) return std::string(", ") + name;
+    return ", " + degrees(Angle::degrees(angle)) + " deg";
+}
+
+std::string wallText(const Installation& one, std::size_t which, Point2 at) {
     if (which >= one.walls.size()) return "-";
     const WallDistance& wall = one.walls[which];
-    return metresText(wall.distance) + " to " + wall.wall;
+    return metresText(wall.distance) + " to " + wall.wall + sideText(wall.foot - at);
+}
+
+/// A tilt, and the roll of the sensor about its axis where it has one.
+std::string tiltText(const Pose3& pose) {
+    const std::string roll = degrees(pose.roll);
+    return degrees(pose.tilt) + (roll == "0" ? "" : ", roll " + roll);
 }
 
 /// Returns the zones of which a sensor sees half or more.
@@ -161,7 +180,8 @@ PageTable installationTable(const Scene& scene, const Coverage& coverage,
                             const std::vector<Installation>& installations) {
     PageTable table{
         "metres from the plan's origin and from the faces of walls; heading in degrees "
-        "counter-clockwise from the x axis, tilt above level",
+        "counter-clockwise from the x axis, tilt above level; +y: the wall lies in that direction "
+        "from the sensor, at right angles",
         "llrrrrrlrrl",
         {"sensor", "device", "x", "y", "height", "heading", "tilt", "view", "nearest wall",
          "next wall", "sees"},
@@ -172,9 +192,10 @@ PageTable installationTable(const Scene& scene, const Coverage& coverage,
         const SensorKind& kind = kindOf(sensor.model);
         table.rows.push_back(
             {sensor.id, deviceText(sensor), metresText(at.x), metresText(at.y), metresText(at.z),
-             degrees(sensor.pose.heading), degrees(sensor.pose.tilt),
+             degrees(sensor.pose.heading), tiltText(sensor.pose),
              kind.summary == nullptr ? "-" : kind.summary(sensor.model).field_of_view,
-             wallText(one, 0), wallText(one, 1), taskOf(scene, coverage, one.sensor)});
+             wallText(one, 0, at.onFloor()), wallText(one, 1, at.onFloor()),
+             taskOf(scene, coverage, one.sensor)});
     }
     return table;
 }
