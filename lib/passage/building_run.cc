@@ -166,7 +166,7 @@ bool BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose2& pose
     const auto state = left.carried(left.moverNamed(who.id).value());
     Record& own = who.records.front();
     own.set("at", Tuple{pose.position.x, pose.position.y});
-    own.set("heading", pose.heading.degrees());
+    own.set("heading", wrapped(pose.heading).degrees());
     // The way of its record is one of its first storey.
     for (const char* key : {"path", "loop", "pause", "walk"}) own.erase(key);
     std::vector<Record> added = entered.scene().records;

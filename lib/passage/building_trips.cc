@@ -47,8 +47,8 @@ std::optional<Route> BuildingRun::Data::routeFrom(const Traveller& who, std::siz
     const StoreyWays& all = waysOf(who);
     MoverAbility ability = who.ability;
     if (trip.speed > 0) ability.speed = trip.speed;
-    return all.route(storey, all.finder(storey).waysFrom(at), trip.goals[goal].room,
-                     trip.goals[goal].at, ability, waits(), trip.only);
+    return all.route(storey, at, trip.goals[goal].room, trip.goals[goal].at, ability, waits(),
+                     trip.only);
 }
 
 TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip) {
@@ -85,11 +85,11 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
     World& world = worldOf(who);
     const std::size_t index = world.moverNamed(mover).value();
     finish(mover, Outcome::Replaced);
+    trip.command = answer.id = world.issueId(index);
     // Ends the command under way as replaced; the trip begins before the next step.
     MotionPlan here;
     here.path = {world.status(index).pose.position};
     world.command(index, pathCommand(std::move(here)));
-    trip.command = answer.id = world.issueId(index);
     trips.insert_or_assign(mover, std::move(trip));
     return answer;
 }
@@ -277,7 +277,7 @@ void BuildingRun::Data::setOut(Traveller& who, BuildingTrip& trip) {
         if (!trip.spot) return queueUp(who, trip);
         to = *trip.spot;
     }
-    const std::vector<Point2> way = all.finder(storey).way(all.finder(storey).waysFrom(at), to);
+    const std::vector<Point2> way = all.finder(storey).wayBetween(at, to);
     if (way.empty()) return finish(who.id, Outcome::Unreached);
     send(who, trip, way, trip.speed > 0 ? trip.speed : who.ability.speed);
 }
@@ -357,7 +357,7 @@ void BuildingRun::Data::waitTurn(Traveller& who, BuildingTrip& trip) {
     const std::size_t storey = *rooms[who.room].storey;
     const WayFinder& finder = all.finder(storey);
     const Point2 at = statusOf(who).pose.position;
-    const std::vector<Point2> way = finder.way(finder.waysFrom(at), landing.at.position);
+    const std::vector<Point2> way = finder.wayBetween(at, landing.at.position);
     if (way.empty()) return finish(who.id, Outcome::Unreached);
     stop.holder = who.id;
     trip.state = TripState::Nearing;

@@ -204,9 +204,9 @@ std::string StoreyWays::refusal(const StoreyLink& passage, const MoverAbility& a
     return slotIn(passage.cabin, {}, alone) ? "" : passage.id + " is too small for it";
 }
 
-std::optional<Route> StoreyWays::route(std::size_t from_storey, const WayFinder::Field& ways,
-                                       std::size_t to_storey, Point2 to,
-                                       const MoverAbility& ability, const std::vector<double>& wait,
+std::optional<Route> StoreyWays::route(std::size_t from_storey, Point2 from, std::size_t to_storey,
+                                       Point2 to, const MoverAbility& ability,
+                                       const std::vector<double>& wait,
                                        std::optional<std::size_t> only) const {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     struct Node {
@@ -222,18 +222,30 @@ std::optional<Route> StoreyWays::route(std::size_t from_storey, const WayFinder:
         if (!(seconds < nodes[node].seconds)) return;
         nodes[node] = {seconds, length, before, false};
     };
-    const auto walk = [&](std::optional<std::size_t> from, std::size_t storey,
-                          const WayFinder::Field& field) {
-        const Node start = from ? nodes[*from] : Node{.seconds = 0};
-        const auto reach = [&](std::size_t node, Point2 p) {
-            if (const auto way = finders_[storey].length(field, p))
-                improve(node, start.seconds + *way / ability.speed, start.length + *way, from);
-        };
-        for (std::size_t i = 0; i < goal; ++i)
-            if (landings_[i].storey == storey && i != from) reach(i, landings_[i].at.position);
-        if (storey == to_storey) reach(goal, to);
+    const auto reach = [&](std::optional<std::size_t> before, std::size_t node,
+                           std::optional<double> way) {
+        const Node start = before ? nodes[*before] : Node{.seconds = 0};
+        if (way) improve(node, start.seconds + *way / ability.speed, start.length + *way, before);
     };
-    walk(std::nullopt, from_storey, ways);
+    const auto walk = [&](std::size_t before) {
+        const Landing& here = landings_[before];
+        const auto length_to = [&](Point2 p) { return finders_[here.storey].length(here.ways, p); };
+        for (std::size_t i = 0; i < goal; ++i)
+            if (landings_[i].storey == here.storey && i != before)
+                reach(before, i, length_to(landings_[i].at.position));
+        if (here.storey == to_storey) reach(before, goal, length_to(to));
+    };
+    // Ways are as long back: those of the landings hold that from the start.
+    for (std::size_t i = 0; i < goal; ++i)
+        if (landings_[i].storey == from_storey)
+            reach(std::nullopt, i, finders_[from_storey].length(landings_[i].ways, from));
+    if (from_storey == to_storey) {
+        const std::vector<Point2> way = finders_[to_storey].wayBetween(from, to);
+        double length = 0;
+        for (std::size_t i = 0; i < way.size(); ++i)
+            length += distance(i == 0 ? from : way[i - 1], way[i]);
+        if (!way.empty()) reach(std::nullopt, goal, length);
+    }
     for (;;) {
         std::size_t next = goal + 1;
         for (std::size_t i = 0; i <= goal; ++i)
@@ -245,7 +257,7 @@ std::optional<Route> StoreyWays::route(std::size_t from_storey, const WayFinder:
         if (next == goal) break;
         const Landing& here = landings_[next];
         const StoreyLink& passage = (*passages_)[here.passage];
-        walk(next, here.storey, here.ways);
+        walk(next);
         if ((only && *only != here.passage) || !refusal(passage, ability).empty()) continue;
         for (std::size_t i = 0; i < goal; ++i) {
             const Landing& there = landings_[i];

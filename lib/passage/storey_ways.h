@@ -85,10 +85,10 @@ class StoreyWays {
     /// Returns the reason why such a mover cannot use a passage, or "".
     [[nodiscard]] std::string refusal(const StoreyLink& passage, const MoverAbility& ability) const;
 
-    /// Finds the fastest way between points of storeys, in their frames. \param ways from the start
-    /// \param wait seconds for which a mover waits for each passage \param only the single passage
-    /// to be used, if any \returns empty without a way
-    [[nodiscard]] std::optional<Route> route(std::size_t from_storey, const WayFinder::Field& ways,
+    /// Finds the fastest way between points of storeys, in their frames.
+    /// \param wait seconds for which a mover waits for each passage
+    /// \param only the single passage to be used, if any \returns empty without a way
+    [[nodiscard]] std::optional<Route> route(std::size_t from_storey, Point2 from,
                                              std::size_t to_storey, Point2 to,
                                              const MoverAbility& ability,
                                              const std::vector<double>& wait,

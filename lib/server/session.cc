@@ -225,6 +225,8 @@ void Session::request(std::string_view line) {
         out_.resize(before);
         out_ += errorLineOf(std::current_exception());
     }
+    // A role that was refused leaves it in no room.
+    if (rooms() != nullptr && role_ == Role::None) state_ = rooms()->states.front();
     sendCompletions();
 }
 

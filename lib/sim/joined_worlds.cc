@@ -10,7 +10,7 @@ namespace ispace {
 
 RoomPoints parseRoomPoints(std::string_view text, std::span<const JoinedRoom> rooms,
                            std::size_t room) {
-    constexpr std::size_t kMost = 64;
+    constexpr std::size_t kMost = 8;
     RoomPoints found;
     for (;;) {
         const std::string_view one = text.substr(0, text.find(';'));

@@ -11,24 +11,11 @@ namespace ispace {
 
 namespace {
 
-constexpr double kMostCells = 1e6;
+constexpr double kMostCells = 2.5e5;
 /// Costs of a side and of a corner.
 constexpr std::int32_t kSide = 12, kCorner = 17;
 /// A point may lie this far from the nearest free cell, in metres: movers stand at walls.
 constexpr double kNear = 0.5;
-
-struct Neighbour {
-    int column, row;
-    std::int32_t cost;
-};
-constexpr std::array<Neighbour, 8> kNeighbours = {{{1, 0, kSide},
-                                                   {0, 1, kSide},
-                                                   {-1, 0, kSide},
-                                                   {0, -1, kSide},
-                                                   {1, 1, kCorner},
-                                                   {-1, 1, kCorner},
-                                                   {-1, -1, kCorner},
-                                                   {1, -1, kCorner}}};
 
 Grid gridOver(const Box2& box) {
     const double width = std::max(box.width(), WayFinder::kCell);
@@ -38,34 +25,37 @@ Grid gridOver(const Box2& box) {
                   static_cast<int>(std::ceil(depth / size)));
 }
 
-/// Calls visit(cell, cost) for the free neighbours of a cell; a corner is passed only between free
-/// sides.
-template <typename Visit>
-void forEachNeighbour(const Grid& grid, const std::vector<std::uint8_t>& free, std::size_t cell,
-                      Visit visit) {
-    const auto columns = static_cast<std::size_t>(grid.columns);
-    const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
-    const auto is_free = [&](int c, int r) {
-        return c >= 0 && r >= 0 && c < grid.columns && r < grid.rows && free[grid.cell(c, r)] != 0;
-    };
-    for (const Neighbour& to : kNeighbours) {
-        if (!is_free(column + to.column, row + to.row)) continue;
-        if (to.cost == kCorner &&
-            (!is_free(column + to.column, row) || !is_free(column, row + to.row)))
-            continue;
-        visit(grid.cell(column + to.column, row + to.row), to.cost);
-    }
-}
-
 }  // namespace
 
 WayFinder::WayFinder(const Obstacles& obstacles, const Box2& box, double radius)
-    : obstacles_(&obstacles), reach_(radius + kMargin), grid_(gridOver(box)), free_(grid_.size()) {
+    : obstacles_(&obstacles),
+      reach_(radius + kMargin),
+      grid_(gridOver(box)),
+      stride_(static_cast<std::size_t>(grid_.columns) + 2),
+      free_(stride_ * (static_cast<std::size_t>(grid_.rows) + 2)) {
     tbb::parallel_for(0, grid_.rows, [this](int row) {
         for (int column = 0; column < grid_.columns; ++column)
-            free_[grid_.cell(column, row)] =
+            free_[cellOf(column, row)] =
                 isFree({grid_.columnCenter(column), grid_.rowCenter(row)}) ? 1 : 0;
     });
+}
+
+/// Calls visit(cell, cost) for the free neighbours of a cell; a corner is passed only between free
+/// sides.
+template <typename Visit>
+void WayFinder::forEachNeighbour(std::size_t cell, Visit visit) const {
+    const std::size_t east = cell + 1, west = cell - 1;
+    const std::size_t north = cell + stride_, south = cell - stride_;
+    const bool to_east = free_[east] != 0, to_west = free_[west] != 0;
+    const bool to_north = free_[north] != 0, to_south = free_[south] != 0;
+    if (to_east) visit(east, kSide);
+    if (to_north) visit(north, kSide);
+    if (to_west) visit(west, kSide);
+    if (to_south) visit(south, kSide);
+    if (to_north && to_east && free_[north + 1] != 0) visit(north + 1, kCorner);
+    if (to_north && to_west && free_[north - 1] != 0) visit(north - 1, kCorner);
+    if (to_south && to_west && free_[south - 1] != 0) visit(south - 1, kCorner);
+    if (to_south && to_east && free_[south + 1] != 0) visit(south + 1, kCorner);
 }
 
 bool WayFinder::isFree(Point2 p) const { return !obstacles_->overlap(p, reach_); }
@@ -87,8 +77,8 @@ std::optional<std::size_t> WayFinder::cellNear(Point2 p) const {
     for (int r = std::max(0, row - reach); r <= std::min(grid_.rows - 1, row + reach); ++r)
         for (int c = std::max(0, column - reach); c <= std::min(grid_.columns - 1, column + reach);
              ++c) {
-            const std::size_t cell = grid_.cell(c, r);
-            const double apart = distance(p, grid_.center(cell));
+            const std::size_t cell = cellOf(c, r);
+            const double apart = distance(p, centerOf(cell));
             if (free_[cell] == 0 || apart >= least) continue;
             least = apart;
             best = cell;
@@ -96,33 +86,64 @@ std::optional<std::size_t> WayFinder::cellNear(Point2 p) const {
     return best;
 }
 
-WayFinder::Field WayFinder::waysFrom(Point2 from) const {
-    Field field{from, std::vector<std::int32_t>(grid_.size(), kNoWay)};
+Point2 WayFinder::centerOf(std::size_t cell) const {
+    return {grid_.columnCenter(static_cast<int>(cell % stride_) - 1),
+            grid_.rowCenter(static_cast<int>(cell / stride_) - 1)};
+}
+
+/// Returns the least cost between two cells if all are free.
+std::int32_t WayFinder::leastCost(std::size_t a, std::size_t b) const {
+    const auto apart = [](std::size_t i, std::size_t k) {
+        return static_cast<std::int32_t>(i > k ? i - k : k - i);
+    };
+    const std::int32_t columns = apart(a % stride_, b % stride_);
+    const std::int32_t rows = apart(a / stride_, b / stride_);
+    return kSide * std::max(columns, rows) + (kCorner - kSide) * std::min(columns, rows);
+}
+
+WayFinder::Field WayFinder::waysFrom(Point2 from) const { return search(from, std::nullopt); }
+
+WayFinder::Field WayFinder::search(Point2 from, std::optional<std::size_t> goal) const {
+    Field field{from, std::vector<std::int32_t>(free_.size(), kNoWay)};
     const auto start = cellNear(from);
     if (!start) return field;
-    // Dial's algorithm: no cost of a neighbour is larger than the number of buckets.
-    std::array<std::vector<std::size_t>, kCorner + 1> buckets;
-    std::vector<bool> is_done(grid_.size());
+    // Dial's algorithm, with A*'s estimate: a step adds at most two corners to cost and estimate.
+    struct Entry {
+        std::size_t cell;
+        std::int32_t cost;
+    };
+    const auto estimate = [&](std::size_t cell) { return goal ? leastCost(cell, *goal) : 0; };
+    std::array<std::vector<Entry>, 2 * kCorner + 1> buckets;
+    const auto bucket = [&](std::int32_t sum) -> std::vector<Entry>& {
+        return buckets[static_cast<std::size_t>(sum) % buckets.size()];
+    };
     field.cost[*start] = 0;
-    buckets[0].push_back(*start);
-    std::size_t waiting = 1;
-    for (std::int32_t cost = 0; waiting > 0; ++cost) {
-        std::vector<std::size_t> cells;
-        cells.swap(buckets[static_cast<std::size_t>(cost) % buckets.size()]);
-        waiting -= cells.size();
-        for (const std::size_t cell : cells) {
-            if (is_done[cell]) continue;
-            is_done[cell] = true;
-            forEachNeighbour(grid_, free_, cell, [&](std::size_t to, std::int32_t step) {
+    std::int32_t sum = estimate(*start);
+    bucket(sum).push_back({*start, 0});
+    for (std::size_t waiting = 1; waiting > 0; ++sum) {
+        std::vector<Entry>& cells = bucket(sum);
+        // Grows by cells that cost as much.
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const Entry entry = cells[i];
+            if (entry.cost != field.cost[entry.cell]) continue;
+            if (entry.cell == goal) return field;
+            forEachNeighbour(entry.cell, [&](std::size_t to, std::int32_t step) {
                 std::int32_t& known = field.cost[to];
-                if (is_done[to] || (known != kNoWay && known <= cost + step)) return;
-                known = cost + step;
-                buckets[static_cast<std::size_t>(known) % buckets.size()].push_back(to);
+                if (known != kNoWay && known <= entry.cost + step) return;
+                known = entry.cost + step;
+                bucket(known + estimate(to)).push_back({to, known});
                 ++waiting;
             });
         }
+        waiting -= cells.size();
+        cells.clear();
     }
     return field;
+}
+
+std::vector<Point2> WayFinder::wayBetween(Point2 from, Point2 to) const {
+    const auto goal = cellNear(to);
+    return goal ? way(search(from, goal), to) : std::vector<Point2>();
 }
 
 std::optional<double> WayFinder::length(const Field& field, Point2 to) const {
@@ -136,9 +157,9 @@ std::vector<Point2> WayFinder::way(const Field& field, Point2 to) const {
     if (!end || field.cost[*end] == kNoWay) return {};
     std::vector<Point2> points = {to};
     for (std::size_t cell = *end; field.cost[cell] > 0;) {
-        points.push_back(grid_.center(cell));
+        points.push_back(centerOf(cell));
         std::size_t before = cell;
-        forEachNeighbour(grid_, free_, cell, [&](std::size_t other, std::int32_t step) {
+        forEachNeighbour(cell, [&](std::size_t other, std::int32_t step) {
             if (before == cell && field.cost[other] != kNoWay &&
                 field.cost[other] + step == field.cost[cell])
                 before = other;

@@ -22,18 +22,21 @@ class WayFinder {
     static constexpr double kMargin = 0.05, kCell = 0.1;
 
     /// Tests all cells. \param box to which the ways keep; cells are larger than kCell where it has
-    /// more than a million \pre the obstacles outlive this object
+    /// more than 250 000 \pre the obstacles outlive this object
     WayFinder(const Obstacles& obstacles, const Box2& box, double radius);
 
     /// Ways from one point to all cells.
     struct Field {
         Point2 from;
-        std::vector<std::int32_t> cost;  ///< by cell, kNoWay without a way
+        std::vector<std::int32_t> cost;  ///< by cell, kNoWay without a way or unknown
     };
     static constexpr std::int32_t kNoWay = -1;
 
     /// Finds the ways from a point; none, if no cell near it is free. O(cells)
     [[nodiscard]] Field waysFrom(Point2 from) const;
+    /// Returns the points of the shortest way after its first, up to `to`; empty without a way.
+    /// Looks at few cells but those towards the goal.
+    [[nodiscard]] std::vector<Point2> wayBetween(Point2 from, Point2 to) const;
     /// Returns the length of the way, not yet straightened, in metres; empty without a way.
     [[nodiscard]] std::optional<double> length(const Field& field, Point2 to) const;
     /// Returns the points of the way after its first, up to `to`; empty without a way.
@@ -45,11 +48,20 @@ class WayFinder {
 
   private:
     [[nodiscard]] std::optional<std::size_t> cellNear(Point2 p) const;
+    [[nodiscard]] std::size_t cellOf(int column, int row) const {
+        return (static_cast<std::size_t>(row) + 1) * stride_ + static_cast<std::size_t>(column) + 1;
+    }
+    [[nodiscard]] Point2 centerOf(std::size_t cell) const;
+    [[nodiscard]] std::int32_t leastCost(std::size_t a, std::size_t b) const;
+    [[nodiscard]] Field search(Point2 from, std::optional<std::size_t> goal) const;
+    template <typename Visit>
+    void forEachNeighbour(std::size_t cell, Visit visit) const;
 
     const Obstacles* obstacles_;
     double reach_;  // radius and margin
     Grid grid_;
-    std::vector<std::uint8_t> free_;
+    std::size_t stride_;
+    std::vector<std::uint8_t> free_;  // with a border of cells that are not
 };
 
 }  // namespace ispace

@@ -64,6 +64,17 @@ TEST(WayFinder, FindsNoneThroughADoorThatIsTooNarrow) {
     EXPECT_TRUE(finder.length(field, {1, 3}));
 }
 
+TEST(WayFinder, FindsTheSameWayTowardsAGoal) {
+    const Floor floor(kRooms);
+    const WayFinder finder(floor.obstacles, floor.box, 0.3);
+    for (const Point2 from : {Point2{1, 1}, Point2{3.5, 3.5}, Point2{0.4, 2}})
+        for (const Point2 to : {Point2{7, 1}, Point2{5, 3.6}, Point2{1, 3}}) {
+            const double all = lengthOf(from, finder.way(finder.waysFrom(from), to));
+            EXPECT_NEAR(lengthOf(from, finder.wayBetween(from, to)), all, 0.2);
+        }
+    EXPECT_TRUE(finder.wayBetween({1, 1}, {40, 1}).empty());
+}
+
 TEST(WayFinder, IsStraightInTheOpen) {
     const Floor floor(kRooms);
     const WayFinder finder(floor.obstacles, floor.box, 0.3);

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Requests of the Simulator TCP Protocol, in lines of two clients: those that begin with a tab are
-// the second's. Each request has exactly one answer, however its bytes arrive.
+// the second's. Each request has exactly one answer, however its bytes arrive. Inputs that begin
+// with a line `building` are about two storeys with a lift and stairs, others about a room.
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <memory>
+#include <span>
 
 #include "base/number.h"
+#include "building/storeys.h"
 #include "fuzz.h"
+#include "passage/building_run.h"
+#include "record/text.h"
+#include "scene/placement_schemas.h"
 #include "served_room.h"
 #include "server/client_connection.h"
 #include "server/session.h"
@@ -61,6 +69,59 @@ std::size_t answersIn(std::string_view text) {
     return answers;
 }
 
+BuildingScene tower() {
+    StoreyedDocument document = readBuilding(
+        "- storey: {id: a, height: 3, records: &room [{fence: {id: f, path: [[0, 0], [6, 0], [6, "
+        "4], "
+        "[0, 4]], closed: yes}}]}\n"
+        "- storey: {id: b, z: 3, height: 3, records: *room}\n"
+        "- lift: {id: l, storeys: 'a,b', at: [-0.9, 2], heading: 0, size: [1.8, 1.8], door: 1.2}\n"
+        "- stairs: {id: s, storeys: 'a,b', at: [2, 0.6], heading: 0, size: [1, 3]}\n",
+        "tower.yaml", {});
+    const Document layout = readRecordText(
+        "#3dm 1\nrobot id=a/r1 at=3,2\nlaser id=a/l1 on=a/r1 at=0,0,0.2 fov=4 step=2\n"
+        "human id=b/h1 at=3,2\nlaser id=b/l2 at=5,3 fov=4 step=2\n",
+        "tower.3dm", sceneSchemas());
+    const std::vector<Document> layouts = layoutsOf(layout, document);
+    return makeBuildingScene(std::move(document), layouts, {});
+}
+
+/// A building with the clock `step`, as ServedRoom.
+class ServedTower {
+  public:
+    ServedTower() {
+        rooms_.worlds = &run_;
+        for (const JoinedRoom& room : run_.rooms()) {
+            states_.push_back(std::make_unique<ServerState>(*room.simulation));
+            rooms_.states.push_back(states_.back().get());
+        }
+        for (const auto& state : states_) state->joinRooms(rooms_);
+        run_.onMove([this](const std::string& mover, std::size_t from, std::size_t to) {
+            rooms_.states[to]->takeOver(*rooms_.states[from], mover);
+        });
+    }
+    [[nodiscard]] ServerState& state() { return *states_.front(); }
+    template <typename Stepped>
+    void run(Stepped stepped) {
+        constexpr int kMost = 200;
+        for (int i = 0; i < kMost && run_.simulation().owed() > 0; ++i) {
+            run_.simulation().run({}, std::chrono::nanoseconds(0));
+            stepped();
+        }
+    }
+
+  private:
+    static BuildingRunOptions options() {
+        BuildingRunOptions options;
+        options.step = std::chrono::milliseconds(200);
+        options.clock = {Clock::Kind::Step, 1};
+        return options;
+    }
+    BuildingRun run_{tower(), options()};
+    ServedRooms rooms_;
+    std::vector<std::unique_ptr<ServerState>> states_;
+};
+
 class Client {
   public:
     explicit Client(ServerState& state) : session_(state) {}
@@ -99,11 +160,10 @@ class Client {
 
 }  // namespace
 
-void ispace::fuzz::tryInput(std::string_view bytes) {
-    const std::size_t piece = takePieceSize(bytes);
-    const std::vector<std::string> lines = linesOf(bytes, std::string_view::npos);
-    require(linesOf(bytes, piece) == lines, "other lines after pieces");
-    ServedRoom room;
+namespace {
+
+template <typename Room>
+void talk(Room& room, std::span<const std::string> lines) {
     std::array<Client, 2> clients{Client(room.state()), Client(room.state())};
     for (const std::string& line : lines) {
         Client& client = clients[line.starts_with('\t') ? 1 : 0];
@@ -114,4 +174,18 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     }
     room.state().steps().cut();  // as at the end of a run
     for (Client& client : clients) client.finish();
+}
+
+}  // namespace
+
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    const std::size_t piece = takePieceSize(bytes);
+    const std::vector<std::string> lines = linesOf(bytes, std::string_view::npos);
+    require(linesOf(bytes, piece) == lines, "other lines after pieces");
+    if (!lines.empty() && lines.front() == "building") {
+        ServedTower tower;
+        return talk(tower, std::span(lines).subspan(1));
+    }
+    ServedRoom room;
+    talk(room, lines);
 }
