@@ -71,7 +71,8 @@ std::optional<Point2> slotIn(const Cabin& cabin, const std::vector<Rider>& rider
     for (int i = 0; i <= columns; ++i)
         for (int k = 0; k <= 2 * rows + 1; ++k) {
             // From the corners to the middle, right and left by turns.
-            const double aside = across - (k / 2) * kSlotStep;
+            const int pair = k / 2;
+            const double aside = across - pair * kSlotStep;
             const Point2 p{-along + i * kSlotStep, k % 2 == 0 ? -aside : aside};
             if (is_free(p)) return p;
         }

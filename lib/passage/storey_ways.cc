@@ -123,8 +123,8 @@ void StoreyWays::addStairs(const BuildingScene& building, std::size_t index) {
         for (double way = 0; way <= kFarthestLanding; way += kLandingStep)
             for (int k = 0; k < kDirections; ++k) {
                 // First straight away from the steps, then to the sides.
-                const double turn =
-                    180 + (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) * 360.0 / kDirections;
+                const int aside = (k + 1) / 2;
+                const double turn = 180 + (k % 2 == 0 ? 1 : -1) * aside * 360.0 / kDirections;
                 const Angle heading = from.heading + Angle::degrees(turn);
                 const Point2 p = Pose2{from.position, heading} * Point2{way, 0};
                 if (!finders_[storey].isFree(p)) continue;

@@ -95,8 +95,8 @@ class StoreyWays {
                                              std::optional<std::size_t> only = {}) const;
 
   private:
-    void addLift(const BuildingScene& building, std::size_t passage);
-    void addStairs(const BuildingScene& building, std::size_t passage);
+    void addLift(const BuildingScene& building, std::size_t index);
+    void addStairs(const BuildingScene& building, std::size_t index);
     void addSpots(Landing& landing) const;
 
     const std::vector<StoreyLink>* passages_;
