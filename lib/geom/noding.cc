@@ -326,10 +326,14 @@ std::vector<LinePiece> noded(std::vector<LinePiece> lines, const CrossingMessage
 
 double sampledCrossings(std::span<const Segment2> lines) {
     const std::size_t n = lines.size();
-    if (n < 2) return 0;
-    std::mt19937_64 random(1);
     const std::size_t pairs = std::min(kSampledPairs + kSampledPairsPerLine * n, kMaxSampled);
     std::size_t hits = 0;
+    if (n < kMaxSampled && n * n / 2 <= pairs) {
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t k = 0; k < i; ++k) hits += intersects(lines[i], lines[k]);
+        return static_cast<double>(hits);
+    }
+    std::mt19937_64 random(1);
     for (std::size_t i = 0; i < pairs; ++i) {
         const std::uint64_t bits = random();
         const Segment2& s = lines[(bits >> 32U) % n];

@@ -34,13 +34,17 @@ constexpr double kOpeningReach = 1e-5;    // from its end to its wall
 constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
 
 /// Estimates the pairs of lines whose boxes overlap, which each search for crossings and gaps
-/// compares, from a sample; 0 if the sample has too few.
+/// compares, from a sample; 0 if the sample has too few. Counts the pairs of few lines.
 double sampledOverlaps(std::span<const Segment2> lines) {
     constexpr std::uint64_t kSamples = 1U << 18;
     constexpr std::size_t kSureHits = 16;
     const std::size_t n = lines.size();
-    if (n < 2) return 0;
     std::size_t hits = 0;
+    if (n * n < kSamples) {
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t k = 0; k < i; ++k) hits += bounds(lines[i]).overlaps(bounds(lines[k]));
+        return static_cast<double>(hits);
+    }
     for (std::uint64_t i = 0; i < kSamples; ++i) {
         const std::uint64_t bits = mixedBits(i);
         hits += bounds(lines[(bits >> 32U) % n]).overlaps(bounds(lines[(bits & 0xffffffffU) % n]));
