@@ -506,7 +506,7 @@ def rmf_aliases(size):
     vertices += [[1, 1]] * max(0, (size - 18_000) // 8)
     return rmf("".join(f"  L{i}:\n    elevation: {3 * i}\n    vertices: " +
                        (f"&v {vertices}\n    walls: &w {walls}\n" if i == 0 else "*v\n    walls: *w\n")
-                       for i in range(STOREYS)))
+                       for i in range(min(STOREYS, size // 150))))
 
 
 def rmf_fiducials(size):
@@ -514,7 +514,7 @@ def rmf_fiducials(size):
     points = "[" + ", ".join(f"[{i}, {i}, f{i}]" for i in range(size // 22)) + "]"
     return rmf("".join(f"  L{i}:\n    elevation: {3 * i}\n    vertices: [[0, 0], [8, 0], [8, 6], [0, 6]]\n"
                        "    walls: [[0, 1], [1, 2], [2, 3], [3, 0]]\n"
-                       f"    fiducials: {'&f ' + points if i == 0 else '*f'}\n" for i in range(STOREYS)))
+                       f"    fiducials: {'&f ' + points if i == 0 else '*f'}\n" for i in range(min(STOREYS, size // 150))))
 
 
 def batch_jobs(size):
