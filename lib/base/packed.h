@@ -26,6 +26,10 @@ class Packer {
         add(values.size());
         append(values.data(), values.size() * sizeof(T));
     }
+    void addText(std::string_view text) {
+        add(text.size());
+        addBytes(text);
+    }
     /// Appends the bytes of another Packer.
     void addBytes(std::string_view bytes) { append(bytes.data(), bytes.size()); }
     [[nodiscard]] const std::string& bytes() const { return bytes_; }
@@ -59,6 +63,10 @@ class Unpacker {
         std::vector<T> values(count);
         take(values.data(), count, sizeof(T));
         return values;
+    }
+    std::string text() {
+        const std::vector<char> all_of_it = all<char>();
+        return {all_of_it.begin(), all_of_it.end()};
     }
     [[nodiscard]] bool atEnd() const { return rest_.empty(); }
     [[noreturn]] static void refuse() {

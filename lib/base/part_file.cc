@@ -319,6 +319,25 @@ JobResults::JobResults(const std::string& output, const JobId& job, Shard shard,
     files_.push_back(std::move(file));
 }
 
+std::optional<JobResults> JobResults::earlier(const std::string& file, const JobId& job) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return std::nullopt;
+    JobResults results;
+    results.is_kept_ = true;  // checks each record
+    std::string found;
+    try {
+        results.addFile(file);
+        found = results.head().job.tool + ' ' + results.head().job.form;
+    } catch (const FormatError&) {
+        found.clear();
+    }
+    if (found != job.tool + ' ' + job.form)
+        File{.name = file}.refuse("not a " + job.form + " of " + job.tool +
+                                  ": delete it or name another file");
+    if (!results.head().job.differenceFrom(job).empty()) return std::nullopt;
+    return results;
+}
+
 void JobResults::File::start(const PartHead& job) const {
     const std::string text = partHeadText(job), found = read(0, text.size());
     if (found.size() == text.size() || !text.starts_with(found)) return;

@@ -67,6 +67,11 @@ class JobResults {
     /// or if another process has it open; std::system_error
     JobResults(const std::string& output, const JobId& job, Shard shard, bool is_kept);
 
+    /// Opens the results that an earlier run of this job wrote by writePart(); empty without the
+    /// file, and if they are of another job of this tool. Damaged ones, and all after them, are
+    /// missing. \throws FormatError if the file holds results of another tool or form, or none
+    static std::optional<JobResults> earlier(const std::string& file, const JobId& job);
+
     /// Name of the file beside an output that stores results: OUTPUT.resume, in a folder `.resume`
     /// or, for one of several shards, `.resume-2of3`.
     static std::string keptFile(const std::string& output, const Shard& shard);

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <thread>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "support/test_damage.h"
 #include "support/test_folder.h"
@@ -54,6 +55,52 @@ class PartFileTest : public ::testing::Test {
 
     testing::TestFolder folder_;
 };
+
+TEST_F(PartFileTest, EarlierResultsAreThoseOfTheSameJob) {
+    const std::string file = part(1, 1);
+    const auto found = JobResults::earlier(file, head().job);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->find("from"), "1");
+    EXPECT_FALSE(JobResults::earlier(path("missing"), head().job));
+    JobId other = head().job;
+    other.version = "0.0.1";
+    EXPECT_FALSE(JobResults::earlier(file, other));
+    EXPECT_EQ(readAll(file), readAll(part(1, 1)));
+}
+
+TEST_F(PartFileTest, DamagedEarlierResultsAreMissing) {
+    const std::string file = part(1, 1);
+    const std::string whole = readAll(file);
+    const std::size_t begin = whole.find("\n\n") + 2;
+    for (std::size_t i = begin; i < whole.size(); ++i) {
+        std::string damaged = whole;
+        damaged[i] ^= 1;
+        writeAll(file, damaged);
+        const auto found = JobResults::earlier(file, head().job);
+        ASSERT_TRUE(found);
+        const auto result = found->find("from");
+        EXPECT_TRUE(!result || *result == "1") << "byte " << i;
+        writeAll(file, whole.substr(0, i));
+        const auto cut = JobResults::earlier(file, head().job)->find("from");
+        EXPECT_TRUE(!cut || *cut == "1") << "cut at " << i;
+    }
+}
+
+TEST_F(PartFileTest, OtherFilesAreNoEarlierResults) {
+    const std::string file = part(1, 1);
+    JobId other = head().job;
+    other.form = "cache";
+    EXPECT_THROW((void)JobResults::earlier(file, other), FormatError);
+    other = head().job;
+    other.tool = "coverage";
+    EXPECT_THROW((void)JobResults::earlier(file, other), FormatError);
+    for (const char* const bytes :
+         {"", "#env 1\n", "#part 1\n", "#part 2\n", "#part 2\ntool scan"}) {
+        writeAll(file, bytes);
+        EXPECT_THROW((void)JobResults::earlier(file, head().job), FormatError) << bytes;
+    }
+    EXPECT_THROW((void)JobResults::earlier(path(""), head().job), FormatError);
+}
 
 TEST_F(PartFileTest, HoldsWhatWasStored) {
     std::string every(256, '\0');

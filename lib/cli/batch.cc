@@ -20,6 +20,7 @@
 #include "base/packed.h"
 #include "base/part_file.h"
 #include "base/run_files.h"
+#include "cli/batch_cache.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
@@ -52,6 +53,14 @@ void addBatchOptions(CommandLine& line, BatchOptions& options, const std::string
               "store completed work in FILE.resume beside the output, and continue a killed run of "
               "the same command from there",
               Enters::Nothing);
+}
+
+void addCacheOption(CommandLine& line, BatchOptions& options) {
+    line.file(
+        "--cache", "FILE", options.cache,
+        "with --batch: reuse the results of scenes whose files are those of the last run with "
+        "FILE, and store all results there",
+        Enters::Nothing);
 }
 
 namespace {
@@ -89,6 +98,10 @@ void checkBatchOptions(const CommandLine& line, const BatchOptions& options,
                              rest.substr(0, rest.find(' ')));
         }
     }
+    if (!options.cache.empty() && options.list.empty())
+        throw UsageError("--cache is about many scenes: give --batch LIST");
+    if (!options.cache.empty() && isStream(options.cache))
+        throw UsageError("--cache is read and replaced: give it a regular file");
     const std::string suffix = suffixOf(common.output);
     if (options.shard && options.list.empty() && !suffix.empty() && suffix != "part" &&
         !OutputSet::of(common.output))
@@ -217,38 +230,31 @@ std::string junitXml(const std::string& tool, const std::string& suite,
 
 std::string JobOutcome::bytes() const {
     Packer to;
-    const auto add = [&to](const std::string& text) {
-        to.add(text.size());
-        to.addBytes(text);
-    };
     to.add(static_cast<std::uint64_t>(status));
-    add(line);
+    to.addText(line);
     to.add(messages.size());
-    for (const std::string& message : messages) add(message);
+    for (const std::string& message : messages) to.addText(message);
     to.add(verdicts.size());
     for (const JunitCase& verdict : verdicts) {
         to.add(static_cast<std::uint64_t>(verdict.outcome));
-        add(verdict.name);
-        add(verdict.message);
+        to.addText(verdict.name);
+        to.addText(verdict.message);
     }
     return to.bytes();
 }
 
 JobOutcome JobOutcome::fromBytes(std::string_view bytes) {
     Unpacker from(bytes);
-    const auto text = [&from] {
-        const std::vector<char> all = from.all<char>();
-        return std::string(all.begin(), all.end());
-    };
     JobOutcome outcome;
     outcome.status = static_cast<int>(from.number());
-    outcome.line = text();
-    for (std::uint64_t left = from.number(); left > 0; --left) outcome.messages.push_back(text());
+    outcome.line = from.text();
+    for (std::uint64_t left = from.number(); left > 0; --left)
+        outcome.messages.push_back(from.text());
     for (std::uint64_t left = from.number(); left > 0; --left) {
         JunitCase& verdict = outcome.verdicts.emplace_back();
         verdict.outcome = static_cast<Verdict>(from.number());
-        verdict.name = text();
-        verdict.message = text();
+        verdict.name = from.text();
+        verdict.message = from.text();
     }
     return outcome;
 }
@@ -262,8 +268,6 @@ JsonWriter jobLine(const std::string& tool, const BatchJob& job) {
 }
 
 namespace {
-
-constexpr int kUnmetStatus = 3;
 
 /// Names the products: %s is the first operand without folder and suffix, %d the line.
 void nameProducts(const BatchRun& run, std::vector<BatchJob>& jobs) {
@@ -318,7 +322,7 @@ JobOutcome outcomeOf(const BatchRun& run, const BatchJob& job, const JobWork& wo
         const std::string& error = lines.front();
         outcome.status = failure.status;
         outcome.messages.insert(outcome.messages.end(), lines.begin(), lines.end());
-        if (failure.status != kUnmetStatus)
+        if (failure.status != JobOutcome::kUnmet)
             outcome.verdicts = {{.name = job.name, .outcome = Verdict::Error, .message = error}};
         if (outcome.line.empty() && !run.product.empty())
             outcome.line =
@@ -342,7 +346,7 @@ class BatchWriter {
                            .line = job.line,
                            .message = message,
                            .severity = outcome.status == 0 ? Severity::Warning : Severity::Error});
-        if (outcome.status != 0) ++(outcome.status == kUnmetStatus ? unmet_ : failed_);
+        if (outcome.status != 0) ++(outcome.status == JobOutcome::kUnmet ? unmet_ : failed_);
         std::move(outcome.verdicts.begin(), outcome.verdicts.end(), std::back_inserter(verdicts_));
     }
 
@@ -351,8 +355,8 @@ class BatchWriter {
         junit.write(baseName(run_.batch.list), verdicts_);
     }
 
-    /// \throws as runBatch
-    void conclude(std::size_t jobs) const {
+    /// \param cache may be null \throws as runBatch
+    void conclude(std::size_t jobs, const BatchCache* cache) const {
         const auto share = [jobs](std::size_t count) {
             return std::to_string(count) + " of " + std::to_string(jobs) + " jobs ";
         };
@@ -360,7 +364,11 @@ class BatchWriter {
             throw FormatError(
                 {displayName(run_.batch.list), 0, 0, share(failed_) + "failed, see above"});
         if (unmet_ > 0) throw UnmetError(share(unmet_) + "missed a requirement");
-        talk(run_.common, run_.tool, std::to_string(jobs) + " jobs done");
+        talk(run_.common, run_.tool,
+             std::to_string(jobs) + " jobs done" +
+                 (cache == nullptr ? ""
+                                   : ", " + std::to_string(cache->reused()) +
+                                         " of them known from " + run_.batch.cache));
     }
 
   private:
@@ -396,6 +404,12 @@ void runShare(const BatchRun& run, const JobWork& work, JunitFile& junit) {
     std::optional<JobResults> results;
     if (run.batch.resume)
         results.emplace(run.common.output, idOf(run, bytes, jobs.size()), shard, true);
+    std::optional<BatchCache> cache;
+    if (!run.batch.cache.empty()) cache.emplace(run.batch.cache, run);
+    const auto outcome_of = [&](const BatchJob& job) {
+        const auto compute = [&] { return outcomeOf(run, job, work); };
+        return cache ? cache->outcomeOf(job, compute) : compute();
+    };
     BatchWriter writer(run);
     const auto progress = makeProgress(run.tool, run.common.progress, run.common.quiet);
     progress->begin("scenes", std::ssize(own));
@@ -403,7 +417,7 @@ void runShare(const BatchRun& run, const JobWork& work, JunitFile& junit) {
         const std::string key = std::to_string(own[i].line);
         const auto done = results ? results->find(key) : std::nullopt;
         return [&, i, key, is_new = !done,
-                outcome = done ? JobOutcome::fromBytes(*done) : outcomeOf(run, own[i], work)] {
+                outcome = done ? JobOutcome::fromBytes(*done) : outcome_of(own[i])] {
             if (results && is_new) results->store(key, outcome.bytes());
             writer.take(own[i], outcome);
             progress->advance(1);
@@ -412,7 +426,8 @@ void runShare(const BatchRun& run, const JobWork& work, JunitFile& junit) {
     progress->end();
     writer.commit(junit);
     if (results) results->finish();
-    writer.conclude(own.size());
+    if (cache) cache->commit();
+    writer.conclude(own.size(), cache ? &*cache : nullptr);
 }
 
 }  // namespace
@@ -421,6 +436,7 @@ void runBatch(const BatchRun& run, const JobWork& work) {
     limitThreads(run.common.threads);
     claimOutputs(run.common);
     claimOutput(run.junit, "--junit");
+    claimOutput(run.batch.cache, "--cache");
     JunitFile junit(run.tool, run.junit);
     junit.during({&run.batch.list, 1}, [&] { runShare(run, work, junit); });
 }

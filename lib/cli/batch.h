@@ -24,6 +24,7 @@ struct BatchOptions {
     std::optional<Shard> shard;
     bool merge = false;  ///< operands are parts
     bool resume = false;
+    std::string cache = {};  ///< file of --cache; "": none
 };
 
 /// Declares --batch LIST. \param help the work for each line, and its output
@@ -33,6 +34,9 @@ void addListOption(CommandLine& line, BatchOptions& options, const std::string& 
 /// \param has_parts false: there is no --merge
 void addBatchOptions(CommandLine& line, BatchOptions& options, const std::string& shares,
                      bool has_parts = true);
+
+/// Declares --cache FILE.
+void addCacheOption(CommandLine& line, BatchOptions& options);
 
 /// Validates them against each other and the rest. \param single options that apply to one scene
 /// \throws UsageError for --merge without operands, with --shard or --resume, or with an option
@@ -89,7 +93,11 @@ struct JobOutcome {
     std::string line = {};                   ///< of JSON; "": the job failed
     std::vector<std::string> messages = {};  ///< for stderr, without tool and location
     std::vector<JunitCase> verdicts = {};
-    int status = 0;  ///< exit status of the job by itself
+    static constexpr int kUnmet = 3;
+    int status = 0;  ///< exit status of the job by itself; kUnmet: it missed a requirement
+    /// All that it was computed from, besides the command; empty if it is not to be reused. Not in
+    /// bytes().
+    std::vector<std::string> files = {};
 
     /// Converts the result to bytes for checkpoints.
     [[nodiscard]] std::string bytes() const;

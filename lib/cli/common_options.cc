@@ -303,6 +303,13 @@ void addSceneRules(CommandLine& line, SceneRules& rules) {
                 Enters::Nothing);
 }
 
+std::string readingText(const SceneRules& rules) {
+    std::string text;
+    if (rules.includes == IncludeFiles::Anywhere) text += " --include-files anywhere";
+    if (rules.max_work) text += " --max-work " + std::to_string(*rules.max_work);
+    return text;
+}
+
 void addStoreyOption(CommandLine& line, SceneRules& rules, const std::string& without) {
     line.text("--storey", "ID", rules.storey,
               "the storey of a building to take, by its id or name; layouts may have ids of the "

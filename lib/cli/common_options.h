@@ -122,6 +122,9 @@ void addDensityOption(CommandLine& line, double& pixels_per_metre);
 /// `--same-environment`, `--any-environment`, `--include-files` and `--max-work`.
 void addSceneRules(CommandLine& line, SceneRules& rules);
 
+/// Returns the rules that differ from their defaults and are in no history, as options.
+std::string readingText(const SceneRules& rules);
+
 /// `--storey`. \param without the effect of leaving it out, for help
 void addStoreyOption(CommandLine& line, SceneRules& rules, const std::string& without);
 

@@ -104,7 +104,7 @@ one_error coverage "a full disk"
 expect_error 2 coverage --batch two square.env
 expect_error 2 coverage --batch two -o map.png
 # Each option either works with it, as those do in this file or for any number of scenes, or is refused by name.
-works="--help --version --json --batch --shard --resume --grid --cell --grid-of --height --plane --density --parallax
+works="--help --version --json --batch --shard --resume --cache --grid --cell --grid-of --height --plane --density --parallax
     --require --junit --same-environment --any-environment --output --quiet --verbose --threads --seed --errors --progress
     --no-progress --zone --include-files --max-work --storey"
 refused="--report=r.json --suggest --compare=half.3dm --run=r -MD --to=png --width=300 --color=sensor --fans=beams

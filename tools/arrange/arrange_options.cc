@@ -387,6 +387,7 @@ void ArrangeCommand::addFileOptions() {
 
 void ArrangeCommand::addShareOptions() {
     addBatchOptions(line_, options_.batch, "the slowest part of its optimizer");
+    addCacheOption(line_, options_.batch);
     std::vector<std::string> words;
     for (const Shared what : kShared) words.emplace_back(nameOf(what));
     line_.choice("--share", words_.share, words,

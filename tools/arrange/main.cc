@@ -191,6 +191,7 @@ void arrangeJob(const ArrangeCommand& command, const BatchJob& job, const Common
     warnOfSearch(options, work);
     SearchWatch watch(std::make_unique<SilentProgress>(), options.time_limit, false);
     const Arrangement found = arrange(work.input.scene, work.groups, work.how, watch);
+    if (found.is_complete) outcome.files = work.files;
     writeLayout(command, options, work, found);
     JsonWriter json = jobLine("arrange", job);
     json.key("product").value(common.output).key("sensors").value(found.sensors.size());
@@ -208,7 +209,8 @@ void arrangeSensors(const ArrangeCommand& command) {
     const ArrangeToolOptions& options = command.options();
     if (!options.batch.list.empty())
         return runBatch(
-            {"arrange", options.common, options.batch, command.historyLine({}), "", ".3dm"},
+            {"arrange", options.common, options.batch,
+             command.historyLine({}) + readingText(options.rules), "", ".3dm"},
             [&command](const BatchJob& job, const CommonOptions& common, JobOutcome& outcome) {
                 arrangeJob(command, job, common, outcome);
             });

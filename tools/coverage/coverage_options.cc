@@ -141,7 +141,7 @@ void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
 }
 
 void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
-    for (const char* option : {"--shard", "--resume"})
+    for (const char* option : {"--shard", "--resume", "--cache"})
         if (line.given(option))
             throw UsageError(std::string(option) + " is about many scenes: give --batch LIST");
     if (o.crowd && o.crowd->of == Robustness::CrowdOf::Run && o.run.empty())
@@ -177,6 +177,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               Enters::Nothing);
     addListOption(line, o.batch, "the output is a report a line, as JSON, in its order");
     addBatchOptions(line, o.batch, "of the lines of LIST; cat joins their outputs", false);
+    addCacheOption(line, o.batch);
     line.group("Metrics");
     addMeasureOptions(line, o.measure, words);
     line.texts("--zone", "ZONE", o.zones,

@@ -230,11 +230,13 @@ Measured measureScene(const CoverageToolOptions& options, const SceneInput& inpu
 }
 
 void measureList(const CoverageToolOptions& options) {
-    runBatch({"coverage", options.common, options.batch, options.command, options.junit},
+    runBatch({"coverage", options.common, options.batch,
+              options.command + readingText(options.rules), options.junit},
              [&](const BatchJob& job, const CommonOptions& common, JobOutcome& outcome) {
                  CoverageToolOptions own = options;
                  own.common = common;
                  SceneInput input = readScene({job.operands, options.rules, false});
+                 outcome.files = filesOf(input);
                  addZones(options.zones, input);
                  if (!input.layout && input.scene.sensors.empty())
                      throw UsageError(input.environment_operand +
