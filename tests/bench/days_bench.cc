@@ -145,6 +145,36 @@ Day sweepOfRooms(const std::string& folder) {
             {}};
 }
 
+/// The rooms of sweepOfRooms() with a file each, of which one changes between two runs with a
+/// cache.
+Day changedRoom(const std::string& folder) {
+    constexpr int kRooms = 1'000;
+    const std::string list = folder + "/changed.list", cache = folder + "/changed.cache";
+    const std::string room = bench::officeText(1, 1);
+    const auto name_of = [=](int i) { return folder + "/changed" + std::to_string(i) + ".env"; };
+    std::string lines;
+    for (int i = 0; i < kRooms; ++i) {
+        writeAll(name_of(i), room + "laser fov=180 step=1 range=8 at=2,3\n");
+        lines.append(name_of(i)).append("\n");
+    }
+    writeAll(list, lines);
+    const Words all = {"coverage", "--batch", list, "-q", "-j", "1"};
+    Words cached = all;
+    cached.insert(cached.end(), {"--cache", cache});
+    command(cached)();
+    int edits = 0;
+    const auto work = [=]() mutable {
+        writeAll(name_of(7), room + "laser fov=180 step=1 range=8 at=2," +
+                                 formatDouble(2 + 0.01 * ++edits) + "\n");
+        return command(cached)();
+    };
+    const auto verify = [=] {
+        constexpr std::size_t kReport = 1'000;
+        mustBe(readAll(cache).size() > kRooms * kReport, "the cache lacks reports");
+    };
+    return {"one of 1 000 rooms changed, --cache", "all of them", 0.1, work, command(all), verify};
+}
+
 /// Scans at a million poses on a circle, in a corridor's corner of an office.
 Day millionPoses(const std::string& folder) {
     constexpr int kPoses = 1'000'000;
@@ -206,6 +236,7 @@ std::vector<Day> allDays(const std::string& folder) {
         camerasInBuilding(folder),
         editLoop(),
         sweepOfRooms(folder),
+        changedRoom(folder),
         millionPoses(folder),
         recordedRun(folder, 1, 3600, 1.5),
         recordedRun(folder, 100, 60, 1.5),
