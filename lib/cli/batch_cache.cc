@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "base/packed.h"
 #include "base/run_files.h"
@@ -131,7 +132,11 @@ std::optional<JobOutcome> BatchCache::find(const BatchJob& job, const std::strin
 
 JobOutcome BatchCache::outcomeOf(const BatchJob& job, const std::function<JobOutcome()>& compute) {
     const std::string key = keyOf(job);
-    if (auto known = find(job, key)) return *std::move(known);
+    try {
+        if (auto known = find(job, key)) return *std::move(known);
+    } catch (const FormatError&) {
+        // Computed as if it were missing.
+    }
     const timespec began = fileClock();
     JobOutcome outcome = compute();
     if (const auto bytes = packed(job, outcome, began)) results_.store(key, *bytes);

@@ -19,7 +19,7 @@ namespace ispace {
 class BatchCache {
   public:
     /// Reads the outcomes of earlier runs; those of another version, command or seed count as
-    /// missing, and so do all from the first damaged record on.
+    /// missing, and so do results that cannot be read and all from the first damaged record on.
     /// \throws FormatError if the file exists and is no such cache
     BatchCache(std::string file, const BatchRun& run);
 
@@ -31,6 +31,7 @@ class BatchCache {
     void commit();
 
   private:
+    /// \throws FormatError for a result of another form, whose hash is right
     [[nodiscard]] std::optional<JobOutcome> find(const BatchJob& job, const std::string& key);
 
     std::string file_;

@@ -79,6 +79,26 @@ TEST_F(BatchCacheTest, ComputesAgainForAnotherRun) {
     EXPECT_THROW(BatchCache(folder_ / "cache", other), FormatError);
 }
 
+TEST_F(BatchCacheTest, ResultsOfAnotherFormAreMissing) {
+    EXPECT_EQ(computed(run_, job(), result()), 1);
+    const std::string file = folder_ / "cache";
+    const JobId id = partHeadOf(file).job;
+    const auto cache = JobResults::earlier(file, id);
+    ASSERT_TRUE(cache);
+    ASSERT_EQ(cache->keys().size(), 1U);
+    const std::string key = cache->keys().front(), whole = *cache->find(key);
+    for (std::size_t size = 0; size < whole.size(); ++size)
+        for (const std::string& bytes :
+             {whole.substr(0, size), whole.substr(0, size) + std::string(64, '\xff')}) {
+            JobResults other(file, id, Shard(), false);
+            other.store(key, bytes);
+            other.writePart(file);
+            JobOutcome found;
+            (void)computed(run_, job(), result(), &found);
+            EXPECT_EQ(found.line, result().line) << "cut at " << size;
+        }
+}
+
 TEST_F(BatchCacheTest, VerdictsNameTheLineOfThisRun) {
     JobOutcome unmet = result();
     unmet.status = JobOutcome::kUnmet;
