@@ -54,6 +54,9 @@ violations() {
         if (!in_test && FILENAME ~ /^lib\/arrange\/gallery\// && index($0, "\"") &&
             target !~ /^(base|geom|arrange\/search|arrange\/gallery)\//)
             report("lib/arrange/gallery knows floors alone: " target)
+        if (!in_test && FILENAME ~ /^lib\/arrange\/poses\// && index($0, "\"") &&
+            target !~ /^(base|geom|arrange\/poses)\//)
+            report("lib/arrange/poses knows floors alone: " target)
         if (FILENAME ~ /^lib\/trace\/[^\/]*$/ && target ~ /^trace\/render\//)
             report("lib/trace must not include " target)
         # One private header hides the versions of Embree from the sources beside it.
@@ -111,6 +114,8 @@ expect lib/arrange/search/a.cc '#include "geom/point.h"' yes
 expect lib/arrange/search/a.cc '#include "base/error.h"' no
 expect lib/arrange/gallery/a.cc '#include "scene/scene.h"' yes
 expect lib/arrange/gallery/a.cc '#include "arrange/search/set_cover.h"' no
+expect lib/arrange/poses/a.cc '#include "scene/scene.h"' yes
+expect lib/arrange/poses/a.cc '#include "geom/polygon.h"' no
 expect lib/trace/a.cc '#include "trace/render/render.h"' yes
 expect lib/sim/a.cc '#include "server/server.h"' yes
 expect lib/building/a.cc '#include "passage/lift.h"' yes

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/arrange/poses: the subdivision of all poses into boxes.
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "arrange/poses/fat_view.h"
+
+namespace ispace::poses {
+
+using BoxId = std::uint32_t;
+
+/// Parts of the cells from `first` on; further ones hold none.
+struct CellParts {
+    std::size_t first = 0;
+    std::vector<std::uint8_t> parts;
+
+    explicit CellParts(const std::vector<std::uint8_t>& all = {});
+};
+
+/// A box of the subdivision. Its children halve it.
+struct BoxNode {
+    PoseBox box;
+    BoxId parent = 0, child = 0;      // the first child, then the second; 0: not split
+    double most = 0;                  // bounds the area that any single pose of the box sees
+    std::uint64_t low = 0, high = 0;  // half-open range of its poses in the order of the tree
+    CellParts parts;                  // of the fat view; none: the box holds no floor
+    CellParts centre;                 // of the view from the middle of the box
+};
+
+/// The tree of boxes. Box 0 holds all poses.
+class PoseBoxes {
+  public:
+    /// Stores the references.
+    PoseBoxes(const PoseFloor& floor, const Sector& sector);
+
+    const BoxNode& operator[](BoxId id) const { return boxes_[id]; }
+    [[nodiscard]] std::size_t size() const { return boxes_.size(); }
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+    /// Halves those boxes that are whole, in parallel, and lowers the bounds of single views in
+    /// them and the boxes around them.
+    void split(std::vector<BoxId> ids);
+
+    /// Returns the index of the box whose fat view may shrink most by a split; the number of boxes
+    /// if all are too small.
+    [[nodiscard]] std::size_t widestOf(std::span<const BoxId> boxes) const;
+    /// Returns true if a half may replace one of these boxes: it holds floor, and some poses of the
+    /// boxes are in the order of the tree. Equal sensors may be assumed in that order.
+    [[nodiscard]] bool isInOrder(std::span<const BoxId> boxes, std::size_t which, BoxId half) const;
+
+    /// Bounds the area of the union of the fat views, or of the views from centres.
+    [[nodiscard]] double unionOf(std::span<const BoxId> boxes,
+                                 CellParts BoxNode::*views = &BoxNode::parts) const;
+
+  private:
+    [[nodiscard]] BoxNode nodeOf(const PoseBox& box, BoxId parent) const;
+    [[nodiscard]] std::array<BoxNode, 2> halvesOf(BoxId id) const;
+    void lowerMost(BoxId id);
+    /// Growth of a fat view with the size of its box, m2.
+    [[nodiscard]] double slackOf(const PoseBox& box) const;
+    [[nodiscard]] double turnOf(const PoseBox& box) const;
+
+    const PoseFloor& floor_;
+    const Sector& sector_;
+    std::vector<BoxNode> boxes_;
+    std::size_t bytes_ = 0;
+    mutable tbb::enumerable_thread_specific<std::vector<std::uint8_t>> sums_;
+};
+
+}  // namespace ispace::poses

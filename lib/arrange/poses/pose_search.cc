@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/poses/pose_search.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <queue>
+#include <string>
+#include <utility>
+
+#include "arrange/poses/pose_boxes.h"
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+using poses::BoxId;
+using poses::BoxNode;
+using poses::fatViewOf;
+using poses::PoseBox;
+using poses::PoseBoxes;
+using poses::PoseFloor;
+using poses::Sector;
+
+/// A pair of boxes, in the order of the tree, and its subdivision.
+struct PairNode {
+    std::array<BoxId, 2> boxes{};
+    double most = 0;  // bounds the area that two poses in them see together
+    std::uint32_t parent = 0, child = 0, children = 0;  // the first child, and their number
+    bool is_split = false;
+};
+
+struct Tuple {
+    double bound = 0;
+    std::array<BoxId, kMostPosed> boxes{};
+};
+struct IsWorse {
+    bool operator()(const Tuple& a, const Tuple& b) const {
+        return a.bound != b.bound ? a.bound < b.bound : a.boxes > b.boxes;
+    }
+};
+
+class PoseSearcher {
+  public:
+    PoseSearcher(const PoseFloor& floor, const Sector& sector, const PoseSearchOptions& options,
+                 Progress& progress)
+        : floor_(floor),
+          sector_(sector),
+          options_(options),
+          progress_(progress),
+          count_(static_cast<std::size_t>(options.sensors)),
+          found_(options.found),
+          boxes_(floor, sector) {}
+
+    PoseBound run();
+
+  private:
+    void searchSingle();
+    /// Divides pairs of boxes until two sensors see no more than `enough`, or there are `most`.
+    void searchPairs(double enough, std::size_t most);
+    void splitPairs(const std::vector<std::uint32_t>& ids);
+    void lowerPair(std::uint32_t id);
+    /// Bounds the area that two poses see together, by the pairs.
+    [[nodiscard]] double mostOf(BoxId first, BoxId second) const;
+    void searchTuples();
+    [[nodiscard]] double boundOf(const Tuple& tuple, double enough) const;
+    /// Tuples that replace one, and the best layout of centres of boxes among them.
+    struct Children {
+        std::vector<Tuple> tuples;
+        Tuple best;
+        double best_value = 0;
+    };
+    [[nodiscard]] Children childrenOf(const Tuple& tuple, std::size_t which) const;
+    [[nodiscard]] double cutoff() const { return found_ / (1 - options_.gap); }
+    void improve(const Tuple& tuple);
+    [[nodiscard]] bool isFull() const {
+        return boxes_.bytes() + queue_.size() * sizeof(Tuple) + pairs_.size() * sizeof(PairNode) >
+               options_.max_bytes;
+    }
+
+    const PoseFloor& floor_;
+    const Sector& sector_;
+    const PoseSearchOptions& options_;
+    Progress& progress_;
+    std::size_t count_;
+    double found_;
+    PoseBoxes boxes_;
+    std::vector<PairNode> pairs_;
+    std::size_t tuples_ = 0;
+    std::priority_queue<Tuple, std::vector<Tuple>, IsWorse> queue_;
+    double tried_ = 0;   // best layout of centres of boxes, m2
+    double closed_ = 0;  // largest bound of a tuple that was not split further
+    bool is_complete_ = true;
+    mutable tbb::enumerable_thread_specific<std::vector<std::uint32_t>> stacks_;
+};
+
+double PoseSearcher::mostOf(BoxId first, BoxId second) const {
+    constexpr int kMostVisits = 64;
+    const auto is_apart = [this](BoxId a, BoxId b) {
+        return boxes_[a].high <= boxes_[b].low || boxes_[b].high <= boxes_[a].low;
+    };
+    const auto is_within = [this](BoxId a, BoxId b) {
+        return boxes_[b].low <= boxes_[a].low && boxes_[a].high <= boxes_[b].high;
+    };
+    std::vector<std::uint32_t>& stack = stacks_.local();
+    stack.assign(1, 0);
+    double most = 0;
+    for (int visits = 0; !stack.empty(); ++visits) {
+        const PairNode& pair = pairs_[stack.back()];
+        stack.pop_back();
+        if (pair.most <= most || is_apart(pair.boxes[0], first) || is_apart(pair.boxes[1], second))
+            continue;
+        if (!pair.is_split || visits >= kMostVisits ||
+            (is_within(pair.boxes[0], first) && is_within(pair.boxes[1], second))) {
+            most = pair.most;
+            continue;
+        }
+        for (std::uint32_t i = 0; i < pair.children; ++i) stack.push_back(pair.child + i);
+    }
+    return most;
+}
+
+double PoseSearcher::boundOf(const Tuple& tuple, double enough) const {
+    double bound = 0;
+    std::array<double, kMostPosed> single{};
+    for (std::size_t i = 0; i < count_; ++i) bound += single[i] = boxes_[tuple.boxes[i]].most;
+    const double all = bound;
+    if (count_ == 1 || bound <= enough) return bound;
+    const bool has_pairs = !pairs_.empty();
+    double sum = 0;  // over pairs: floor that one sensor sees is in count_ - 1 of them
+    for (std::size_t i = 0; i < count_; ++i)
+        for (std::size_t k = i + 1; k < count_; ++k) {
+            double pair = single[i] + single[k];
+            if (has_pairs) pair = std::min(pair, mostOf(tuple.boxes[i], tuple.boxes[k]));
+            pair = std::min(pair, boxes_.unionOf(std::array{tuple.boxes[i], tuple.boxes[k]}));
+            sum += pair;
+            bound = std::min(bound, pair + (all - single[i] - single[k]));
+        }
+    bound = std::min(bound, sum / static_cast<double>(count_ - 1));
+    for (unsigned chosen = (1U << count_) - 1; chosen > 0 && bound > enough; --chosen) {
+        if (std::popcount(chosen) < 3) continue;
+        std::array<BoxId, kMostPosed> boxes{};
+        std::size_t size = 0;
+        double rest = 0;
+        for (std::size_t i = 0; i < count_; ++i)
+            if ((chosen >> i & 1U) != 0)
+                boxes[size++] = tuple.boxes[i];
+            else
+                rest += single[i];
+        if (rest < bound) bound = std::min(bound, rest + boxes_.unionOf({boxes.data(), size}));
+    }
+    return bound;
+}
+
+PoseSearcher::Children PoseSearcher::childrenOf(const Tuple& tuple, std::size_t which) const {
+    Children children;
+    const std::span<const BoxId> boxes(tuple.boxes.data(), count_);
+    const BoxId child = boxes_[tuple.boxes[which]].child;
+    for (BoxId half = child; half < child + 2; ++half) {
+        if (!boxes_.isInOrder(boxes, which, half)) continue;
+        Tuple next = tuple;
+        next.boxes[which] = half;
+        next.bound = std::min(tuple.bound, boundOf(next, cutoff()));
+        children.tuples.push_back(next);
+        if (next.bound <= cutoff()) continue;
+        const double value = boxes_.unionOf({next.boxes.data(), count_}, &BoxNode::centre);
+        if (value <= children.best_value) continue;
+        children.best_value = value;
+        children.best = next;
+    }
+    return children;
+}
+
+void PoseSearcher::lowerPair(std::uint32_t id) {
+    while (true) {
+        PairNode& pair = pairs_[id];
+        double most = 0;
+        for (std::uint32_t i = 0; i < pair.children; ++i)
+            most = std::max(most, pairs_[pair.child + i].most);
+        if (!(most < pair.most)) return;
+        pair.most = most;
+        if (id == 0) return;
+        id = pair.parent;
+    }
+}
+
+void PoseSearcher::splitPairs(const std::vector<std::uint32_t>& ids) {
+    std::vector<std::size_t> which;
+    std::vector<BoxId> to_split;
+    for (const std::uint32_t id : ids) {
+        which.push_back(boxes_.widestOf(pairs_[id].boxes));
+        to_split.push_back(pairs_[id].boxes[which.back()]);
+    }
+    boxes_.split(to_split);
+    std::vector<std::vector<PairNode>> made(ids.size());
+    tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) {
+        const PairNode& pair = pairs_[ids[i]];
+        const BoxId child = boxes_[to_split[i]].child;
+        for (BoxId half = child; half < child + 2; ++half) {
+            if (!boxes_.isInOrder(pair.boxes, which[i], half)) continue;
+            PairNode next{.boxes = pair.boxes, .parent = ids[i]};
+            next.boxes[which[i]] = half;
+            const double both = boxes_[next.boxes[0]].most + boxes_[next.boxes[1]].most;
+            next.most = std::min({pair.most, both, boxes_.unionOf(next.boxes)});
+            made[i].push_back(next);
+        }
+    });
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        PairNode& pair = pairs_[ids[i]];
+        pair.is_split = true;
+        pair.child = static_cast<std::uint32_t>(pairs_.size());
+        pair.children = static_cast<std::uint32_t>(made[i].size());
+        pairs_.insert(pairs_.end(), made[i].begin(), made[i].end());
+        lowerPair(ids[i]);
+    }
+}
+
+void PoseSearcher::searchPairs(double enough, std::size_t most) {
+    constexpr std::size_t kBatch = 256;
+    const auto is_less = [this](std::uint32_t a, std::uint32_t b) {
+        return pairs_[a].most != pairs_[b].most ? pairs_[a].most < pairs_[b].most : a > b;
+    };
+    std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, decltype(is_less)> queue(
+        is_less);
+    pairs_.push_back({.boxes = {0, 0}, .most = 2 * boxes_[0].most});
+    queue.push(0);
+    while (!queue.empty() && pairs_.size() < most && !progress_.stopped() && !isFull()) {
+        std::vector<std::uint32_t> batch;
+        while (!queue.empty() && batch.size() < kBatch) {
+            const std::uint32_t id = queue.top();
+            if (pairs_[id].most <= enough) break;
+            queue.pop();
+            if (boxes_.widestOf(pairs_[id].boxes) < 2) batch.push_back(id);
+        }
+        if (batch.empty()) return;
+        splitPairs(batch);
+        for (const std::uint32_t id : batch)
+            for (std::uint32_t i = 0; i < pairs_[id].children; ++i)
+                queue.push(pairs_[id].child + i);
+    }
+}
+
+void PoseSearcher::searchSingle() {
+    constexpr std::size_t kMostBoxes = 20'000, kBatch = 64;
+    constexpr double kClose = 0.002;
+    const auto is_less = [this](BoxId a, BoxId b) {
+        return boxes_[a].most != boxes_[b].most ? boxes_[a].most < boxes_[b].most : a > b;
+    };
+    std::priority_queue<BoxId, std::vector<BoxId>, decltype(is_less)> queue(is_less);
+    queue.push(0);
+    double seen = 0;  // by poses that were tried
+    while (!queue.empty() && boxes_.size() < kMostBoxes && !progress_.stopped()) {
+        std::vector<BoxId> batch;
+        while (!queue.empty() && batch.size() < kBatch) {
+            const BoxId id = queue.top();
+            if (boxes_[id].most <= seen * (1 + kClose)) break;
+            queue.pop();
+            if (boxes_.widestOf({&id, 1}) == 0) batch.push_back(id);
+        }
+        if (batch.empty()) return;
+        const PoseBox& best = boxes_[batch.front()].box;
+        const Point2 middle = best.at.center();
+        seen = std::max(
+            seen,
+            fatViewOf(floor_, sector_, {{middle, middle}, best.from + best.span / 2, 0}).area);
+        boxes_.split(batch);
+        for (const BoxId id : batch)
+            for (BoxId half = boxes_[id].child; half < boxes_[id].child + 2; ++half)
+                if (!boxes_[half].parts.parts.empty()) queue.push(half);
+    }
+}
+
+void PoseSearcher::improve(const Tuple& tuple) {
+    if (!options_.improve) return;
+    std::vector<PoseBox> boxes;
+    for (std::size_t i = 0; i < count_; ++i) boxes.push_back(boxes_[tuple.boxes[i]].box);
+    found_ = std::max(found_, options_.improve(boxes));
+}
+
+void PoseSearcher::searchTuples() {
+    constexpr std::size_t kBatch = 256;
+    constexpr double kBetter = 1e-3, kNear = 0.97;  // of centres, to be worth refining
+    Tuple root;
+    root.bound = boundOf(root, 0);
+    queue_.push(root);
+    for (std::size_t round = 1; !queue_.empty() && queue_.top().bound > cutoff(); ++round) {
+        if (progress_.stopped() || isFull()) {
+            is_complete_ = false;
+            return;
+        }
+        if ((round & (round - 1)) == 0) {
+            progress_.note("best " + formatFixed(found_, 2) + " m2, at most " +
+                           formatFixed(std::max(closed_, queue_.top().bound), 2) + " m2");
+        }
+        std::vector<Tuple> batch;
+        std::vector<std::size_t> which;
+        std::vector<BoxId> to_split;
+        while (!queue_.empty() && batch.size() < kBatch && queue_.top().bound > cutoff()) {
+            Tuple tuple = queue_.top();
+            queue_.pop();
+            // Single views may be bounded better by now.
+            double most = 0;
+            for (std::size_t i = 0; i < count_; ++i) most += boxes_[tuple.boxes[i]].most;
+            if (most < tuple.bound) {
+                tuple.bound = most;
+                queue_.push(tuple);
+                continue;
+            }
+            const std::size_t widest = boxes_.widestOf({tuple.boxes.data(), count_});
+            if (widest == count_) {
+                closed_ = std::max(closed_, tuple.bound);
+                continue;
+            }
+            batch.push_back(tuple);
+            which.push_back(widest);
+            to_split.push_back(tuple.boxes[widest]);
+        }
+        boxes_.split(to_split);
+        std::vector<Children> made(batch.size());
+        tbb::parallel_for(std::size_t{0}, batch.size(),
+                          [&](std::size_t i) { made[i] = childrenOf(batch[i], which[i]); });
+        for (const Children& children : made) {
+            if (children.best_value > std::max(tried_ * (1 + kBetter), found_ * kNear)) {
+                tried_ = children.best_value;
+                improve(children.best);
+            }
+            for (const Tuple& tuple : children.tuples) {
+                ++tuples_;
+                if (tuple.bound > cutoff())
+                    queue_.push(tuple);
+                else
+                    closed_ = std::max(closed_, tuple.bound);
+            }
+        }
+    }
+}
+
+PoseBound PoseSearcher::run() {
+    if (boxes_[0].parts.parts.empty()) return {};
+    searchSingle();
+    constexpr std::size_t kPairs = 400'000;
+    if (count_ > 2) searchPairs(0, kPairs);
+    searchTuples();
+    const double open = queue_.empty() ? 0 : queue_.top().bound;
+    return {std::max({closed_, open, found_}), found_, boxes_.size(), tuples_, is_complete_};
+}
+
+}  // namespace
+
+PoseBound boundOverPoses(const PoseFloor& floor, const Sector& sector,
+                         const PoseSearchOptions& options, Progress& progress) {
+    return PoseSearcher(floor, sector, options, progress).run();
+}
+
+}  // namespace ispace
