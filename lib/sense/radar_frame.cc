@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "base/random.h"
 #include "sense/noise.h"
+#include "sense/sighting.h"
 
 namespace ispace {
 
 namespace {
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// A detection, before noise.
 struct Echo {
@@ -22,96 +20,30 @@ struct Echo {
     std::size_t number;  ///< of the mover, among those in the bodies
 };
 
-/// The line of sight to a body.
-struct Sighting {
-    double range = kNever;
-    Vec3 direction;
-    std::size_t body = 0;
-};
-
-class Caster {
-  public:
-    Caster(const RayWorld& mesh, const MovingBodies& bodies, const Sensor& sensor,
-           const Pose3& pose)
-        : mesh_(mesh),
-          bodies_(bodies.bodies()),
-          carrier_(carrierOf(sensor)),
-          radar_(sensor.as<Radar>()),
-          view_(fieldOfView(radar_, pose)),
-          origin_(pose.position) {}
-
-    [[nodiscard]] std::vector<Echo> echoes(const MoverVelocities& velocities) const {
-        std::vector<Echo> echoes;
-        std::size_t number = 0;
-        // The bodies of a mover follow one another.
-        for (std::size_t begin = 0, end = 0; begin < bodies_.size(); begin = end, ++number) {
-            const std::uint32_t owner = bodies_[begin].owner;
-            while (end < bodies_.size() && bodies_[end].owner == owner) ++end;
-            if (owner == carrier_) continue;
-            const MoverVelocity velocity = velocities.of(owner);
-            const Sighting seen = nearest(begin, end);
-            if (seen.range == kNever) continue;
-            const Point3 at = origin_ + seen.range * seen.direction;
-            const Vec2 motion = velocity.at(at.onFloor());
-            const double speed = motion.x * seen.direction.x + motion.y * seen.direction.y;
-            if (std::fabs(speed) < radar_.min_speed || speed == 0) continue;
-            const Vec3 local = view_.frame.toLocal(at);
-            const double level = std::hypot(local.x, local.y);
-            const double cosine = -dot(bodies_[seen.body].normalAt(at), seen.direction);
-            echoes.push_back({{seen.range, Angle::radians(std::atan2(local.y, local.x)),
-                               Angle::radians(std::atan2(local.z, level)), speed},
-                              std::clamp(cosine, 0.0, 1.0),
-                              number});
-        }
-        return echoes;
+/// Returns the echoes of all movers in sight that are fast enough, in the order of the bodies.
+std::vector<Echo> echoesOf(const RayWorld& mesh, const MovingBodies& bodies,
+                           const MoverVelocities& velocities, const Sensor& sensor,
+                           const Pose3& pose) {
+    const Radar& radar = sensor.as<Radar>();
+    const Observer observer{fieldOfView(radar, pose), radar.min_range, carrierOf(sensor)};
+    const Point3 origin = pose.position;
+    std::vector<Echo> echoes;
+    const auto any = [](std::uint32_t /*owner*/) { return true; };
+    for (const Sighting& seen : sightingsOf(observer, mesh, bodies, any)) {
+        const Point3 at = origin + seen.range * seen.direction;
+        const Vec2 motion = velocities.of(seen.body->owner).at(at.onFloor());
+        const double speed = motion.x * seen.direction.x + motion.y * seen.direction.y;
+        if (std::fabs(speed) < radar.min_speed || speed == 0) continue;
+        const Vec3 local = observer.view.frame.toLocal(at);
+        const double level = std::hypot(local.x, local.y);
+        const double cosine = -dot(seen.body->normalAt(at), seen.direction);
+        echoes.push_back({{seen.range, Angle::radians(std::atan2(local.y, local.x)),
+                           Angle::radians(std::atan2(local.z, level)), speed},
+                          std::clamp(cosine, 0.0, 1.0),
+                          seen.number});
     }
-
-  private:
-    [[nodiscard]] Sighting nearest(std::size_t begin, std::size_t end) const {
-        Sighting best;
-        for (std::size_t i = begin; i < end; ++i) {
-            const MovingBody& body = bodies_[i];
-            const Point2 foot = body.pose.position;
-            const Vec3 way = Point3{foot.x, foot.y, body.middle()} - origin_;
-            const double distance = length(way);
-            if (distance == 0) continue;
-            const Vec3 direction = (1 / distance) * way;
-            const double range = body.meet(origin_, direction);
-            // From inside, the ray meets the surface behind the centre.
-            if (range > distance || range >= best.range || !isInView(range, direction) ||
-                !isFree(range, direction, body.owner))
-                continue;
-            best = {range, direction, i};
-        }
-        return best;
-    }
-
-    [[nodiscard]] bool isInView(double range, Vec3 direction) const {
-        return static_cast<float>(range) >= static_cast<float>(radar_.min_range) &&
-               view_.holds(origin_ + range * direction);
-    }
-
-    [[nodiscard]] bool isFree(double range, Vec3 direction, std::uint32_t owner) const {
-        if (range == 0) return true;
-        const bool is_hidden =
-            std::any_of(bodies_.begin(), bodies_.end(), [&](const MovingBody& body) {
-                return body.owner != carrier_ && body.owner != owner &&
-                       body.meet(origin_, direction) < range;
-            });
-        if (is_hidden) return false;
-        const Point3 at = origin_ + range * direction;
-        std::uint8_t seen = 0;
-        mesh_.query(origin_, std::span(&at, 1), std::span(&seen, 1));
-        return seen != 0;
-    }
-
-    const RayWorld& mesh_;
-    std::span<const MovingBody> bodies_;
-    std::uint32_t carrier_;
-    const Radar& radar_;
-    FieldOfView view_;
-    Point3 origin_;
-};
+    return echoes;
+}
 
 /// Removes detections that the radar cannot tell from a nearer one, and the farthest of too many.
 void resolve(const Radar& radar, std::vector<Echo>& echoes) {
@@ -175,7 +107,7 @@ RadarFrame castRadar(const RayWorld& mesh, const MovingBodies& bodies,
                      const MoverVelocities& velocities, const Sensor& sensor, const Pose3& pose,
                      int frame, std::optional<std::uint64_t> noise_seed) {
     const Radar& radar = sensor.as<Radar>();
-    std::vector<Echo> echoes = Caster(mesh, bodies, sensor, pose).echoes(velocities);
+    std::vector<Echo> echoes = echoesOf(mesh, bodies, velocities, sensor, pose);
     resolve(radar, echoes);
     if (noise_seed && radar.isNoisy()) disturb(radar, sensor.id, frame, *noise_seed, echoes);
     RadarFrame out{.frame = frame, .pose = pose, .detections = {}};

@@ -29,10 +29,8 @@ struct RadarFrame {
 
 /// Detects the movers that the radar `sensor` sees move from `pose`.
 ///
-/// A mover is seen where the ray towards the centre of one of its bodies meets that body, in the
-/// field of view and in range (ends included, as float32), if neither `mesh` nor a body of another
-/// mover is before it; of its bodies the nearest so seen counts. Bodies of the radar's carrier do
-/// not block it. The radial speed is the rate of change of the distance due to the mover: a radar
+/// sightingsOf() (sense/sighting.h) tells the movers in sight; bodies of the radar's carrier do not
+/// block it. The radial speed is the rate of change of the distance due to the mover: a radar
 /// on a robot compensates its own motion. Movers below the least radial speed have no detection.
 ///
 /// Two movers nearer to each other than all three resolutions are one detection, the nearest. Then

@@ -68,6 +68,15 @@ struct AtOnce {
         seen.time = time;
         return seen;
     }
+    Reading operator()(const Pir& /*pir*/) const {
+        PirState state =
+            castPir(mesh, bodies, options.velocities, sensor, pose, frame, options.noise_seed);
+        state.time = time;
+        return state;
+    }
+    Reading operator()(const Contact& contact) const {
+        return ContactState{time, frame, pose, contact.is_open};
+    }
     // Lasers take time, cameras need light, receivers hear tags, mats and gates have no rays.
     template <typename Model>
     Reading operator()(const Model& /*model*/) const {
@@ -86,6 +95,12 @@ ReadingValue valueOf(Reading reading) {
                 return std::move(value);
         },
         reading);
+}
+
+void carryOn(const ReadingValue& before, ReadingValue& now) {
+    const auto* const last = std::get_if<PirState>(&before);
+    if (auto* const state = std::get_if<PirState>(&now); state != nullptr && last != nullptr)
+        holdOutput(*last, *state);
 }
 
 bool isReadAtOnce(const SensorModel& model) {

@@ -12,6 +12,7 @@
 
 #include "sense/depth.h"
 #include "sense/photo.h"
+#include "sense/pir_state.h"
 #include "sense/radar_frame.h"
 #include "sense/scan.h"
 #include "sense/selection.h"
@@ -45,15 +46,28 @@ struct GateState {
     bool broken = false;  ///< a mover interrupts the beam
 };
 
-/// A reading of a sensor of any kind, of a sweep one scan.
-using ReadingValue =
-    std::variant<Scan, DepthFrame, Photo, Burst, Hearings, MatState, GateState, RadarFrame>;
+/// A contact's door.
+struct ContactState {
+    double time = 0;  ///< seconds
+    int frame = 0;
+    Pose3 pose;
+    bool open = false;
+};
 
-/// The scans of a sweep (or a single one), a depth picture, a burst, a picture, or detections.
-using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame>;
+/// A reading of a sensor of any kind, of a sweep one scan.
+using ReadingValue = std::variant<Scan, DepthFrame, Photo, Burst, Hearings, MatState, GateState,
+                                  RadarFrame, PirState, ContactState>;
+
+/// The scans of a sweep (or a single one), a depth picture, a burst, a picture, detections, or
+/// the state of a PIR sensor or a contact.
+using Reading =
+    std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState, ContactState>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);
+
+/// Carries the state of a sensor with memory on to its next reading: a PIR sensor holds its output.
+void carryOn(const ReadingValue& before, ReadingValue& now);
 
 struct TakerOptions {
     std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
@@ -67,8 +81,8 @@ struct TakerOptions {
 
 /// Returns true if readAtOnce() reads sensors like this one.
 bool isReadAtOnce(const SensorModel& model);
-/// Reads a ranger, a tag or a radar at a pose. \pre isReadAtOnce(sensor.model); `mesh` are the
-/// surfaces that stop its rays
+/// Reads a ranger, a tag, a radar or a PIR sensor at a pose. \pre isReadAtOnce(sensor.model);
+/// `mesh` are the surfaces that stop its rays
 Reading readAtOnce(const Sensor& sensor, const Pose3& pose, int frame, double time,
                    const RayWorld& mesh, const MovingBodies& bodies,
                    std::span<const Sensor> receivers, const TakerOptions& options);

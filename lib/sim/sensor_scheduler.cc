@@ -189,6 +189,15 @@ bool SensorReader::readSome(std::chrono::steady_clock::time_point until) {
 
 void SensorReader::finish() {
     if (std::exchange(unread_blocks_, 0) == 0) return;
+    // To start threads would take longer than to read a few sensors with a ray each.
+    constexpr std::size_t kFewRays = 256;
+    std::size_t rays = 0;
+    for (const std::size_t sensor : unread_) rays += 1 + rayCount(sensors_[sensor].model);
+    if (rays <= kFewRays) {
+        for (std::size_t k = 0; k < unread_.size(); ++k)
+            if (is_read_[blockOf(k)] == 0) measure(unread_[k], unread_time_);
+        return;
+    }
     tbb::parallel_for(std::size_t{0}, unread_.size(), [&](std::size_t k) {
         if (is_read_[blockOf(k)] == 0) measure(unread_[k], unread_time_);
     });
@@ -301,9 +310,11 @@ void SensorReader::measure(std::size_t sensor, SimTime time) {
 /// neither velocities nor receivers.
 void SensorReader::readNow(const Sensor& sensor, const MovingBodies& bodies,
                            SensorReading& reading) const {
-    reading.value = valueOf(
+    ReadingValue value = valueOf(
         readAtOnce(sensor, reading.pose, frameOf(reading.seq), seconds(reading.time),
                    worlds_->mesh(kindOf(sensor.model).stopped_by), bodies, receivers_, taking_));
+    carryOn(reading.value, value);
+    reading.value = std::move(value);
 }
 
 void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime /*time*/) {

@@ -169,7 +169,7 @@ std::vector<bool> World::bumper(std::size_t robot) const {
     // Of thousands only those that touch it matter.
     const Pose2& pose = data.motions[robot].pose;
     const double touch = 1.1 * model.radius + length(state.bump) + 0.01;
-    Contact contact{pose, state.bump, {}, {}};
+    BumpContact contact{pose, state.bump, {}, {}};
     for (std::size_t i = 0; i < data.movers.size(); ++i) {
         const Point2 place = data.motions[i].pose.position;
         const double radius = data.movers[i].model.radius;

@@ -55,13 +55,13 @@ void keepInPlace(Scene& next, const std::unordered_set<std::string_view>& stayer
                  const std::unordered_map<std::string_view, Pose2>& places);
 
 /// A stalled robot's surroundings, and the bumpers that they press.
-struct Contact {
+struct BumpContact {
     Pose2 pose;
     Vec2 bump;
     std::vector<std::pair<Point2, double>> others;  // movers near it, with their radii
     std::vector<bool> pressed;
 
-    [[nodiscard]] bool sameAs(const Contact& other) const {
+    [[nodiscard]] bool sameAs(const BumpContact& other) const {
         return pose == other.pose && bump == other.bump && others == other.others &&
                !other.pressed.empty();
     }
@@ -83,8 +83,8 @@ struct MoverState {
     std::int64_t told = 0;
     SimTime told_first{}, told_last{};
     bool stall = false;
-    Vec2 bump;        // displacement of the step that was cancelled when the stall began
-    Contact contact;  // of the last stall in which its bumpers were read
+    Vec2 bump;            // displacement of the step that was cancelled when the stall began
+    BumpContact contact;  // of the last stall in which its bumpers were read
     std::vector<bool> recorded_bumpers;  // of a replay
     std::optional<std::size_t> blocked;  // by an element of the environment
 };

@@ -220,6 +220,17 @@ class Sensors(unittest.TestCase):
                 self.assertAlmostEqual(seen.speed, -0.2, delta=0.002)
                 self.assertAlmostEqual(seen.bearing, 0, delta=0.01)
 
+    def test_pir(self):
+        with self.run_.world() as world:
+            world.add("pir id=s1 at=1.8,1.8,1.2 heading=-135 hold=0.5")
+            world.add("human id=h5 at=1,1 path=1.4,1;1,1 loop=no")
+            with ispace.Pir(self.run_.address, "s1") as pir:
+                world.advance(1)
+                self.assertTrue(pir.scan().motion)
+                world.advance(10)
+                self.assertFalse(pir.scan().motion)
+            world.delete("h5")
+
     def test_sonars_and_bumpers(self):
         with self.run_.world() as world:
             world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90 bumpers=-45,45;135,225")

@@ -188,4 +188,11 @@ Vec3 directionOf(Angle bearing, Angle elevation) {
     return {cb * ce, sb * ce, se};
 }
 
+Mesh windowView(Angle fov_x, Angle fov_y, ViewLimits limits) {
+    return pictureView(fov_x, fov_y, limits, fov_x >= Angle::degrees(360),
+                       [&](double across, double upright, double range) {
+                           return range * directionOf(-0.5 * across * fov_x, 0.5 * upright * fov_y);
+                       });
+}
+
 }  // namespace ispace

@@ -162,4 +162,7 @@ Mesh pictureView(Angle fov_x, Angle fov_y, ViewLimits limits, bool is_all_around
     return mesh;
 }
 
+/// The view of a sensor that sees intervals of bearings and elevations, see pictureView().
+Mesh windowView(Angle fov_x, Angle fov_y, ViewLimits limits);
+
 }  // namespace ispace

@@ -9,14 +9,7 @@ namespace ispace {
 Radar withParameters(Radar base, const Record& record) {
     Diagnostics findings;
     applyRange(record, base.min_range, base.max_range, findings);
-    if (record.has("fov")) {
-        const Tuple& fov = record.tuple("fov");
-        base.fov_x = Angle::degrees(fov.front());
-        if (fov.size() > 1) base.fov_y = Angle::degrees(fov.back());
-        if (base.fov_y > Angle::degrees(180))
-            findings.add(record.finding(
-                "fov", "more than 180 degrees upright: " + formatDouble(base.fov_y.degrees())));
-    }
+    if (record.has("fov")) applyWindow(record, base.fov_x, base.fov_y, findings);
     if (record.has("rate")) base.rate = record.number("rate");
     if (record.has("detections")) base.detections = static_cast<int>(record.number("detections"));
     if (record.has("min_speed")) base.min_speed = record.number("min_speed");
@@ -58,15 +51,7 @@ KeySpec speedKey(std::string name, std::string help) {
 void addRadarKeys(std::vector<KeySpec>& keys) {
     constexpr double kMaxDetections = 10'000;
     keys.push_back(rangeKey("least and greatest distance detected, or the greatest alone"));
-    keys.push_back({.name = "fov",
-                    .type = KeyType::Tuple,
-                    .unit = Unit::Angle,
-                    .help = "field of view across and upright, or across alone",
-                    .min_count = 1,
-                    .max_count = 2,
-                    .lower = 0,
-                    .upper = 360,
-                    .lower_open = true});
+    keys.push_back(windowKey());
     keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
     keys.push_back({.name = "detections",
                     .type = KeyType::Number,
@@ -96,11 +81,8 @@ void addRadarKeys(std::vector<KeySpec>& keys) {
 
 Mesh viewOf(const Sensor& sensor, double reach) {
     const Radar& radar = sensor.as<Radar>();
-    return pictureView(
-        radar.fov_x, radar.fov_y, viewLimits(radar.min_range, radar.max_range, reach),
-        radar.fov_x >= Angle::degrees(360), [&](double across, double upright, double range) {
-            return range * directionOf(-0.5 * across * radar.fov_x, 0.5 * upright * radar.fov_y);
-        });
+    return windowView(radar.fov_x, radar.fov_y,
+                      viewLimits(radar.min_range, radar.max_range, reach));
 }
 
 /// Builds a board with the antennas' cover in front.

@@ -123,6 +123,27 @@ void applyRange(const Record& record, double& min_range, double& max_range, Diag
                                                  formatDouble(max_range) + " m"));
 }
 
+KeySpec windowKey() {
+    return {.name = "fov",
+            .type = KeyType::Tuple,
+            .unit = Unit::Angle,
+            .help = "field of view across and upright, or across alone",
+            .min_count = 1,
+            .max_count = 2,
+            .lower = 0,
+            .upper = 360,
+            .lower_open = true};
+}
+
+void applyWindow(const Record& record, Angle& across, Angle& upright, Diagnostics& findings) {
+    const Tuple& fov = record.tuple("fov");
+    across = Angle::degrees(fov.front());
+    if (fov.size() > 1) upright = Angle::degrees(fov.back());
+    if (upright > Angle::degrees(180))
+        findings.add(record.finding(
+            "fov", "more than 180 degrees upright: " + formatDouble(upright.degrees())));
+}
+
 std::string rangeText(double least, double greatest) {
     return formatDouble(least) + ".." + formatDouble(greatest);
 }

@@ -39,6 +39,11 @@ void addPictureKeys(std::vector<KeySpec>& keys, double widest);
 /// added to the findings.
 void applyRange(const Record& record, double& min_range, double& max_range, Diagnostics& findings);
 
+/// Creates the key `fov` of a sensor that sees intervals of bearings and elevations, and reads it.
+/// One number keeps the other angle.
+KeySpec windowKey();
+void applyWindow(const Record& record, Angle& across, Angle& upright, Diagnostics& findings);
+
 /// Writes numbers for the device table: "0.06..4", and degrees with enough decimals to distinguish
 /// devices.
 std::string rangeText(double least, double greatest);

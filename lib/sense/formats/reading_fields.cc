@@ -12,7 +12,7 @@
 namespace ispace {
 
 extern const ReadingKind kLaserReadings, kRangerReadings, kCameraReadings, kTagReadings,
-    kReceiverReadings, kRadarReadings, kMatReadings, kGateReadings;
+    kReceiverReadings, kRadarReadings, kPirReadings, kContactReadings, kMatReadings, kGateReadings;
 
 namespace {
 
@@ -228,8 +228,8 @@ constexpr std::string_view kBeamIndex[] = {"beam"}, kPixelIndices[] = {"column",
 
 /// Sorted as the alternatives of SensorModel.
 constexpr const ReadingKind* kReadingKinds[] = {
-    &kLaserReadings,  &kRangerReadings, &kReceiverReadings, &kTagReadings,
-    &kCameraReadings, &kRadarReadings,  &kMatReadings,      &kGateReadings};
+    &kLaserReadings, &kRangerReadings, &kReceiverReadings, &kTagReadings, &kCameraReadings,
+    &kRadarReadings, &kPirReadings,    &kContactReadings,  &kMatReadings, &kGateReadings};
 static_assert(std::size(kReadingKinds) == std::variant_size_v<SensorModel>);
 
 }  // namespace

@@ -83,7 +83,8 @@ enum FieldUse : unsigned {
     kIsFrame = 16,  ///< JSON writes a file name instead if the frame has a file
     kInInfo = 32,   ///< the protocol's description of the sensor; angles in degrees
     kInLine = 64,   ///< the protocol's line of a reading: floats last, or as bytes after it
-    kInPage = 128   ///< frames of the page, lengths in millimetres
+    kInPage = 128,  ///< frames of the page, lengths in millimetres
+    kIsState = 256  ///< an event tells when it changes
 };
 
 struct ReadingField {

@@ -21,7 +21,7 @@ export class Movers {
     const seers = scene.sensors.filter(sensor => sensor.view);
     this.colorOf = new Map(seers.map(({id}, i) => [id, scene.colors.series[i % scene.colors.series.length]]));
     this.scans = new Map();
-    this.floor = new Map();  // mats and gates
+    this.floor = new Map();  // PIR sensors, mats and gates
     this.byId = new Map(this.all.map(mover => [mover.id, mover]));
     for (const mover of this.all) mover.trail = [];
   }
@@ -146,7 +146,7 @@ export class Movers {
       context.rotate(pose[2] * kRad);
       context.fillStyle = context.strokeStyle = this.colorOf.get(id) ?? this.colors.sensor;
       if (span) {
-        context.globalAlpha = 0.35;
+        context.globalAlpha = this.floor.get(id)?.motion ? 0.9 : 0.35;
         context.beginPath();
         context.moveTo(0, 0);
         context.arc(0, 0, 5 * radius, span[0] * kRad, span[1] * kRad);

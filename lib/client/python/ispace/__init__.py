@@ -33,6 +33,7 @@ from .errors import (
 )
 from .filters import CoverageReport, Figure, Layout, Object, Record, arrange, coverage, info, scan
 from .movers import Bumper, End, Limits, Motion, Odometry, Person, Robot, Sonar, Status
+from .pir import Pir, Presence
 from .radar import Detection, Detections, Radar
 from .readings import Burst, Cloud, Depths, Fix, Load, Passages, Picture, Reading, Scan
 from .sensors import (
@@ -85,6 +86,8 @@ __all__ = [
     "Pose",
     "Pose3",
     "ProtocolError",
+    "Pir",
+    "Presence",
     "Radar",
     "Ranger",
     "Reading",

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef ISPACE_CLIENT_PIR_H
+#define ISPACE_CLIENT_PIR_H
+
+#include <ispace_client/sensor.h>
+
+namespace ispace {
+namespace client {
+
+/// The output of a passive infrared sensor.
+struct Presence : Reading {
+    bool motion = false;  ///< people move in its sight, or did within the hold time
+
+    static Presence from(const Message& message) {
+        Presence reading;
+        static_cast<Reading&>(reading) = Reading::from(message);
+        reading.motion = reading.fields.flag("motion");
+        return reading;
+    }
+};
+
+using Pir = SensorOf<Presence>;
+
+}  // namespace client
+}  // namespace ispace
+
+#endif  // ISPACE_CLIENT_PIR_H

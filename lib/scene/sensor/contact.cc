@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/sensor/contact.h"
+
+#include "base/number.h"
+#include "scene/sensor/sensor.h"
+#include "scene/sensor/sensor_keys.h"
+
+namespace ispace {
+
+Contact contactOf(const Record& record) {
+    Contact contact;
+    contact.door = record.text("door");
+    if (record.has("rate")) contact.rate = record.number("rate");
+    return contact;
+}
+
+namespace {
+
+void addContactKeys(std::vector<KeySpec>& keys) {
+    keys.push_back({.name = "door",
+                    .type = KeyType::Word,
+                    .help = "id of the door that it watches",
+                    .required = true,
+                    .role = Role::Reference});
+    keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
+}
+
+std::vector<Mesh> contactBody() {
+    Mesh box{Material::Sensor, {}, {}};
+    addBox(box, {-0.01, -0.04, -0.01}, {0.01, 0.04, 0.01});
+    return {std::move(box)};
+}
+
+}  // namespace
+
+const SensorKind kContactKind = {
+    .keyword = "contact",
+    .noun = "contact",
+    .help = "magnetic contact, which reports whether a door is open; bare: rate=10",
+    .heading_help = "direction of its front, from +x",
+    .sign = SensorSign::Square,
+    .add_keys = addContactKeys,
+    .body = contactBody,
+    .read = [](const Record& record, const Record* /*device*/) -> SensorModel {
+        return contactOf(record);
+    },
+    .bearings = [](const SensorModel& /*model*/) { return BearingSpan{}; },
+    .perceives = false,
+    .is_read = true};
+
+}  // namespace ispace

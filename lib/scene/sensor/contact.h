@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "geom/pose.h"
+#include "record/record.h"
+
+namespace ispace {
+
+struct SensorKind;
+
+/// A magnetic contact, which reports whether a door is open. It has no rays.
+struct Contact {
+    std::string model;  ///< always ""
+    std::string door;   ///< id
+    double rate = 10;   ///< readings a second
+    double max_range = 0;
+    bool is_open = false;  ///< state of the door in the scene
+
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    [[nodiscard]] static std::size_t rays() { return 0; }
+    [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return false; }
+    [[nodiscard]] static bool isNoisy() { return false; }
+    friend bool operator==(const Contact&, const Contact&) = default;
+};
+
+/// Reads the parameters of a `contact` record, as if its door were shut.
+Contact contactOf(const Record& record);
+
+extern const SensorKind kContactKind;
+
+}  // namespace ispace

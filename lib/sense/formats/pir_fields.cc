@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Readings of passive infrared sensors and contacts.
+#include "sense/formats/field_values.h"
+
+namespace ispace {
+
+namespace {
+
+using namespace fields;
+
+FieldValue motionAsNumber(const View& reading) {
+    return fieldOf(int{reading.as<PirState>().motion});
+}
+
+constexpr ReadingField kPirFields[] = {
+    {"range_min", kInInfo, figure<Pir, &Pir::min_range>},
+    {"range_max", kInInfo, figure<Pir, &Pir::max_range>},
+    {"fov", kInInfo,
+     [](const View& r) {
+         const Pir& pir = r.sensor.as<Pir>();
+         return FieldValue(std::vector{pir.fov_x, pir.fov_y});
+     }},
+    {"hold", kInInfo, figure<Pir, &Pir::hold>},
+    {"min_speed", kInInfo, figure<Pir, &Pir::min_speed>},
+    {"rate", kInInfo, figure<Pir, &Pir::rate>},
+    {"motion", kInJson | kInLine | kIsState, measured<PirState, &PirState::motion>},
+    {"motion", kInColumn | kInPage, motionAsNumber},
+    {"motion", kInArray,
+     [](const View& r) { return FieldValue(r.as<PirState>().motion ? 1.0 : 0.0); }, kFloat64,
+     [](const View&) { return std::vector<std::uint64_t>(); }},
+    {"limits", kInFixed, limitsOf<Pir>}};
+
+FieldValue openAsNumber(const View& reading) {
+    return fieldOf(int{reading.as<ContactState>().open});
+}
+
+constexpr ReadingField kContactFields[] = {
+    {"door", kInInfo,
+     [](const View& r) { return FieldValue(FieldText(r.sensor.as<Contact>().door)); }},
+    {"rate", kInInfo, figure<Contact, &Contact::rate>},
+    {"open", kInJson | kInLine | kIsState, measured<ContactState, &ContactState::open>},
+    {"open", kInColumn | kInPage, openAsNumber},
+    {"open", kInArray,
+     [](const View& r) { return FieldValue(r.as<ContactState>().open ? 1.0 : 0.0); }, kFloat64,
+     [](const View&) { return std::vector<std::uint64_t>(); }}};
+
+}  // namespace
+
+extern const ReadingKind kContactReadings = {.fields = kContactFields};
+extern const ReadingKind kPirReadings = {.fields = kPirFields};
+
+}  // namespace ispace

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "scene/sensor/sensor.h"
+#include "sense/selection.h"
+#include "trace/moving_bodies.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+/// One reading of a passive infrared sensor.
+struct PirState {
+    double time = 0;  ///< seconds
+    int frame = 0;
+    Pose3 pose;
+    bool motion = false;  ///< its output
+    double held = 0;      ///< seconds for which the output stays on from `time`
+};
+
+/// Detects people who move in the sight of the PIR sensor `sensor` at `pose`: sightingsOf()
+/// (sense/sighting.h) tells those in sight. The speed that counts is that of the trunk or limb in
+/// sight, over the floor.
+///
+/// Noise, if a seed is given, depends on seed, sensor, frame and person alone: detections drop out,
+/// and a reading has a false alarm with the probability false_alarms / 3600 / rate.
+/// \param mesh surfaces that stop its rays; not a slice
+PirState castPir(const RayWorld& mesh, const MovingBodies& bodies,
+                 const MoverVelocities& velocities, const Sensor& sensor, const Pose3& pose,
+                 int frame, std::optional<std::uint64_t> noise_seed);
+
+/// Keeps the output on for the rest of the hold time of an earlier reading.
+void holdOutput(const PirState& before, PirState& now);
+
+}  // namespace ispace
