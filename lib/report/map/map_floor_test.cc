@@ -224,7 +224,9 @@ TEST(MapFloor, ClassesComeFromExactSharesWhereTheyAreKnown) {
     EXPECT_EQ(shadesFor(report).count, 1);
     // A page of maps has one scale: a sensor has one colour, however many see floor elsewhere.
     EXPECT_EQ(redundancyScale(report), 1U);
-    const Shades shared = shadesFor(report, 3), other = shadesFor({.redundancy = {0, 0, 0, 1}});
+    CoverageReport elsewhere;
+    elsewhere.redundancy = {0, 0, 0, 1};
+    const Shades shared = shadesFor(report, 3), other = shadesFor(elsewhere);
     EXPECT_EQ(shared.count, other.count);
     EXPECT_EQ(shared.color(1), other.color(1));
     EXPECT_NE(shared.color(1), shadesFor(report).color(1));
