@@ -60,6 +60,16 @@ Body cylinderBody(const Record& record) {
     return uprightRound(cylinder, Material::Box);
 }
 
+Body switchBody(const Record& record) {
+    constexpr double kDeep = 0.02, kEdge = 0.08;
+    const Tuple& at = record.tuple("at");
+    const double middle = record.number("height");
+    Body body;
+    body.prisms.push_back({rectangle({at[0], at[1]}, kDeep, kEdge, record.angle("heading")),
+                           std::max(0.0, middle - kEdge / 2), middle + kEdge / 2, Material::Box});
+    return body;
+}
+
 Body floorBody(const Record& record) {
     const Tuple& at = record.tuple("at");
     const Tuple& size = record.tuple("size");
@@ -115,12 +125,14 @@ struct Shape {
     bool stands = true;  ///< see standsByItself()
 };
 
-constexpr Shape kShapes[] = {
-    {"ispace", roomBody, false}, {"wall", wallBody, false}, {"fence", wallBody, false},
-    {"mesh", meshBody, false},   {"floor", floorBody},      {"pillar", pillarBody},
-    {"table", tableBody},        {"desk", deskBody},        {"chair", chairBody},
-    {"barrier", barrierBody},    {"cube", cubeBody},        {"cylinder", cylinderBody},
-    {"infra", infraBody},        {"boxes", boxesBody},      {"screen", screenBody}};
+constexpr Shape kShapes[] = {{"ispace", roomBody, false}, {"wall", wallBody, false},
+                             {"fence", wallBody, false},  {"mesh", meshBody, false},
+                             {"floor", floorBody},        {"pillar", pillarBody},
+                             {"table", tableBody},        {"desk", deskBody},
+                             {"chair", chairBody},        {"barrier", barrierBody},
+                             {"cube", cubeBody},          {"cylinder", cylinderBody},
+                             {"infra", infraBody},        {"switch", switchBody, false},
+                             {"boxes", boxesBody},        {"screen", screenBody}};
 
 /// Returns null if the record has no body.
 const Shape* shapeOf(const Record& record) {

@@ -257,6 +257,36 @@ void addInfra(std::vector<Schema>& out) {
                           countKey("cols", "bars across", 3, 1000)}));
 }
 
+/// Actuators: their states are keys, see stateKeys().
+void addAppliances(std::vector<Schema>& out) {
+    out.push_back(schema("lamp", RecordType::Infra,
+                         "a panel of light in the ceiling, which pictures show: with lamps the "
+                         "room has no other light than these",
+                         {floorAtKey(),
+                          flagKey("on", "it shines"),
+                          {.name = "level",
+                           .type = KeyType::Number,
+                           .unit = Unit::Share,
+                           .help = "share of its full light",
+                           .default_value = 1.0,
+                           .lower = 0,
+                           .upper = 1},
+                          {.name = "color",
+                           .type = KeyType::Tuple,
+                           .help = "red,green,blue of its light, each from 0 to 1",
+                           .default_value = Tuple{1, 1, 0.97},
+                           .min_count = 3,
+                           .max_count = 3,
+                           .lower = 0,
+                           .upper = 1}}));
+    out.push_back(
+        schema("switch", RecordType::Infra,
+               "a switch on a wall, which clients press and watch; it switches no lamp "
+               "by itself",
+               {floorAtKey(), headingKey(), heightKey(1.05, "height of its middle above the floor"),
+                flagKey("on", "it is on")}));
+}
+
 Schema meshSchema() {
     return schema(
         "mesh", RecordType::Other, "a body from a file: OBJ, STL, PLY, COLLADA, glTF, GLB or IFC",
@@ -342,6 +372,7 @@ std::vector<Schema> environmentSchemas() {
     addWalls(out);
     addOpenings(out);
     addInfra(out);
+    addAppliances(out);
     addThings(out);
     out.push_back(meshSchema());
     return out;

@@ -423,6 +423,7 @@ void Server::run() {
     while (!simulation.finished()) {
         data.serveClients();
         if (simulation.isDue(steady_clock::now())) data.state.prepareStep();
+        data.state.changeAsScripted();
         // Last before sleeping: pending requests determine the time to wake.
         std::optional<WallTime> next;
         next = data.holdsWorld() ? simulation.flushRecord()

@@ -8,6 +8,7 @@
 
 #include "base/number.h"
 #include "server/session.h"
+#include "server/session_requests.h"
 #include "sim/run_limits.h"
 
 namespace ispace {
@@ -140,13 +141,28 @@ ServerState::Text& ServerState::textOf(std::size_t sensor, const ReplyForm& form
     return found != forms.end() ? *found : forms.emplace_back(Text{form, -1, nullptr});
 }
 
+void ServerState::changeAsScripted() {
+    while (simulation_->isChangeDue() || scripted_) {
+        if (is_changing_ || seek_ || !editor_) return;
+        if (!scripted_) scripted_ = changeWorld(*this, simulation_->takeScriptedChange());
+        if (!scripted_->bytes) return;
+        // The script goes on without a change that the world refuses.
+        const std::string answer = *std::exchange(scripted_, nullptr)->bytes;
+        if (answer.starts_with("ERR"))
+            simulation_->events().add(EventKind::Mark,
+                                      "script: " + answer.substr(0, answer.size() - 1));
+    }
+}
+
 bool ServerState::mayHold() const {
     // A client that steps a paused world expects earlier changes to be complete.
     return simulation_->clock().kind != Clock::Kind::Real || simulation_->isReplay() ||
            simulation_->paused();
 }
 
-bool ServerState::holdsWorld() const { return mayHold() && !isAtRest(); }
+bool ServerState::holdsWorld() const {
+    return simulation_->isChangeDue() || scripted_ || (mayHold() && !isAtRest());
+}
 
 void ServerState::runInBackground(BackgroundWorker::Job job) {
     if (workshop_)

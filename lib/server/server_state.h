@@ -211,6 +211,9 @@ class ServerState {
     [[nodiscard]] bool isAtRest() const { return !isMaking() && !is_changing_ && !seek_; }
     /// True if clients may expect steps to wait for them: not with the clock Real.
     [[nodiscard]] bool mayHold() const;
+    /// Makes the changes of the script that are due, in order; not while another is under way. One
+    /// that fails becomes a mark among the events.
+    void changeAsScripted();
     /// True if the world must not step: the sequence of steps may not depend on computing time.
     [[nodiscard]] bool holdsWorld() const;
     /// Completes finished requests, between steps. \returns false if there were none
@@ -270,7 +273,8 @@ class ServerState {
     std::shared_ptr<std::size_t> alive_ = std::make_shared<std::size_t>(0);
     std::vector<Making> makings_;
     bool is_changing_ = false;
-    std::shared_ptr<Seek> seek_;  // null: no seek under way
+    std::shared_ptr<const Asked> scripted_;  // the change of the script under way
+    std::shared_ptr<Seek> seek_;             // null: no seek under way
     std::function<bool()> stopped_;
     // Declared last, since their jobs use the other members: pictures, and changes of the world.
     std::optional<BackgroundWorker> workshop_, builders_;

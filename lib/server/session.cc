@@ -170,6 +170,8 @@ std::span<const Session::Request> Session::requests() {
         {"SEEK", "t", Role::World, 1, 1, &C::seek},
         {"RESET", "", Role::World, 0, 0, &C::change, true},
         {"SET", "id.key=value", Role::World, 1, kAny, &C::change, true},
+        {"STATE", "[id]", Role::World, 0, 1, &C::states},
+        {"ACT", "id key=value", Role::World, 2, 2, &C::act, true},
         {"ADD", "record", Role::World, 1, kAny, &C::change, true},
         {"DELETE", "id...", Role::World, 1, kAny, &C::change, true},
         {"LOAD", "env [layout]", Role::World, 1, 2, &C::change, true},
@@ -461,7 +463,8 @@ void Session::help(Words /*words*/) {
     for (const Request& request : requests()) {
         if (request.role.value_or(role_) != role_) continue;
         if (request.answer == &Session::shutdown && !state_->limits().shutdown) continue;
-        if (request.answer == &Session::change && !state_->mayChange()) continue;
+        const bool changes = request.answer == &Session::change || request.answer == &Session::act;
+        if (changes && !state_->mayChange()) continue;
         if (request.answer == &Session::seek && !state_->simulation().maySeek()) continue;
         const bool is_of_rooms =
             request.answer == &Session::goTo || request.answer == &Session::ride ||

@@ -182,12 +182,14 @@ class Session {
     void ride(Words words);
     void call(Words words);
     void lifts(Words words);
+    void states(Words words);
     void pause(Words words);
     void resume(Words words);
     void seek(Words words);
     void step(Words words);
     void shutdown(Words words);
     void change(Words words);
+    void act(Words words);
     void events(Words words);
     void mark(Words words);
 

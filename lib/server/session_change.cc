@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "scene/room_state.h"
 #include "server/network.h"
 #include "server/session.h"
 #include "server/session_requests.h"
@@ -45,6 +47,22 @@ void Session::change(Words words) {
     if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
     if (!mayChange()) return hold(words, &Session::mayChange);
     wanted_ = changeWorld(*state_, std::string(textOf(words)));
+    receiveAsked();
+}
+
+/// Sets the state of an actuator: a change of its record.
+void Session::act(Words words) {
+    if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
+    if (!mayChange()) return hold(words, &Session::mayChange);
+    const std::vector<std::string>& ids = world().scene().ids;
+    if (std::find(ids.begin(), ids.end(), words[1]) == ids.end())
+        return error(404, {unknownThing("record", words[1], ids)});
+    try {
+        const std::string edit = stateEdit(world().scene(), words[1], words[2]);
+        wanted_ = changeWorld(*state_, "SET " + edit, "ACT");
+    } catch (const UsageError& bad) {
+        return error(400, {bad.what()});
+    }
     receiveAsked();
 }
 
@@ -128,6 +146,14 @@ void appendEvent(std::string& out, const Event& event, std::string_view where) {
             break;
         case EventKind::Seen:
             add("by", std::to_string(event.value));
+            break;
+        case EventKind::State:
+            add(event.other, event.text);
+            break;
+        case EventKind::Activity:
+            add("name", event.other);
+            add("on", std::to_string(event.value));
+            add("text", event.text);
             break;
         case EventKind::Mark:
             add("text", event.text);

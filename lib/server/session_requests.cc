@@ -21,6 +21,7 @@
 #include "scene/scene.h"
 #include "server/session.h"
 #include "sim/command.h"
+#include "sim/state_watch.h"
 #include "sim/world_state.h"
 
 namespace ispace {
@@ -119,7 +120,8 @@ std::string warningOf(const World& world, const std::vector<std::string>& movers
 /// A pending change request.
 class Changing {
   public:
-    Changing(ServerState& state, const std::string& line) : state_(&state), line_(line) {
+    Changing(ServerState& state, const std::string& line, const std::string& verb)
+        : state_(&state), line_(line), verb_(verb) {
         for (const Piece& piece : wordsOf(line_)) words_.push_back(piece.text);
     }
     Changing(const Changing&) = delete;
@@ -137,7 +139,7 @@ class Changing {
     [[nodiscard]] std::string done() const;
 
     ServerState* state_;
-    std::string line_;
+    std::string line_, verb_;
     std::vector<std::string_view> words_;  // of it
     std::shared_ptr<const ChangeNews> news_;
 };
@@ -166,7 +168,7 @@ std::string Changing::done() const {
         is("ADD") && !world().scene().ids.empty() ? world().scene().ids.back() : "";
     state_->simulation().tellChange(printable(line_), news_->scene_text);
     std::string out = "OK ";
-    out += words_[0];
+    out += verb_.empty() ? words_[0] : verb_;
     if (!added.empty()) out.append(" id=").append(added);
     out.append(" t=").append(formatMilliseconds(world().time()));
     const std::vector<std::string> movers =
@@ -201,8 +203,9 @@ std::string Changing::end(const std::exception_ptr& failure) {
 
 }  // namespace
 
-std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line) {
-    const auto changing = std::make_shared<Changing>(state, line);
+std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line,
+                                                      const std::string& verb) {
+    const auto changing = std::make_shared<Changing>(state, line, verb);
     const auto asked = std::make_shared<ServerState::Asked>();
     const auto end = [changing, asked](const std::exception_ptr& failure) {
         asked->bytes = std::make_shared<const std::string>(changing->end(failure));
@@ -363,6 +366,20 @@ void Session::list(Words /*words*/) {
         for (const JoinedRoom& room : rooms()->worlds->rooms()) ids.push_back(room.id);
         out_.append(" rooms=").append(joined(ids, ","));
     }
+    out_ += '\n';
+}
+
+void Session::states(Words words) {
+    std::vector<RoomState> states = statesOf(world());
+    if (words.size() > 1) {
+        std::erase_if(states, [&](const RoomState& state) { return state.id != words[1]; });
+        if (states.empty())
+            return error(404, {"no sensor or actuator ", excerpt(words[1]), " has a state"});
+    }
+    out_.append("OK STATE t=").append(formatMilliseconds(world().time()));
+    for (const RoomState& state : states)
+        out_.append(" ").append(state.id).append(".").append(state.key).append("=").append(
+            state.value);
     out_ += '\n';
 }
 

@@ -10,7 +10,9 @@
 namespace ispace {
 
 /// Carries out a request ADD, SET, DELETE, LOAD or RESET. \returns the answer, completed once the
-/// world has changed. \pre state.mayChange(), state.mayChangeNow()
-std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line);
+/// world has changed; it begins with `verb`, if not empty, instead of the request's. \pre
+/// state.mayChange(), state.mayChangeNow()
+std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line,
+                                                      const std::string& verb = "");
 
 }  // namespace ispace

@@ -348,7 +348,8 @@ TEST(Session, ShutdownMayBeRefused) {
     EXPECT_FALSE(talk.room.simulation.finished());
     EXPECT_FALSE(world.closing());
     EXPECT_EQ(talk.ask(world, "HELP"),
-              "OK HELP LIST | TIME | POSES | PAUSE | RESUME | STEP [n] | EVENTS [kinds|off] | MARK "
+              "OK HELP LIST | TIME | POSES | PAUSE | RESUME | STEP [n] | STATE [id] | EVENTS "
+              "[kinds|off] | MARK "
               "text | HELP | QUIT\n");
 }
 

@@ -12,6 +12,9 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "record/edit.h"
+#include "scene/room_state.h"
+#include "sim/activity.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -220,6 +223,8 @@ class ScriptReader {
     }
     std::optional<SimTime> readTime(const Piece& word);
     std::optional<std::size_t> readMover(const Piece& word);
+    /// \param words of the line
+    std::optional<std::string> readAct(std::span<const Piece> words);
     /// \param text of the command, which begins at `words`
     std::optional<Command> readCommand(std::string_view text, std::span<const Piece> words,
                                        std::optional<std::size_t> robot);
@@ -248,6 +253,25 @@ std::optional<std::size_t> ScriptReader::readMover(const Piece& word) {
                 "unknown robot or person " + excerpt(word.text) +
                     (names_.empty() ? ": the scene has none" : didYouMean(word.text, names_)));
     return mover;
+}
+
+std::optional<std::string> ScriptReader::readAct(std::span<const Piece> words) {
+    if (words.size() != 4) {
+        finding(words.back().column, "ACT wants one state, like 2.5 lamp1 ACT on=yes");
+        return std::nullopt;
+    }
+    try {
+        const std::string edit = stateEdit(world_->scene(), words[1].text, words[3].text);
+        // Rejects a bad value, without a change.
+        const std::vector<Edit> edits{parseEdit(Edit::Kind::Set, edit)};
+        editedRecords(world_->scene(), edits, [](const std::string&) { return std::nullopt; });
+        return "SET " + edit;
+    } catch (const FormatError& error) {
+        finding(words[3].column, error.diagnostics().front().message);
+    } catch (const UsageError& error) {
+        finding(words[1].column, error.what());
+    }
+    return std::nullopt;
 }
 
 std::optional<Command> ScriptReader::readCommand(std::string_view text,
@@ -281,6 +305,11 @@ void ScriptReader::read(std::string_view line, int number) {
                                            "2.5 r1 FORWARD 1");
         return;
     }
+    if (upperCase(words[2].text) == "ACT") {
+        const auto change = readAct(words);
+        if (time && change) commands_.push_back({*time, 0, {}, *change});
+        return;
+    }
     const auto robot = readMover(words[1]);
     const auto begin = static_cast<std::size_t>(words[2].column) - 1;
     const auto command =
@@ -305,7 +334,8 @@ std::vector<TimedCommand> readScript(std::string_view text, const std::string& f
     LineReader lines(text);
     // No word of the language holds a #.
     while (const auto line = lines.next())
-        reader.read(line->substr(0, line->find('#')), lines.number());
+        if (const auto code = line->substr(0, line->find('#')); !isDayLine(code))
+            reader.read(code, lines.number());
     return reader.take();
 }
 

@@ -57,15 +57,18 @@ struct ParsedCommand {
 /// robot's own limits are not checked.
 ParsedCommand parseCommand(std::string_view text);
 
-/// A command of a script, issued at the first step at or after its time.
+/// A command of a script, or a change of the world, issued at the first step at or after its time.
 struct TimedCommand {
     SimTime time{};
     std::size_t robot = 0;  ///< or person: an index of World::movers()
     Command command;
+    std::string change = {};  ///< of a change the request of the protocol: "SET l1.on=yes"
 };
 
 /// Parses lines `TIME ROBOT COMMAND …`: seconds (or with a unit: 500ms), the id of a robot or a
-/// person, a command of the Command System. `#` begins a comment; empty lines are allowed. Sorts
+/// person, a command of the Command System; and `TIME ID ACT KEY=VALUE`, which sets the state of an
+/// actuator (see room_state.h). Lines of a
+/// plan of days (see activity.h) are skipped. `#` begins a comment; empty lines are allowed. Sorts
 /// the result by time, equal times in file order. \throws FormatError with all findings
 /// (file:line:column): bad times, unknown robots and commands, values beyond the robot's limits
 std::vector<TimedCommand> readScript(std::string_view text, const std::string& file,

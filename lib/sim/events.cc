@@ -16,6 +16,7 @@
 #include "sense/detection.h"
 #include "sense/formats/reading_text.h"
 #include "sense/selection.h"
+#include "sim/state_watch.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -29,7 +30,8 @@ constexpr std::size_t kKept = 16384;
 constexpr SimTime kLookEvery = std::chrono::milliseconds(100);
 
 constexpr std::array<std::string_view, kEventKinds> kEventNames = {
-    "collision", "stall", "enter", "leave", "mat", "gate", "seen", "lost", "mark", "change"};
+    "collision", "stall", "enter", "leave",    "mat",  "gate",
+    "seen",      "lost",  "state", "activity", "mark", "change"};
 
 }  // namespace
 
@@ -59,7 +61,7 @@ void appendEventRow(std::string& out, const Event& event) {
     if (event.place) appendDouble(out, event.place->y);
     out += ',';
     const bool has_value = event.kind == EventKind::Mat || event.kind == EventKind::Gate ||
-                           event.kind == EventKind::Seen;
+                           event.kind == EventKind::Seen || event.kind == EventKind::Activity;
     if (has_value) out += std::to_string(event.value);
     out += ',';
     appendCsvField(out, event.text);
@@ -80,6 +82,7 @@ struct EventLog::Data {
     void tellMats();
     void tellGates();
     void tellSight();
+    void tellStates();
     [[nodiscard]] bool wants(EventKind kind) const {
         return wanted[static_cast<std::size_t>(kind)] > 0;
     }
@@ -106,6 +109,7 @@ struct EventLog::Data {
     std::map<std::string, std::vector<std::string>> on;  // the movers on each mat
     std::optional<DetectionMonitor> watch;               // once Seen or Lost is subscribed
     std::int64_t look = -1;                              // the last one
+    std::optional<StateWatch> states;                    // once State is subscribed
 };
 
 /// Removes old events, except those of the last step.
@@ -244,6 +248,16 @@ void EventLog::Data::tellSight() {
         }
 }
 
+void EventLog::Data::tellStates() {
+    if (!wants(EventKind::State)) return;
+    if (!states) states.emplace(*world);
+    for (RoomState& state : states->changed())
+        put({.kind = EventKind::State,
+             .id = std::move(state.id),
+             .other = std::move(state.key),
+             .text = std::move(state.value)});
+}
+
 EventLog::EventLog(const World& world) : data_(std::make_unique<Data>(world)) {}
 EventLog::~EventLog() = default;
 EventLog::EventLog(EventLog&&) noexcept = default;
@@ -251,6 +265,7 @@ EventLog& EventLog::operator=(EventLog&&) noexcept = default;
 
 void EventLog::want(const EventKinds& kinds) {
     for (const EventKind kind : kinds) ++data_->wanted[static_cast<std::size_t>(kind)];
+    if (data_->wants(EventKind::State) && !data_->states) data_->states.emplace(*data_->world);
 }
 
 void EventLog::unwant(const EventKinds& kinds) {
@@ -273,6 +288,7 @@ void EventLog::unwant(const EventKinds& kinds) {
         data_->look = -1;
     }
     if (!data_->wants(EventKind::Mat)) data_->on.clear();
+    if (!data_->wants(EventKind::State)) data_->states.reset();
 }
 
 void EventLog::stepped() {
@@ -286,12 +302,18 @@ void EventLog::stepped() {
     data_->tellMats();
     data_->tellGates();
     data_->tellSight();
+    data_->tellStates();
 }
 
 void EventLog::add(EventKind kind, std::string text, std::string other) {
     assert(kind == EventKind::Mark || kind == EventKind::Change);
     data_->forget();
     data_->put({.kind = kind, .other = std::move(other), .text = std::move(text)});
+}
+
+void EventLog::tell(Event event) {
+    assert(event.kind == EventKind::Activity);
+    if (data_->wants(event.kind)) data_->put(std::move(event));
 }
 
 std::int64_t EventLog::next() const {

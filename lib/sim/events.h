@@ -22,14 +22,17 @@ enum class EventKind {
     Stall,      ///< `id` stands still until its next command
     Enter,      ///< `id` entered the zone `other`
     Leave,
-    Mat,     ///< `other` stepped on the mat `id` (value 1) or off it (0)
-    Gate,    ///< `other` passed the gate `id` inwards (value 1) or outwards (0)
-    Seen,    ///< `id` comes into the sight of `value` sensors, after zero
-    Lost,    ///< no sensor sees `id` any more
+    Mat,    ///< `other` stepped on the mat `id` (value 1) or off it (0)
+    Gate,   ///< `other` passed the gate `id` inwards (value 1) or outwards (0)
+    Seen,   ///< `id` comes into the sight of `value` sensors, after zero
+    Lost,   ///< no sensor sees `id` any more
+    State,  ///< the state `other` of the sensor or actuator `id` has become `text`
+    /// The person `id` begins (value 1) or ends (0) the action `text` of the activity `other`.
+    Activity,
     Mark,    ///< a client wrote `text`
     Change,  ///< the request `text` changed the world; `other`: file of the scene after it
 };
-constexpr std::size_t kEventKinds = 10;
+constexpr std::size_t kEventKinds = 12;
 /// Returns the name of a kind: "collision".
 std::string_view nameOf(EventKind kind);
 std::optional<EventKind> eventKindNamed(std::string_view name);
@@ -53,6 +56,9 @@ void appendEventRow(std::string& out, const Event& event);
 ///
 /// Seen and Lost follow DetectionMonitor (sense/detection.h), ten times a second.
 ///
+/// State follows the fields of readings that are states, and the records of roomStates(); at a
+/// subscription the states count as known, and no event tells them.
+///
 /// Only subscribed kinds are computed. At the start all movers count as outside every zone, off
 /// every mat and unseen, so those inside raise Enter, Mat or Seen at the next step. Events of one
 /// step are sorted by kind, those of a kind in the world's order. A removed mover or zone raises no
@@ -73,6 +79,9 @@ class EventLog {
     void stepped();
     /// Adds an event between steps, at the world's time. \pre Mark or Change
     void add(EventKind kind, std::string text, std::string other = {});
+
+    /// Adds an event at the world's time if its kind is subscribed. \pre Activity
+    void tell(Event event);
 
     /// Events are numbered from 0 in their order; returns the number of the next one.
     [[nodiscard]] std::int64_t next() const;

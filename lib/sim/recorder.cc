@@ -37,14 +37,16 @@ enum File {
     kSonars,
     kBumpers,
     kEvents,
+    kStates,
+    kActivities,
     kTiming,
     kInfo,
     kScene,
     kFiles
 };
 constexpr std::array<const char*, kFiles> kFileNames = {
-    "robots.csv",  "odometry.csv", "people.csv", "scans.jsonl", "sonars.csv",
-    "bumpers.csv", "events.csv",   "timing.csv", "info.csv",    "scene.env"};
+    "robots.csv", "odometry.csv", "people.csv",     "scans.jsonl", "sonars.csv", "bumpers.csv",
+    "events.csv", "states.csv",   "activities.csv", "timing.csv",  "info.csv",   "scene.env"};
 constexpr const char *kPictures = "pictures", *kDepths = "depths", *kScenes = "scenes";
 
 std::string pathIn(const std::string& folder, const char* name) {
@@ -100,6 +102,8 @@ struct Recorder::Data {
           sonars(pathIn(folder, kFileNames[kSonars])),
           bumpers(pathIn(folder, kFileNames[kBumpers])),
           events(pathIn(folder, kFileNames[kEvents])),
+          states(pathIn(folder, kFileNames[kStates])),
+          activities(pathIn(folder, kFileNames[kActivities])),
           timing(pathIn(folder, kFileNames[kTiming])),
           info(pathIn(folder, kFileNames[kInfo])),
           scene(pathIn(folder, kFileNames[kScene])),
@@ -113,7 +117,8 @@ struct Recorder::Data {
     EventLog* events_log;
     std::string folder;
     FolderLock lock;
-    LineFile robots, odometry, people, scans, sonars, bumpers, events, timing, info, scene;
+    LineFile robots, odometry, people, scans, sonars, bumpers, events, states, activities, timing,
+        info, scene;
     FrameFiles pictures, depths, scenes;
     std::int64_t scene_count = 0;
     steady_clock::time_point started = steady_clock::now(), flushed = started;
@@ -124,6 +129,7 @@ struct Recorder::Data {
     std::uint64_t flushed_size = 0;
     std::exception_ptr ended;  // the error that ended the record early
     std::int64_t next_event = 0;
+    std::map<std::string, SimTime> begun;  // activities by person
     // Of the world's sensors, rebuilt after a change.
     std::int64_t changes = -1;
     std::vector<Sensor> receivers;
@@ -142,8 +148,9 @@ struct Recorder::Data {
     [[nodiscard]] bool hasNewEvents() const {
         return events_log != nullptr && next_event < events_log->next();
     }
-    [[nodiscard]] std::array<LineFile*, 7> stepFiles() {
-        return {&robots, &odometry, &people, &scans, &sonars, &bumpers, &events};
+    [[nodiscard]] std::array<LineFile*, 9> stepFiles() {
+        return {&robots,  &odometry, &people, &scans,     &sonars,
+                &bumpers, &events,   &states, &activities};
     }
     /// Returns the last step that all files hold.
     [[nodiscard]] std::int64_t wholeSteps() {
@@ -160,6 +167,7 @@ struct Recorder::Data {
     void appendFeelings(World& world);
     void appendFrame(const Frame& frame);
     void appendEvents();
+    void appendDay(const Event& event);
     void append(World& world);
     [[nodiscard]] std::uint64_t size() const;
     void writeLines();
@@ -177,6 +185,8 @@ void Recorder::Data::begin() {
     scans.pending = scanHeaderLine(options.history, options.seed);
     events.pending = eventTableHead();
     if (!events.pending.ends_with('\n')) events.pending += '\n';
+    states.pending = "t,id,state,value\n";
+    activities.pending = "begin,end,id,activity,action\n";
     timing.pending = "t,wall,steps\n";
     scene.pending = options.scene;
     scene.flush();
@@ -239,7 +249,7 @@ bool Recorder::Data::appendScans(World& world, steady_clock::time_point until) {
     while (next_reading < world.read().size()) {
         const std::size_t i = world.read()[next_reading++];
         const Sensor& sensor = world.sensors()[i];
-        if (isHeavy(sensor)) continue;
+        if (isHeavy(sensor) || !options.readings) continue;
         appendReadingLine(scans.pending, sensor, world.reading(i), receivers);
         // Bounds the memory for one step of many lasers.
         scans.flushBlock(kWriteBlock);
@@ -279,10 +289,35 @@ void Recorder::Data::appendFeelings(World& world) {
 void Recorder::Data::appendEvents() {
     if (events_log != nullptr) {
         next_event = std::max(next_event, events_log->first());
-        for (; next_event < events_log->next(); ++next_event)
-            appendEventRow(events.pending, events_log->at(next_event));
+        for (; next_event < events_log->next(); ++next_event) {
+            const Event& event = events_log->at(next_event);
+            appendEventRow(events.pending, event);
+            appendDay(event);
+        }
     }
     events.endStep(steps);
+    states.endStep(steps);
+    activities.endStep(steps);
+}
+
+/// Writes states as data sets of smart homes have them, one a line, and apart from them, as the
+/// labels, the actions of people that have ended.
+void Recorder::Data::appendDay(const Event& event) {
+    if (event.kind == EventKind::State) {
+        states.pending.append(formatSimTime(event.time)).append(",").append(event.id);
+        states.pending.append(",").append(event.other).append(",");
+        appendCsvField(states.pending, event.text);
+        states.pending += '\n';
+    }
+    if (event.kind != EventKind::Activity) return;
+    SimTime& since = begun[event.id];
+    if (event.value == 1) {
+        since = event.time;
+        return;
+    }
+    activities.pending.append(formatSimTime(since)).append(",").append(formatSimTime(event.time));
+    activities.pending.append(",").append(event.id).append(",").append(event.other).append(",");
+    activities.pending.append(event.text).append("\n");
 }
 
 void Recorder::Data::append(World& world) {
@@ -311,7 +346,8 @@ void Recorder::Data::writeInfo() {
 
 std::uint64_t Recorder::Data::size() const {
     return robots.size() + odometry.size() + people.size() + scans.size() + sonars.size() +
-           bumpers.size() + events.size() + pictures.size() + depths.size() + scenes.size();
+           bumpers.size() + events.size() + states.size() + activities.size() + pictures.size() +
+           depths.size() + scenes.size();
 }
 
 void Recorder::Data::writeLines() {

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "sim/activity.h"
 
 namespace ispace {
 
@@ -102,11 +103,26 @@ void Simulation::endIfReached() {
 void Simulation::giveScripted() {
     for (; next_ < script_.size() && script_[next_].time <= world_->time(); ++next_) {
         const TimedCommand& timed = script_[next_];
+        if (!timed.change.empty()) {
+            due_changes_.push_back(timed.change);
+            continue;
+        }
         const auto mover = world_->changes() == 0 ? std::optional(timed.robot)
                                                   : world_->moverNamed(scripted_[timed.robot]);
         if (mover && world_->refusal(*mover, timed.command).empty())
             world_->command(*mover, timed.command);
     }
+}
+
+void Simulation::follow(DayPlan plan) {
+    if (!plan.lines.empty()) director_ = std::make_shared<ActivityDirector>(std::move(plan));
+}
+
+std::string Simulation::takeScriptedChange() {
+    if (due_changes_.empty()) return "";
+    std::string change = std::move(due_changes_.front());
+    due_changes_.pop_front();
+    return change;
 }
 
 void Simulation::tellChange(std::string request, const std::string& scene_text) {
@@ -142,6 +158,7 @@ void Simulation::step() {
     if (recorder_ != nullptr) recorder_->record(*world_);
     endIfReached();
     if (!finished_) giveScripted();
+    if (!finished_ && director_) director_->stepped(*this);
     for (Simulation* const other : followers_) other->step();
     for (const auto& observer : observers_) observer();
 }
@@ -238,7 +255,7 @@ std::optional<WallTime> Simulation::runDue(WallTime now, nanoseconds budget) {
         step();
         if (finished_) break;
         if (!finishStep(end)) return next_part();
-        if (preparation()) break;
+        if (preparation() || isChangeDue()) break;
         if (steady_clock::now() >= end) break;
     }
     if (isDue(now)) return now;

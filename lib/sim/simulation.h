@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +21,9 @@
 namespace ispace {
 
 using WallTime = std::chrono::steady_clock::time_point;
+
+class ActivityDirector;
+struct DayPlan;
 
 /// Relation of simulated time to wall time.
 struct Clock {
@@ -54,6 +59,15 @@ class Simulation {
     /// \param scene_text of the changed scene, which the record stores, too; "" if the request is
     /// sufficient
     void tellChange(std::string request, const std::string& scene_text);
+
+    /// Makes people follow a plan of their days. Call it before the first step.
+    void follow(DayPlan plan);
+    /// Asks for a change of the world, as the script does: a request of the protocol.
+    void askChange(std::string request) { due_changes_.push_back(std::move(request)); }
+    /// Returns the next change of the script that is due, a request of the protocol, and removes
+    /// it; "" if none is. The world must not step before it is made: see isChangeDue().
+    std::string takeScriptedChange();
+    [[nodiscard]] bool isChangeDue() const { return !due_changes_.empty(); }
 
     /// Adds an observer, called after every step once it is recorded and the script's commands for
     /// the next one are given. It must stay valid until the last step.
@@ -170,6 +184,8 @@ class Simulation {
     std::vector<TimedCommand> script_;
     std::vector<std::string> scripted_;  // ids of the movers that the script commands by index
     std::size_t next_ = 0;               // of script_
+    std::shared_ptr<ActivityDirector> director_;  // of people with a plan; null: none
+    std::deque<std::string> due_changes_;         // of the script
     Recorder* recorder_ = nullptr;
     Replay* replay_ = nullptr;
     bool holds_ = false;        // at the end of the record

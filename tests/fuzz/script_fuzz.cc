@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scripts of `simrun --script`: commands in the order of time, for robots and people that exist.
+// Scripts of `simrun --script`: commands in the order of time, for robots and people that exist,
+// and days of people.
 #include "fuzz.h"
+#include "sim/activity.h"
 #include "sim/simulation.h"
 #include "wire_host.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
-    RoomHost host("robot id=r1 at=0,0\nhuman id=h1 at=2,2\n");
+    RoomHost host(
+        "robot id=r1 at=0,0\nhuman id=h1 at=2,2\nzone id=z1 at=-1,1 size=1,1\n"
+        "lamp id=l1 at=1,1\nswitch id=b1 at=0,2\n");
     World& world = host.world();
     std::vector<TimedCommand> script = readScript(bytes, "run.txt", world);
+    DayPlan plan = readDayPlan(bytes, "run.txt", world);
+    for (const DayLine& line : plan.lines) {
+        require(world.personNamed(line.person).has_value(), "a day of a person who does not exist");
+        require(!line.actions.empty() && !line.name.empty(), "an activity without action or name");
+    }
     SimTime time{};
     for (const TimedCommand& timed : script) {
         require(timed.time >= time, "commands are not in the order of time");
@@ -15,6 +24,7 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
         time = timed.time;
     }
     Simulation simulation(world, std::move(script), {Clock::Kind::Step, 1}, {});
+    simulation.follow(std::move(plan));
     constexpr int kSteps = 3;
     simulation.allow(kSteps);
     simulation.run({}, std::chrono::hours(1));

@@ -56,7 +56,8 @@ def of_world(r):
         lambda: r.choice(("PAUSE", "RESUME", "RESUME", "RESUME")), lambda: f"STEP {number(r)}",
         lambda: "LOAD " + r.choice(("none.env", "../hall.env", "fifo.env", "broken.env", "/dev/zero", "hall.env hall.env")),
         lambda: "EVENTS", lambda: "EVENTS collision,mark", lambda: "EVENTS off", lambda: f"SEEK {number(r)}",
-        lambda: "MARK " + "m" * r.randint(0, 400), lambda: "LIST", lambda: "POSES", lambda: "TIME"))()
+        lambda: "MARK " + "m" * r.randint(0, 400), lambda: "LIST", lambda: "STATE", lambda: f"ACT {name(r)} on={r.choice((0, 1, number(r)))}",
+        lambda: "POSES", lambda: "TIME"))()
 
 
 def of_mover(r):

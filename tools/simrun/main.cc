@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "base/file.h"
 #include "base/run_files.h"
@@ -108,7 +109,9 @@ void run(const SimrunCommand& command, JunitFile& junit) {
                 runOptionsOf(options, replay));
     warn(options.common, "simrun", startWarnings(world));
     if (replay) forward(*replay, world, options.from);
-    Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);
+    Script script = scriptOf(options, input, world);
+    Simulation simulation(world, std::move(script.commands), options.clock, options.until);
+    simulation.follow(std::move(script.days));
     if (replay) simulation.replay(*replay, options.holds);
     CollisionLog collisions(world, options.common);
     FailureLog failures(replay, options.common);

@@ -183,6 +183,9 @@ void SimrunCommand::declareRun() {
                "ways of robots and people and the floor that sensors see (.html, .pdf), or as JSON "
                "(.json)",
                Enters::Nothing);
+    line_.switchFlag("--record-readings", "--no-record-readings", o.records_readings,
+                     "record the readings of sensors (default)",
+                     "leave them out: events and states remain", Enters::Nothing);
     line_.parsed(
         "--record-frames", "RATE",
         [&o](const std::string& text) { o.recorded_frames = recordedRate(text, "frames"); },

@@ -72,6 +72,7 @@ struct SimrunOptions {
     DrawingOptions drawing;
     std::vector<Expectation> expected;
     std::string junit;           ///< file; "" without
+    std::optional<bool> records_readings;
     double recorded_frames = 1;  ///< per simulated second, at most
     double recorded_sonars = 10;
     std::string port_file;  ///< "" without

@@ -70,15 +70,14 @@ History historyOf(const SimrunCommand& command, const SceneInput& input) {
     return history;
 }
 
-std::vector<TimedCommand> scriptOf(const SimrunOptions& options, const SceneInput& input,
-                                   const World& world) {
+Script scriptOf(const SimrunOptions& options, const SceneInput& input, const World& world) {
     if (options.script.empty()) return {};
-    if (options.script == "-") {
-        if (input.environment_operand == "-" || input.layout_operand == "-")
-            throw UsageError("stdin cannot be read twice: give the script or the scene as a file");
-        return readScript(readStdin(), displayName("-"), world);
-    }
-    return readScript(readAll(options.script), options.script, world);
+    const bool is_stdin = options.script == "-";
+    if (is_stdin && (input.environment_operand == "-" || input.layout_operand == "-"))
+        throw UsageError("stdin cannot be read twice: give the script or the scene as a file");
+    const std::string text = is_stdin ? readStdin() : readAll(options.script);
+    const std::string file = displayName(options.script);
+    return {readScript(text, file, world), readDayPlan(text, file, world)};
 }
 
 RunOptions runOptionsOf(const SimrunOptions& options, const std::optional<Replay>& replay) {
@@ -171,6 +170,7 @@ std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOpti
     record.scene_text = [history, folder = options.record + "/scenes"](const Scene& loaded) {
         return sceneText(loaded, history, folder);
     };
+    record.readings = options.records_readings.value_or(true);
     record.frame_rate = options.recorded_frames;
     record.sonar_rate = options.recorded_sonars;
     record.max_bytes = options.max_recorded;

@@ -14,6 +14,7 @@
 #include "cli/run_tool.h"
 #include "scene/scene.h"
 #include "server/server.h"
+#include "sim/activity.h"
 #include "sim/command.h"
 #include "sim/expect.h"
 #include "sim/recorder.h"
@@ -39,8 +40,11 @@ void forward(Replay& replay, World& world, SimTime from);
 History historyOf(const SimrunCommand& command, const SceneInput& input);
 
 /// The commands of --script.
-std::vector<TimedCommand> scriptOf(const SimrunOptions& options, const SceneInput& input,
-                                   const World& world);
+struct Script {
+    std::vector<TimedCommand> commands;
+    DayPlan days;  ///< of people
+};
+Script scriptOf(const SimrunOptions& options, const SceneInput& input, const World& world);
 
 /// Returns options of a run or a replay; a replay keeps the noise of its record unless an option
 /// sets another.

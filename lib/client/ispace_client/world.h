@@ -14,8 +14,8 @@ namespace client {
 
 /// An event in the world.
 struct Event {
-    /// collision, stall, enter, leave, mat, gate, seen, lost, mark, change; missed: number (n=) of
-    /// events dropped because the client did not read them
+    /// collision, stall, enter, leave, mat, gate, seen, lost, state, activity, mark, change;
+    /// missed: number (n=) of events dropped because the client did not read them
     std::string kind;
     double time = 0;  ///< simulated seconds
     Fields fields;    ///< id=, into=, zone= and further fields of its kind
@@ -123,6 +123,18 @@ class World {
     /// Changes a key of a record: set("r1", "speed", "0.3").
     void set(const std::string& id, const std::string& key, const std::string& value) {
         change("SET " + id + "." + key + "=" + value);
+    }
+    /// Sets the state of a lamp, a door or a switch: act("l1", "on", "1").
+    void act(const std::string& id, const std::string& key, const std::string& value) {
+        change("ACT " + id + " " + key + "=" + value);
+    }
+    /// Returns the states of sensors and actuators by "ID.KEY", or those of one of them.
+    std::map<std::string, std::string> states(const std::string& id = "") {
+        std::map<std::string, std::string> states;
+        const Fields fields = ask(id.empty() ? "STATE" : "STATE " + id).fields;
+        for (const auto& pair : fields.pairs()) states.insert(pair);
+        states.erase("t");
+        return states;
     }
     /// Adds a record, as in an environment or layout: add("cube id=b at=1,1 size=1,1,1").
     /// \return its id

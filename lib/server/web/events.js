@@ -7,6 +7,8 @@ const kTexts = {
   enter: ({id, zone}) => `${id} enters ${zone}`,
   leave: ({id, zone}) => `${id} leaves ${zone}`,
   mat: ({id, who, on}) => `${who} steps ${on === '1' ? 'on' : 'off'} ${id}`,
+  activity: ({id, name, on, text}) => `${id} ${on === '1' ? 'begins' : 'ends'} ${name}: ${text}`,
+  state: ({id, t, ...state}) => Object.entries(state).map(([key, value]) => `${id}: ${key} ${value}`).join(', '),
   gate: ({id, who, way}) => `${who} goes ${way} through ${id}`,
   seen: ({id, by}) => `${id} is in sight of ${by}`,
   lost: ({id}) => `${id} is out of sight`,

@@ -8,12 +8,14 @@ import {Driver} from './drive.js';
 import {Cameras} from './camera.js';
 import {eventText} from './events.js';
 import {SeekBar} from './seek.js';
+import {States} from './states.js';
 
 const part = id => document.getElementById(id);
 const canvas = part('map'), context = canvas.getContext('2d');
 const view = new View(canvas);
 const drivers = new Map();  // by id
 const cameras = new Cameras(part, why => tell(why, true));
+const states = new States(part, tell);
 const seekBar = new SeekBar(part('seek'), tell);
 let plan, movers, frame, selected, following = false, fitted = false;
 let link, dirty = false, asked = false;
@@ -29,6 +31,7 @@ function connect() {
         else {
           link.ask('EVENTS');
           link.ask('LIST').then(listRooms);
+          states.open(link);
           seekBar.open(link);
         }
       });
@@ -37,6 +40,7 @@ function connect() {
     },
     json: object => object.plan ? takeScene(object) : takeFrame(object),
     line: line => {
+      states.line(line);
       const {text, bad} = eventText(line);
       if (text) tell(text, bad);
     },
@@ -82,6 +86,7 @@ function takeScene(scene) {
   }
   listMovers();
   cameras.list(movers.sensors);
+  states.know(movers.sensors);
 }
 
 function takeFrame(next) {

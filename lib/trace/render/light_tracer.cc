@@ -151,7 +151,7 @@ void LightTracer::towardsLamps(const LitPlaces& places, std::span<const float> d
         const Lamps::Lamp& lamp = lamps.all()[near[chosen]];
         aimShadow(lane, places, lamp.x - x + Lamps::kHalf * (2 * u - 1),
                   lamp.y - y + Lamps::kHalf * (2 * v - 1), z, 0.999F);
-        strength_[lane] = {sum, sum, 0.97F * sum};
+        for (std::size_t k = 0; k < 3; ++k) strength_[lane][k] = sum * lamp.color[k];
     }
 }
 

@@ -33,6 +33,11 @@ Lamps::Lamps(const Environment& environment, Vec3 shift) {
                   std::sqrt(plan.width() * plan.depth() / kMaxPlaces)});
     height_ = static_cast<float>(std::max(1.0, environment.height() - 0.02));
     reach_ = static_cast<float>(4 * spacing);
+    addRecords(environment, shift, spacing);
+    if (are_records_) {
+        index();
+        return;
+    }
     for (const Region& part : environment.indoor().parts) {
         const Box2 box = bounds(part.outline);
         const auto count = [spacing](double extent) {
@@ -57,6 +62,24 @@ Lamps::Lamps(const Environment& environment, Vec3 shift) {
                               static_cast<float>(place.y + shift.y), static_cast<float>(strength)});
     }
     index();
+}
+
+/// A lamp at full level is as bright as one of the evenly distributed.
+void Lamps::addRecords(const Environment& environment, Vec3 shift, double spacing) {
+    const double strength = kBrightness * spacing * spacing / std::numbers::pi;
+    for (const Element& element : environment.elements()) {
+        const Record& record = element.record;
+        if (record.keyword() != "lamp") continue;
+        are_records_ = true;
+        const double level = record.number("level");
+        if (!record.flag("on") || level == 0) continue;
+        const Tuple& at = record.tuple("at");
+        const Tuple& color = record.tuple("color");
+        Lamp lamp{static_cast<float>(at[0] + shift.x), static_cast<float>(at[1] + shift.y),
+                  static_cast<float>(level * strength)};
+        for (std::size_t k = 0; k < 3; ++k) lamp.color[k] = static_cast<float>(color[k]);
+        lamps_.push_back(lamp);
+    }
 }
 
 void Lamps::index() {

@@ -14,12 +14,14 @@
 
 namespace ispace {
 
-/// Square panels that shine downwards, evenly distributed over each part of the indoor region.
+/// Square panels that shine downwards: those of the `lamp` records that are on, or without such
+/// records panels evenly distributed over each part of the indoor region.
 class Lamps {
   public:
     struct Lamp {
         float x = 0, y = 0;  ///< centre, relative to the middle of the plan
         float strength = 0;  ///< radiance of a white surface one metre below it
+        Rgb color{1, 1, 0.97F};
     };
     /// Half the side of a panel, metres.
     static constexpr float kHalf = 0.35F;
@@ -28,6 +30,8 @@ class Lamps {
     Lamps(const Environment& environment, Vec3 shift);
 
     [[nodiscard]] std::span<const Lamp> all() const { return lamps_; }
+    /// Returns true if the environment has `lamp` records, on or off.
+    [[nodiscard]] bool areRecords() const { return are_records_; }
     [[nodiscard]] float height() const { return height_; }
     /// Returns the indices of the lamps that reach a point. Light fades out at their maximum
     /// distance.
@@ -38,10 +42,12 @@ class Lamps {
 
   private:
     [[nodiscard]] std::size_t cellOf(float x, float y) const;
+    void addRecords(const Environment& environment, Vec3 shift, double spacing);
     void index();
 
     std::vector<Lamp> lamps_;
     float height_ = 0, reach_ = 0;
+    bool are_records_ = false;
     // Cells of a grid over the plan, each with the lamps that reach it.
     float left_ = 0, bottom_ = 0, cell_ = 1;
     std::size_t columns_ = 1, rows_ = 1;

@@ -42,7 +42,7 @@ struct Job {
 
 Illumination chosen(Illumination wanted, const StillSurfaces& still) {
     if (wanted != Illumination::Auto) return wanted;
-    return still.has_ceiling ? Illumination::Lamps : Illumination::Sky;
+    return still.has_ceiling || still.lamps.areRecords() ? Illumination::Lamps : Illumination::Sky;
 }
 
 Job::Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptions& wanted,

@@ -50,7 +50,7 @@ struct RenderSceneOptions {
 
 /// Light source of a scene.
 enum class Illumination {
-    Auto,   ///< lamps if the scene has a ceiling, else sun and sky
+    Auto,   ///< lamps if the scene has a ceiling or lamp records, else sun and sky
     Lamps,  ///< square panels under the ceiling, or at the height of the walls
     Sky,    ///< the sun, half-way up in the south-west, and a clear sky
 };

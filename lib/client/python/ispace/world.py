@@ -18,7 +18,7 @@ from .errors import ProtocolError
 class Event:
     """Something that happened in the world."""
 
-    #: collision, stall, enter, leave, mat, gate, seen, lost, mark, change; missed: so many (n=) were dropped,
+    #: collision, stall, enter, leave, mat, gate, seen, lost, state, activity, mark, change; missed: so many (n=) were dropped,
     #: as the client did not read them
     kind: str
     time: float  #: simulated seconds
@@ -132,6 +132,15 @@ class World(Client):
     def set(self, id: str, key: str, value: str) -> None:
         """Changes a key of a record: ``set("r1", "speed", "0.3")``."""
         self._change(f"SET {id}.{key}={value}")
+
+    def act(self, id: str, key: str, value: Union[str, bool, float]) -> None:
+        """Sets the state of a lamp, a door or a switch: ``act("l1", "on", True)``."""
+        self._change(f"ACT {id} {key}={int(value) if isinstance(value, bool) else value}")
+
+    def states(self, id: str = "") -> Dict[str, str]:
+        """The states of sensors and actuators by ``ID.KEY``, or those of one of them."""
+        fields = self._ask(f"STATE {id}".rstrip()).fields
+        return {key: value for key, value in fields.items() if key != "t"}
 
     def add(self, record: str) -> str:
         """Adds a record, as in an environment or layout: ``add("cube id=b at=1,1 size=1,1,1")``; its id."""

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/room_state.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr StateKey kStateKeys[] = {
+    {"door", "open"}, {"lamp", "on"}, {"lamp", "level"}, {"lamp", "color"}, {"switch", "on"}};
+
+std::string valueText(const Record& record, std::string_view key) {
+    const KeySpec& spec = *record.schema().find(key);
+    if (spec.type == KeyType::Flag) return record.flag(key) ? "1" : "0";
+    if (spec.type == KeyType::Number) return formatDouble(record.number(key));
+    std::string text;
+    for (const double part : record.tuple(key))
+        text.append(text.empty() ? "" : ",").append(formatDouble(part));
+    return text;
+}
+
+std::vector<std::string> keysOf(std::string_view keyword) {
+    std::vector<std::string> keys;
+    for (const StateKey& state : kStateKeys)
+        if (state.keyword == keyword) keys.emplace_back(state.key);
+    return keys;
+}
+
+}  // namespace
+
+std::span<const StateKey> stateKeys() { return kStateKeys; }
+
+bool isActuator(std::string_view keyword) {
+    return std::any_of(std::begin(kStateKeys), std::end(kStateKeys),
+                       [&](const StateKey& state) { return state.keyword == keyword; });
+}
+
+std::vector<RoomState> roomStates(const Scene& scene) {
+    std::vector<RoomState> states;
+    for (std::size_t i = 0; i < scene.records.size(); ++i)
+        for (const StateKey& state : kStateKeys)
+            if (scene.records[i].keyword() == state.keyword)
+                states.push_back(
+                    {scene.ids[i], std::string(state.key), valueText(scene.records[i], state.key)});
+    return states;
+}
+
+std::string stateEdit(const Scene& scene, std::string_view id, std::string_view assignment) {
+    const auto found = std::find(scene.ids.begin(), scene.ids.end(), id);
+    std::vector<std::string> actuators;
+    for (std::size_t i = 0; i < scene.records.size(); ++i)
+        if (isActuator(scene.records[i].keyword())) actuators.push_back(scene.ids[i]);
+    if (found == scene.ids.end())
+        throw UsageError("no record has the id " + excerpt(id) + didYouMean(id, actuators));
+    const Record& record = scene.records[static_cast<std::size_t>(found - scene.ids.begin())];
+    const std::vector<std::string> keys = keysOf(record.keyword());
+    if (keys.empty())
+        throw UsageError(std::string(id) + " is a " + record.keyword() + ", which has no state");
+    const std::size_t equals = assignment.find('=');
+    const std::string_view key = assignment.substr(0, equals);
+    const bool is_known = std::find(keys.begin(), keys.end(), key) != keys.end();
+    if (equals == std::string_view::npos || !is_known)
+        throw UsageError("wanted a state of " + std::string(id) + " as " + keys.front() +
+                         "=value, found " + excerpt(assignment) +
+                         (is_known ? "" : didYouMean(key, keys)));
+    std::string value(assignment.substr(equals + 1));
+    if (record.schema().find(key)->type == KeyType::Flag && (value == "1" || value == "0"))
+        value = value == "1" ? "yes" : "no";
+    return std::string(id) + '.' + std::string(key) + '=' + value;
+}
+
+}  // namespace ispace

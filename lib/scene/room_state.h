@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "record/record.h"
+#include "scene/scene.h"
+
+namespace ispace {
+
+/// A key of a record whose value may change while the world runs: the state of an actuator.
+struct StateKey {
+    std::string_view keyword;
+    std::string_view key;
+};
+
+/// Returns all of them, the keys of a keyword one after another.
+std::span<const StateKey> stateKeys();
+/// Returns true if records with this keyword have a state.
+bool isActuator(std::string_view keyword);
+
+/// A state of the room.
+struct RoomState {
+    std::string id, key;
+    std::string value;  ///< text of the record language, but 1 and 0 for yes and no
+    friend bool operator==(const RoomState&, const RoomState&) = default;
+};
+
+/// Returns the states of a scene, in the order of its records.
+std::vector<RoomState> roomStates(const Scene& scene);
+
+/// Returns the edit that sets a state: `id.key=value`, of `key=value` with 1 and 0 for yes and no,
+/// too. \throws UsageError if the record `id` has no such state, with a hint; the value is checked
+/// by the edit
+std::string stateEdit(const Scene& scene, std::string_view id, std::string_view assignment);
+
+}  // namespace ispace

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/room_state.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "base/error.h"
+#include "support/test_layout.h"
+
+namespace ispace {
+namespace {
+
+const char* const kRoom =
+    "ispace size=6,6\ndoor id=d1 at=0,3\nlamp id=l1 at=1,1 on=yes level=40%\nswitch id=b1\n";
+
+TEST(RoomState, HasARowForEachStateKey) {
+    const Scene room = testing::scene(kRoom, "robot id=r1\n");
+    const std::vector<RoomState> expected = {{"d1", "open", "0"},
+                                             {"l1", "on", "1"},
+                                             {"l1", "level", "0.4"},
+                                             {"l1", "color", "1,1,0.97"},
+                                             {"b1", "on", "0"}};
+    EXPECT_EQ(roomStates(room), expected);
+    EXPECT_TRUE(isActuator("lamp"));
+    EXPECT_FALSE(isActuator("robot"));
+}
+
+/// The keys of the table are keys of the schemas.
+TEST(RoomState, NamesKeysOfRecords) {
+    for (const StateKey& state : stateKeys()) {
+        const Schema* const schema = sceneSchemas().find(state.keyword);
+        ASSERT_NE(schema, nullptr) << state.keyword;
+        EXPECT_NE(schema->find(state.key), nullptr) << state.keyword << ' ' << state.key;
+    }
+}
+
+TEST(RoomState, EditsAreChecked) {
+    const Scene room = testing::scene(kRoom, "robot id=r1\n");
+    EXPECT_EQ(stateEdit(room, "l1", "on=0"), "l1.on=no");
+    EXPECT_EQ(stateEdit(room, "b1", "on=1"), "b1.on=yes");
+    EXPECT_EQ(stateEdit(room, "l1", "on=off"), "l1.on=off");
+    EXPECT_EQ(stateEdit(room, "l1", "level=1"), "l1.level=1");
+    const auto refusal = [&](const char* id, const char* assignment) {
+        try {
+            stateEdit(room, id, assignment);
+        } catch (const UsageError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(refusal("l2", "on=1"), "no record has the id `l2`, did you mean `l1`?");
+    EXPECT_EQ(refusal("r1", "at=1,1"), "r1 is a robot, which has no state");
+    EXPECT_EQ(refusal("d1", "size=1"), "wanted a state of d1 as open=value, found `size=1`");
+    EXPECT_EQ(refusal("l1", "on"), "wanted a state of l1 as on=value, found `on`");
+    EXPECT_EQ(refusal("l1", "levle=1"),
+              "wanted a state of l1 as on=value, found `levle=1`, did you mean `level`?");
+}
+
+TEST(RoomState, AContactKnowsItsDoor) {
+    const auto is_open = [](const std::string& door) {
+        const Scene room =
+            testing::scene("ispace size=6,6\n" + door, "contact id=k1 at=0,3,2 door=d1\n");
+        return room.sensors.at(0).as<Contact>().is_open;
+    };
+    EXPECT_FALSE(is_open("door id=d1 at=0,3\n"));
+    EXPECT_TRUE(is_open("door id=d1 at=0,3 open=yes\n"));
+    EXPECT_THROW(is_open("door id=d2 at=0,3\n"), FormatError);
+    EXPECT_THROW(is_open("cube id=d1 at=1,1\n"), FormatError);
+}
+
+}  // namespace
+}  // namespace ispace

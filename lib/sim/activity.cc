@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/activity.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "record/edit.h"
+#include "scene/bodies.h"
+#include "scene/room_state.h"
+#include "sim/goal_ways.h"
+#include "sim/simulation.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr SimTime kDay = std::chrono::hours(24);
+constexpr SimTime kPause = std::chrono::seconds(1);  // before a blocked way is tried again
+constexpr int kMostTries = 5;
+
+/// Reads one line; a finding is thrown as a message at a column.
+class DayLineReader {
+  public:
+    struct Finding {
+        int column;
+        std::string message;
+    };
+    DayLineReader(std::string_view line, const World& world)
+        : line_(line), words_(wordsOf(line)), world_(&world) {}
+
+    DayLine read();
+
+  private:
+    [[noreturn]] void fail(std::size_t word, std::string message) const {
+        const std::size_t known = std::min(word, words_.size() - 1);
+        throw Finding{words_[known].column, std::move(message)};
+    }
+    [[nodiscard]] std::string_view word(std::size_t i) const {
+        return i < words_.size() ? words_[i].text : std::string_view();
+    }
+    SimTime readTime();
+    DayAction readAction(std::string_view text, std::size_t first) const;
+    void readTarget(DayAction& action, std::string_view target, std::size_t at) const;
+    void readDuration(DayAction& action, std::string_view text, std::size_t at) const;
+    void readAct(DayAction& action, std::string_view id, std::string_view state,
+                 std::size_t at) const;
+
+    std::string_view line_;
+    std::vector<Piece> words_;
+    const World* world_;
+    std::size_t next_ = 0;  // of words_
+};
+
+/// Parses HH:MM or HH:MM:SS.
+std::optional<SimTime> parseClockTime(std::string_view text) {
+    std::int64_t seconds = 0;
+    int count = 0;
+    for (; count < 3; ++count) {
+        const std::string_view part = text.substr(0, text.find(':'));
+        const auto number = parseInteger(part);
+        const bool is_good =
+            number && part.size() == 2 && *number >= 0 && *number < (count == 0 ? 24 : 60);
+        if (!is_good) return std::nullopt;
+        seconds = 60 * seconds + *number;
+        if (part.size() == text.size()) {
+            text = {};
+            ++count;
+            break;
+        }
+        text.remove_prefix(part.size() + 1);
+    }
+    if (count < 2 || !text.empty()) return std::nullopt;
+    return std::chrono::seconds(count == 2 ? 60 * seconds : seconds);
+}
+
+SimTime DayLineReader::readTime() {
+    SimTime day{};
+    if (word(next_).find(':') == std::string_view::npos && word(0) == "at") {
+        constexpr std::int64_t kMostDays = 36'500;
+        const auto number = parseInteger(word(next_));
+        if (!number || *number < 1 || *number > kMostDays)
+            fail(next_, excerpt(word(next_)) +
+                            " is no time, wanted HH:MM, or the number of a day "
+                            "and HH:MM");
+        day = (*number - 1) * kDay;
+        ++next_;
+    }
+    const auto time = parseClockTime(word(next_));
+    if (!time) fail(next_, excerpt(word(next_)) + " is no time of a day, wanted HH:MM, like 07:30");
+    ++next_;
+    return day + *time;
+}
+
+void DayLineReader::readTarget(DayAction& action, std::string_view target, std::size_t at) const {
+    action.target = target;
+    const std::vector<std::string> ids = goalIds(world_->scene());
+    if (std::find(ids.begin(), ids.end(), action.target) != ids.end()) return;
+    fail(at,
+         "no zone or element with a place has the id " + excerpt(target) + didYouMean(target, ids));
+}
+
+void DayLineReader::readDuration(DayAction& action, std::string_view text, std::size_t at) const {
+    const auto lasts = parseSimTime(text);
+    if (!lasts) fail(at, excerpt(text) + " is no duration, wanted one like 90s, 3min or 1h");
+    action.lasts = *lasts;
+}
+
+void DayLineReader::readAct(DayAction& action, std::string_view id, std::string_view state,
+                            std::size_t at) const {
+    try {
+        const std::string edit = stateEdit(world_->scene(), id, state);
+        action.change = "SET " + edit;
+    } catch (const UsageError& error) {
+        fail(at, error.what());
+    }
+}
+
+DayAction DayLineReader::readAction(std::string_view text, std::size_t first) const {
+    const std::vector<Piece> parts = wordsOf(text);
+    DayAction action;
+    for (const Piece& part : parts)
+        action.text.append(action.text.empty() ? "" : " ").append(part.text);
+    const auto wants = [&](std::size_t count, const char* example) {
+        if (parts.size() != count)
+            fail(first, excerpt(action.text) + " is no action, wanted one like " + example);
+    };
+    const std::string_view verb = parts.front().text;
+    if (verb == "goes") {
+        wants(2, "goes kitchen");
+        action.verb = DayAction::Verb::Goes;
+        readTarget(action, parts[1].text, first);
+    } else if (verb == "uses") {
+        wants(3, "uses kettle 3min");
+        action.verb = DayAction::Verb::Uses;
+        readTarget(action, parts[1].text, first);
+        readDuration(action, parts[2].text, first);
+    } else if (verb == "stays") {
+        wants(2, "stays 20min");
+        readDuration(action, parts[1].text, first);
+    } else if (verb == "opens" || verb == "closes") {
+        wants(2, "opens door1");
+        action.verb = DayAction::Verb::Acts;
+        readAct(action, parts[1].text, verb == "opens" ? "open=yes" : "open=no", first);
+    } else if (verb == "switches") {
+        wants(3, "switches lamp1 on");
+        action.verb = DayAction::Verb::Acts;
+        if (parts[2].text != "on" && parts[2].text != "off")
+            fail(first, "wanted on or off, found " + excerpt(parts[2].text));
+        readAct(action, parts[1].text, parts[2].text == "on" ? "on=yes" : "on=no", first);
+    } else {
+        fail(first, excerpt(verb) + " is no action" +
+                        didYouMean(verb, {"goes", "uses", "stays", "opens", "closes", "switches"}));
+    }
+    return action;
+}
+
+DayLine DayLineReader::read() {
+    DayLine line;
+    line.is_daily = word(next_++) == "daily";
+    line.time = readTime();
+    line.person = word(next_);
+    if (!world_->personNamed(line.person)) {
+        std::vector<std::string> people;
+        for (const PlacedPerson& person : world_->people()) people.push_back(person.id);
+        fail(next_,
+             "no person has the id " + excerpt(line.person) + didYouMean(line.person, people));
+    }
+    ++next_;
+    if (word(next_).ends_with(':') && word(next_).size() > 1) {
+        line.name = word(next_++);
+        line.name.pop_back();
+    }
+    if (next_ >= words_.size()) fail(next_, "an action is missing, like goes kitchen");
+    std::string_view rest = line_.substr(static_cast<std::size_t>(words_[next_].column) - 1);
+    while (!rest.empty()) {
+        const std::string_view action = rest.substr(0, rest.find(';'));
+        rest.remove_prefix(std::min(rest.size(), action.size() + 1));
+        if (wordsOf(action).empty()) continue;
+        line.actions.push_back(readAction(action, next_));
+    }
+    if (line.actions.empty()) fail(next_, "an action is missing, like goes kitchen");
+    if (line.name.empty()) {
+        line.name = line.actions.front().text;
+        std::replace(line.name.begin(), line.name.end(), ' ', '_');
+    }
+    return line;
+}
+
+/// Returns the turns and straight lines of a way, the first one last.
+std::vector<Command> legsOf(Pose2 pose, const std::vector<Point2>& way) {
+    constexpr double kStraight = 0.1;  // degrees
+    std::vector<Command> legs;
+    for (const Point2 next : way) {
+        const Vec2 leg = next - pose.position;
+        const Angle heading = Angle::radians(std::atan2(leg.y, leg.x));
+        const double turn = wrapped(heading - pose.heading).degrees();
+        if (std::abs(turn) > kStraight)
+            legs.push_back({.verb = turn > 0 ? Verb::Left : Verb::Right, .value = std::abs(turn)});
+        legs.push_back({.verb = Verb::Forward, .value = length(leg)});
+        pose = {next, heading};
+    }
+    std::reverse(legs.begin(), legs.end());
+    return legs;
+}
+
+}  // namespace
+
+bool isDayLine(std::string_view line) {
+    const std::vector<Piece> words = wordsOf(line);
+    return !words.empty() && (words.front().text == "at" || words.front().text == "daily");
+}
+
+DayPlan readDayPlan(std::string_view text, const std::string& file, const World& world) {
+    DayPlan plan;
+    Diagnostics findings;
+    LineReader lines(withoutBom(text));
+    while (const auto line = lines.next()) {
+        const std::string_view code = line->substr(0, line->find('#'));
+        if (!isDayLine(code)) continue;
+        try {
+            plan.lines.push_back(DayLineReader(code, world).read());
+        } catch (const DayLineReader::Finding& finding) {
+            findings.add({file, lines.number(), finding.column, finding.message});
+        }
+    }
+    findings.throwIfAny();
+    std::stable_sort(plan.lines.begin(), plan.lines.end(),
+                     [](const DayLine& a, const DayLine& b) { return a.time < b.time; });
+    return plan;
+}
+
+ActivityDirector::ActivityDirector(DayPlan plan) : plan_(std::move(plan)) {
+    for (const DayLine& line : plan_.lines) {
+        next_.push_back(line.time);
+        doers_[line.person];
+    }
+}
+
+/// Adds the lines whose time has come to what their people do next.
+void ActivityDirector::enqueue(SimTime now) {
+    if (now < due_) return;
+    due_ = kMaxTime;
+    for (std::size_t i = 0; i < next_.size(); ++i) {
+        if (next_[i] <= now) {
+            doers_[plan_.lines[i].person].waiting.push_back(i);
+            next_[i] = plan_.lines[i].is_daily ? next_[i] + kDay : kMaxTime;
+        }
+        due_ = std::min(due_, next_[i]);
+    }
+}
+
+void ActivityDirector::stepped(Simulation& simulation) {
+    enqueue(simulation.world().time());
+    for (auto& [id, doer] : doers_) goOn(simulation, doer);
+}
+
+void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
+    World& world = simulation.world();
+    while (true) {
+        if (!doer.line) {
+            if (doer.waiting.empty()) return;
+            doer.line = doer.waiting.front();
+            doer.waiting.erase(doer.waiting.begin());
+            doer.action = 0;
+            doer.is_begun = false;
+        }
+        const auto mover = world.moverNamed(plan_.lines[*doer.line].person);
+        if (!mover) {
+            doer.line.reset();
+            continue;
+        }
+        if (!doer.is_begun) {
+            tell(simulation, doer, true);
+            doer.is_begun = true;
+            doer.tries = 0;
+            doer.until = world.time();
+            if (!begin(simulation, doer)) return;
+        }
+        if (doer.walks && doer.command > 0) arrive(world, *mover, doer);
+        if (doer.walks && doer.command == 0 && world.time() >= doer.until &&
+            !depart(simulation, *mover, doer))
+            doer.walks = false;
+        if (doer.walks || world.time() < doer.until) return;
+        tell(simulation, doer, false);
+        doer.is_begun = false;
+        if (++doer.action == plan_.lines[*doer.line].actions.size()) doer.line.reset();
+    }
+}
+
+/// Begins an action. \returns false if it goes on in the next step
+bool ActivityDirector::begin(Simulation& simulation, Doer& doer) const {
+    const DayAction& action = actionOf(doer);
+    const World& world = simulation.world();
+    doer.walks = false;
+    doer.command = 0;
+    switch (action.verb) {
+        case DayAction::Verb::Goes:
+        case DayAction::Verb::Uses:
+            doer.walks = true;
+            return true;
+        case DayAction::Verb::Stays:
+            doer.until = world.time() + action.lasts;
+            return true;
+        case DayAction::Verb::Acts:
+            // The world changes before its next step.
+            simulation.askChange(action.change);
+            doer.until = world.time() + world.stepLength();
+            return false;
+    }
+    return true;
+}
+
+bool ActivityDirector::goOnWalking(World& world, std::size_t mover, Doer& doer) {
+    const Command next = std::move(doer.rest.back());
+    doer.rest.pop_back();
+    if (!world.refusal(mover, next).empty()) return false;
+    doer.command = world.command(mover, next);
+    return true;
+}
+
+/// Sends a person on the way. \returns false if there is none, or the person has arrived
+bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& doer) {
+    const DayAction& action = actionOf(doer);
+    World& world = simulation.world();
+    if (doer.tries++ >= kMostTries) return false;
+    const PlacedPerson& person = world.people()[mover - world.robots().size()];
+    if (std::exchange(ways_of_, world.changes()) != world.changes() || !ways_)
+        ways_ =
+            std::make_shared<GoalWays>(world.scene(), humanRadius(person.height), person.height);
+    const Point2 from = world.status(mover).pose.position;
+    std::vector<Point2> way = ways_->way(from, action.target);
+    if (way.empty()) {
+        doer.until = world.time() + kPause;
+        return doer.tries < kMostTries;
+    }
+    constexpr double kThere = 0.05;
+    if (way.size() == 1 && distance(way.front(), from) < kThere) {
+        doer.until = world.time() + action.lasts;
+        return false;
+    }
+    // Steering round others needs short steps; turns and straight lines are exact in any. Where
+    // these run into somebody, every other try steers.
+    constexpr SimTime kShortStep = std::chrono::milliseconds(100);
+    if (world.stepLength() > kShortStep && doer.tries % 2 == 1) {
+        doer.rest = legsOf(world.status(mover).pose, way);
+    } else {
+        MotionPlan course;
+        course.path = std::move(way);
+        doer.rest = {pathCommand(std::move(course))};
+    }
+    return goOnWalking(world, mover, doer);
+}
+
+/// Looks whether a walk has ended.
+void ActivityDirector::arrive(World& world, std::size_t mover, Doer& doer) const {
+    for (const CommandEnd& end : world.ends()) {
+        if (end.robot != mover || end.id != doer.command) continue;
+        if (end.outcome == Outcome::Done && !doer.rest.empty() && goOnWalking(world, mover, doer))
+            return;
+        doer.command = 0;
+        doer.walks = end.outcome != Outcome::Done;
+        doer.until = world.time() + (doer.walks ? kPause : actionOf(doer).lasts);
+    }
+}
+
+void ActivityDirector::tell(Simulation& simulation, const Doer& doer, bool begins) const {
+    const DayLine& line = plan_.lines[*doer.line];
+    simulation.events().tell({.kind = EventKind::Activity,
+                              .id = line.person,
+                              .other = line.name,
+                              .value = begins ? 1 : 0,
+                              .text = line.actions[doer.action].text});
+}
+
+}  // namespace ispace

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/command.h"
+#include "sim/sim_time.h"
+
+namespace ispace {
+
+class Simulation;
+class World;
+class GoalWays;
+
+/// A piece of an activity.
+struct DayAction {
+    enum class Verb {
+        Goes,   ///< to the zone or element `target`
+        Uses,   ///< likewise, and stays there
+        Stays,  ///< where the person is
+        Acts    ///< on an actuator: `change` is the request
+    };
+    Verb verb = Verb::Stays;
+    std::string text;  ///< as in the script: "uses kettle 3min"
+    std::string target, change;
+    SimTime lasts{};
+};
+
+/// An activity of a person.
+struct DayLine {
+    SimTime time{};  ///< since midnight of the first day, at which a run begins
+    bool is_daily = false;
+    std::string person, name;
+    std::vector<DayAction> actions;
+};
+
+/// The days of people.
+struct DayPlan {
+    std::vector<DayLine> lines;  ///< sorted by time
+};
+
+/// Returns true if a line of a script belongs to a plan: it begins with `at` or `daily`.
+bool isDayLine(std::string_view line);
+
+/// Reads the lines of a script that belong to a plan:
+///
+///     at [DAY] HH:MM[:SS] PERSON [NAME:] ACTION; ACTION …
+///     daily HH:MM[:SS] PERSON [NAME:] ACTION; ACTION …
+///
+/// DAY counts from 1. An action is `goes ID`, `uses ID DURATION`, `stays DURATION`, `opens DOOR`,
+/// `closes DOOR`, or `switches ID on|off`; zones and elements are called by their ids. Without a
+/// NAME an activity is called as its first action. \throws FormatError with all findings
+DayPlan readDayPlan(std::string_view text, const std::string& file, const World& world);
+
+/// Makes people follow their days: each does the activities of a plan one after another, each at
+/// its time or once those before it are done. A person on the way finds it round walls, elements
+/// and shut doors; one that is blocked tries again five times, a second apart, and then gives the
+/// action up.
+class ActivityDirector {
+  public:
+    explicit ActivityDirector(DayPlan plan);
+    /// Starts and ends actions, and tells them as events. Call it after each step.
+    void stepped(Simulation& simulation);
+
+  private:
+    struct Doer {
+        std::vector<std::size_t> waiting;  // lines, in order
+        std::optional<std::size_t> line;   // under way
+        std::size_t action = 0;
+        bool is_begun = false, walks = false;
+        int command = 0;            // of the way
+        std::vector<Command> rest;  // of it, the next one last
+        int tries = 0;
+        SimTime until{};
+    };
+    void enqueue(SimTime now);
+    void goOn(Simulation& simulation, Doer& doer);
+    bool begin(Simulation& simulation, Doer& doer) const;
+    static bool goOnWalking(World& world, std::size_t mover, Doer& doer);
+    bool depart(Simulation& simulation, std::size_t mover, Doer& doer);
+    void arrive(World& world, std::size_t mover, Doer& doer) const;
+    void tell(Simulation& simulation, const Doer& doer, bool begins) const;
+    [[nodiscard]] const DayAction& actionOf(const Doer& doer) const {
+        return plan_.lines[*doer.line].actions[doer.action];
+    }
+
+    DayPlan plan_;
+    std::vector<SimTime> next_;  // of each line; kMaxTime: never again
+    SimTime due_{};              // the earliest of them
+    std::map<std::string, Doer> doers_;
+    std::shared_ptr<GoalWays> ways_;  // through the room of the person who asked last
+    std::int64_t ways_of_ = -1;       // changes of the world then
+};
+
+}  // namespace ispace

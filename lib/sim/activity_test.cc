@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/activity.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "sim/goal_ways.h"
+#include "sim/simulation.h"
+#include "support/test_layout.h"
+
+namespace ispace {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::minutes;
+using std::chrono::seconds;
+
+/// Two rooms behind each other; the door between them is in the middle.
+Scene home(const std::string& door = "open=yes") {
+    return testing::scene(
+        "fence id=f path=-5,-3;5,-3;5,3;-5,3 closed=yes\n"
+        "fence id=w path=0,-3;0,3\n"
+        "door id=d wall=w at=0,0 " +
+            door +
+            "\ninside at=-2,0\ninside at=2,0\n"
+            "zone id=left at=-2.5,0 size=5,6\nzone id=right at=2.5,0 size=5,6\n"
+            "cube id=box at=4.5,2.5 size=0.6,0.6,0.6\nlamp id=l at=1,1\n",
+        "human id=a at=-4,2\nhuman id=b at=3,-2\n");
+}
+
+TEST(DayPlan, ReadsTimesNamesAndActions) {
+    const Scene room = home();
+    const World world(room, seconds(1));
+    const DayPlan plan = readDayPlan(
+        "# a day\n"
+        "daily 07:30 a breakfast: goes right; uses box 3min;stays 1h ;\n"
+        "0 a FORWARD 1\n"
+        "at 2 06:00:30 b opens d\n"
+        "at 00:00 b tea: switches l on; closes d\n",
+        "s.txt", world);
+    ASSERT_EQ(plan.lines.size(), 3U);
+    EXPECT_EQ(plan.lines[0].name, "tea");
+    EXPECT_EQ(plan.lines[0].actions[0].change, "SET l.on=yes");
+    EXPECT_EQ(plan.lines[0].actions[1].change, "SET d.open=no");
+    EXPECT_EQ(plan.lines[1].time, hours(7) + minutes(30));
+    EXPECT_TRUE(plan.lines[1].is_daily);
+    ASSERT_EQ(plan.lines[1].actions.size(), 3U);
+    EXPECT_EQ(plan.lines[1].actions[1].text, "uses box 3min");
+    EXPECT_EQ(plan.lines[1].actions[1].target, "box");
+    EXPECT_EQ(plan.lines[1].actions[1].lasts, minutes(3));
+    EXPECT_EQ(plan.lines[2].time, hours(30) + seconds(30));
+    EXPECT_EQ(plan.lines[2].name, "opens_d");
+    EXPECT_EQ(readScript("at 00:00 a goes left\n0 a FORWARD 1\n", "s.txt", world).size(), 1U);
+}
+
+TEST(GoalWays, GoesThroughOpenDoorsAlone) {
+    const Point2 from{-4, 2};
+    const GoalWays open(home(), 0.25, 1.7), shut(home(""), 0.25, 1.7);
+    EXPECT_TRUE(shut.way(from, "right").empty());
+    EXPECT_TRUE(open.way(from, "nowhere").empty());
+    const std::vector<Point2> way = open.way(from, "right");
+    ASSERT_GE(way.size(), 2U);
+    EXPECT_NEAR(way.back().x, 2.5, 0.1);
+    EXPECT_NEAR(way.back().y, 0, 0.1);
+    // No corner cuts a wall.
+    const Scene room = home();
+    const Obstacles obstacles(room.environment, 1.7, nullptr);
+    Point2 last = from;
+    for (const Point2 next : way) {
+        EXPECT_FALSE(obstacles.near({last, next}, 0.25));
+        last = next;
+    }
+    // In front of a thing, as near as a person may come.
+    const Point2 there = open.way(from, "box").back();
+    EXPECT_LT(distance(there, Point2{4.5, 2.5}), 0.95);
+    EXPECT_FALSE(obstacles.overlap(there, 0.25));
+}
+
+struct Lived {
+    explicit Lived(const std::string& script, const Scene& scene = home())
+        : room(scene),
+          world(room, std::chrono::milliseconds(500)),
+          simulation(world, {}, {Clock::Kind::Step, 1}, {}) {
+        simulation.events().want({EventKind::Activity});
+        simulation.follow(readDayPlan(script, "s.txt", world));
+    }
+    void run(int steps) {
+        simulation.allow(steps);
+        while (simulation.owed() > 0)
+            simulation.run(std::chrono::steady_clock::now(), std::chrono::seconds(10));
+    }
+    [[nodiscard]] std::vector<std::string> events() const {
+        std::vector<std::string> rows;
+        const EventLog& log = simulation.events();
+        for (std::int64_t i = log.first(); i < log.next(); ++i)
+            rows.push_back((log.at(i).value == 1 ? "+" : "-") + log.at(i).id + ' ' +
+                           log.at(i).other + ": " + log.at(i).text);
+        return rows;
+    }
+
+    Scene room;
+    World world;
+    Simulation simulation;
+};
+
+TEST(ActivityDirector, DoesOneActionAfterAnother) {
+    Lived day("at 00:00 a tea: goes right; stays 5s; uses box 2s\nat 00:00:10 a rest: stays 1s\n");
+    day.run(120);
+    EXPECT_EQ(day.events(), (std::vector<std::string>{"+a tea: goes right", "-a tea: goes right",
+                                                      "+a tea: stays 5s", "-a tea: stays 5s",
+                                                      "+a tea: uses box 2s", "-a tea: uses box 2s",
+                                                      "+a rest: stays 1s", "-a rest: stays 1s"}));
+    const EventLog& log = day.simulation.events();
+    EXPECT_EQ(log.at(3).time - log.at(2).time, seconds(5));
+    EXPECT_GE(log.at(5).time - log.at(4).time, seconds(2));
+    EXPECT_LT(distance(day.world.status(0).pose.position, Point2{4.5, 2.5}), 0.95);
+}
+
+TEST(ActivityDirector, GivesUpWithoutAWay) {
+    Lived day("at 00:00 a goes right; stays 1s\n", home(""));
+    day.run(40);
+    EXPECT_EQ(day.events().size(), 4U);
+    const EventLog& log = day.simulation.events();
+    EXPECT_GE(log.at(1).time - log.at(0).time, seconds(4)) << "tries again";
+    EXPECT_EQ(day.world.status(0).pose.position, (Point2{-4, 2}));
+}
+
+TEST(ActivityDirector, AsksForChanges) {
+    Lived day("at 00:00 a switches l on; closes d\n");
+    day.run(1);
+    EXPECT_EQ(day.simulation.takeScriptedChange(), "SET l.on=yes");
+    EXPECT_EQ(day.simulation.takeScriptedChange(), "");
+    day.run(1);
+    EXPECT_EQ(day.simulation.takeScriptedChange(), "SET d.open=no");
+}
+
+TEST(ActivityDirector, RepeatsDays) {
+    Lived day("daily 00:00:01 a stays 1s\n");
+    day.run(2 * (24 * 3600 + 10));
+    EXPECT_EQ(day.events().size(), 4U);
+    EXPECT_EQ(day.simulation.events().at(2).time - day.simulation.events().at(0).time, hours(24));
+}
+
+}  // namespace
+}  // namespace ispace

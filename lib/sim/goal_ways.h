@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/sim: ways of people to zones and things.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "env/environment.h"
+#include "geom/point.h"
+#include "scene/scene.h"
+#include "sim/collision.h"
+#include "sim/way_finder.h"
+
+namespace ispace {
+
+/// Finds short ways of a person to zones and elements of a room. It prefers ways with room to spare
+/// at both sides.
+class GoalWays {
+  public:
+    /// \param radius,height of the person
+    GoalWays(const Scene& scene, double radius, double height);
+    GoalWays(const GoalWays&) = delete;
+    GoalWays& operator=(const GoalWays&) = delete;
+
+    /// Returns the points of a way to the zone or element `id`, without the start: to the free
+    /// point of a zone that is nearest to the middle of its limits; to the free point nearest to an
+    /// element's middle. Empty if the id is unknown or no way leads there.
+    [[nodiscard]] std::vector<Point2> way(Point2 from, const std::string& id) const;
+
+  private:
+    Environment environment_;
+    Obstacles obstacles_;
+    WayFinder wide_, narrow_;
+};
+
+/// Returns the ids of the zones and elements to which people may go.
+std::vector<std::string> goalIds(const Scene& scene);
+
+}  // namespace ispace
