@@ -22,6 +22,7 @@
 #include "base/error.h"
 #include "server/client_connection.h"
 #include "server/device/device_port.h"
+#include "server/mqtt/mqtt_bridge.h"
 #include "server/ros/ros_feed.h"
 #include "server/ros/ros_node.h"
 #include "server/ros/ros_site.h"
@@ -104,6 +105,7 @@ struct Server::Data {
     std::list<WebServer> webs;
     DeviceHost host{state};
     std::list<DevicePort> devices;
+    std::optional<MqttBridge> mqtt;
 };
 
 void Server::Data::join(JoinedWorlds& joined) {
@@ -198,6 +200,7 @@ void Server::Data::stepped() {
     for (const auto& connection : connections)
         connection->stepped(may_be_late || steady_clock::now() < end);
     for (DevicePort& device : devices) device.stepped();
+    if (mqtt) mqtt->stepped();
     for (WebServer& web : webs) web.stepped();
     if (node) node->stepped();
     static_cast<void>(hasUpdates());
@@ -221,6 +224,7 @@ WallTime Server::Data::nextTurn() const {
         may_change = may_change || node->waitsToChange();
         next = std::min(next, node->nextSend().value_or(next));
     }
+    may_change = may_change || (mqtt && mqtt->waitsToChange());
     if (const auto change = state.nextChange(); may_change && change)
         next = std::min(next, *change);
     return next;
@@ -263,6 +267,7 @@ void Server::Data::serveClients() {
         device.serve(steady_clock::now());
         if (has_made) device.stepped();
     }
+    if (mqtt) mqtt->serve();
     has_news = hasUpdates() || has_news;
     if (has_news && steady_clock::now() >= next_news) stepped();
     if (limits.watchdog.count() > 0) {
@@ -338,6 +343,7 @@ void Server::Data::end() {
     for (WebServer& web : webs) web.end();
     for (DevicePort& device : devices) device.end();
     if (node) node->end();
+    if (mqtt) mqtt->end();
     sweep();
     const auto busy = [this] {
         return !connections.empty() ||
@@ -401,6 +407,12 @@ std::string Server::serveDevice(const WireProtocol& protocol, const std::string&
     if (!refusal.empty()) throw UsageError(refusal);
     return data.devices.emplace_back(data.io, data.host, data.limits, protocol, id, endpoint)
         .address();
+}
+
+void Server::serveMqtt(const MqttOptions& options) {
+    Data& data = *data_;
+    auto client = connectMqtt(options, [&io = data.io] { asio::post(io, [] {}); });
+    data.mqtt.emplace(data.state, std::move(client), options.prefix);
 }
 
 FrameTaker Server::frameTaker(std::size_t room) {

@@ -13,6 +13,7 @@
 
 #include "sense/formats/ros_messages.h"
 #include "server/device/wire_session.h"
+#include "server/mqtt/mqtt_client.h"
 #include "server/network.h"
 #include "sim/joined_worlds.h"
 #include "sim/simulation.h"
@@ -106,6 +107,9 @@ class Server {
     /// \throws UsageError if the world has no such device, std::system_error naming the endpoint
     std::string serveDevice(const WireProtocol& protocol, const std::string& id,
                             const Endpoint& endpoint);
+    /// Publishes the states of the room on a broker of MQTT, and carries out commands from there.
+    /// Call before run(). \throws FormatError as connectMqtt()
+    void serveMqtt(const MqttOptions& options);
     /// Returns a function that computes frames of a record in the picture thread.
     /// \param room of the joined worlds
     [[nodiscard]] FrameTaker frameTaker(std::size_t room = 0);

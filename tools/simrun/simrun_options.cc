@@ -307,9 +307,9 @@ void SimrunCommand::takeDrawing() {
         throw UsageError(
             "-o is a picture or a film of a record: give --replay DIR (a run writes to --record "
             "DIR)");
-    std::vector<std::string> of_runs{"--record", "--expect",   "--clock",    "--hold",
-                                     "--listen", "--web",      "--foxglove", "--rosbridge",
-                                     "--ros2",   "--port-file"};
+    std::vector<std::string> of_runs{"--record", "--expect", "--clock",    "--hold",
+                                     "--listen", "--web",    "--foxglove", "--rosbridge",
+                                     "--ros2",   "--mqtt",   "--port-file"};
     for (const WireProtocol* const protocol : wireProtocols())
         of_runs.push_back("--" + std::string(protocol->name));
     for (const std::string& option : of_runs)
@@ -350,6 +350,7 @@ void SimrunCommand::declareServer() {
         },
         "show the running world to browsers there; port 0 takes any free one", Enters::Nothing);
     declareRos();
+    declareMqtt();
     o.devices.declare(line_);
     line_.file("--port-file", "FILE", o.port_file,
                "write the port number there when clients can connect", Enters::Nothing);
@@ -402,8 +403,35 @@ void SimrunCommand::declareRos() {
                   Enters::Nothing);
 }
 
+void SimrunCommand::declareMqtt() {
+    SimrunOptions& o = options_;
+    line_.parsed(
+        "--mqtt", "HOST:PORT", [&o](const std::string& text) { o.mqtt = parseBroker(text); },
+        "publish the states of sensors, lamps, doors and switches on a broker of MQTT, and carry "
+        "out its commands (by custom port 1883)",
+        Enters::Nothing);
+    line_.file("--mqtt-login", "FILE", o.mqtt_login,
+               "log in there with the USER:PASSWORD in this file", Enters::Nothing);
+    line_.parsed(
+        "--mqtt-prefix", "TOPIC", [this](const std::string& text) { mqtt_prefix_ = text; },
+        "begin the topics with this (default ispace)", Enters::Nothing);
+}
+
+void SimrunCommand::takeMqtt() {
+    SimrunOptions& o = options_;
+    for (const char* option : {"--mqtt-login", "--mqtt-prefix"})
+        if (line_.given(option) && !o.mqtt)
+            throw UsageError(std::string(option) + " requires --mqtt HOST:PORT");
+    if (!line_.given("--mqtt-prefix")) return;
+    if (mqtt_prefix_.empty() || mqtt_prefix_.find_first_of("+#/ ") != std::string::npos)
+        throw UsageError("--mqtt-prefix: " + excerpt(mqtt_prefix_) +
+                         " is no single level of a topic, wanted a word like ispace");
+    o.mqtt->prefix = mqtt_prefix_;
+}
+
 void SimrunCommand::takeServer() {
     SimrunOptions& o = options_;
+    takeMqtt();
     o.limits.shutdown = o.shutdown.value_or(true);
     o.limits.changes = o.changes.value_or(true);
     o.limits.token_first = !o.listen.is_loopback;

@@ -71,7 +71,7 @@ struct SimrunOptions {
     bool holds = false;                                     ///< at the end of the replay
     DrawingOptions drawing;
     std::vector<Expectation> expected;
-    std::string junit;           ///< file; "" without
+    std::string junit;  ///< file; "" without
     std::optional<bool> records_readings;
     double recorded_frames = 1;  ///< per simulated second, at most
     double recorded_sonars = 10;
@@ -79,6 +79,8 @@ struct SimrunOptions {
     Endpoint listen;
     std::optional<Endpoint> web, foxglove, rosbridge;
     std::optional<int> ros_domain;  ///< of --ros2
+    std::optional<MqttOptions> mqtt;
+    std::string mqtt_login;  ///< file; "" without
     std::optional<bool> shutdown, changes;
     std::string token_file;   ///< "" without
     std::string load_folder;  ///< "": that of the scene
@@ -104,10 +106,13 @@ class SimrunCommand : public ToolCommand<SimrunOptions> {
     void takeExpectations();
     void declareServer();
     void declareRos();
+    void declareMqtt();
+    void takeMqtt();
     void takeServer();
 
     std::vector<std::string> expected_;
     std::string to_;
+    std::string mqtt_prefix_;
 };
 
 }  // namespace ispace

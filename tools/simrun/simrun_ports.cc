@@ -69,6 +69,11 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const S
         server.serveDds(static_cast<std::uint32_t>(*options.ros_domain), rosScenery());
         out.ros_domain = options.ros_domain;
     }
+    if (options.mqtt) {
+        MqttOptions mqtt = *options.mqtt;
+        if (!options.mqtt_login.empty()) readLogin(options.mqtt_login, mqtt);
+        server.serveMqtt(mqtt);
+    }
     out.devices = serveDevices(server, options.devices);
     return out;
 }

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/mqtt/mqtt_bridge.h"
+
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "base/message.h"
+#include "server/mqtt/mqtt_topics.h"
+#include "sim/state_watch.h"
+
+namespace ispace {
+
+namespace {
+
+/// Requests that wait for the world; further commands are refused.
+constexpr std::size_t kMaxRequests = 1000;
+constexpr std::size_t kMaxPayload = 256;
+
+}  // namespace
+
+MqttBridge::MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, std::string prefix)
+    : state_(&state), client_(std::move(client)), prefix_(std::move(prefix)), session_(state) {
+    if (!state.limits().token.empty()) session_.request("TOKEN " + state.limits().token);
+    session_.request("WORLD");
+    session_.request("EVENTS state");
+    session_.take();
+    serve();
+}
+
+/// Names without the characters that topics reserve.
+std::string MqttBridge::topicOf(std::string_view id, std::string_view key) const {
+    std::string name(id);
+    for (char& c : name)
+        if (c == '+' || c == '#') c = '_';
+    return prefix_ + '/' + name + '/' + std::string(key);
+}
+
+/// Describes all things of the world and publishes their states.
+void MqttBridge::introduce() {
+    const World& world = state_->simulation().world();
+    changes_ = world.changes();
+    std::unordered_map<std::string, std::string> keywords;
+    for (std::size_t i = 0; i < world.scene().records.size(); ++i)
+        keywords.emplace(world.scene().ids[i], world.scene().records[i].keyword());
+    std::vector<MqttThing> things;
+    for (const RoomState& state : statesOf(world)) {
+        if (things.empty() || things.back().id != state.id)
+            things.push_back({state.id, keywords[state.id], {}});
+        things.back().keys.push_back(state.key);
+    }
+    for (const MqttThing& thing : things) {
+        std::vector<std::string> topics;
+        bool is_new = false;
+        for (const std::string& key : thing.keys) {
+            topics.push_back(topicOf(thing.id, key));
+            const bool is_actuator = isActuator(thing.keyword);
+            const bool was_added =
+                topics_.emplace(topics.back(), Topic{thing.id, key, is_actuator}).second;
+            if (was_added && is_actuator) client_->subscribe(topics.back() + "/set");
+            is_new = is_new || was_added;
+        }
+        if (is_new) client_->publish(discoveryOf(thing, prefix_, topics));
+    }
+}
+
+void MqttBridge::publishAll() {
+    for (const RoomState& state : statesOf(state_->simulation().world())) publish(state);
+}
+
+void MqttBridge::publish(const RoomState& state) {
+    client_->publish({topicOf(state.id, state.key), payloadOf(state.key, state.value), true});
+}
+
+void MqttBridge::serve() {
+    if (const int now = client_->connections(); std::exchange(connections_, now) != now) {
+        topics_.clear();
+        introduce();
+        publishAll();
+        client_->publish({statusTopic(prefix_), "online", true});
+    }
+    for (const MqttMessage& message : client_->take()) receive(message);
+    session_.proceed();
+    answer();
+}
+
+void MqttBridge::receive(const MqttMessage& message) {
+    constexpr std::string_view kSet = "/set";
+    std::string_view topic = message.topic;
+    // A retained command is of an earlier run.
+    if (!topic.ends_with(kSet) || message.retain) return;
+    topic.remove_suffix(kSet.size());
+    const auto found = topics_.find(topic);
+    if (found == topics_.end() || !found->second.is_actuator) return;
+    const std::string value = valueOfPayload(found->second.key, message.payload);
+    const bool is_word = !value.empty() && value.size() <= kMaxPayload &&
+                         value.find_first_of(" \t\r\n") == std::string::npos;
+    if (!is_word || requests_.size() >= kMaxRequests) {
+        const std::string reason = is_word ? "too many commands" : "this is no value";
+        client_->publish({prefix_ + "/error", "ERR 400 " + message.topic + ": " + reason, false});
+        return;
+    }
+    requests_.push_back("ACT " + found->second.id + ' ' + found->second.key + '=' + value);
+}
+
+void MqttBridge::answer() {
+    while (true) {
+        const std::string out = session_.take();
+        std::string_view lines = out;
+        while (!lines.empty()) {
+            const std::string_view line = lines.substr(0, lines.find('\n'));
+            lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+            readLine(line);
+        }
+        if (requests_.empty() || session_.waiting() || session_.closing()) return;
+        session_.request(requests_.front());
+        requests_.pop_front();
+    }
+}
+
+void MqttBridge::readLine(std::string_view line) {
+    if (line.starts_with("ERR ")) client_->publish({prefix_ + "/error", std::string(line), false});
+    if (line.starts_with("EVENT missed")) publishAll();
+    if (!line.starts_with("EVENT state ")) return;
+    // EVENT state t=T id=ID KEY=VALUE
+    const std::vector<Piece> words = wordsOf(line);
+    constexpr std::size_t kWords = 5;
+    if (words.size() != kWords) return;
+    const std::string_view state = words.back().text;
+    const std::size_t equals = state.find('=');
+    publish({std::string(words[3].text.substr(3)), std::string(state.substr(0, equals)),
+             std::string(state.substr(equals + 1))});
+}
+
+void MqttBridge::stepped() {
+    session_.stepped();
+    if (changes_ != state_->simulation().world().changes()) introduce();
+    answer();
+}
+
+void MqttBridge::end() {
+    session_.finish();
+    answer();
+    client_->publish({statusTopic(prefix_), "offline", true});
+    client_->close();
+}
+
+}  // namespace ispace

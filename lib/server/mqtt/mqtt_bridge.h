@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/server.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "scene/room_state.h"
+#include "server/mqtt/mqtt_client.h"
+#include "server/session.h"
+
+namespace ispace {
+
+/// Publishes the states of the world, and carries out commands to its actuators: a client of the
+/// protocol's role WORLD whose transport is a broker.
+///
+/// A state is the retained message PREFIX/ID/KEY: ON or OFF, a share in per cent, a colour as three
+/// numbers up to 255, or the value as in events. A message to PREFIX/ID/KEY/set, in the same form,
+/// is a command to an actuator; PREFIX/error tells the refused ones. The topics of Home Assistant's
+/// discovery describe all of them.
+class MqttBridge {
+  public:
+    MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, std::string prefix);
+
+    /// Carries out commands that have arrived. Call it in turn with the world.
+    void serve();
+    /// Publishes the states that a step or a change of the world has changed.
+    void stepped();
+    [[nodiscard]] bool waitsToChange() const { return session_.waitsToChange(); }
+    /// Publishes that the run has ended, and disconnects.
+    void end();
+
+  private:
+    struct Topic {
+        std::string id, key;
+        bool is_actuator = false;
+    };
+    void introduce();
+    void publishAll();
+    void publish(const RoomState& state);
+    void receive(const MqttMessage& message);
+    void answer();
+    void readLine(std::string_view line);
+    [[nodiscard]] std::string topicOf(std::string_view id, std::string_view key) const;
+
+    ServerState* state_;
+    std::unique_ptr<MqttClient> client_;
+    std::string prefix_;
+    Session session_;
+    std::deque<std::string> requests_;
+    std::map<std::string, Topic, std::less<>> topics_;  // of all states
+    int connections_ = 0;
+    std::int64_t changes_ = -1;  // of the world when it was introduced
+};
+
+}  // namespace ispace

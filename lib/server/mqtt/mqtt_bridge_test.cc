@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/mqtt/mqtt_bridge.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "server/mqtt/mqtt_topics.h"
+#include "support/memory_broker.h"
+#include "support/test_source.h"
+#include "support/test_talk.h"
+
+namespace ispace {
+namespace {
+
+using testing::MemoryBroker;
+using testing::MemoryClient;
+
+TEST(MqttTopics, PayloadsConvertBothWays) {
+    const struct {
+        const char *key, *value, *payload;
+    } cases[] = {{"on", "1", "ON"},
+                 {"open", "0", "OFF"},
+                 {"level", "0.4", "40"},
+                 {"level", "1", "100"},
+                 {"color", "1,0.2,0", "255,51,0"},
+                 {"tags", "a,b", "a,b"}};
+    for (const auto& [key, value, payload] : cases) EXPECT_EQ(payloadOf(key, value), payload);
+    EXPECT_EQ(valueOfPayload("on", "ON"), "on");
+    EXPECT_EQ(valueOfPayload("level", "40"), "40%");
+    EXPECT_EQ(valueOfPayload("color", "255,51,0"), "1,0.2,0");
+    EXPECT_EQ(valueOfPayload("color", "255,,0"), "");
+}
+
+TEST(MqttTopics, DiscoveryKeepsToTheLettersOfTopics) {
+    const MqttMessage lamp =
+        discoveryOf({"hall/l 1", "lamp", {"on"}}, "ispace", {"ispace/hall/l 1/on"});
+    EXPECT_EQ(lamp.topic, "homeassistant/light/ispace_hall_l_1/config");
+    EXPECT_TRUE(lamp.retain);
+    EXPECT_NE(lamp.payload.find("\"command_topic\":\"ispace/hall/l 1/on/set\""), std::string::npos);
+}
+
+TEST(MqttOptions, AreParsed) {
+    EXPECT_EQ(parseBroker("broker.local:1884").host, "broker.local");
+    EXPECT_EQ(parseBroker("broker.local:1884").port, 1884);
+    EXPECT_EQ(parseBroker("127.0.0.1").port, 1883);
+    for (const char* bad : {"", ":1883", "host:", "host:0", "host:70000", "host:x"})
+        EXPECT_THROW(parseBroker(bad), UsageError) << bad;
+}
+
+/// A room with a lamp and a door, whose states a broker in memory has.
+class BridgeTest : public ::testing::Test {
+  protected:
+    BridgeTest() {
+        ask("ADD lamp id=lp at=1,1");
+        ask("ADD pir id=s1 at=2,2,1");
+        bridge.emplace(talk.state, std::make_unique<MemoryClient>(broker), "home");
+    }
+    void ask(const std::string& request) {
+        std::string answer = testing::Talk::ask(world, request);
+        while (world.waiting()) {
+            std::this_thread::yield();
+            world.proceed();
+            answer += world.take();
+        }
+        EXPECT_EQ(answer.substr(0, 3), "OK ") << request << ": " << answer;
+    }
+    void step() {
+        talk.step(1);
+        bridge->stepped();
+        bridge->serve();
+    }
+    void tell(const std::string& topic, const std::string& payload, bool retained = false) {
+        broker.incoming.push_back({topic, payload, retained});
+        bridge->serve();
+        // A change has half of the time; the next waits for its turn.
+        for (int i = 0; i < 200; ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            bridge->serve();
+        }
+        step();
+    }
+    static ServerLimits limits() {
+        ServerLimits limits;
+        limits.source = std::make_shared<testing::TextSource>();
+        return limits;
+    }
+
+    MemoryBroker broker;
+    testing::Talk talk{{Clock::Kind::Step, 1}, {}, "", limits()};
+    Session& world = talk.client("WORLD");
+    std::optional<MqttBridge> bridge;
+};
+
+TEST_F(BridgeTest, PublishesStatesAndSubscribesToCommands) {
+    EXPECT_EQ(broker.last("home/lp/on"), "OFF");
+    EXPECT_EQ(broker.last("home/lp/level"), "100");
+    EXPECT_EQ(broker.last("home/s1/motion"), "OFF");
+    EXPECT_EQ(broker.last("home/status"), "online");
+    EXPECT_NE(broker.last("homeassistant/light/home_lp/config"), "");
+    EXPECT_EQ(broker.subscriptions, (std::vector<std::string>{"home/lp/on/set", "home/lp/level/set",
+                                                              "home/lp/color/set"}));
+    EXPECT_TRUE(std::all_of(broker.published.begin(), broker.published.end(),
+                            [](const MqttMessage& message) { return message.retain; }));
+    bridge->end();
+    EXPECT_EQ(broker.last("home/status"), "offline");
+    EXPECT_TRUE(broker.is_closed);
+}
+
+TEST_F(BridgeTest, CarriesOutCommands) {
+    tell("home/lp/on/set", "ON");
+    EXPECT_EQ(broker.last("home/lp/on"), "ON");
+    tell("home/lp/level/set", "25");
+    EXPECT_EQ(broker.last("home/lp/level"), "25");
+    tell("home/lp/color/set", "255,0,51");
+    EXPECT_EQ(broker.last("home/lp/color"), "255,0,51");
+    tell("home/lp/on/set", "OFF", true);
+    EXPECT_EQ(broker.last("home/lp/on"), "ON") << "a retained command is old";
+}
+
+TEST_F(BridgeTest, RefusesBadCommands) {
+    tell("home/lp/level/set", "500");
+    EXPECT_EQ(broker.last("home/error").substr(0, 8), "ERR 400 ");
+    broker.published.clear();
+    for (const char* payload : {"", "O N", "\n", "1 level=1"}) {
+        tell("home/lp/on/set", payload);
+        EXPECT_NE(broker.last("home/error"), "") << payload;
+        broker.published.clear();
+    }
+    tell("home/s1/motion/set", "ON");
+    tell("home/l2/on/set", "ON");
+    tell("elsewhere/lp/on/set", "ON");
+    EXPECT_TRUE(broker.published.empty());
+}
+
+TEST_F(BridgeTest, TellsAllAgainAfterAReconnection) {
+    tell("home/lp/on/set", "ON");
+    broker.published.clear();
+    bridge->serve();
+    EXPECT_TRUE(broker.published.empty());
+    ++broker.connections;
+    bridge->serve();
+    EXPECT_EQ(broker.last("home/lp/on"), "ON");
+    EXPECT_EQ(broker.published.back(), (MqttMessage{"home/status", "online", true}));
+}
+
+TEST_F(BridgeTest, IntroducesNewThings) {
+    ask("ADD switch id=b1 at=1,0");
+    step();
+    EXPECT_EQ(broker.last("home/b1/on"), "OFF");
+    EXPECT_NE(broker.last("homeassistant/switch/home_b1/config"), "");
+    tell("home/b1/on/set", "ON");
+    EXPECT_EQ(broker.last("home/b1/on"), "ON");
+}
+
+}  // namespace
+}  // namespace ispace

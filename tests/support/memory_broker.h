@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For tests and fuzzers of lib/server/mqtt: a broker in memory.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/mqtt/mqtt_client.h"
+
+namespace ispace::testing {
+
+struct MemoryBroker {
+    std::vector<MqttMessage> published, incoming;
+    std::vector<std::string> subscriptions;
+    int connections = 1;
+    bool is_closed = false;
+
+    /// The last payload of a topic; "" without.
+    [[nodiscard]] std::string last(const std::string& topic) const {
+        const auto found = std::find_if(published.rbegin(), published.rend(),
+                                        [&](const MqttMessage& m) { return m.topic == topic; });
+        return found == published.rend() ? "" : found->payload;
+    }
+};
+
+/// The broker must outlive it.
+class MemoryClient final : public MqttClient {
+  public:
+    explicit MemoryClient(MemoryBroker& broker) : broker_(&broker) {}
+    void publish(MqttMessage message) override { broker_->published.push_back(std::move(message)); }
+    void subscribe(const std::string& topic) override { broker_->subscriptions.push_back(topic); }
+    std::vector<MqttMessage> take() override { return std::exchange(broker_->incoming, {}); }
+    [[nodiscard]] int connections() const override { return broker_->connections; }
+    void close() override { broker_->is_closed = true; }
+
+  private:
+    MemoryBroker* broker_;
+};
+
+}  // namespace ispace::testing
