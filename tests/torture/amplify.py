@@ -500,7 +500,7 @@ def rmf(levels):
 def rmf_aliases(size):
     """A grid of walls in all levels, and vertices to the size."""
     vertices, walls = [[0, 0], [80, 0], [80, 60], [0, 60]], [[0, 1], [1, 2], [2, 3], [3, 0]]
-    for i in range(120):
+    for i in range(min(120, size // 150)):
         vertices += [[i / 2, 1], [i / 2, 59]] if i % 2 else [[1, i / 2], [79, i / 2]]
         walls.append([len(vertices) - 2, len(vertices) - 1])
     vertices += [[1, 1]] * max(0, (size - 18_000) // 8)
