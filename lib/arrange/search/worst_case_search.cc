@@ -158,7 +158,8 @@ class WorstCaseSearch {
         for (const Kind& kind : of_.problem->kinds) placed += static_cast<std::size_t>(kind.most);
         const auto failures = static_cast<std::size_t>(of_.failures);
         if (placed <= failures) {
-            result_.bound = std::min(result_.bound, CaseValues(of_, std::vector<Choice>()).ofBlocks().front());
+            result_.bound =
+                std::min(result_.bound, CaseValues(of_, std::vector<Choice>()).ofBlocks().front());
             return;
         }
         Problem fewer = *of_.problem;

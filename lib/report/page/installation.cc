@@ -262,14 +262,27 @@ PageFigure installationPlan(const Scene& scene, const std::vector<Installation>&
         const Point2 at = view * scene.sensors[one.sensor].pose.position.onFloor();
         for (const WallDistance& wall : one.walls) {
             const Point2 foot = view * wall.foot;
-            picture.line(at, foot, {palette::kInk, 0.18, {1, 0.6}});
             const Point2 middle = at + 0.5 * (foot - at);
             const std::string text = metresText(wall.distance);
-            const double width = textWidth(text, small);
-            if (distance(at, foot) < width / 2) continue;  // the mark would hide it
-            if (labels.take({{middle.x - width / 2, middle.y - small.size / 2},
-                             {middle.x + width / 2, middle.y + small.size / 2}}))
-                picture.text({middle.x, middle.y + 0.36 * small.size}, text, small);
+            const double width = textWidth(text, small), way = distance(at, foot);
+            const Stroke dashes{palette::kInk, 0.18, {1, 0.6}};
+            // The mark would hide the text of a short distance.
+            if (way < width / 2 ||
+                !labels.take({{middle.x - width / 2, middle.y - small.size / 2},
+                              {middle.x + width / 2, middle.y + small.size / 2}})) {
+                picture.line(at, foot, dashes);
+                continue;
+            }
+            // No line strikes the text through.
+            const Vec2 along = (1 / way) * (foot - at);
+            const double gap =
+                std::min(std::abs(along.x) > 0 ? 0.6 * width / std::abs(along.x) : way,
+                         std::abs(along.y) > 0 ? 0.6 * small.size / std::abs(along.y) : way);
+            if (2 * gap < way) {
+                picture.line(at, middle - gap * along, dashes);
+                picture.line(middle + gap * along, foot, dashes);
+            }
+            picture.text({middle.x, middle.y + 0.36 * small.size}, text, small);
         }
     }
     picture.pop();
