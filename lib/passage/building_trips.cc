@@ -60,9 +60,16 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
     TripAnswer answer;
     std::size_t from = *storey;
     Point2 at = statusOf(who).pose.position;
-    for (const RoomPoint& goal : trip.goals)
+    for (const RoomPoint& goal : trip.goals) {
+        const std::string& room = rooms[goal.room].id;
         if (!rooms[goal.room].storey)
-            return {.refusal = rooms[goal.room].id + " is no storey: RIDE leads by a lift"};
+            return {.refusal = room + " is no storey: RIDE leads by a lift"};
+        const Scene& scene = rooms[goal.room].world->scene();
+        if (const auto element = waysOf(who).obstacles(goal.room).overlap(goal.at, who.size.radius))
+            return {.refusal = mover + " has no room at " + room + '/' + formatDouble(goal.at.x) +
+                               ',' + formatDouble(goal.at.y) + ": " +
+                               scene.environment.elements()[*element].id + " stands there"};
+    }
     for (std::size_t i = 0; i < trip.goals.size(); ++i) {
         const auto route = routeFrom(who, from, at, trip, i);
         if (!route) {
