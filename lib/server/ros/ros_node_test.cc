@@ -3,71 +3,24 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
-#include <map>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "sense/formats/cdr.h"
+#include "support/fake_participant.h"
 #include "support/test_world.h"
 
 namespace ispace {
 namespace {
 
-/// Topics without a network: peers are played by the test.
-class FakeParticipant final : public DdsParticipant {
-  public:
-    int addWriter(const DdsTopic& topic) override { return add(topic); }
-    int addReader(const DdsTopic& topic) override { return add(topic); }
-    void remove(int end) override { ends.erase(end); }
-    [[nodiscard]] DdsGuid guid() const override { return {1}; }
-    [[nodiscard]] DdsGuid guid(int end) const override {
-        return {2, static_cast<std::uint8_t>(end)};
-    }
-    bool changed() override { return std::exchange(is_changed, false); }
-    [[nodiscard]] bool isRead(int writer) const override { return ends.at(writer).is_read; }
-    void write(int writer, std::string_view message) override {
-        ends.at(writer).sent.emplace_back(message);
-    }
-    std::vector<std::string> take(int reader) override {
-        return std::exchange(ends.at(reader).arrived, {});
-    }
-
-    struct Known {
-        DdsTopic topic;
-        bool is_read = false;
-        std::vector<std::string> sent, arrived;
-    };
-    Known& end(const std::string& name, const std::string& type = "") {
-        for (auto& [number, one] : ends)
-            if (one.topic.name == name && (type.empty() || one.topic.type == type)) return one;
-        throw std::out_of_range(name);
-    }
-    [[nodiscard]] bool has(const std::string& name) const {
-        return std::any_of(ends.begin(), ends.end(),
-                           [&](const auto& one) { return one.second.topic.name == name; });
-    }
-
-    std::map<int, Known> ends;
-    bool is_changed = false;
-
-  private:
-    int add(const DdsTopic& topic) {
-        ends[++last_].topic = topic;
-        return last_;
-    }
-    int last_ = 0;
-};
-
 /// A world in steps of 0.1 s with a node.
 struct Noded {
     explicit Noded(const ServerLimits& limits = {}, Clock::Kind clock = Clock::Kind::Step)
         : room({clock, 1}), state(room.simulation, limits), feed(state, {}) {
-        auto made = std::make_unique<FakeParticipant>();
+        auto made = std::make_unique<testing::FakeParticipant>();
         dds = made.get();
         node.emplace(state, feed, std::move(made));
     }
@@ -101,7 +54,7 @@ struct Noded {
     testing::TestWorld room;
     ServerState state;
     RosFeed feed;
-    FakeParticipant* dds = nullptr;
+    testing::FakeParticipant* dds = nullptr;
     std::optional<RosNode> node;
 };
 
