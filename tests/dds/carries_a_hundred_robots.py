@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scans of a hundred robots, ten a second each, over DDS to a reader over Fast DDS: all of them, in real time, by
-less than one core."""
+less than one core. A reader that has stopped delays neither the world nor its end."""
 import os
 import resource
+import signal
 import time
 
 from dds_run import Client, free_domain, need_dds
@@ -49,6 +50,17 @@ def main():
         # The machine may be busy with other tests, too.
         check(min(counts) > 8 * took, "scans are missing")
         check(used < took, "more than one core")
+        with Client(domain, *topics, reliable=True) as client:
+            with Run("hall.env", "robots.3dm", "-q", f"--ros2={domain}") as run:
+                client.wait(lambda: all(client.seen[topic] for topic in topics), "scans of all robots")
+                client.process.send_signal(signal.SIGSTOP)
+                time.sleep(2)  # each writer keeps what it has not read
+                start = time.monotonic()
+                run.stop()
+                took = time.monotonic() - start
+                client.process.send_signal(signal.SIGCONT)
+        print(f"simrun ended within {took:.2f} s beside a reader that had stopped")
+        check(took < 2, "a reader that has stopped delays the end")
 
 
 main()
