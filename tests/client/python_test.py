@@ -277,6 +277,27 @@ class Sensors(unittest.TestCase):
                 self.assertEqual(picture.pixels.shape, (6, 8, 3))
 
 
+class Building(unittest.TestCase):
+    """Two storeys with a lift and stairs."""
+
+    def test_trips_and_lifts(self):
+        with ispace.simrun(DATA / "tower.yaml", DATA / "tower.3dm", clock="step", quiet=True) as run, \
+                run.world() as world, run.robot("ground/r1") as robot:
+            trip = robot.go_to("upper", 9, 6)
+            world.advance(70)
+            self.assertTrue(robot.wait(trip).done)
+            self.assertEqual(robot.status().fields["storey"], "upper")
+            world.call("l1", "ground")
+            lift, = world.lifts()
+            self.assertEqual((lift.storey, lift.height, lift.riders, lift.calls), ("upper", 3, [], ["ground"]))
+            with self.assertRaises(ispace.Refused):
+                robot.go_to("upper", -5, 6)
+            ride = robot.ride("l1", "ground")
+            world.advance(90)
+            self.assertTrue(robot.wait(ride).done)
+            self.assertEqual(world.list()["rooms"], ["ground", "upper", "l1", "s1"])
+
+
 class LivingWorld(unittest.TestCase):
     """square.env with sensing.3dm: r1 at (-1, 0) faces h1 at (0.9, 0.5)."""
 
