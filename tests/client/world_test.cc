@@ -23,6 +23,23 @@ std::string data(const std::string& file) {
     return ispace::testing::sourcePath("tests/data/") + file;
 }
 
+TEST(Building, LeadsRobotsByLifts) {
+    TestServer server{{data("tower.yaml"), data("tower.3dm"), "--clock", "step", "-q"}};
+    World world(server.address());
+    Robot robot(server.address(), "ground/r1");
+    const Motion trip = robot.goTo("upper", {9, 6});
+    world.step(std::lround(70 / world.dt()));
+    EXPECT_TRUE(robot.wait(trip).done);
+    EXPECT_EQ(robot.status().fields.text("storey"), "upper");
+    world.call("l1", "ground");
+    const std::vector<Lift> lifts = world.lifts();
+    ASSERT_EQ(lifts.size(), 1U);
+    EXPECT_EQ(lifts[0].id, "l1");
+    EXPECT_EQ(lifts[0].height, 3);
+    EXPECT_EQ(lifts[0].calls, std::vector<std::string>{"ground"});
+    EXPECT_THROW(robot.ride("l2", "ground"), Refused);
+}
+
 /// square.env with sensing.3dm: r1 at (-1, 0) faces h1 at (0.9, 0.5).
 class LivingWorld : public ::testing::Test {
   protected:
