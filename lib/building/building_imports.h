@@ -27,7 +27,7 @@ bool isRmfSite(const YamlNode& top);
 /// \param work of the site, for all levels
 /// \throws FormatError with the line, and as the importers of plans
 StoreyedDocument readRmfSite(const YamlNode& top, const std::string& operand,
-                             const ImportOptions& options, Budget& work);
+                             const ImportOptions& import, Budget& work);
 
 /// Reads all storeys of an IFC building that have walls or spaces, see readIfc().
 ///
