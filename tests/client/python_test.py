@@ -220,16 +220,28 @@ class Sensors(unittest.TestCase):
                 self.assertAlmostEqual(seen.speed, -0.2, delta=0.002)
                 self.assertAlmostEqual(seen.bearing, 0, delta=0.01)
 
-    def test_pir(self):
+    def test_pir_and_states(self):
         with self.run_.world() as world:
-            world.add("pir id=s1 at=1.8,1.8,1.2 heading=-135 hold=0.5")
-            world.add("human id=h5 at=1,1 path=1.4,1;1,1 loop=no")
-            with ispace.Pir(self.run_.address, "s1") as pir:
+            world.add("pir id=s1 at=1.2,1.8,1.2 heading=-90 range=1.2 fov=50,60 hold=0.5")
+            world.add("human id=h5 at=1,1")
+            world.add("lamp id=lamp at=1,1 level=50%")
+            with ispace.Pir(self.run_.address, "s1") as pir, ispace.Person(self.run_.address, "h5") as person:
                 world.advance(1)
-                self.assertTrue(pir.scan().motion)
-                world.advance(10)
                 self.assertFalse(pir.scan().motion)
-            world.delete("h5")
+                person.rotspeed(30)
+                world.advance(0.5)
+                self.assertTrue(pir.scan().motion)
+                self.assertEqual(world.states("s1"), {"s1.motion": "1"})
+                person.stop()
+                world.advance(3)
+                self.assertFalse(pir.scan().motion)
+            self.assertEqual(world.states("lamp"), {"lamp.on": "0", "lamp.level": "0.5", "lamp.color": "1,1,0.97"})
+            world.act("lamp", "on", True)
+            world.act("lamp", "level", "20%")
+            self.assertEqual(world.states("lamp")["lamp.on"], "1")
+            self.assertEqual(world.states("lamp")["lamp.level"], "0.2")
+            with self.assertRaises(ispace.Refused):
+                world.act("s1", "motion", True)
 
     def test_sonars_and_bumpers(self):
         with self.run_.world() as world:
