@@ -24,6 +24,7 @@ ISPACE_WEB_FILE(kWebDrive, "drive.js");
 ISPACE_WEB_FILE(kWebEvents, "events.js");
 ISPACE_WEB_FILE(kWebCamera, "camera.js");
 ISPACE_WEB_FILE(kWebSeek, "seek.js");
+ISPACE_WEB_FILE(kWebStates, "states.js");
 
 namespace ispace {
 
@@ -32,7 +33,7 @@ const WebFile* webFile(std::string_view path) {
         return std::string_view(begin, static_cast<std::size_t>(end - begin));
     };
     constexpr std::string_view kScript = "text/javascript; charset=utf-8";
-    static const std::array<WebFile, 12> files = {{
+    static const std::array<WebFile, 13> files = {{
         {"/", "text/html; charset=utf-8", between(kWebPage, kWebPageEnd)},
         {"/style.css", "text/css; charset=utf-8", between(kWebStyle, kWebStyleEnd)},
         {"/icon.svg", "image/svg+xml", between(kWebIcon, kWebIconEnd)},
@@ -45,6 +46,7 @@ const WebFile* webFile(std::string_view path) {
         {"/events.js", kScript, between(kWebEvents, kWebEventsEnd)},
         {"/camera.js", kScript, between(kWebCamera, kWebCameraEnd)},
         {"/seek.js", kScript, between(kWebSeek, kWebSeekEnd)},
+        {"/states.js", kScript, between(kWebStates, kWebStatesEnd)},
     }};
     const auto* const found = std::find_if(files.begin(), files.end(),
                                            [&](const WebFile& file) { return file.path == path; });
