@@ -284,6 +284,7 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     result.bound = result.candidate_bound;
     result.sensors = model.placementsOf(chosen);
     if (options.refine) refineIn(result, model, found.best.value, progress);
+    if (options.over_poses) boundOfPoses(model, result, progress);
     measure(result, model);
     if (options.wants_curve) {
         result.curve = curveTo(found, model, progress);
@@ -325,7 +326,9 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
         group.whole = group.model;
         limitCovered(group.model, options);
     }
-    if (options.over_poses) return arrangeOverPoses(limited, limited_groups, options, progress);
+    if (options.over_poses && options.target)
+        return arrangeOverPoses(limited, limited_groups, options, progress);
+    if (options.over_poses) mustBeBoundable(limited, limited_groups, options);
     if (options.privacy.empty())
         return arrangeLimited(limited, limited_groups, options, progress, mps);
     // Cells may miss what the exact regions see.
@@ -356,8 +359,8 @@ Record resultRecord(const LayoutParts& parts, const Arrangement& arrangement) {
     result.set("optimize", Value(parts.optimize));
     result.set("candidates", Value(static_cast<double>(arrangement.candidates)));
     if (arrangement.least) result.set("least", Value(*arrangement.least));
+    if (arrangement.over_poses || arrangement.poses_bound) result.set("proof", Value("poses"));
     if (arrangement.over_poses) {
-        result.set("proof", Value("poses"));
         TupleList witnesses;
         for (const Point2 p : arrangement.over_poses->witnesses) witnesses.push_back({p.x, p.y});
         if (!witnesses.empty()) result.set("witnesses", Value(std::move(witnesses)));

@@ -91,7 +91,8 @@ struct ArrangeOptions {
     /// In these zones floor counts only where a camera sees faces. Headings are known.
     std::vector<FacingRule> facing;
     std::optional<double> target;  ///< share to reach at minimum cost
-    bool over_poses = false;       ///< prove the number of sensors over all poses
+    /// Prove over all poses: the number of sensors with a target, else their coverage.
+    bool over_poses = false;
     std::optional<double> budget;
     bool wants_curve = false, wants_trace = false, wants_gains = false;
     int alternatives = 0;  ///< number of further layouts, see Arrangement::alternatives
@@ -134,6 +135,14 @@ struct PosesProof {
     std::vector<Point2> witnesses;
 
     [[nodiscard]] bool isProven() const { return cover > 0 && cover == bound; }
+};
+
+/// A bound of the coverage over all poses, m2.
+struct PosesBound {
+    double found = 0;                   ///< seen by the layout, by exact area
+    double bound = 0;                   ///< the same number of sensors, in any poses, sees no more
+    double floor = 0;                   ///< the indoor floor
+    std::size_t boxes = 0, tuples = 0;  ///< of poses, whose views were bounded
 };
 
 /// The gain of the candidates of one sensor of a layout.
@@ -179,7 +188,8 @@ struct Arrangement {
     /// empty if no closed form is known. Less than all of it misses the target, though all cells
     /// are covered.
     std::optional<double> exact_share;
-    std::optional<PosesProof> over_poses;  ///< with ArrangeOptions::over_poses
+    std::optional<PosesProof> over_poses;   ///< with ArrangeOptions::over_poses and a target
+    std::optional<PosesBound> poses_bound;  ///< with ArrangeOptions::over_poses and without one
 
     /// Of the written poses; the bound is that of the worst case, or of the mean.
     std::optional<RobustValues> robust;

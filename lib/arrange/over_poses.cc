@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
 
 #include "arrange/gallery/gallery.h"
+#include "arrange/measured_scene.h"
+#include "arrange/poses/pose_search.h"
+#include "arrange/refine.h"
 #include "base/number.h"
 #include "coverage/coverage.h"
 #include "env/level.h"
@@ -24,8 +28,13 @@ namespace {
     throw UsageError("--proof poses: " + reason);
 }
 
-/// Returns the floor that the lasers must see.
-std::vector<Region> floorFor(const Scene& scene, const Laser& laser, double height) {
+double heightOf(const ArrangeOptions& options) {
+    const std::vector<double>& heights = options.mount.heights;
+    return heights.empty() ? kScanHeight : heights.front();
+}
+
+/// Returns the free floor at a height of walls that a proof can handle.
+std::vector<Region> floorAt(const Scene& scene, double height) {
     const std::shared_ptr<const Level> level = scene.environment.level(height);
     const Slice& slice = level->slice();
     if (!slice.rounds.empty()) refusePoses("round bodies stand at the height of the lasers");
@@ -44,6 +53,12 @@ std::vector<Region> floorFor(const Scene& scene, const Laser& laser, double heig
     };
     if (std::any_of(slice.sheets.begin(), slice.sheets.end(), is_inside))
         refusePoses("a wall without thickness stands in the room, with floor on both sides");
+    return floor;
+}
+
+/// Returns the floor that the lasers must see.
+std::vector<Region> floorFor(const Scene& scene, const Laser& laser, double height) {
+    std::vector<Region> floor = floorAt(scene, height);
     Box2 box;
     for (const Region& region : floor)
         for (const Point2 p : region.outline) box.add(p);
@@ -55,17 +70,22 @@ std::vector<Region> floorFor(const Scene& scene, const Laser& laser, double heig
     return floor;
 }
 
-const Laser& laserOf(const Scene& scene, const std::vector<SensorGroup>& groups,
-                     const ArrangeOptions& options) {
-    if (options.target != 1) refusePoses("needs --target 100%");
+void mustStandAlone(const Scene& scene, const std::vector<SensorGroup>& groups,
+                    const ArrangeOptions& options) {
     if (!options.weights.isUniform()) refusePoses("zones and weights are not supported");
     if (groups.size() != 1) refusePoses("give one kind of sensor");
-    const auto* laser = std::get_if<Laser>(&groups.front().model);
-    if (laser == nullptr || !laser->seesAround())
-        refusePoses("wanted level lasers that see all around, as laser,range=1000,fov=360");
     for (const Sensor& sensor : scene.sensors)
         if (kindOf(sensor.model).perceives)
             refusePoses("sensors stand in the room already: leave them out");
+}
+
+const Laser& laserOf(const Scene& scene, const std::vector<SensorGroup>& groups,
+                     const ArrangeOptions& options) {
+    if (options.target != 1) refusePoses("needs --target 100%");
+    mustStandAlone(scene, groups, options);
+    const auto* laser = std::get_if<Laser>(&groups.front().model);
+    if (laser == nullptr || !laser->seesAround())
+        refusePoses("wanted level lasers that see all around, as laser,range=1000,fov=360");
     return *laser;
 }
 
@@ -85,8 +105,7 @@ void measurePlaced(const Scene& scene, const std::vector<SensorGroup>& groups,
 Arrangement arrangeOverPoses(const Scene& scene, const std::vector<SensorGroup>& groups,
                              const ArrangeOptions& options, Progress& progress) {
     const Laser& laser = laserOf(scene, groups, options);
-    const std::vector<double>& heights = options.mount.heights;
-    const double height = heights.empty() ? kScanHeight : heights.front();
+    const double height = heightOf(options);
     const std::vector<Region> floor = floorFor(scene, laser, height);
     const GalleryCover cover = guardGallery(floor, progress);
 
@@ -110,6 +129,111 @@ Arrangement arrangeOverPoses(const Scene& scene, const std::vector<SensorGroup>&
     result.candidate_value =
         result.is_reached && area > 0 ? 1 - cover.missed / area : result.coverage;
     return result;
+}
+
+namespace {
+
+/// Layouts near poses of boxes, by refinement.
+class LayoutTrials {
+  public:
+    LayoutTrials(MeasuredScene& model, const std::vector<Region>& floor,
+                 const Arrangement& arrangement, Progress& progress)
+        : model_(model), floor_(floor), progress_(progress) {
+        for (const Placement& placement : arrangement.sensors)
+            sensors_.push_back(sensorOf(model.groups(), placement));
+        const ExactGain gain(model.scene(), model.sight(), sensors_, model.options().weights, 1);
+        found_ = gain.value();
+        total_ = gain.total();
+    }
+
+    /// Refines the layout of these centres. Returns the area that it sees.
+    double tryCenters(std::span<const poses::PoseBox> boxes) {
+        std::vector<Sensor> sensors = sensors_;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const Point2 at = boxes[i].at.center();
+            if (!isValid(at)) return 0;
+            Pose3& pose = sensors[i].pose;
+            pose.position.x = at.x;
+            pose.position.y = at.y;
+            pose.heading = Angle::radians(boxes[i].from + boxes[i].span / 2);
+        }
+        RefineOptions options;
+        options.is_valid = [this](std::size_t, Point2 p) { return isValid(p); };
+        const Refined refined = refine(model_.scene(), model_.sight(), sensors,
+                                       model_.options().weights, options, progress_);
+        if (refined.after > found_) {
+            found_ = refined.after;
+            for (std::size_t i = 0; i < sensors_.size(); ++i) sensors_[i].pose = refined.poses[i];
+            is_moved_ = true;
+        }
+        return refined.after;
+    }
+
+    [[nodiscard]] double found() const { return found_; }
+    [[nodiscard]] double total() const { return total_; }
+    [[nodiscard]] bool isMoved() const { return is_moved_; }
+    [[nodiscard]] const std::vector<Sensor>& sensors() const { return sensors_; }
+
+  private:
+    [[nodiscard]] bool isValid(Point2 p) const {
+        return std::any_of(floor_.begin(), floor_.end(),
+                           [p](const Region& region) { return region.locate(p) == Side::Inside; });
+    }
+
+    MeasuredScene& model_;
+    const std::vector<Region>& floor_;
+    Progress& progress_;
+    std::vector<Sensor> sensors_;
+    double found_ = 0, total_ = 0;
+    bool is_moved_ = false;
+};
+
+}  // namespace
+
+void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
+                     const ArrangeOptions& options) {
+    mustStandAlone(scene, groups, options);
+    if (options.redundancy != 1 || options.is_connected || options.budget || options.beam_step ||
+        !options.judges_inside)
+        refusePoses("all of the indoor floor counts once, for a given number of sensors");
+    const SensorGroup& group = groups.front();
+    const auto* laser = std::get_if<Laser>(&group.model);
+    if (laser == nullptr || laser->sweep != SweepAxis::None || group.record.number("tilt") != 0 ||
+        group.record.number("roll") != 0)
+        refusePoses("wanted level lasers that do not sweep");
+    if (group.most > kMostPosed)
+        refusePoses("wanted at most " + std::to_string(kMostPosed) + " sensors, found " +
+                    std::to_string(group.most));
+    (void)floorAt(scene, heightOf(options));
+}
+
+void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& progress) {
+    if (arrangement.sensors.empty()) return;
+    const std::vector<Region> floor = floorAt(model.scene(), heightOf(model.options()));
+    const auto& laser = std::get<Laser>(model.groups().front().model);
+    constexpr std::size_t kCells = 12'000;
+    const poses::PoseFloor cells(floor, kCells);
+    const double extent = std::hypot(cells.box().width(), cells.box().depth());
+    const poses::Sector sector{std::min(laser.max_range, extent), laser.span().radians(),
+                               laser.first.radians()};
+    LayoutTrials trials(model, floor, arrangement, progress);
+    PoseSearchOptions options{.sensors = model.groups().front().most,
+                              .found = trials.found(),
+                              .max_bytes = model.options().max_bytes};
+    options.gap = model.options().search.gap > 0 ? model.options().search.gap : kPosesGap;
+    options.improve = [&](std::span<const poses::PoseBox> boxes) {
+        return trials.tryCenters(boxes);
+    };
+    const PoseBound found = boundOverPoses(cells, sector, options, progress);
+    if (trials.isMoved())
+        for (std::size_t i = 0; i < arrangement.sensors.size(); ++i)
+            arrangement.sensors[i].pose = trials.sensors()[i].pose;
+    arrangement.refined_after = std::max(arrangement.refined_after, trials.found());
+    const double bound = std::min(found.bound, trials.total());
+    arrangement.poses_bound =
+        PosesBound{trials.found(), bound, trials.total(), found.boxes, found.tuples};
+    arrangement.bound = bound / trials.total();
+    arrangement.is_complete = arrangement.is_complete && found.is_complete;
 }
 
 }  // namespace ispace

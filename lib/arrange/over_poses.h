@@ -17,4 +17,19 @@ namespace ispace {
 Arrangement arrangeOverPoses(const Scene& scene, const std::vector<SensorGroup>& groups,
                              const ArrangeOptions& options, Progress& progress);
 
+class MeasuredScene;
+
+/// Gap at which a bound of coverage over all poses is close enough, unless another is given.
+constexpr double kPosesGap = 0.005;
+
+/// Validates before a search that boundOfPoses() can follow it.
+/// \throws UsageError unless the sensors are level lasers of one kind that stand alone in a room of
+///         straight walls, few enough, and all of its floor counts once
+void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
+                     const ArrangeOptions& options);
+
+/// Bounds the coverage of the arranged sensors over all poses (Arrangement::poses_bound), and moves
+/// them if a better layout is found on the way.
+void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& progress);
+
 }  // namespace ispace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <string>
 
 #include "scene/placement_schemas.h"
@@ -77,6 +78,48 @@ TEST(OverPoses, RefusesRoomsAndSensorsThatAreNoGallery) {
               std::string::npos);
     EXPECT_NE(refusalOf(room + "laser at=1,1\n").find("stand in the room"), std::string::npos);
     EXPECT_EQ(refusalOf(room + "wall from=0,0 to=1,0 thickness=0.1\n"), "");
+}
+
+TEST(OverPoses, BoundsTheCoverageOfAnyPoses) {
+    const Scene scene = roomScene("#env 1\nispace size=12,8\n");
+    ArrangeOptions options = coarse();
+    options.refine = options.over_poses = true;
+    const auto groups = groupsOf(scene, {"laser,range=4,fov=240:2"});
+    const Arrangement found = arranged(scene, groups, options);
+    ASSERT_TRUE(found.poses_bound);
+    const double sector = 32 * std::numbers::pi / 3;  // fits twice
+    EXPECT_NEAR(found.poses_bound->bound, 2 * sector, 1e-6);
+    EXPECT_NEAR(found.poses_bound->found, 2 * sector, 0.005 * 2 * sector);
+    EXPECT_NEAR(found.poses_bound->floor, 96, 1e-9);
+    EXPECT_NEAR(found.bound, 2 * sector / 96, 1e-9);
+    const Document layout =
+        layoutDocument({{}, "", scene.digest(), "all", "swap"}, nullptr, groups, found);
+    EXPECT_EQ(layout.records.back().text("proof"), "poses");
+}
+
+TEST(OverPoses, RefusesSensorsThatItCannotBound) {
+    const auto refusal = [](const std::string& room, const char* sensor,
+                            const ArrangeOptions& options) -> std::string {
+        try {
+            const Scene scene = roomScene(room);
+            arranged(scene, groupsOf(scene, {sensor}), options);
+        } catch (const UsageError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const std::string room = "#env 1\nispace size=8,6\n";
+    ArrangeOptions options = coarse();
+    options.refine = options.over_poses = true;
+    EXPECT_NE(refusal(room, "camera", options).find("level lasers"), std::string::npos);
+    EXPECT_NE(refusal(room, "laser,tilt=10", options).find("level lasers"), std::string::npos);
+    EXPECT_NE(refusal(room, "laser:5", options).find("at most 4"), std::string::npos);
+    EXPECT_NE(refusal(room + "laser at=1,1\n", "laser", options).find("stand in the room"),
+              std::string::npos);
+    EXPECT_NE(refusal(room + "cylinder at=0,0 size=1,1,1\n", "laser", options).find("round"),
+              std::string::npos);
+    options.redundancy = 2;
+    EXPECT_NE(refusal(room, "laser", options).find("once"), std::string::npos);
 }
 
 TEST(OverPoses, AllCellsAreNotAllOfTheFloor) {

@@ -308,7 +308,7 @@ Schema resultSchema() {
              .lower = 0},
             {.name = "proof",
              .type = KeyType::Word,
-             .help = "poses: `least` holds over all poses, not only over the candidates"},
+             .help = "poses: `least` (without a target, `bound`) holds over all poses"},
             {.name = "witnesses",
              .type = KeyType::TupleList,
              .unit = Unit::Length,

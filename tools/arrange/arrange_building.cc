@@ -28,7 +28,7 @@ void mustBeAboutBuildings(const ArrangeToolOptions& options, const BuildingInput
     std::string option;
     if (options.how.target) option = "--target";
     if (options.how.budget) option = "--budget";
-    if (options.how.refine) option = "--refine";
+    if (options.how.refine) option = options.how.over_poses ? "--proof poses" : "--refine";
     if (options.how.robust.isAsked())
         option = options.how.robust.of == RobustChoice::Of::Crowd ? "--crowd" : "--robust";
     if (!zones.targets.empty()) option = "--zone";

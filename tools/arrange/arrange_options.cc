@@ -268,11 +268,12 @@ void ArrangeCommand::addGoalOptions() {
         "find the fewest sensors (or the cheapest, cost=) that cover this share, e.g. 95%; COUNT "
         "is then a maximum; exit with 3 if it cannot be reached",
         Enters::History);
-    line_.choice("--proof", words_.proof, {"candidates", "poses"},
-                 "with --target 100%: prove how few sensors see all of the floor over the "
-                 "candidates (default), or over all poses: of lasers that see all around, farther "
-                 "than the room is wide",
-                 Enters::History);
+    line_.choice(
+        "--proof", words_.proof, {"candidates", "poses"},
+        "over which poses results are proven: the candidates (default), or all poses; with "
+        "--target 100% of lasers that see all around, farther than the room is wide, else "
+        "of up to four level lasers, which are refined",
+        Enters::History);
     line_.parsed(
         "--budget", "COST",
         [&how](const std::string& text) {

@@ -60,6 +60,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void settleProof();
     void settleRobust();
     void settleCameraRules();
+    void settleProofOfCoverage();
     void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;
     void settleFiles() const;
     void settleBatch();

@@ -319,6 +319,17 @@ std::string posesText(const Arrangement& arrangement) {
     return text + (arrangement.is_complete ? "\n" : ", cut short\n");
 }
 
+/// Reports a bound of the coverage over all poses.
+std::string posesBoundText(const Arrangement& arrangement) {
+    const PosesBound& proof = *arrangement.poses_bound;
+    const double gap = std::max(0.0, (proof.bound - proof.found) / proof.bound);
+    return "arrange: the layout sees " + formatFixed(proof.found, 3) + " m2 (" +
+           percentText(proof.found / proof.floor) + ") by exact area; over all poses at most " +
+           formatFixed(proof.bound, 3) + " m2 (" + percentText(proof.bound / proof.floor) +
+           ", gap " + percentText(gap) + ")" + (arrangement.is_complete ? "" : ", cut short") +
+           '\n';
+}
+
 }  // namespace
 
 std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement) {
@@ -338,9 +349,10 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
             ") " + overText(how, arrangement);
     if (!arrangement.is_complete && gap > 0) text += ", cut short";
     text += '\n' + cellsGapText(arrangement);
-    if (!arrangement.is_complete && gap <= 0)
+    if (!arrangement.is_complete && gap <= 0 && !arrangement.poses_bound)
         text += "arrange: " + unfinishedText(how) + " was cut short\n";
-    if (how.refine && arrangement.refined_after > arrangement.refined_before) {
+    if (how.refine && !arrangement.poses_bound &&
+        arrangement.refined_after > arrangement.refined_before) {
         text += "arrange: refined from " + formatFixed(arrangement.refined_before, 3) + " to " +
                 formatFixed(arrangement.refined_after, 3) +
                 " m2 by exact area, off the candidates; " +
@@ -348,7 +360,7 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
                                              percentText(arrangement.bound) + " can be covered"
                                        : "for any places at all no bound below 100% is known") +
                 '\n';
-    } else if (how.refine) {
+    } else if (how.refine && !arrangement.poses_bound) {
         text += "arrange: refining found nothing better than " +
                 formatFixed(arrangement.refined_before, 3) + " m2 by exact area\n";
     }
@@ -367,6 +379,7 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
     if (how.budget)
         text += "arrange: cost " + formatDouble(arrangement.cost) + " of a budget of " +
                 formatDouble(*how.budget) + '\n';
+    if (arrangement.poses_bound) text += posesBoundText(arrangement);
     if (!arrangement.curve.empty()) text += curveText(arrangement.curve);
     return text;
 }

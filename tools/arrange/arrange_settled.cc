@@ -81,19 +81,35 @@ void ArrangeCommand::settleProof() {
     ArrangeOptions& how = options_.how;
     how.over_poses = words_.proof == "poses";
     if (!how.over_poses) return;
-    if (how.target != 1) throw UsageError("--proof poses is about --target 100%: give both");
+    if (how.mount.heights.size() > 1) throw UsageError("--proof poses: give one height with --z");
+    if (!how.target) return settleProofOfCoverage();
+    if (how.target != 1)
+        throw UsageError("--proof poses is about --target 100%, or coverage without a target");
     constexpr const char* kOfCandidates[] = {
-        "--effort",   "--strategy", "--deg",  "--mount",  "--tilt",       "--clearance",
-        "--keep-out", "--keep-in",  "--zone", "--weight", "--redundancy", "--connected",
-        "--optimize", "--starts",   "--gap",  "--refine", "--curve",      "--trace",
-        "--judge",    "--reso",     "--grid", "--cell",   "--export-mps", "--candidates",
-        "--shard",    "--resume"};
+        "--effort",   "--strategy", "--deg",    "--mount",  "--tilt",       "--clearance",
+        "--keep-out", "--keep-in",  "--zone",   "--weight", "--redundancy", "--connected",
+        "--optimize", "--starts",   "--gap",    "--refine", "--curve",      "--trace",
+        "--judge",    "--reso",     "--grid",   "--cell",   "--export-mps", "--candidates",
+        "--shard",    "--resume",   "--robust", "--crowd",  "--facing",     "--privacy"};
     for (const char* option : kOfCandidates)
         if (line_.given(option))
             throw UsageError(
                 "--proof poses tries no candidates, and all of the floor counts: leave out " +
                 std::string(option));
-    if (how.mount.heights.size() > 1) throw UsageError("--proof poses: give one height with --z");
+}
+
+void ArrangeCommand::settleProofOfCoverage() {
+    constexpr const char* kOther[] = {
+        "--mount",  "--tilt",       "--clearance", "--keep-out",   "--keep-in",      "--zone",
+        "--weight", "--redundancy", "--connected", "--budget",     "--judge",        "--reso",
+        "--shard",  "--resume",     "--curve",     "--export-mps", "--alternatives", "--robust",
+        "--crowd",  "--facing",     "--privacy"};
+    for (const char* option : kOther)
+        if (line_.given(option))
+            throw UsageError(
+                "--proof poses bounds what sensors in any poses see of all the floor: leave out " +
+                std::string(option));
+    options_.how.refine = true;
 }
 
 void ArrangeCommand::settleRobust() {

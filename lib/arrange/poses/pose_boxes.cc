@@ -115,7 +115,7 @@ void PoseBoxes::lowerMost(BoxId id) {
 }
 
 double PoseBoxes::unionOf(std::span<const BoxId> boxes, CellParts BoxNode::*views) const {
-    std::vector<std::uint8_t>& sums = sums_.local();
+    thread_local std::vector<std::uint8_t> sums;  // memory is reused
     const std::vector<std::uint8_t>& most = floor_.parts();
     sums.assign(most.size(), 0);
     std::size_t begin = most.size(), end = 0;

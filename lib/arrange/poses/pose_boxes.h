@@ -2,8 +2,6 @@
 // Inside lib/arrange/poses: the subdivision of all poses into boxes.
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -71,7 +69,6 @@ class PoseBoxes {
     const Sector& sector_;
     std::vector<BoxNode> boxes_;
     std::size_t bytes_ = 0;
-    mutable tbb::enumerable_thread_specific<std::vector<std::uint8_t>> sums_;
 };
 
 }  // namespace ispace::poses

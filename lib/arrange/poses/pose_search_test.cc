@@ -131,7 +131,7 @@ TEST(PoseSearch, NeverBelowRandomLayouts) {
         for (const double field : {kPi / 2, 4.0})
             for (const int sensors : {1, 2, 3}) {
                 const Sector sector{2.5, field, 0};
-                const double best = bestOfRandom(region, sector, sensors, 1500);
+                const double best = bestOfRandom(region, sector, sensors, 400);
                 for (const int rounds : {0, 3, 40}) {
                     const PoseBound found =
                         boundOf(region, sector, {.sensors = sensors, .found = 0, .gap = 0}, rounds);
