@@ -56,9 +56,9 @@ void add(AllReadings& all, const std::string& id, const Hearings& hearings) {
     for (const HeardTag& tag : hearings.tags)
         all[{id + tag.tag, 0, 0}].push_back(tag.time_of_flight.value_or(-1));
 }
-void add(AllReadings&, const std::string&, const MatState&) {}
-void add(AllReadings&, const std::string&, const GateState&) {}
-void add(AllReadings&, const std::string&, const RadarFrame&) {}
+/// Of kinds that the room lacks.
+template <typename Other>
+void add(AllReadings&, const std::string&, const Other&) {}
 
 AllReadings readByRun(const Scene& scene, bool noise, SimTime duration) {
     AllReadings all;
