@@ -86,7 +86,7 @@ ImportOptions drawingOptions() {
     options.units = "m";
     options.door_layers = {"D*"};
     options.window_layers = {"*WIN*"};
-    options.max_work = 2000;
+    options.max_work.max = 2000;
     return options;
 }
 
