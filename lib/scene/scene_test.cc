@@ -362,8 +362,8 @@ TEST(SceneSchemas, WhatSeesOrHearsIsASensorAndRobotsAreNot) {
     std::vector<std::string> sensors;
     for (const SensorKind* kind : sensorKinds())
         if (kind->perceives) sensors.emplace_back(kind->keyword);
-    EXPECT_EQ(sensors,
-              (std::vector<std::string>{"laser", "ranger", "ultrasound", "camera", "radar"}));
+    EXPECT_EQ(sensors, (std::vector<std::string>{"laser", "ranger", "ultrasound", "camera", "radar",
+                                                 "pir"}));
     for (const std::string& keyword : sensors) EXPECT_NE(sceneSchemas().find(keyword), nullptr);
     EXPECT_EQ(sensorKind("robot"), nullptr);
 }

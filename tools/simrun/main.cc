@@ -128,9 +128,10 @@ void simrun(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     limitThreads(options.common.threads);
     claimFiles(options);
-    if (options.drawing.format.empty() && runBuilding(command)) return;
     JunitFile junit("simrun", options.junit);
-    junit.during(options.operands, [&] { run(command, junit); });
+    junit.during(options.operands, [&] {
+        if (!options.drawing.format.empty() || !runBuilding(command)) run(command, junit);
+    });
 }
 
 }  // namespace

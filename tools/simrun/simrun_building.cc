@@ -38,6 +38,8 @@ void mustBeAboutBuildings(const SimrunOptions& options, const BuildingInput& inp
     refuse(!options.replay.empty(), "--replay");
     refuse(options.foxglove.has_value(), "--foxglove");
     refuse(options.rosbridge.has_value(), "--rosbridge");
+    refuse(options.ros_domain.has_value(), "--ros2");
+    refuse(options.mqtt.has_value(), "--mqtt");
     refuse(!options.load_folder.empty(), "--load");
     refuse(!options.devices.ports().empty(), "a port of a device");
 }
