@@ -60,22 +60,26 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
     TripAnswer answer;
     std::size_t from = *storey;
     Point2 at = statusOf(who).pose.position;
+    const auto text_of = [this](const RoomPoint& goal) {
+        return rooms[goal.room].id + '/' + formatDouble(goal.at.x) + ',' + formatDouble(goal.at.y);
+    };
     for (const RoomPoint& goal : trip.goals) {
         const std::string& room = rooms[goal.room].id;
         if (!rooms[goal.room].storey)
             return {.refusal = room + " is no storey: RIDE leads by a lift"};
         const Scene& scene = rooms[goal.room].world->scene();
         if (const auto element = waysOf(who).obstacles(goal.room).overlap(goal.at, who.size.radius))
-            return {.refusal = mover + " has no room at " + room + '/' + formatDouble(goal.at.x) +
-                               ',' + formatDouble(goal.at.y) + ": " +
-                               scene.environment.elements()[*element].id + " stands there"};
+            return {.refusal = std::string(mover)
+                                   .append(" has no room at ")
+                                   .append(text_of(goal))
+                                   .append(": ")
+                                   .append(scene.environment.elements()[*element].id)
+                                   .append(" stands there")};
     }
     for (std::size_t i = 0; i < trip.goals.size(); ++i) {
         const auto route = routeFrom(who, from, at, trip, i);
         if (!route) {
-            std::string text = "no way for " + mover + " to " + rooms[trip.goals[i].room].id + '/' +
-                               formatDouble(trip.goals[i].at.x) + ',' +
-                               formatDouble(trip.goals[i].at.y);
+            std::string text = "no way for " + mover + " to " + text_of(trip.goals[i]);
             for (std::size_t k = 0; k < passages.size(); ++k)
                 if (const std::string why = waysOf(who).refusal(passages[k], who.ability);
                     !why.empty() && (!trip.only || trip.only == k))

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/budget.h"
+#include "base/error.h"
 #include "geom/polygon.h"
 #include "geom/rotation.h"
 
