@@ -111,16 +111,6 @@ expect_error 2 coverage square.env half.3dm --cache counted
 expect_error 2 coverage --batch list --cache -
 expect_status 1 coverage -q --any-environment --batch whole_list --cache no/such/folder/cache
 
-# A FIFO is read once: its scene is never known.
-mkfifo pipe.env
-printf 'pipe.env half.3dm\n' >piped
-for _ in 1 2; do
-    cat square.env >pipe.env &
-    coverage -v --any-environment --batch piped --cache pipe.cache >with 2>err
-    grep -q '1 jobs done, 0 of them known' err || fail "$(cat err)"
-    wait $!
-done
-
 # arrange: a layout that is lost or edited is computed again.
 printf 'near-far.env\nsquare.env\n' >rooms
 where=(arrange -v --sensor laser,range=4,fov=180:2 --candidates 0.5,0.5,8 --no-progress --batch rooms -o layouts/)
