@@ -45,7 +45,7 @@ class DayLineReader {
         return i < words_.size() ? words_[i].text : std::string_view();
     }
     SimTime readTime();
-    DayAction readAction(std::string_view text, std::size_t first) const;
+    [[nodiscard]] DayAction readAction(std::string_view text, std::size_t first) const;
     void readTarget(DayAction& action, std::string_view target, std::size_t at) const;
     void readDuration(DayAction& action, std::string_view text, std::size_t at) const;
     void readAct(DayAction& action, std::string_view id, std::string_view state,

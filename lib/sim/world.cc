@@ -292,7 +292,7 @@ std::shared_ptr<const CarriedState> World::carried(std::size_t mover) const {
         state.odometer = data.odometers[mover];
     else
         state.gait = data.gaits[mover - data.odometers.size()];
-    return std::make_shared<const CarriedState>(std::move(state));
+    return std::make_shared<const CarriedState>(state);
 }
 
 void World::resume(std::size_t mover, const CarriedState& state) {

@@ -124,8 +124,8 @@ class Decoder {
 
 std::string scan(Decoder& in) {
     const std::string head = in.header();
-    std::vector<double> limits;
-    for (int i = 0; i < 7; ++i) limits.push_back(in.one<float>());
+    std::vector<double> limits(7);
+    for (double& limit : limits) limit = in.one<float>();
     const auto ranges = in.sequence<float>(), intensities = in.sequence<float>();
     return head + ",\"limits\":" + numbers(limits) + ",\"ranges\":" + numbers(ranges) +
            ",\"intensities\":" + std::to_string(intensities.size());

@@ -154,7 +154,8 @@ WebPage::WebPage(ServerState& state, const std::string& title) {
     for (std::size_t i = 0; i < rooms->states.size(); ++i) {
         ServerState& one = *rooms->states[i];
         const std::string& id = rooms->worlds->rooms()[i].id;
-        rooms_.push_back({&one, WebFrames(one.simulation(), title + ", " + id)});
+        rooms_.push_back(
+            {&one, WebFrames(one.simulation(), std::string(title).append(", ").append(id))});
     }
 }
 
