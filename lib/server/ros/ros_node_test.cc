@@ -143,6 +143,9 @@ TEST(RosNode, EndsOnce) {
     noded.node->end();
     noded.node->stepped();
     noded.node->serve();
+    noded.node->end();
+    EXPECT_FALSE(noded.node->waiting());
+    EXPECT_FALSE(noded.node->nextSend().has_value());
 }
 
 }  // namespace
