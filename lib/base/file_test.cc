@@ -318,7 +318,8 @@ TEST_F(FileTest, ASignalLeavesNothingBehind) {
 }
 
 TEST_F(FileTest, WhetherAFileCanBeMadeIsToldEarly) {
-    const std::string folder = ::testing::TempDir();
+    const testing::TestFolder temporary;
+    const std::string folder = temporary.file("");
     mustBeWritable("-");
     mustBeWritable("");
     mustBeWritable("/dev/null");
@@ -328,7 +329,6 @@ TEST_F(FileTest, WhetherAFileCanBeMadeIsToldEarly) {
     writeAll(file, "old");
     mustBeWritable(file);
     EXPECT_EQ(readAll(file), "old");
-    std::filesystem::remove(file);
     EXPECT_THROW(mustBeWritable(folder + "missing/folder/out"), std::system_error);
     EXPECT_THROW(mustBeWritable(folder), std::system_error);
 }

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/file.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {
@@ -14,8 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(InputSandbox, KeepsReadersInItsFolders) {
-    const fs::path root = fs::canonical(::testing::TempDir()) / "read_fence_test";
-    fs::remove_all(root);
+    const testing::TestFolder folder;
+    const fs::path root = fs::canonical(folder.path());
     fs::create_directories(root / "in/.hidden");
     for (const char* name : {"in/a", "in/.hidden/a", "in/.a", "out"})
         writeAll((root / name).string(), "x");
@@ -37,7 +38,6 @@ TEST(InputSandbox, KeepsReadersInItsFolders) {
     EXPECT_EQ(readAll(name("out")), "x");
     EXPECT_THROW(InputSandbox({name("none")}), std::system_error);
     EXPECT_TRUE(mayBeRead(name("out")));
-    fs::remove_all(root);
 }
 
 }  // namespace

@@ -2,12 +2,13 @@
 #include "base/numpy_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
+
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {
@@ -71,9 +72,8 @@ TEST(Spool, TellsOfAFolderThatIsNone) {
 }
 
 TEST(Spool, LeavesNothingBehind) {
-    const std::string name =
-        std::filesystem::temp_directory_path() / ("ispace-spool-" + std::to_string(::getpid()));
-    std::filesystem::create_directory(name);
+    const testing::TestFolder folder;
+    const std::string name = folder.path().string();
     {
         const Folder here(name.c_str());
         Spool spool;
@@ -81,7 +81,6 @@ TEST(Spool, LeavesNothingBehind) {
         EXPECT_TRUE(std::filesystem::is_empty(name));
     }
     EXPECT_TRUE(std::filesystem::is_empty(name));
-    std::filesystem::remove(name);
 }
 
 }  // namespace

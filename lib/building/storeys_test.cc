@@ -5,14 +5,15 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/file.h"
 #include "building/building_scene.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {
@@ -59,25 +60,18 @@ bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
-/// A folder of files for a test.
-class TemporaryFolder {
+/// Writes files into a folder of its own.
+class RoomFolder {
   public:
-    TemporaryFolder() : path_(fs::path(testing::TempDir()) / "building_test") {
-        fs::remove_all(path_);
-        fs::create_directories(path_);
-    }
-    ~TemporaryFolder() { fs::remove_all(path_); }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
     std::string write(const std::string& name, const std::string& text) const {
-        fs::create_directories((path_ / name).parent_path());
-        std::ofstream(path_ / name) << text;
-        return (path_ / name).string();
+        const std::string path = folder_.file(name);
+        fs::create_directories(fs::path(path).parent_path());
+        writeAll(path, text);
+        return path;
     }
 
   private:
-    fs::path path_;
+    testing::TestFolder folder_;
 };
 
 TEST(Building, IsToldFromRooms) {
@@ -174,7 +168,7 @@ TEST(Building, DigestIsThatOfRoomsFramesAndPassages) {
 }
 
 TEST(Building, ReadsFilesInItsFolderOnce) {
-    const TemporaryFolder folder;
+    const RoomFolder folder;
     const std::string room = "#env 1\nispace size=4,3\nmesh id=m file=part.obj\n";
     folder.write("house/rooms/a.env", room);
     folder.write("outside.env", room);
@@ -209,7 +203,7 @@ TEST(Building, ReadsFilesInItsFolderOnce) {
 }
 
 TEST(Building, ItsRoomsShareOneBudget) {
-    const TemporaryFolder folder;
+    const RoomFolder folder;
     const std::string crowd =
         "ispace: {size: [8, 6]}\ncube: {size: 0.1, repeat: {count: 500, step: [0, 0]}}\n";
     std::string storeys = "#env 1\n";

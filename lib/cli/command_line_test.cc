@@ -11,6 +11,7 @@
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {
@@ -250,9 +251,9 @@ TEST(OutputFormat, IsToldByOptionThenSuffixThenDefault) {
     EXPECT_EQ(outputFormat("env", "x.glb", known), "env");
     for (const char* plain : {"-", "x", "x.", ".glb", "out.d/x", "/dev/stdout", "/dev/null"})
         EXPECT_EQ(outputFormat("", plain, known), "glb") << plain;
-    const std::filesystem::path folder = testing::TempDir() + "/readings.d";
-    std::filesystem::create_directory(folder);
-    EXPECT_EQ(outputFormat("", folder.string(), known), "glb");
+    const testing::TestFolder folder;
+    std::filesystem::create_directory(folder / "readings.d");
+    EXPECT_EQ(outputFormat("", folder.file("readings.d"), known), "glb");
 }
 
 TEST(OutputFormat, RefusesASuffixThatNoFormatHas) {
@@ -289,15 +290,15 @@ TEST(RunTool, ChoosesTheExitStatus) {
 }
 
 TEST(RunTool, PrintsOneLineAnError) {
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     runTool("envc", [] {
         throw FormatError({{"room.env", 14, 7, "wall has zero length"}, {"room.env", 0, 0, "y"}});
     });
-    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(),
               "envc: room.env:14:7: error: wall has zero length\nenvc: room.env: error: y\n");
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     runTool("scan", [] { throw std::system_error(ENOENT, std::generic_category(), "a: b.glb"); });
-    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(),
               "scan: a: b.glb: error: No such file or directory\n");
 }
 

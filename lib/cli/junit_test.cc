@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {
@@ -40,11 +41,10 @@ TEST(Junit, IsWhatServersRead) {
         "</testsuites>\n");
 }
 
-class JunitFileTest : public testing::Test {
+class JunitFileTest : public ::testing::Test {
   protected:
-    JunitFileTest() { std::filesystem::remove(file_); }
-    ~JunitFileTest() override { std::filesystem::remove(file_); }
-    std::string file_ = testing::TempDir() + "/junit_file_test.xml";
+    testing::TestFolder folder_;
+    std::string file_ = folder_.file("report.xml");
 };
 
 TEST_F(JunitFileTest, HoldsAnErrorIfTheWorkFails) {

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "base/file.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 
@@ -20,13 +21,8 @@ namespace fs = std::filesystem;
 
 class LineGuardTest : public ::testing::Test {
   protected:
-    LineGuardTest() { fs::create_directories(folder_); }
-    ~LineGuardTest() override { fs::remove_all(folder_); }
-    [[nodiscard]] std::string file(const std::string& name) const {
-        return (folder_ / name).string();
-    }
-    fs::path folder_ =
-        fs::path(::testing::TempDir()) / ("line_guard." + std::to_string(::getpid()));
+    [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
+    testing::TestFolder folder_;
 };
 
 TEST_F(LineGuardTest, CutsATornLineAtTheEnd) {

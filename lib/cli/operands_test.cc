@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 
@@ -16,29 +17,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Operands : public testing::Test {
+class Operands : public ::testing::Test {
   protected:
     void SetUp() override {
         before_ = fs::current_path();
-        folder_ = fs::path(testing::TempDir()) /
-                  ("operands_" +
-                   std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_ / "sub");
-        fs::current_path(folder_);
+        fs::create_directory(folder_ / "sub");
+        fs::current_path(folder_.path());
         writeAll("room.env", "#env 1\nispace size=4,4\n");
         writeAll("other.env", "#env 1\nispace size=5,4\n");
         writeAll("seeing.env", "#env 1\nispace size=4,4\nlaser at=0,0\n");
     }
-    void TearDown() override {
-        fs::current_path(before_);
-        fs::remove_all(folder_);
-    }
+    void TearDown() override { fs::current_path(before_); }
     static void writeLayout(const std::string& name, const std::string& environment) {
         writeAll(name, "#3dm 1\n" + environment + "laser at=1,1\n");
     }
 
-    fs::path before_, folder_;
+    testing::TestFolder folder_;
+    fs::path before_;
 };
 
 TEST_F(Operands, AreToldApartByContent) {

@@ -10,13 +10,15 @@
 
 #include "base/error.h"
 #include "base/run_files.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 
 namespace {
 
 TEST(FileStream, WritesWhatGoesThrough) {
-    const std::string file = ::testing::TempDir() + "file_stream_test.txt";
+    const testing::TestFolder folder;
+    const std::string file = folder.file("out.txt");
     std::string expected;
     {
         FileStream out(file);
@@ -27,11 +29,11 @@ TEST(FileStream, WritesWhatGoesThrough) {
         out.commit();
     }
     EXPECT_EQ(readAll(file), expected);
-    std::remove(file.c_str());
 }
 
 TEST(FileStream, LeavesNothingWithoutCommit) {
-    const std::string file = ::testing::TempDir() + "file_stream_test.none";
+    const testing::TestFolder folder;
+    const std::string file = folder.file("none");
     { FileStream(file).stream() << "half"; }
     EXPECT_FALSE(std::filesystem::exists(file));
 }
@@ -97,13 +99,11 @@ TEST(ClaimOutputs, RefusesARuleInThePlaceOfTheProduct) {
 }
 
 TEST(WriteDependencies, NamesTheRuleAfterTheWholeProduct) {
-    const std::string folder = testing::TempDir() + "/rules";
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
+    const testing::TestFolder folder;
     CommonOptions options;
     options.dependencies.wanted = true;
-    for (const char* name : {"/office.glb", "/office.3dm", "/office"}) {
-        options.output = folder + name;
+    for (const char* name : {"office.glb", "office.3dm", "office"}) {
+        options.output = folder.file(name);
         writeDependencies(options, std::vector<std::string>{"office.yaml"});
         EXPECT_TRUE(std::filesystem::exists(options.output + ".d")) << name;
     }
@@ -146,8 +146,8 @@ TEST(OutputSet, NamesOfAPattern) {
 }
 
 TEST(OutputSet, MakesTheFoldersOfAPattern) {
-    const std::filesystem::path folder = ::testing::TempDir() + "outputs_test.film";
-    std::filesystem::remove_all(folder);
+    const testing::TestFolder temporary;
+    const std::filesystem::path folder = temporary / "film";
     EXPECT_EQ(refusal((folder / "%s" / "%04d.png").string(), {"a", "b"}, true), "");
     EXPECT_TRUE(std::filesystem::is_directory(folder / "a"));
     EXPECT_TRUE(std::filesystem::is_directory(folder / "b"));
@@ -155,7 +155,6 @@ TEST(OutputSet, MakesTheFoldersOfAPattern) {
     std::ofstream(folder) << "a file";
     EXPECT_THROW(OutputSet::of((folder / "%d.png").string())->prepare({"a"}, true, {".png"}),
                  std::system_error);
-    std::filesystem::remove(folder);
 }
 
 TEST(OutputSet, IdsNeitherEscapeNorHide) {

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <string>
@@ -14,6 +13,7 @@
 #include "base/file.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {
@@ -35,7 +35,6 @@ class SceneFolderTest : public ::testing::Test {
         fs::create_symlink("room.env", root_ / "scenes/alias.env");
         ::mkfifo((root_ / "scenes/pipe.env").c_str(), 0600);
     }
-    ~SceneFolderTest() override { fs::remove_all(root_); }
     bool mayRead(const std::string& name) {
         try {
             static_cast<void>(folder().path(name));
@@ -45,8 +44,8 @@ class SceneFolderTest : public ::testing::Test {
         }
     }
     SceneFolder folder() { return {(root_ / "scenes").string(), {false}}; }
-    fs::path root_ =
-        fs::canonical(::testing::TempDir()) / ("scene_folder_test." + std::to_string(::getpid()));
+    testing::TestFolder folder_;
+    fs::path root_ = fs::canonical(folder_.path());
 };
 
 TEST_F(SceneFolderTest, ReadsWhatLiesInIt) {

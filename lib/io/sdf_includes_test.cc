@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Models that a world of SDF includes: where they are found, and where they stand.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <string>
@@ -12,18 +11,15 @@
 #include "io/sdf/sdf_files.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of this process with the files of a world.
-class SdfIncludes : public testing::Test {
-  public:
-    SdfIncludes() { fs::create_directories(folder_); }
-    ~SdfIncludes() override { fs::remove_all(folder_); }
-
+/// A folder with the files of a world.
+class SdfIncludes : public ::testing::Test {
   protected:
     void put(const std::string& path, const std::string& text) const {
         fs::create_directories(fs::path(folder_ + path).parent_path());
@@ -61,8 +57,8 @@ class SdfIncludes : public testing::Test {
         return "no error";
     }
 
-    const std::string folder_ =
-        testing::TempDir() + "/sdf-includes-" + std::to_string(::getpid()) + '/';
+    const testing::TestFolder temporary_;
+    const std::string folder_ = temporary_.file("");
 };
 
 TEST_F(SdfIncludes, ModelsStandWhereTheIncludePutsThem) {

@@ -8,31 +8,24 @@
 
 #include "base/file.h"
 #include "scene/sensor/sensor.h"
+#include "support/test_folder.h"
 #include "support/test_layout.h"
 
 namespace ispace {
 
 namespace {
 
-/// A folder of device files that is gone after the test.
+/// A folder of device files.
 class DeviceFolder : public ::testing::Test {
   protected:
-    void SetUp() override {
-        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = ::testing::TempDir() + "ispace_devices_" + test->name();
-        std::filesystem::remove_all(folder_);
-        std::filesystem::create_directory(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     void write(const std::string& name, const std::string& lines) {
-        writeAll(folder_ + "/" + name, "#3dm 1\n" + lines);
+        writeAll(folder_.file(name), "#3dm 1\n" + lines);
     }
     [[nodiscard]] std::string loadFindings() const {
-        return testing::findings([&] { return loadDevices(folder_); });
+        return testing::findings([&] { return loadDevices(folder_.path().string()); });
     }
 
-    std::string folder_;
+    testing::TestFolder folder_;
 };
 
 const std::string kTail = " source=paper confidence=U\n";
@@ -84,8 +77,8 @@ TEST(Devices, ParametersThatWereMisreadOnce) {
 TEST_F(DeviceFolder, ReadsFilesInOrderOfNamesAndNothingElse) {
     write("b.3dm", "laser model=two" + kTail);
     write("a.3dm", "laser model=three range=2" + kTail + "laser model=one" + kTail);
-    writeAll(folder_ + "/README.txt", "not a device");
-    const DeviceCatalogue catalogue = loadDevices(folder_);
+    writeAll(folder_.file("README.txt"), "not a device");
+    const DeviceCatalogue catalogue = loadDevices(folder_.path().string());
     EXPECT_EQ(catalogue.models(), (std::vector<std::string>{"three", "one", "two"}));
     EXPECT_EQ(catalogue.find("three")->tuple("range"), Tuple{2});
     EXPECT_EQ(
@@ -94,7 +87,7 @@ TEST_F(DeviceFolder, ReadsFilesInOrderOfNamesAndNothingElse) {
 }
 
 TEST_F(DeviceFolder, EmptyFolderIsAnEmptyCatalogue) {
-    EXPECT_TRUE(loadDevices(folder_).models().empty());
+    EXPECT_TRUE(loadDevices(folder_.path().string()).models().empty());
 }
 
 TEST_F(DeviceFolder, DoubledModelsAndBadParametersAreReportedTogether) {

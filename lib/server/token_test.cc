@@ -3,23 +3,22 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {
 
-/// A file; tests run beside each other, each in a process of its own.
 class Token : public ::testing::Test {
   protected:
-    ~Token() override { ::unlink(file_.c_str()); }
     std::string tokenIn(const std::string& text) const {
         writeAll(file_, text);
         return readToken(file_);
     }
-    const std::string file_ = ::testing::TempDir() + "token." + std::to_string(::getpid());
+    const testing::TestFolder folder_;
+    const std::string file_ = folder_.file("token");
 };
 
 TEST_F(Token, IsTheFirstLine) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "support/test_folder.h"
 #include "support/test_paths.h"
 #include "test_server.h"
 
@@ -390,9 +391,8 @@ int twice = 0;
 int two() { return twice += 2; }
 
 TEST_F(SimAriaActions, LogsHaveARowEachInterval) {
-    const std::string folder = ::testing::TempDir(), log = folder + "aria_data.log";
-    const std::string scans = folder + "aria_scans.2d";
-    std::remove(log.c_str());
+    const ispace::testing::TestFolder folder;
+    const std::string log = folder.file("data.log"), scans = folder.file("scans.2d");
     twice = 0;
     {
         ArDataLogger logger(&robot, log.c_str());
@@ -421,8 +421,6 @@ TEST_F(SimAriaActions, LogsHaveARowEachInterval) {
         ++readings;
     // The first, and one for each 300 mm of some 900.
     EXPECT_EQ(readings, 3);
-    std::remove(log.c_str());
-    std::remove(scans.c_str());
 }
 
 }  // namespace

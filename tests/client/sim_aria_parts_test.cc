@@ -8,6 +8,8 @@
 #include <string>
 #include <thread>
 
+#include "support/test_folder.h"
+
 namespace {
 
 struct Callee {
@@ -159,7 +161,8 @@ TEST(SimAriaThreads, AConditionWakesTheWaiter) {
 }
 
 TEST(SimAriaConfig, RoundTripAndErrors) {
-    const std::string file = ::testing::TempDir() + "aria_config.cfg";
+    const ispace::testing::TestFolder folder;
+    const std::string file = folder.file("aria.cfg");
     int whole = 3;
     double share = 0.25;
     bool on = true;

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "support/test_folder.h"
 #include "support/test_paths.h"
 #include "test_server.h"
 
@@ -177,7 +178,8 @@ TEST_F(LivingWorld, EventsAreToldAsTheyHappen) {
 }
 
 TEST(LivingWorldReplay, IsTakenToATime) {
-    const std::string folder = ::testing::TempDir() + "/ispace_seek." + std::to_string(getpid());
+    const ispace::testing::TestFolder temporary;
+    const std::string folder = temporary.file("run");
     std::ofstream(folder + ".txt") << "0 r1 SPEED 0.3\n";
     EXPECT_EQ(TestServer({data("square.env"), data("sensing.3dm"), "--clock", "fast", "--until",
                           "2", "--script", folder + ".txt", "--record", folder, "-q"})
@@ -196,12 +198,11 @@ TEST(LivingWorldReplay, IsTakenToATime) {
     EXPECT_EQ(robot.status().pose.x, there);
     EXPECT_EQ(world.seek(99), 2);
     EXPECT_THROW(world.seek(-1), Refused);
-    std::filesystem::remove_all(folder);
-    std::remove((folder + ".txt").c_str());
 }
 
 TEST(LivingWorldToken, ChangesNeedItWhereItIsAskedFor) {
-    const std::string file = ::testing::TempDir() + "/ispace_token." + std::to_string(getpid());
+    const ispace::testing::TestFolder folder;
+    const std::string file = folder.file("token");
     std::ofstream(file) << "a-secret-of-this-test\n";
     ::chmod(file.c_str(), 0600);
     TestServer server(
@@ -222,7 +223,6 @@ TEST(LivingWorldToken, ChangesNeedItWhereItIsAskedFor) {
     friendly.reset();
     friendly.shutdown();
     EXPECT_EQ(server.wait(), 0);
-    std::remove(file.c_str());
 }
 
 }  // namespace

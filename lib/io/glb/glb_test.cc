@@ -2,7 +2,6 @@
 #include "io/glb/glb_read.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +18,7 @@
 #include "io/importers.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
+#include "support/test_folder.h"
 #include "support/test_glb.h"
 
 namespace ispace {
@@ -323,10 +323,8 @@ std::string outcomeOf(Read read) {
 
 /// Of a file only parts are read, but the same comes of it, damaged or not.
 TEST(Glb, AFileIsReadAsItsBytesAre) {
-    const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / ("glb-" + std::to_string(::getpid()));
-    std::filesystem::create_directory(folder);
-    const std::string file = folder / "room.glb";
+    const testing::TestFolder folder;
+    const std::string file = folder.file("room.glb");
     std::string long_room = kRoom;
     for (int i = 0; i < 3000; ++i) long_room += "desk at=" + std::to_string(i) + ",5\n";
     const std::string glb = compiled(kRoom), long_glb = compiled(long_room);
@@ -351,7 +349,6 @@ TEST(Glb, AFileIsReadAsItsBytesAre) {
         EXPECT_EQ(outcomeOf([&] { return readDocument(file, {}, sceneSchemas()); }),
                   outcomeOf([&] { return parseDocument(bytes, file, {}, sceneSchemas()); }));
     }
-    std::filesystem::remove_all(folder);
 }
 
 TEST(Glb, TellsItsOwnFilesFromMeshesOfOthers) {

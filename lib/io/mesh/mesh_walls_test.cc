@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "io/mesh/mesh_parts.h"
+#include "support/test_folder.h"
 #include "support/test_import.h"
 
 namespace ispace {
@@ -33,8 +34,9 @@ class Boxes {
         count_ += 8;
         return *this;
     }
-    [[nodiscard]] std::string write(const std::string& name) const {
-        std::string path = ::testing::TempDir() + std::to_string(::getpid()) + name;
+    [[nodiscard]] std::string write(const testing::TestFolder& folder,
+                                    const std::string& name) const {
+        std::string path = folder.file(name);
         writeAll(path, text_);
         return path;
     }
@@ -53,13 +55,14 @@ ImportOptions cutAt(double height) {
 double areaOf(const Document& document) { return environmentOf(document).indoor().area(); }
 
 TEST(MeshWalls, WallsThatRunIntoEachOther) {
+    const testing::TestFolder folder;
     const std::string path = Boxes()
                                  .add(0, 0, 0, 6, 0.2, 3)
                                  .add(0, 4.2, 0, 6, 4.4, 3)
                                  .add(0, 0, 0, 0.2, 4.4, 3)
                                  .add(5.8, 0, 0, 6, 4.4, 3)
                                  .add(2, 2, 0, 3, 3, 0.7)
-                                 .write("walls.obj");
+                                 .write(folder, "walls.obj");
     const Document high = readMeshWalls(path, cutAt(1), sceneSchemas());
     EXPECT_EQ(writeRecordText(high),
               "#env 1\nfence path=0.2,0.2;0.2,4.2;5.8,4.2;5.8,0.2 closed=yes\ninside at=3,2.2\n");
@@ -67,17 +70,21 @@ TEST(MeshWalls, WallsThatRunIntoEachOther) {
 }
 
 TEST(MeshWalls, HollowShellAndInnerSurface) {
-    const std::string shell =
-        Boxes().add(0, 0, 0, 6, 5, 3).add(0.5, 0.5, 0.1, 5.5, 4.5, 2.9, true).write("shell.obj");
+    const testing::TestFolder folder;
+    const std::string shell = Boxes()
+                                  .add(0, 0, 0, 6, 5, 3)
+                                  .add(0.5, 0.5, 0.1, 5.5, 4.5, 2.9, true)
+                                  .write(folder, "shell.obj");
     EXPECT_NEAR(areaOf(readMeshWalls(shell, cutAt(1.5), sceneSchemas())), 20, 1e-5);
     // A room as games have it: one surface, with what stands in it.
     const std::string surface =
-        Boxes().add(0, 0, 0, 5, 4, 3, true).add(1, 1, 0, 2, 2, 2).write("surface.obj");
+        Boxes().add(0, 0, 0, 5, 4, 3, true).add(1, 1, 0, 2, 2, 2).write(folder, "surface.obj");
     EXPECT_NEAR(areaOf(readMeshWalls(surface, cutAt(1.5), sceneSchemas())), 19, 1e-5);
 }
 
 TEST(MeshWalls, UnitsAndHeights) {
-    const std::string path = Boxes().add(0, 0, 0, 4000, 2500, 3000).write("room_mm.obj");
+    const testing::TestFolder folder;
+    const std::string path = Boxes().add(0, 0, 0, 4000, 2500, 3000).write(folder, "room_mm.obj");
     ImportOptions options = cutAt(1.5);
     options.units = "mm";
     EXPECT_NEAR(areaOf(readMeshWalls(path, options, sceneSchemas())), 10, 1e-5);
@@ -91,12 +98,13 @@ TEST(MeshWalls, UnitsAndHeights) {
 }
 
 TEST(MeshWalls, ACutThatEnclosesNoRoomWarns) {
+    const testing::TestFolder folder;
     // Three walls of 0.4 m and an open side, wider than a doorway: only the walls are hollow.
     const std::string path = Boxes()
                                  .add(0, 0, 0, 6, 0.4, 3)
                                  .add(0, 0, 0, 0.4, 5, 3)
                                  .add(5.6, 0, 0, 6, 5, 3)
-                                 .write("-open.obj");
+                                 .write(folder, "open.obj");
     EXPECT_NE(warningsOf(readMeshWalls(path, cutAt(1), sceneSchemas())).find("encloses no room"),
               std::string::npos);
     const std::string shut = Boxes()
@@ -104,7 +112,7 @@ TEST(MeshWalls, ACutThatEnclosesNoRoomWarns) {
                                  .add(0, 0, 0, 0.4, 5, 3)
                                  .add(5.6, 0, 0, 6, 5, 3)
                                  .add(0, 4.6, 0, 6, 5, 3)
-                                 .write("-shut.obj");
+                                 .write(folder, "shut.obj");
     EXPECT_EQ(warningsOf(readMeshWalls(shut, cutAt(1), sceneSchemas())), "");
 }
 

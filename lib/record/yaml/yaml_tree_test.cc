@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "record/text.h"
+#include "support/test_folder.h"
 #include "support/test_schemas.h"
 
 namespace ispace {
@@ -24,16 +25,10 @@ class YamlInclude : public ::testing::Test {
   protected:
     void SetUp() override {
         before_ = fs::current_path();
-        const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::temp_directory_path() /
-                  ("ispace_yaml_" + std::to_string(::getpid()) + '_' + test->name());
         fs::create_directories(folder_ / "sub" / "deep");
-        fs::current_path(folder_);
+        fs::current_path(folder_.path());
     }
-    void TearDown() override {
-        fs::current_path(before_);
-        fs::remove_all(folder_);
-    }
+    void TearDown() override { fs::current_path(before_); }
 
     static Document read(const std::string& name, IncludeFiles includes = IncludeFiles::InFolder) {
         return readYaml(readAll(name), name, placedSchemas(), {}, {}, includes);
@@ -49,7 +44,8 @@ class YamlInclude : public ::testing::Test {
     }
 
   private:
-    fs::path before_, folder_;
+    testing::TestFolder folder_;
+    fs::path before_;
 };
 
 TEST_F(YamlInclude, PutsRecordsInPlace) {

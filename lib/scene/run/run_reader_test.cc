@@ -2,13 +2,13 @@
 #include "scene/run/run_reader.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "support/test_damage.h"
+#include "support/test_folder.h"
 #include "support/test_sensors.h"
 
 namespace ispace {
@@ -168,7 +168,8 @@ TEST(RunReader, SurvivesDamage) {
 }
 
 TEST(RunReader, ReadsFoldersPieceByPiece) {
-    const fs::path folder = fs::path(::testing::TempDir()) / ("run" + std::to_string(::getpid()));
+    const testing::TestFolder temporary;
+    const fs::path folder = temporary / "run";
     fs::create_directory(folder);
     std::string text = "t,id,x,y,heading_deg\n";
     constexpr int kMoments = 20000;

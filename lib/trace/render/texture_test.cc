@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "support/test_folder.h"
 #include "support/test_layout.h"
 #include "support/test_png.h"
 #include "trace/render/render.h"
@@ -19,11 +20,8 @@ using testing::scene;
 /// A folder for the pictures of one test.
 class TextureTest : public ::testing::Test {
   protected:
-    TextureTest() { std::filesystem::create_directories(folder_); }
-    ~TextureTest() override { std::filesystem::remove_all(folder_); }
-
     std::string write(const std::string& name, const std::string& bytes) const {
-        const std::string path = folder_ / name;
+        const std::string path = folder_.file(name);
         std::ofstream(path, std::ios::binary) << bytes;
         return path;
     }
@@ -38,9 +36,7 @@ class TextureTest : public ::testing::Test {
     }
 
   private:
-    std::filesystem::path folder_ =
-        std::filesystem::path(::testing::TempDir()) /
-        ("ispace_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    testing::TestFolder folder_;
 };
 
 ColorPicture picture(int width, int height, const std::vector<std::uint8_t>& greys) {
