@@ -53,7 +53,7 @@ Advised adviseOn(const std::string& room, const std::string& layout,
 constexpr const char* kHall = "#env 1\nispace id=hall size=8,6,2.5\n";
 
 TEST(Suggestions, TurnALaserThatFacesTheWall) {
-    // A quarter disc of 3 m about a corner, and none of it in the room.
+    // A quarter disc of 3 m about a corner, all of it outside the room.
     const Advised advised =
         adviseOn(kHall, "laser id=l at=-3.99,-2.99 heading=-135 fov=90 range=3\n");
     const Suggestion* turn = advised.find(Suggestion::Kind::Turn);

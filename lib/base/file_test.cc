@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own for each test, removed afterwards.
+/// A temporary folder for each test.
 class FileTest : public ::testing::Test {
   protected:
     [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
@@ -65,7 +65,7 @@ struct Pipe {
     int ends[2] = {-1, -1};
 };
 
-/// What the standard stream `fd` was, given back at the end of the scope.
+/// Restores the standard stream `fd` at the end of the scope.
 class Redirected {
   public:
     Redirected(int fd, int to) : fd_(fd), saved_(::dup(fd)) { ::dup2(to, fd); }
@@ -333,7 +333,7 @@ TEST_F(FileTest, WhetherAFileCanBeMadeIsToldEarly) {
     EXPECT_THROW(mustBeWritable(folder), std::system_error);
 }
 
-/// What readAll says of a file; "" if it takes it.
+/// Returns the message of readAll for a file; "" if it is read.
 std::string refusalOf(const std::string& file) {
     try {
         readAll(file);

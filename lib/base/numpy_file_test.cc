@@ -47,7 +47,7 @@ TEST(ZipWriter, HasSizesOf64BitsOnlyWhereTheyAreNeeded) {
     zip.finish();
     EXPECT_EQ(small.size(), 2 * (30 + 1) + 5 + 2 * (46 + 1) + 22U);
 
-    // 5 GiB that nobody keeps, then a file behind them.
+    // A hole of 5 GiB, then a file behind it.
     constexpr std::uint64_t kLarge = std::uint64_t{5} << 30U;
     const std::string piece(1U << 20U, 'x');
     std::string kept;

@@ -276,7 +276,7 @@ TEST_F(PartFileTest, KeptResultsGoOnWhereTheyWereCut) {
         EXPECT_EQ(results.find("c"), "third") << size;
         EXPECT_EQ(results.keys().size(), kept + 1) << size;
     }
-    // Damage in the middle: what is behind it goes, too.
+    // Damage in the middle: the entries behind it are dropped, too.
     std::string bad = whole;
     bad[bad.find("first")] = 'F';
     writeAll(file, bad);

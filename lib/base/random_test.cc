@@ -236,7 +236,7 @@ TEST(Draw, IsTheSameForAnyProcessor) {
 }
 
 TEST(Draw, BitsAreFixed) {
-    // What files of readings are made of: no compiler and no processor may change it.
+    // Files of readings depend on these bits, which no compiler or processor may change.
     const Drawn drawn = drawAll({1, Purpose::Range, hashOf("l1"), 0}, 0, 100'000);
     const auto digest = [](const Floats& values) {
         std::string bytes;

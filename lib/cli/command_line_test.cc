@@ -153,7 +153,7 @@ TEST(CommandLine, UsageErrorsHintAtWhatWasMeant) {
     EXPECT_NE(Tool().errorOf({"--height", "3deg"}), "");
     EXPECT_NE(Tool().errorOf({"--height", "-1"}), "");
     EXPECT_NE(Tool().errorOf({"--grid", "3,0"}), "");
-    // What was called so once, or is elsewhere.
+    // Old names, and options of other tools.
     for (const char* word : {"--reso", "--reso=100"})
         EXPECT_NE(Tool().errorOf({word, "100"}).find("give cells as --grid P,Q or --cell M"),
                   std::string::npos)

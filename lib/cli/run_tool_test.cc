@@ -17,7 +17,7 @@ namespace ispace {
 
 namespace {
 
-/// Throws where nobody can catch it.
+/// Throws outside of any handler.
 template <typename Error>
 void throwInThread(const Error& error) {
     std::thread([&error] { throw error; }).join();

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder with scenes, and what lies beside it.
+/// A folder with scenes, and files beside it.
 class SceneFolderTest : public ::testing::Test {
   protected:
     SceneFolderTest() {
@@ -72,7 +72,7 @@ TEST_F(SceneFolderTest, LoadsScenes) {
     EXPECT_THROW(static_cast<void>(folder().load("room.env", "link.env")), FormatError);
 }
 
-/// What clients are told when they load these.
+/// The errors that clients get for these scenes.
 std::string errorOf(const SceneFolder& folder, const std::string& env, const std::string& layout) {
     try {
         static_cast<void>(folder.load(env, layout));

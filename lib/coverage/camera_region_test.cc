@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What cameras see of a plane, against sampling that shares no code with it.
+// The part of a plane that cameras see, against sampling by independent code.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ Camera cameraFrom(const std::string& keys) {
 
 Sensor at(const Camera& camera, const Pose3& pose) { return {"c", camera, pose}; }
 
-/// A region as polygons, to be asked for places.
+/// A region as polygons, queried by points.
 class Outline {
   public:
     explicit Outline(const std::vector<Curve>& curves) : area_(signedArea(curves)) {
@@ -80,7 +80,7 @@ double compare(const Outline& region, const Box2& box, int samples, double rim, 
     return share;
 }
 
-// A world of its own: what stops a line of sight, by clipping the segment.
+// An independent model of occlusion, which clips the segment of sight.
 
 bool passes(const Prism& prism, Point3 a, Vec3 way) {
     double first = 0, last = 1;
@@ -274,7 +274,7 @@ TEST(CameraRegion, OddPlaces) {
     EXPECT_GT(area(poseAt({-5, 0, 0}, 0, 0)), 5);         // on the plane
     EXPECT_EQ(area(poseAt({-5, 0, 0}, 0, 60)), 0);        // and up from there
     EXPECT_GT(area(poseAt({-5, 0, 0}, 0, 60), "projection=omni fov=200 pixels=200,200"), 5);
-    // On a sheet it sees both sides, on the face of a solid what is outside.
+    // On a sheet it sees both sides, on the face of a solid the outer one.
     const double ahead = area(poseAt({4, 2, 2}, 90, -60)),
                  behind = area(poseAt({4, 2, 2}, -90, -60));
     EXPECT_GT(ahead, 1);
@@ -303,7 +303,7 @@ TEST(CameraRegion, DensityIsThatOfProjectedPlaces) {
     for (const PixelDensity& one : pixelDensities()) {
         const Sensor sensor = at(withDensity(camera, one.pixels_per_metre), pose);
         const Outline region(caster.regionSeen(sensor, 0).value());
-        // Places whose centimetre reaches over the edge of the picture are near it.
+        // Points within a centimetre of the picture's edge are near it.
         compare(region, {{-30, -30}, {30, 30}}, 20'000, 0.02, ++seed, std::string(one.name),
                 [&](Point2 p) { return density(p) >= one.pixels_per_metre; });
     }

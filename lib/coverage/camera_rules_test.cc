@@ -167,7 +167,7 @@ TEST(CameraRules, PrivacyIsSightOfTheZone) {
     EXPECT_EQ(results[0].cameras, std::vector<std::string>{"m"});
     EXPECT_FALSE(isMet(results[0]));
     EXPECT_NEAR(results[1].area, 1, 1e-6);
-    // Nowhere has a picture so many pixels a metre.
+    // No part of the picture has so many pixels a metre.
     EXPECT_EQ(results[2].seen.value(), 0);
     EXPECT_TRUE(results[2].cameras.empty());
     EXPECT_TRUE(isMet(results[2]));

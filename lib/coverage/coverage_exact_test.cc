@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Metrics in closed form, against cells, against each other, and against what is known.
+// Metrics against closed forms, cells, each other and published values.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -324,7 +324,7 @@ TEST(GridOfBeams, CellsLieAmongTheEndsOfBeams) {
     // Five beams over half a turn: four triangles.
     EXPECT_NEAR(*report("laser at=0,0 range=4 fov=180 step=45\n").sensors[0].area.grid,
                 4 * 8 * std::sqrt(0.5), 0.1);
-    // Beams of a sweep outline nothing: their region decides.
+    // The beams of a sweep have no outline: their region decides.
     EXPECT_NEAR(*report("laser at=0,0 range=4 fov=10 sweep=heading\n").sensors[0].area.grid,
                 16 * kPi, 0.2);
 }

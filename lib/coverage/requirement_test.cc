@@ -95,7 +95,7 @@ TEST(CheckRequirement, ExactMetricsDecideWhereTheyAreKnown) {
     EXPECT_TRUE(verdict("15%", report).is_met);
     report.coverage.exact.reset();
     EXPECT_FALSE(verdict("15%", report).is_met);
-    // A zone that no cell is in; one of which nothing is known.
+    // A zone without cells, and a zone without measured cells.
     report.zones[0].coverage = {.grid = {}, .exact = 1};
     EXPECT_TRUE(verdict("zone:door=100%", report).is_met);
     report.zones[0].coverage = {};

@@ -48,7 +48,7 @@ std::size_t indexOf(const std::vector<Angle>& limits, Angle direction) {
     return static_cast<std::size_t>(found - limits.begin());
 }
 
-/// What a laser sees, put together from parts.
+/// The visible area of a laser, joined from parts.
 CellSet cellsOfSector(const CellParts& parts, const std::vector<Angle>& limits, const Laser& laser,
                       double heading, std::size_t cells) {
     const auto sector = sectorOf(laser, Angle::degrees(heading));

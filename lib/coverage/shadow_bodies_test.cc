@@ -95,7 +95,7 @@ TEST(Shadows, BoxIsSeenInFrontAndFromInside) {
     EXPECT_NEAR(shaded(bodies, {0, 0, 4}, 0), 16, 1e-6);
     EXPECT_NEAR(shaded(bodies, {0, 0, 4}, 1), 16 * 9 / 16.0, 1e-6);
     EXPECT_NEAR(shaded(bodies, {0, 0, 4}, 1.99995), 0, 1e-6);  // in contact
-    // From inside nothing is seen of the floor but what touches the bottom.
+    // From inside a body only the floor under it is seen.
     EXPECT_NEAR(shaded(bodies, {0, 0, 1}, 0), 1600 - 4, 1e-5);
     EXPECT_NEAR(shaded(bodies, {0, 0, 1}, -1), 1600, 1e-5);
     // On its top, where the top does not count, and on its side.
@@ -147,7 +147,7 @@ TEST(CutsOf, LevelPlaneMeetsWhatReachesIt) {
         return sum;
     };
     EXPECT_NEAR(lengthOf(1), 8, 1e-12);
-    EXPECT_NEAR(lengthOf(2), 8, 1e-12);  // closed: its upper rim is met, not what lies in the plane
+    EXPECT_NEAR(lengthOf(2), 8, 1e-12);  // closed: its upper rim is met, not the plane's inside
     EXPECT_NEAR(lengthOf(0), 8, 1e-12);
     EXPECT_EQ(lengthOf(2.001), 0);
     Frame3 far;

@@ -141,7 +141,7 @@ TEST(ShadowCaster, BoxThrowsAShadow) {
     // On half its height, where its top falls 1.5 times as far.
     EXPECT_NEAR(areaOf(caster.regionSeen(sensor, 0.5).value()),
                 kPi * (64 - 2.25) - 0.75 * (1 + 1.5) / 2 - 1.5 * 1.5, 1e-5);
-    // From below, looking up past its bottom, nothing hides.
+    // From below, looking up past its bottom, it hides no cell.
     EXPECT_NEAR(
         areaOf(caster.regionSeen(receiverAt(poseAt({0, 0, 1.5}, 0, 90), 360, 8), 3).value()),
         kPi * (64 - 2.25), 1e-5);
@@ -229,7 +229,7 @@ TEST(ShadowCaster, TiltedLaserCoversTheFloorUnderItsPlane) {
     EXPECT_NEAR(area(laserAt(poseAt({0, 0, 1}, 0, -45), 30, -90, 180)), 8, 1e-5);
     EXPECT_NEAR(area(laserAt(poseAt({0, 0, 1}, 0, -45), 2, -90, 180)), (2 + kPi) / std::sqrt(2.0),
                 1e-5);
-    // The whole turn: what is behind rises, to 3 m high.
+    // The whole turn: the surface behind rises to 3 m.
     EXPECT_NEAR(area(laserAt(poseAt({0, 0, 1}, 0, -45), 2, -180, 360)),
                 (2 + 3 * kPi) / std::sqrt(2.0), 1e-5);
     EXPECT_NEAR(area(laserAt(poseAt({0, 0, 0.1}, 30, 60), 2, -90, 180)), kPi, 1e-5);
@@ -303,7 +303,7 @@ struct Furnished {
         return cells.count();
     }
 
-    /// All sensors at one place; how many cells they see.
+    /// Returns how many cells sensors at one position see.
     std::size_t compareAll(const Pose3& pose, Angle fov_x, Angle fov_y, double range,
                            bool is_by_depth, double height, const std::string& what) const {
         const double wide = fov_x.degrees(), upright = fov_y.degrees();

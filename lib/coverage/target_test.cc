@@ -48,7 +48,7 @@ TEST(CellWeights, GoesByTargetsAndTheLastWeight) {
         if (environment.indoor().locate(p) != Side::Inside) wanted = 0;
         for (const auto& [one, weight] : floor.weights)
             if (wanted != 0 || weight == 0) wanted = holds(one, p) ? weight : wanted;
-        // A weight of 0 hides what a later one raises again.
+        // A weight of 0 hides cells that a later one raises again.
         if (holds(floor.weights[2].first, p) && environment.indoor().locate(p) == Side::Inside)
             wanted = holds(floor.targets[0], p) || holds(floor.targets[1], p) ? 4 : 0;
         EXPECT_EQ(weights[cell], wanted) << p.x << ' ' << p.y;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What counts as seen in a run is what coverage counts: Watch asks place by place.
+// Detection in a run agrees with coverage, which DetectionMonitor is compared with point by point.
 #include <gtest/gtest.h>
 
 #include "sense/detection.h"
@@ -34,7 +34,7 @@ TEST(WatchAgrees, WithTheCellsOfCoverage) {
         if (watch.seenBy({coverage.report.grid.center(cell)}) != times[cell]) ++different;
     }
     EXPECT_GT(seen, compared / 2);
-    // Places exactly on an edge may be decided either way.
+    // Points exactly on an edge may be decided either way.
     EXPECT_LE(different, compared / 500) << compared;
 }
 

@@ -354,7 +354,7 @@ TEST(Picture, ClipsAndStrokesTakeManyCurves) {
     EXPECT_EQ(pixels.at(4, 5), 0xFF0000U);
 }
 
-/// One shape of each kind at random places of a page of 300 x 300.
+/// One shape of each kind at random positions of a page of 300 x 300.
 void drawAnything(Picture& picture, std::mt19937& random) {
     std::uniform_real_distribution<double> place(-20, 320), share(0, 1);
     const auto point = [&] { return Point2{place(random), place(random)}; };
@@ -406,7 +406,7 @@ TEST(Color, PaletteRepeatsAndItsColoursDiffer) {
     }
 }
 
-/// What people without one kind of cones see (Viénot, Brettel, Mollon 1999), linear parts.
+/// Colours as seen without one kind of cones (Viénot, Brettel, Mollon 1999), linear parts.
 std::array<double, 3> seenWithout(bool red_cones, Color color) {
     const auto linear = [](double part) { return std::pow(part, 2.2); };
     const double r = linear(color.red), g = linear(color.green), b = linear(color.blue);

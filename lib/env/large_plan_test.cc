@@ -51,7 +51,7 @@ TEST(LargePlan, HasTheShapesOfItsRecords) {
 
 TEST(LargePlan, EnclosesWhatItsWallsEncloseAlone) {
     const Environment large = environment(buildingPlan(2 * kManyRecords));
-    // What stands in it changes nothing.
+    // Furniture in it does not change the region.
     const Environment furnished = environment(buildingPlan(2 * kManyRecords) + "desk at=1,1\n");
     EXPECT_EQ(large.indoor(), furnished.indoor());
     EXPECT_EQ(large.wallLines(), furnished.wallLines());

@@ -133,7 +133,7 @@ TEST(CutMeshes, RidgeThatJustReachesTheHeightIsALine) {
     EXPECT_EQ(std::min(ridge.sheets[0].a.x, ridge.sheets[0].b.x), 0);
     EXPECT_EQ(std::max(ridge.sheets[0].a.x, ridge.sheets[0].b.x), 4);
     EXPECT_NEAR(unionArea(cut(body, 1).solids), 4, 1e-9);
-    // A tip that reaches it is a place without extent: nothing.
+    // A tip that only touches the plane makes no outline.
     TriangleMesh tip;
     tip.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     tip.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cuts of meshes that nobody would draw.
+// Cuts of random meshes.
 #include <gtest/gtest.h>
 #include <array>
 #include <cmath>

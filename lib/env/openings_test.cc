@@ -320,7 +320,7 @@ TEST(Openings, FindingsComeTogether) {
         "make it lower or the wall higher\n"
         "room.env:2:1: error: not enclosed: 0.2 m between fence1 and fence1 near (0.0, 0.1); "
         "closed=yes joins its ends\n");
-    // What follows from a broken wall is not told: it may be what closes the room.
+    // A broken wall may be the one that closes the room, so later findings are held back.
     EXPECT_EQ(findings("fence path=0,0;4,0;4,3;0,3\nwall id=w from=0,3 to=0,3\ndoor wall=w "
                        "offset=1\n"),
               "room.env:3:23: error: wall has zero length\n");

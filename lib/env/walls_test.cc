@@ -50,7 +50,7 @@ TEST(WallLines, FenceOpenClosedAndByEnds) {
     EXPECT_EQ(lines("fence from=0,0 to=1,0").size(), 1U);
     EXPECT_EQ(lines("fence path=0,0;1,0;1,1").size(), 2U);
     EXPECT_EQ(lines("fence path=0,0;1,0;1,1 closed=yes").size(), 3U);
-    // The first point repeated at the end adds nothing.
+    // A repeated first point at the end has no effect.
     EXPECT_EQ(lines("fence path=0,0;1,0;1,1;0,0 closed=yes").size(), 3U);
 }
 
@@ -118,7 +118,7 @@ TEST(WallBodies, SharpCornerIsCutOff) {
     ASSERT_EQ(fence.prisms.size(), 3U);
     EXPECT_EQ(fence.prisms[1].footprint.size(), 3U);
     for (const Point2 p : fence.prisms[1].footprint) EXPECT_LT(distance(p, Point2{4, 0}), 0.41);
-    // There and back again: nothing to fill.
+    // There and back again encloses no area.
     EXPECT_EQ(bodyOf(record("fence path=0,0;4,0;0,0 thickness=0.2")).prisms.size(), 2U);
 }
 

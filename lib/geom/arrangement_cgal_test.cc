@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tests compare faces and differences with: an arrangement of CGAL, in exact numbers.
+// Faces and differences against an arrangement of CGAL in exact numbers.
 
 #include <CGAL/Arr_consolidated_curve_data_traits_2.h>
 #include <CGAL/Arr_extended_dcel.h>

@@ -95,7 +95,7 @@ TEST(Faces, CurvesThatTouchAtPoints) {
 }
 
 TEST(Faces, IslandsUnderSlopesAndUprightLines) {
-    // Islands whose leftmost vertex lies over, under and beside vertices of what is around them.
+    // Islands whose leftmost vertex lies above, below and beside vertices of the ring around them.
     Lines lines = test::edgesOf({{0, 0}, {4, -3}, {8, 0}, {8, 6}, {4, 9}, {0, 6}});
     for (const double x : {1.0, 4.0, 6.0}) {
         append(lines, test::box(x, 1, x + 1, 2));

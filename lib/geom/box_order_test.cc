@@ -30,7 +30,7 @@ class ShapeReader {
   public:
     explicit ShapeReader(std::span<const std::uint8_t> shape) : rest_(shape) {}
 
-    /// The boxes of all; nothing if it is not the shape of a tree.
+    /// The box of all, unless it is not the shape of a tree.
     std::optional<std::size_t> boxes() {
         if (!readNode(0) || !rest_.empty()) return std::nullopt;
         return boxes_;

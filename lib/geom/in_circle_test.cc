@@ -51,7 +51,7 @@ TEST(InCircle, FarTooLargeOrSmallNumbersAreNotTold) {
         EXPECT_EQ(surelyInCircle({0, 0}, {4 * s, 0}, {4 * s, 3 * s}, {s, s}), 0) << s;
 }
 
-/// What is told is right, and corners of turned rectangles mostly are told.
+/// A decided sign is right, and corners of turned rectangles mostly are decided.
 TEST(InCircle, AgreesWithExactNumbersNextToCircles) {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> unit(0, 1);

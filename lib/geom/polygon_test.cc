@@ -151,7 +151,7 @@ TEST(InteriorPoint, isWellInside) {
     EXPECT_GT(clearance(ring, interiorPoint(ring)), 0.9);
 }
 
-/// As many edges as are looked at in two threads: a comb, whose widest gap is the place.
+/// A comb with enough edges for two threads; its widest gap is the answer.
 TEST(InteriorPoint, isTheWidestPlaceOfManyEdges) {
     Region comb{test::box(0, 0, 100, 10), {}};
     Polygon& outline = comb.outline;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Far, tiny, crowded and endless: what nobody draws.
+// Scenes beyond any drawing: far, tiny, crowded, unbounded.
 #include <gtest/gtest.h>
 
 #include <algorithm>

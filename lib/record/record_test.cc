@@ -147,7 +147,7 @@ TEST(Record, ValuesKeepThePlacesOfOtherFiles) {
     EXPECT_EQ(desk.finding("at", "x").text(), "b.3dm:7:2: error: x");
     EXPECT_EQ(desk.finding("heading", "x").text(), "a.env:3:9: error: x");
     Record copy = desk;
-    // The place is of what this call lets go.
+    // The position belongs to the record that this call releases.
     copy.set("at", Tuple{3, 4}, copy.place());
     desk = copy;
     EXPECT_EQ(desk.finding("at", "x").text(), "a.env:3:1: error: x");

@@ -214,7 +214,7 @@ TEST(Noise, AResolutionTooFineIsNone) {
 TEST(Noise, LimitsAreAboutTheTrueRange) {
     RangeNoise noise;
     noise.resolution = 0.01;
-    // No rounding brings back what is out of range, or loses what is in it.
+    // Rounding neither returns readings from out of range nor drops those within it.
     EXPECT_EQ(noisy(noise, {5.604F, 5.598F, 0.098F, 0.104F}, {}, kKey, 0.1, 5.6),
               (Floats{kNone, 5.6F, kNone, 0.1F}));
     noise.resolution = 0;

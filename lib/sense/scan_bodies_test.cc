@@ -74,7 +74,7 @@ TEST(ScanOfRobots, OnesOwnRobotIsNotSeen) {
 }
 
 TEST(ScanOfRobots, TheBlindZoneIsAppliedLast) {
-    // What it hides hides what lies behind it all the same.
+    // A hidden body still hides the bodies behind it.
     const auto scans =
         scansOf("laser at=1,3 range=1,8\nlaser at=1,3 range=0.5,8\nrobot at=2,3 radius=0.5\n");
     EXPECT_TRUE(std::isinf(scans[0].ranges[90]));

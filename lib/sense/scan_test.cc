@@ -112,7 +112,7 @@ TEST(Scan, BlindZone) {
     const Sensor near = placed(laserWithRange(0.5, 5), at(7.6, 3, 0.15));
     EXPECT_TRUE(std::isinf(testing::scan(scene, near).ranges[90]));
     EXPECT_NEAR(castBeams(world, near)[90], 0.4, 1e-6);
-    // What the blind zone hides does not uncover what lies behind.
+    // A return within the blind zone still hides the surfaces behind it.
     EXPECT_FALSE(std::isinf(testing::scan(scene, near).ranges[160]));
 }
 

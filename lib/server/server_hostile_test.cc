@@ -28,7 +28,7 @@ TEST(Server, SlowReaderGetsTheNewestScanAndDelaysNobody) {
     world.take("WORLD");
     EXPECT_EQ(slow.take("LASER l1").ask("STREAM"), "OK STREAM every=1");
     quick.take("ROBOT r1");
-    // Several megabytes of scans, which nobody reads; everybody else goes on.
+    // Several megabytes of scans that the client does not read; the other clients go on.
     for (int i = 1; i <= kRounds; ++i) {
         ASSERT_TRUE(step(world, kSteps).starts_with("OK STEP n=100 "));
         ASSERT_TRUE(quick.ask("STATUS").starts_with("OK STATUS "));

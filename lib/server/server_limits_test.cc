@@ -154,7 +154,7 @@ TEST(Server, WhatStalledReadersHoldIsBoundedInSum) {
         cut += all.ends_with("\nERR 429 too much unread: the slowest readers are disconnected\n");
     }
     EXPECT_GE(cut, kStalled - 9) << "more than 1 MiB of scans of 120 kB are held";
-    // Neither who reads nor who holds little.
+    // Clients that read, or hold little, stay.
     EXPECT_EQ(honest.ask("STOP"), "OK STOP");
     small.send("STOP\n");
     std::string line = small.line();

@@ -55,7 +55,7 @@ TEST(StepQueue, CutsShort) {
     EXPECT_EQ(first->left, 2);
     EXPECT_TRUE(second->over);
     EXPECT_EQ(second->left, 2);
-    // What is asked for afterwards has nothing to do with them.
+    // Later requests do not depend on them.
     const auto third = queue.ask(1);
     room.world.step();
     queue.settle();

@@ -260,7 +260,7 @@ TEST(SessionChange, ChangesTakeTurns) {
     talk.state.changes().spend(WallTime{}, WallTime{});
     world.proceed();
     EXPECT_EQ(world.take(), "OK SET t=0.100\n");
-    // Who leaves meanwhile changes nothing.
+    // A client that leaves meanwhile has no effect.
     talk.state.changes().spend(WallTime{}, std::chrono::steady_clock::now() + testing::kLong);
     talk.ask(world, "SET r1.at=0,0");
     talk.clients.pop_back();

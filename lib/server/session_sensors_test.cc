@@ -47,7 +47,7 @@ struct SensorTalk {
         simulation.allow(count);
         simulation.run(WallTime{}, kLong);
     }
-    /// What a client gets until what it waits for is made.
+    /// The answer to a client until its capture is complete.
     std::string settle(Session& client) {
         std::string text = client.take();
         while (client.waiting()) {

@@ -156,7 +156,7 @@ TEST(WebSocket, SendsOnlyTheNewestFrame) {
     };
     const int first = number_of(watcher.receive());
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    // Nobody asked: none was made.
+    // No client asked for a frame, so none was made.
     EXPECT_LE(number_of(watcher.ask("FRAME")), first + 2);
 }
 

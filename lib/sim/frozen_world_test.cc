@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In a world where nobody moves, a run reads what `scan` reads, with noise and without.
+// In a world without motion a run reads the same as `scan`, with noise and without.
 #include <gtest/gtest.h>
 
 #include <map>

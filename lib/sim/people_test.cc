@@ -83,7 +83,7 @@ TEST(Gait, LimbsSwingByFifteenDegreesOnceAStride) {
     }
     EXPECT_NEAR(most, 15, 1e-9);
     EXPECT_NEAR(std::min(gait.phase, 1 - gait.phase), 0, 1e-9);
-    // Who slows down takes shorter steps; who stands has the legs together.
+    // A slower person takes shorter steps; one at rest has the legs together.
     gait.phase = 0.25;
     EXPECT_NEAR(gait.swing(0.25).degrees(), 7.5, 1e-9);
     EXPECT_EQ(gait.swing(0), Angle());

@@ -90,7 +90,8 @@ TEST_F(RecordLines, PeopleHaveATable) {
               std::count(kPeopleHead.begin(), kPeopleHead.end(), ','));
 }
 
-/// The same record, whoever makes the frames; what is not made at the end is left out.
+/// The record does not depend on the thread that makes frames; frames unfinished at the end are
+/// left out.
 TEST_F(RecordLines, FramesMayBeMadeAside) {
     const Scene scene = room("laser id=l1 at=0,1 rate=10\n");
     const auto run = [&](const std::string& name, bool aside, bool ends) {

@@ -373,7 +373,7 @@ TEST(SimulationRecord, IsWrittenOutWhileTheWorldRests) {
         std::this_thread::sleep_until(*again);
         again = simulation.run(*again, kLong);
     }
-    EXPECT_FALSE(again);  // nothing pending, nothing to do
+    EXPECT_FALSE(again);  // no work is pending
     EXPECT_NE(readAll(folder / "robots.csv").find("\n0.15,r1,"), std::string::npos);
     EXPECT_EQ(readAll(folder / "info.csv"),
               "dt,control_interval,steps,elapsed,seed,noise\n0.05,0.05,3,0.15,0,0\n");

@@ -178,7 +178,7 @@ TEST(Spin, GoesOnWhileTheWorldIsChanged) {
     World changed(room, kStep), whole(room, kStep);
     for (World* world : {&changed, &whole}) world->command(0, {Verb::Rotspeed, 90});
     for (int i = 1; i <= 230; ++i) {
-        // In the midst of a scan somebody comes who is too low to be seen: others' indices shift.
+        // A person too low to be seen enters during a scan, which shifts the indices of others.
         if (i == 205) changed.change(more);
         changed.step();
         whole.step();

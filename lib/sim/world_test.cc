@@ -131,7 +131,7 @@ TEST(World, NewCommandsEndOldOnes) {
     ASSERT_EQ(world.ends().size(), 2U);
     EXPECT_EQ(world.ends().back().id, 2);
     EXPECT_EQ(world.ends().back().outcome, Outcome::Stopped);
-    // What comes to no end leaves none.
+    // A motion that does not end reports no end.
     EXPECT_EQ(world.command(0, {Verb::Speed, 0.2}), 0);
     EXPECT_EQ(world.command(0, {Verb::Rotspeed, 20}), 0);
     EXPECT_EQ(world.ends().size(), 2U);

@@ -158,7 +158,7 @@ TEST(BodyPicture, CosinesOfFacesAndRounds) {
     EXPECT_NEAR(cosine({0.25, 0, 0.5}, {0, 3, 0}), std::sqrt(0.75), 1e-7);
     EXPECT_NEAR(cosine({0.25, 0, 0}, {0, 3, 0.3}), std::sqrt(0.75) / std::sqrt(1.01), 1e-7);
     EXPECT_NEAR(cosine({0.1, 3, 3}, {0, 0, -2}), 1, 1e-7);
-    // What is nearer than a body, and what misses it, keeps its own.
+    // Rays with a nearer hit, and rays that miss the body, keep their range.
     const Directions one{{1}, {0}, {0}};
     for (const float nearer : {2.0F, 2.5F}) {
         float range = nearer, kept = 0.25F;

@@ -18,7 +18,7 @@ using namespace testing;
 
 namespace {
 
-/// A globe with bumps, whose triangles share no vertices but places.
+/// A globe with bumps; its triangles share positions, but no vertices.
 void addGlobe(TriangleSoup& soup, Point3 middle, int rings, int sectors, std::mt19937_64& random) {
     std::uniform_real_distribution<double> bump(0.45, 0.55);
     std::vector<Point3> places;
@@ -92,7 +92,7 @@ TEST(EmbreeScene, EveryWidthFindsTheSameAsAllTrianglesInDoubles) {
             for (std::size_t k = 0; k < 997; k += 10) {
                 const Ray ray{origin, beams.directions[k], 60};
                 if (beams.ranges[k] == static_cast<float>(bruteForce(set, ray))) continue;
-                // What is aimed at a rim meets what lies to either side of it.
+                // A ray at a rim hits the surface on one of its sides.
                 EXPECT_GE(i % 4, 2) << i << ' ' << k;
                 EXPECT_TRUE(isWithinTolerance(set, ray, beams.ranges[k], set.tolerance()))
                     << i << ' ' << k;

@@ -166,7 +166,7 @@ TEST(FlatRound, FansPacketsAndSingleRaysAgree) {
             EXPECT_EQ(alone.ranges[0], as_fan.ranges[k]) << i << ' ' << k;
             EXPECT_EQ(alone.cosines[0], as_fan.cosines[k]) << i << ' ' << k;
         }
-        // What no round body is in the way of is as without them, and nothing is farther.
+        // Ranges of rays without a round body in their way stay, and none is larger.
         const Seen empty = cast(FlatWorld(lines), from, beams, i % 3 == 0 ? 4 : kInfinity);
         for (std::size_t k = 0; k < beams.size(); ++k) EXPECT_LE(as_fan.ranges[k], empty.ranges[k]);
     }

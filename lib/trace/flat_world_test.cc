@@ -22,7 +22,7 @@ using namespace testing;
 
 namespace {
 
-/// Every line against every ray, in long doubles but for the signs that decide who meets whom.
+/// Tests each line against each ray in long doubles, with exact signs for the sides.
 class BruteForce {
   public:
     BruteForce(const Lines& lines, Point2 origin) {

@@ -155,7 +155,7 @@ TEST(RayWorld, SeveralThreadsShareAWorld) {
         });
     for (std::thread& thread : threads) thread.join();
     for (const auto& flags : seen) EXPECT_EQ(flags, seen.front());
-    // What is seen is what is not met before.
+    // The point is seen if no earlier hit lies on the way.
     for (std::size_t k = 0; k < targets.size(); ++k)
         if (std::fabs(found.front()[k] - 3) > 2e-4) {
             EXPECT_EQ(seen.front()[k] == 1, found.front()[k] > 3) << k;

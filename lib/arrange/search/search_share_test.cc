@@ -12,13 +12,13 @@
 namespace ispace {
 namespace {
 
-/// Results in a folder of their own, kept or not.
+/// Results in a temporary folder, kept or not.
 class TestResults {
   public:
     explicit TestResults(bool is_kept = false)
         : results_(folder_ / "results", jobOfTest(), {}, is_kept) {}
     [[nodiscard]] JobResults* get() { return &results_; }
-    /// What another process would find.
+    /// The results that another process would find.
     void takeFrom(const TestResults& other, const std::string& prefix = "") {
         for (const std::string& key : other.results_.keys())
             if (key.starts_with(prefix)) results_.store(key, other.results_.find(key).value());
@@ -166,7 +166,7 @@ TEST(SearchShare, ASearchGoesOnWhereItWasStopped) {
         }
 }
 
-/// What was kept is of another problem: it is not used.
+/// Results kept for another problem are not used.
 TEST(SearchShare, StepsOfAnotherProblemAreNotTaken) {
     const RandomProblem one = hardProblem(36), other = hardProblem(37);
     const SearchOptions options = searchOptions(Optimizer::Exact);

@@ -143,7 +143,7 @@ TEST(Visibility, AWallDoesNotStopSightFromIt) {
         EXPECT_EQ(query(room, {2, off}, 1).viewpoint, (Point2{2, off}));
         EXPECT_NEAR(areaSeen(room, {2, off}, 1), half_disc, 1e-3);
     }
-    // What continues the wall does not stop it, and what crosses it does.
+    // A collinear continuation of the wall does not stop it; a line across it does.
     std::vector<Segment2> crossed{{{0, 0}, {4, 0}}, {{4, 0}, {8, 0}}, {{3, -9}, {3, 9}}};
     EXPECT_NEAR(areaSeen(crossed, {2, 0}, 2), areaSeen({crossed[2]}, {2, 0}, 2), 1e-12);
     EXPECT_LT(areaSeen(crossed, {2, 0}, 2), 4 * pi - 1);

@@ -182,7 +182,7 @@ TEST(ReachedByDisc, StaysOnItsSideOfADoorThatIsTooNarrow) {
     // Both, if asked for both; through the door, if the disc fits.
     EXPECT_TRUE(reachedByDisc(rooms, 1, {{2, 2}, {8, 2}}).contains(2, 2));
     EXPECT_EQ(reachedByDisc(rooms, 0.5, {{2, 2}}).count(), rooms.count());
-    // Where the disc fits nowhere near the point there is nothing.
+    // Where the disc fits nowhere near the point the region is empty.
     EXPECT_EQ(reachedByDisc(rooms, 1, {{4, 2}}).count(), 0U);
 }
 

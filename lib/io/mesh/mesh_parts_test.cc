@@ -26,7 +26,7 @@ TEST(MeshParts, SurviveTheSocket) {
     EXPECT_THROW(unpackedMesh(bytes + '\0', "x.obj"), FormatError);
 }
 
-// Whoever makes assimp do what it wants says what it wants.
+// A child that its input has taken over may answer anything: its answer is checked.
 TEST(MeshParts, AreNotTrusted) {
     TriangleMesh mesh = wall();
     mesh.triangles[0][1] = 3;

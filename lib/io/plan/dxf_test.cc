@@ -126,7 +126,7 @@ TEST(Dxf, ArcsAndCircles) {
     EXPECT_NEAR(areaOf(drawing(ellipse, "", 6)), 2 * std::numbers::pi, 0.01);
     EXPECT_EQ(errorOf(drawing(arc("W", 0, 0, -1, 0, 180), "", 6)),
               "plan.dxf:16:1: error: a radius of -1\n");
-    // What has no radius shows nothing, as a line of no length.
+    // A circle without radius draws no line.
     EXPECT_NEAR(areaOf(drawing(half + arc("W", 5, 5, 0, 0, 180), "", 6)), std::numbers::pi / 2,
                 0.003);
 }

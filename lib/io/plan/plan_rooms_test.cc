@@ -205,7 +205,7 @@ TEST(PlanRooms, HomeIsTheRoom) {
     const Chosen room = choose(plan);
     EXPECT_DOUBLE_EQ(room.area(), 6);
     EXPECT_EQ(room.rooms.regions[0].inside, (Point2{21, 1}));
-    // Enclosed by nothing: the largest, as if nothing were said.
+    // Without an enclosing room the largest is taken, as by default.
     plan.home = Point2{-9, 50};
     EXPECT_DOUBLE_EQ(choose(plan).area(), 20);
 }

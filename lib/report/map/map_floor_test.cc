@@ -178,7 +178,7 @@ TEST(MapFloor, ComparisonsTellKeptGainedLostAndUnseen) {
     for (const bool exact : {false, true}) {
         const PlanPixels pixels(comparisonOf(kUp, kRight, exact), 8);
         EXPECT_EQ(pixels.at(0.2, 2.5), pixelOf(kGained)) << exact;
-        // Most is plain; what is not has dark lines, and nothing else shows through.
+        // Most cells are plain; the others have dark lines, and no other colour shows through.
         EXPECT_GT(pixels.shareOf(kLost, 2.8, 0, 40), 0.6) << exact;
         EXPECT_LT(pixels.shareOf(kLost, 2.8, 0, 40), 0.95) << exact;
         EXPECT_EQ(pixels.shareOf(kGained, 2.8, 0, 40), 0) << exact;

@@ -80,7 +80,7 @@ std::unique_ptr<WireSession> open(WireHost& host, const std::string& id) {
     return std::make_unique<EchoSession>(host, id);
 }
 
-/// Whose clients have nothing to say.
+/// A device whose clients send no bytes.
 class ListenedSession : public EchoSession {
   public:
     using EchoSession::EchoSession;

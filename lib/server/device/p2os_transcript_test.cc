@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What programs say to a Pioneer from the first byte to the last, and what it answers.
+// Whole dialogues of programs with a Pioneer, from the first byte to the last.
 #include <gtest/gtest.h>
 
 #include <charconv>
