@@ -257,6 +257,9 @@ std::string writePdf(std::span<const Picture> pages);
 /// with `prefix`, so that several fit on one page. \pre every push has its pop
 std::string svgElement(const Picture& picture, std::string_view prefix);
 
+/// Escapes text for the content and the attributes of SVG, XML and HTML; see printable().
+std::string escapedXml(std::string_view text);
+
 // The writers, private to lib/drawing.
 std::string writePng(const Picture& picture);
 std::string writeSvg(const Picture& picture);

@@ -21,29 +21,6 @@ namespace {
 
 using Kind = DisplayList::Kind;
 
-std::string escaped(std::string_view text) {
-    std::string out;
-    for (const char c : printable(text)) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += c;
-        }
-    }
-    return out;
-}
-
 /// Creates unique XML names: letters, digits, `_ - .`.
 class XmlIds {
   public:
@@ -103,7 +80,7 @@ class SvgWriter {
             attribute("height", height + unit);
         } else {
             out_ += "<svg role=\"img\"";
-            attribute("aria-label", escaped(picture_.title()));
+            attribute("aria-label", escapedXml(picture_.title()));
         }
         attribute("viewBox", "0 0 " + width + ' ' + height);
         out_ +=
@@ -111,9 +88,9 @@ class SvgWriter {
             " fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\""
             " fill-rule=\"evenodd\">\n";
         if (is_document_ && !picture_.title().empty())
-            out_.append("<title>").append(escaped(picture_.title())).append("</title>\n");
+            out_.append("<title>").append(escapedXml(picture_.title())).append("</title>\n");
         if (!picture_.description().empty())
-            out_.append("<desc>").append(escaped(picture_.description())).append("</desc>\n");
+            out_.append("<desc>").append(escapedXml(picture_.description())).append("</desc>\n");
         out_ += "<rect";
         attribute("width", width);
         attribute("height", height);
@@ -160,14 +137,14 @@ class SvgWriter {
         if (shape.kind == Kind::Layer) {
             attribute("id", layer_ids_[layers_++]);
             if (is_document_) attribute("inkscape:groupmode", "layer");
-            attribute(is_document_ ? "inkscape:label" : "data-layer", escaped(name.title));
+            attribute(is_document_ ? "inkscape:label" : "data-layer", escapedXml(name.title));
         } else if (!name.id.empty()) {
             attribute("id", ids_.take(name.id));
         }
         if (!clip.empty()) attribute("clip-path", "url(#" + clip + ")");
         out_ += shape.kind == Kind::Layer ? ">\n" : ">";
         if (shape.kind == Kind::Group && !name.title.empty())
-            out_.append("<title>").append(escaped(name.title)).append("</title>");
+            out_.append("<title>").append(escapedXml(name.title)).append("</title>");
     }
 
     /// Writes equal clips once. \return its id
@@ -281,7 +258,7 @@ class SvgWriter {
             attribute("paint-order", "stroke");
         }
         color("fill", style.color);
-        out_.append(">").append(escaped(text.text)).append("</text>");
+        out_.append(">").append(escapedXml(text.text)).append("</text>");
     }
 
     void add(const DisplayList::Raster& raster) {
@@ -320,6 +297,29 @@ class SvgWriter {
 };
 
 }  // namespace
+
+std::string escapedXml(std::string_view text) {
+    std::string out;
+    for (const char c : printable(text)) {
+        switch (c) {
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            default:
+                out += c;
+        }
+    }
+    return out;
+}
 
 std::string writeSvg(const Picture& picture) { return SvgWriter(picture, {}).write(); }
 

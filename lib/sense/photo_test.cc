@@ -134,18 +134,19 @@ TEST(Y4m, HasAHeaderAndLimitedRange) {
 TEST(CameraInfo, OfAllLenses) {
     Camera camera;
     camera.distortion = {-0.3, 0.1, 0.001, -0.002, 0.5};
-    std::string yaml = cameraInfoYaml(camera, "c1");
+    std::string yaml = cameraInfoYaml(cameraInfoOf(camera), "c1");
     EXPECT_NE(yaml.find("distortion_model: plumb_bob\n"), std::string::npos);
     EXPECT_NE(yaml.find("cols: 5\n  data: [-0.3, 0.1, 0.001, -0.002, 0.5]\n"), std::string::npos);
     camera.lens = Lens::Fisheye;
-    yaml = cameraInfoYaml(camera, "c1");
+    yaml = cameraInfoYaml(cameraInfoOf(camera), "c1");
     EXPECT_NE(yaml.find("distortion_model: equidistant\n"), std::string::npos);
     EXPECT_NE(yaml.find("cols: 4\n  data: [-0.3, 0.1, 0.001, -0.002]\n"), std::string::npos);
     camera.lens = Lens::Mirror;
     camera.mirror = 0.9;
     camera.distortion = {};
-    EXPECT_NE(cameraInfoYaml(camera, "c1").find("distortion_model: omnidir\nxi: 0.9\n"),
-              std::string::npos);
+    EXPECT_NE(
+        cameraInfoYaml(cameraInfoOf(camera), "c1").find("distortion_model: omnidir\nxi: 0.9\n"),
+        std::string::npos);
 }
 
 TEST(CameraFormats, RefuseWhatTheyCannotHold) {

@@ -23,35 +23,12 @@ namespace ispace {
 
 namespace {
 
-std::string escapedHtml(std::string_view text) {
-    std::string out;
-    for (const char c : printable(text)) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += c;
-        }
-    }
-    return out;
-}
-
 /// Escapes lines one by one, as control characters within a line are replaced.
 std::string escapedLines(std::string_view text) {
     std::string out;
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size());
-        out += escapedHtml(text.substr(0, end));
+        out += escapedXml(text.substr(0, end));
         text.remove_prefix(std::min(end + 1, text.size()));
         if (!text.empty()) out += '\n';
     }
@@ -115,12 +92,12 @@ class HtmlWriter {
             "<meta charset=\"utf-8\" />\n"
             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n"
             "<meta name=\"color-scheme\" content=\"light dark\" />\n<title>";
-        out_.append(escapedHtml(page.title)).append("</title>\n<style>\n");
+        out_.append(escapedXml(page.title)).append("</title>\n<style>\n");
         out_.append(between(kPageStyle, kPageStyleEnd)).append("</style>\n</head>\n<body>\n");
-        out_.append("<header>\n<h1>").append(escapedHtml(page.title)).append("</h1>\n<p>");
-        out_.append(escapedHtml(page.subtitle)).append("</p>\n<nav aria-label=\"sections\">");
+        out_.append("<header>\n<h1>").append(escapedXml(page.title)).append("</h1>\n<p>");
+        out_.append(escapedXml(page.subtitle)).append("</p>\n<nav aria-label=\"sections\">");
         for (const PageSection& section : page.sections)
-            out_.append("<a href=\"#" + section.id + "\">" + escapedHtml(section.title) + "</a> ");
+            out_.append("<a href=\"#" + section.id + "\">" + escapedXml(section.title) + "</a> ");
         out_ += "</nav>\n</header>\n<main>\n";
         for (const PageSection& section : page.sections) add(section);
         out_.append("</main>\n<script>\n//<![CDATA[\n");
@@ -133,7 +110,7 @@ class HtmlWriter {
     void add(const PageSection& section) {
         out_.append("<section id=\"" + section.id + "\" aria-labelledby=\"" + section.id +
                     "-title\">\n<h2 id=\"" + section.id + "-title\">");
-        out_.append(escapedHtml(section.title)).append("</h2>\n");
+        out_.append(escapedXml(section.title)).append("</h2>\n");
         for (const PageBlock& block : section.blocks)
             std::visit([this](const auto& one) { add(one); }, block);
         out_ += "</section>\n";
@@ -141,18 +118,18 @@ class HtmlWriter {
 
     void add(const PageText& text) {
         out_.append("<p").append(classOf(text.tone)).append(">");
-        out_.append(escapedHtml(text.text)).append("</p>\n");
+        out_.append(escapedXml(text.text)).append("</p>\n");
     }
 
     void add(const PageTable& table) {
-        const std::string caption = escapedHtml(table.caption);
+        const std::string caption = escapedXml(table.caption);
         out_.append("<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"" + caption +
                     "\">\n<table>\n<caption>" + caption + "</caption>\n<thead><tr>");
         for (std::size_t i = 0; i < table.heads.size(); ++i)
             out_.append("<th scope=\"col\"")
                 .append(sideOf(table, i))
                 .append(">")
-                .append(escapedHtml(table.heads[i]) + "</th>");
+                .append(escapedXml(table.heads[i]) + "</th>");
         out_ += "</tr></thead>\n<tbody>\n";
         for (std::size_t k = 0; k < table.rows.size(); ++k) {
             out_.append("<tr").append(
@@ -161,7 +138,7 @@ class HtmlWriter {
             const TextRow& row = table.rows[k];
             for (std::size_t i = 0; i < row.size(); ++i) {
                 out_.append(i == 0 ? "<th scope=\"row\"" : "<td").append(sideOf(table, i));
-                out_.append(">").append(escapedHtml(row[i])).append(i == 0 ? "</th>" : "</td>");
+                out_.append(">").append(escapedXml(row[i])).append(i == 0 ? "</th>" : "</td>");
             }
             out_ += "</tr>\n";
         }
@@ -183,15 +160,14 @@ class HtmlWriter {
         if (figure.width < 1)
             out_.append(" style=\"width:").append(formatDouble(100 * figure.width)).append("%\"");
         out_.append(">\n").append(svgElement(figure.picture, nextPrefix()));
-        out_.append("<figcaption>").append(escapedHtml(figure.caption));
+        out_.append("<figcaption>").append(escapedXml(figure.caption));
         out_ += "</figcaption>\n</figure>\n";
     }
 
     void add(const PageMap& map) {
-        out_.append("<figure class=\"map\" data-index=\"")
-            .append(escapedHtml(indexJson(map.index)));
+        out_.append("<figure class=\"map\" data-index=\"").append(escapedXml(indexJson(map.index)));
         out_.append("\">\n").append(svgElement(map.screen, nextPrefix()));
-        out_.append("<figcaption>").append(escapedHtml(map.paper.caption));
+        out_.append("<figcaption>").append(escapedXml(map.paper.caption));
         out_ += "</figcaption>\n</figure>\n";
     }
 

@@ -70,7 +70,7 @@ TEST(CameraInfo, Yaml) {
     ranger.rows = 480;
     ranger.fov_x = Angle::degrees(90);
     ranger.fov_y = Angle::degrees(90);
-    EXPECT_EQ(cameraInfoYaml(ranger, "r\"1"),
+    EXPECT_EQ(cameraInfoYaml(cameraInfoOf(ranger), "r\"1"),
               "%YAML 1.0\n---\n"
               "# Pixel centres are whole numbers: the middle of the picture is (columns - 1) / 2.\n"
               "image_width: 640\nimage_height: 480\ncamera_name: \"r\\\"1\"\n"

@@ -102,7 +102,7 @@ void addFilesBeside(const Sensor& sensor, const Photo& photo, const FormatOption
     if (options.depths)
         files.push_back(
             {kDepth, depthPng(camera.columns, camera.rows, photo.depths, options.depth_per_metre)});
-    files.push_back({kCameraInfo, cameraInfoYaml(camera, sensor.id)});
+    files.push_back({kCameraInfo, cameraInfoYaml(cameraInfoOf(camera), sensor.id)});
 }
 
 void addEndingsBeside(const FormatOptions& options, std::vector<std::string>& endings) {
@@ -152,36 +152,6 @@ void appendMatrix(std::string& out, std::string_view key, int rows, int columns,
     out += "]\n";
 }
 
-/// The content of a camera_info file.
-struct CameraInfo {
-    int columns = 0, rows = 0;
-    double fx = 0, fy = 0, cx = 0, cy = 0;
-    std::string model = "plumb_bob";
-    std::vector<double> coefficients = {0, 0, 0, 0, 0};
-    double xi = 0;  ///< of a mirror
-};
-
-std::string yamlOf(const CameraInfo& info, std::string_view name) {
-    const double fx = nineDecimals(info.fx), fy = nineDecimals(info.fy);
-    const double cx = nineDecimals(info.cx), cy = nineDecimals(info.cy);
-    // OpenCV's FileStorage requires the first two lines, ROS does not.
-    std::string out =
-        "%YAML 1.0\n---\n"
-        "# Pixel centres are whole numbers: the middle of the picture is (columns - 1) / 2.\n";
-    out.append("image_width: ").append(std::to_string(info.columns));
-    out.append("\nimage_height: ").append(std::to_string(info.rows));
-    // A JSON string is a YAML string, too.
-    out.append("\ncamera_name: ").append(JsonWriter().value(name).text()).append("\n");
-    appendMatrix(out, "camera_matrix", 3, 3, {{fx, 0, cx, 0, fy, cy, 0, 0, 1}});
-    out.append("distortion_model: ").append(info.model).append("\n");
-    if (info.xi > 0) out.append("xi: ").append(formatDouble(info.xi)).append("\n");
-    appendMatrix(out, "distortion_coefficients", 1, static_cast<int>(info.coefficients.size()),
-                 info.coefficients);
-    appendMatrix(out, "rectification_matrix", 3, 3, {{1, 0, 0, 0, 1, 0, 0, 0, 1}});
-    appendMatrix(out, "projection_matrix", 3, 4, {{fx, 0, cx, 0, 0, fy, cy, 0, 0, 0, 1, 0}});
-    return out;
-}
-
 }  // namespace
 
 LensModel lensModelOf(const Camera& camera) {
@@ -190,28 +160,47 @@ LensModel lensModelOf(const Camera& camera) {
     return {camera.lens == Lens::Fisheye ? "equidistant" : "omnidir", all.first(4)};
 }
 
-std::string cameraInfoYaml(const Ranger& ranger, std::string_view name) {
-    return yamlOf({.columns = ranger.columns,
-                   .rows = ranger.rows,
-                   .fx = ranger.fx(),
-                   .fy = ranger.fy(),
-                   .cx = ranger.cx(),
-                   .cy = ranger.cy()},
-                  name);
+CameraInfo cameraInfoOf(const Ranger& ranger) {
+    static constexpr std::array<double, 5> kNoDistortion{};
+    return {.columns = ranger.columns,
+            .rows = ranger.rows,
+            .fx = ranger.fx(),
+            .fy = ranger.fy(),
+            .cx = ranger.cx(),
+            .cy = ranger.cy(),
+            .lens = {"plumb_bob", kNoDistortion}};
 }
 
-std::string cameraInfoYaml(const Camera& camera, std::string_view name) {
-    CameraInfo info{.columns = camera.columns,
-                    .rows = camera.rows,
-                    .fx = camera.fx,
-                    .fy = camera.fy,
-                    .cx = camera.cx,
-                    .cy = camera.cy};
-    const auto [model, coefficients] = lensModelOf(camera);
-    info.model = model;
-    info.coefficients.assign(coefficients.begin(), coefficients.end());
-    info.xi = camera.mirror;
-    return yamlOf(info, name);
+CameraInfo cameraInfoOf(const Camera& camera) {
+    return {.columns = camera.columns,
+            .rows = camera.rows,
+            .fx = camera.fx,
+            .fy = camera.fy,
+            .cx = camera.cx,
+            .cy = camera.cy,
+            .lens = lensModelOf(camera),
+            .xi = camera.mirror};
+}
+
+std::string cameraInfoYaml(CameraInfo info, std::string_view name) {
+    for (double* const value : {&info.fx, &info.fy, &info.cx, &info.cy})
+        *value = nineDecimals(*value);
+    // OpenCV's FileStorage requires the first two lines, ROS does not.
+    std::string out =
+        "%YAML 1.0\n---\n"
+        "# Pixel centres are whole numbers: the middle of the picture is (columns - 1) / 2.\n";
+    out.append("image_width: ").append(std::to_string(info.columns));
+    out.append("\nimage_height: ").append(std::to_string(info.rows));
+    // A JSON string is a YAML string, too.
+    out.append("\ncamera_name: ").append(JsonWriter().value(name).text()).append("\n");
+    appendMatrix(out, "camera_matrix", 3, 3, info.matrix());
+    out.append("distortion_model: ").append(info.lens.name).append("\n");
+    if (info.xi > 0) out.append("xi: ").append(formatDouble(info.xi)).append("\n");
+    appendMatrix(out, "distortion_coefficients", 1, static_cast<int>(info.lens.coefficients.size()),
+                 info.lens.coefficients);
+    appendMatrix(out, "rectification_matrix", 3, 3, {{1, 0, 0, 0, 1, 0, 0, 0, 1}});
+    appendMatrix(out, "projection_matrix", 3, 4, info.projection());
+    return out;
 }
 
 }  // namespace ispace

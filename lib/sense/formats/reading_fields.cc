@@ -154,7 +154,9 @@ constexpr RosTopic kRangerTopics[] = {
      },
      isPinhole},
     {RosType::CameraInfo, "depth/camera_info", RosFrame::Optical,
-     [](const RosHeader& header, const View& r) { return cameraInfoMessage(header, rangerOf(r)); },
+     [](const RosHeader& header, const View& r) {
+         return cameraInfoMessage(header, cameraInfoOf(rangerOf(r)));
+     },
      isPinhole}};
 
 // Cameras.
@@ -221,7 +223,9 @@ constexpr RosTopic kCameraTopics[] = {
          return compressedImageMessage(header, "png", pngOfPhoto(r));
      }},
     {RosType::CameraInfo, "camera_info", RosFrame::Optical,
-     [](const RosHeader& header, const View& r) { return cameraInfoMessage(header, cameraOf(r)); },
+     [](const RosHeader& header, const View& r) {
+         return cameraInfoMessage(header, cameraInfoOf(cameraOf(r)));
+     },
      [](const Sensor& sensor) { return !hasMirror(sensor); }}};
 
 constexpr std::string_view kBeamIndex[] = {"beam"}, kPixelIndices[] = {"column", "row"};

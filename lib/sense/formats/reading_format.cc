@@ -229,7 +229,8 @@ class Png final : public FormatBase {
             if (options_.color)
                 files.push_back({kColor, colorDepthPng(placed, *frame, options_.spectrum)});
             if (placed.as<Ranger>().projection == Projection::Pinhole)
-                files.push_back({kCameraInfo, cameraInfoYaml(placed.as<Ranger>(), placed.id)});
+                files.push_back(
+                    {kCameraInfo, cameraInfoYaml(cameraInfoOf(placed.as<Ranger>()), placed.id)});
         }
         return files;
     }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -49,10 +51,25 @@ struct LensModel {
 };
 LensModel lensModelOf(const Camera& camera);
 
-/// Writes ROS camera_info as YAML, which applyCalibration() reads: size, matrices and distortion.
-/// Pixel centres are integers, so cx of a ranger is (columns - 1) / 2. A mirror has OpenCV's model
-/// `omnidir` with `xi`. \pre a ranger is a pinhole
-std::string cameraInfoYaml(const Ranger& ranger, std::string_view name);
-std::string cameraInfoYaml(const Camera& camera, std::string_view name);
+/// The content of ROS' camera_info: size, focal lengths and principal point in pixels, distortion.
+/// Pixel centres are integers, so cx of a ranger is (columns - 1) / 2.
+struct CameraInfo {
+    int columns = 0, rows = 0;
+    double fx = 0, fy = 0, cx = 0, cy = 0;
+    LensModel lens;
+    double xi = 0;  ///< of a mirror, for the model `omnidir`
+
+    /// Row-major camera matrix (3 x 3) and projection matrix (3 x 4).
+    [[nodiscard]] std::array<double, 9> matrix() const { return {fx, 0, cx, 0, fy, cy, 0, 0, 1}; }
+    [[nodiscard]] std::array<double, 12> projection() const {
+        return {fx, 0, cx, 0, 0, fy, cy, 0, 0, 0, 1, 0};
+    }
+};
+/// \pre a ranger is a pinhole
+CameraInfo cameraInfoOf(const Ranger& ranger);
+CameraInfo cameraInfoOf(const Camera& camera);  ///< valid as long as the camera
+
+/// Writes camera_info as YAML, which applyCalibration() reads, with nine decimals.
+std::string cameraInfoYaml(CameraInfo info, std::string_view name);
 
 }  // namespace ispace

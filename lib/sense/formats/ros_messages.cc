@@ -38,29 +38,6 @@ Pose3 onFloor(const Pose2& pose) {
     return {{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
 }
 
-/// Sizes and matrices of a picture.
-struct Intrinsics {
-    int columns = 0, rows = 0;
-    double fx = 0, fy = 0, cx = 0, cy = 0;
-    std::string_view model = "plumb_bob";
-    std::vector<double> coefficients = {0, 0, 0, 0, 0};
-};
-
-std::string infoMessage(const RosHeader& header, const Intrinsics& info) {
-    const auto [fx, fy, cx, cy] = std::array{info.fx, info.fy, info.cx, info.cy};
-    CdrWriter out = headed(header);
-    out.count(static_cast<std::size_t>(info.rows));
-    out.count(static_cast<std::size_t>(info.columns)).put(info.model);
-    out.sequence(std::span<const double>(info.coefficients));
-    out.array(std::span<const double>(std::array<double, 9>{fx, 0, cx, 0, fy, cy, 0, 0, 1}));
-    out.array(std::span<const double>(std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
-    out.array(
-        std::span<const double>(std::array<double, 12>{fx, 0, cx, 0, 0, fy, cy, 0, 0, 0, 1, 0}));
-    // The whole picture: no binning, no region of interest.
-    for (int i = 0; i < 2 + 4; ++i) out.count(0);
-    return out.put(false).take();
-}
-
 }  // namespace
 
 std::string rosName(std::string_view id) {
@@ -156,26 +133,17 @@ std::string compressedImageMessage(const RosHeader& header, std::string_view for
     return headed(header).put(format).bytes(bytes).take();
 }
 
-std::string cameraInfoMessage(const RosHeader& header, const Ranger& ranger) {
-    return infoMessage(header, {.columns = ranger.columns,
-                                .rows = ranger.rows,
-                                .fx = ranger.fx(),
-                                .fy = ranger.fy(),
-                                .cx = ranger.cx(),
-                                .cy = ranger.cy()});
-}
-
-std::string cameraInfoMessage(const RosHeader& header, const Camera& camera) {
-    Intrinsics info{.columns = camera.columns,
-                    .rows = camera.rows,
-                    .fx = camera.fx,
-                    .fy = camera.fy,
-                    .cx = camera.cx,
-                    .cy = camera.cy};
-    const auto [model, coefficients] = lensModelOf(camera);
-    info.model = model;
-    info.coefficients.assign(coefficients.begin(), coefficients.end());
-    return infoMessage(header, info);
+std::string cameraInfoMessage(const RosHeader& header, const CameraInfo& info) {
+    CdrWriter out = headed(header);
+    out.count(static_cast<std::size_t>(info.rows));
+    out.count(static_cast<std::size_t>(info.columns)).put(info.lens.name);
+    out.sequence(info.lens.coefficients);
+    out.array(std::span<const double>(info.matrix()));
+    out.array(std::span<const double>(std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+    out.array(std::span<const double>(info.projection()));
+    // The whole picture: no binning, no region of interest.
+    for (int i = 0; i < 2 + 4; ++i) out.count(0);
+    return out.put(false).take();
 }
 
 std::string pointMessage(const RosHeader& header, Point3 point) {

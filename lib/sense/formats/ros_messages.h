@@ -12,6 +12,7 @@
 #include "geom/pose.h"
 #include "scene/robot.h"
 #include "sense/formats/point_cloud.h"
+#include "sense/formats/reading_picture.h"
 #include "sense/formats/ros_types.h"
 #include "sense/photo.h"
 #include "sense/scan.h"
@@ -66,10 +67,8 @@ std::string depthImageMessage(const RosHeader& header, const Ranger& ranger,
 /// Writes a picture. \param format "png" or "jpeg"
 std::string compressedImageMessage(const RosHeader& header, std::string_view format,
                                    std::string_view bytes);
-/// Writes the intrinsics of a ranger. \pre a pinhole
-std::string cameraInfoMessage(const RosHeader& header, const Ranger& ranger);
-/// Writes the intrinsics of a camera. \pre not a mirror, for which ROS has no model
-std::string cameraInfoMessage(const RosHeader& header, const Camera& camera);
+/// \pre not a mirror, for which ROS has no model
+std::string cameraInfoMessage(const RosHeader& header, const CameraInfo& info);
 std::string pointMessage(const RosHeader& header, Point3 point);
 /// Velocity in the body's frame: ahead and to the left in m/s, and the rate of turn in radians a
 /// second.
