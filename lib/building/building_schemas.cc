@@ -90,6 +90,9 @@ Schema stairsSchema() {
 Schema liftSchema() {
     KeySpec speed = positiveKey("speed", Unit::Length, "metres a second", kFastest);
     speed.default_value = 1.0;
+    constexpr double kSlowest = 0.01;
+    speed.lower = kSlowest;
+    speed.lower_open = false;
     return {.keyword = "lift",
             .type = RecordType::Infra,
             .help = "a lift that stops at its storeys",

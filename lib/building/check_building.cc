@@ -8,7 +8,6 @@
 #include <string>
 
 #include "base/budget.h"
-#include "base/number.h"
 #include "building/building_scene.h"
 #include "env/environment.h"
 #include "env/level.h"
@@ -128,12 +127,6 @@ class BuildingCheck {
             report(passage, "id", "has no door: give its width, such as door=0.9");
         else if (record.number("door") > size[0])
             report(passage, "door", "has a door that is wider than its cabin");
-        if (record.has("capacity")) {
-            std::string load = record.text("capacity");
-            if (load.ends_with("kg")) load.resize(load.size() - 2);
-            if (const auto kilograms = parseDouble(load); !kilograms || !(*kilograms > 0))
-                report(passage, "capacity", "has a capacity that is no load such as 630kg");
-        }
         const Vec2 out = along(record.angle("heading"));
         const Point2 door = pointOf(record.tuple("at")) + size[1] / 2 * out;
         for (const std::size_t i : passage.storeys) {

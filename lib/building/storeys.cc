@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
+#include "base/number.h"
 #include "base/run_files.h"
 #include "building/building_imports.h"
 #include "building/building_schemas.h"
@@ -95,6 +96,27 @@ std::vector<std::string> idsOf(const std::vector<Storey>& storeys) {
     ids.reserve(storeys.size());
     for (const Storey& storey : storeys) ids.push_back(storey.id);
     return ids;
+}
+
+/// Reports an id that is not one component of paths: of `storey/id` and of records' folders.
+void checkRoomId(const Record& record, const std::string& id, Diagnostics& findings) {
+    if (id.find('/') != std::string::npos)
+        findings.add(record.finding("id", "`/` in the id of a " + record.keyword() +
+                                              ": it separates the " + record.keyword() +
+                                              " from ids in its room"));
+    else if (id == "." || id == "..")
+        findings.add(record.finding(
+            "id", "`" + id + "` is a name of folders, not of a " + record.keyword()));
+}
+
+/// Returns the greatest load of a lift in kilograms; nullopt if `capacity` is not a load.
+std::optional<double> capacityOf(const Record& record) {
+    if (record.schema().find("capacity") == nullptr || !record.has("capacity"))
+        return StoreyPassage::kNoLimit;
+    std::string load = record.text("capacity");
+    if (load.ends_with("kg")) load.resize(load.size() - 2);
+    const auto kilograms = parseDouble(load);
+    return kilograms && *kilograms > 0 ? kilograms : std::nullopt;
 }
 
 /// Resolves the storeys of a passage. Reports unknown, doubled and missing ones.
@@ -270,10 +292,7 @@ StoreyedDocument makeBuilding(std::vector<StoreyInput> inputs, std::vector<Recor
     findings.throwIfAny();
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         Record& record = inputs[i].record;
-        if (ids[i].find('/') != std::string::npos)
-            findings.add(record.finding("id",
-                                        "`/` in the id of a storey: it separates the storey "
-                                        "from ids in its room"));
+        checkRoomId(record, ids[i], findings);
         record.erase("file");
         const Tuple& at = record.tuple("at");
         Storey storey{record,
@@ -288,9 +307,15 @@ StoreyedDocument makeBuilding(std::vector<StoreyInput> inputs, std::vector<Recor
     std::stable_sort(building.storeys.begin(), building.storeys.end(),
                      [](const Storey& a, const Storey& b) { return a.floor < b.floor; });
     for (std::size_t i = 0; i < passages.size(); ++i) {
+        checkRoomId(passages[i], ids[inputs.size() + i], findings);
+        const auto capacity = capacityOf(passages[i]);
+        if (!capacity)
+            findings.add(passages[i].finding(
+                "capacity", "`capacity`: " + excerpt(passages[i].text("capacity")) +
+                                " is no load such as 630kg"));
         auto storeys = storeysOf(passages[i], building.storeys, findings);
-        building.passages.push_back(
-            {std::move(passages[i]), ids[inputs.size() + i], std::move(storeys)});
+        building.passages.push_back({std::move(passages[i]), ids[inputs.size() + i],
+                                     std::move(storeys), capacity.value_or(0)});
     }
     findings.throwIfAny();
     std::vector<const Document*> told;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,6 +35,9 @@ struct StoreyPassage {
     Record record;
     std::string id;
     std::vector<std::size_t> storeys;  ///< indices in StoreyedDocument::storeys, lowest first
+    double capacity = kNoLimit;        ///< greatest load of a lift, in kilograms
+
+    static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 };
 
 /// Most storeys of a building.

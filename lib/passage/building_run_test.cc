@@ -251,8 +251,7 @@ TEST(BuildingRun, IsTheSameTwice) {
 BuildingScene hotel() {
     StoreyedDocument document = readBuilding(
         readAll(testing::sourcePath("tests/data/hotel.building.yaml")), "hotel.building.yaml", {});
-    for (StoreyPassage& passage : document.passages)
-        passage.record.set("capacity", std::string("130kg"));
+    for (StoreyPassage& passage : document.passages) passage.capacity = 130;
     const std::vector<Document> layouts = layoutsOf(
         testing::layoutDocument("robot id=l1/tiny1 mass=60 at=4,-4\nrobot id=l1/tiny2 mass=60 "
                                 "at=20,-4\nrobot id=l2/clean mass=60 at=11,-4\nrobot "

@@ -52,7 +52,7 @@ std::optional<Point2> slotIn(const Cabin& cabin, const std::vector<Rider>& rider
                              const Rider& rider) {
     double load = rider.mass;
     for (const Rider& other : riders) load += other.mass;
-    if (cabin.capacity > 0 && load > cabin.capacity) return std::nullopt;
+    if (load > cabin.capacity) return std::nullopt;
     const double across = cabin.width / 2 - rider.radius - kGap;
     const double along = cabin.length / 2 - rider.radius - kGap;
     if (across < 0 || along < 0) return std::nullopt;

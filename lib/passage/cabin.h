@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,9 +13,9 @@ namespace ispace {
 
 /// The floor of a lift's cabin, in its frame: origin in the middle, x out of the door.
 struct Cabin {
-    double width = 1, length = 1;  ///< across x and along it
-    double door = 0.9;             ///< width
-    double capacity = 0;           ///< kilograms; 0: no limit
+    double width = 1, length = 1;                               ///< across x and along it
+    double door = 0.9;                                          ///< width
+    double capacity = std::numeric_limits<double>::infinity();  ///< greatest load in kilograms
 };
 
 /// A rider in a cabin.

@@ -7,7 +7,6 @@
 #include <tuple>
 #include <utility>
 
-#include "base/number.h"
 #include "env/walls.h"
 #include "sim/collision.h"
 
@@ -25,14 +24,6 @@ constexpr std::size_t kMostSpots = 8;
 /// The floor before a door that waiting movers leave free, metres ahead.
 constexpr double kLeftFree = 2.5;
 
-double loadOf(const Record& record) {
-    if (!record.has("capacity")) return 0;
-    std::string load = record.text("capacity");
-    if (load.ends_with("kg")) load.resize(load.size() - 2);
-    const auto kilograms = parseDouble(load);
-    return kilograms && *kilograms > 0 ? *kilograms : 0;
-}
-
 StoreyLink passageOf(const BuildingScene& building, const StoreyPassage& from) {
     StoreyLink passage{.id = from.id, .storeys = from.storeys};
     const Record& record = from.record;
@@ -45,7 +36,7 @@ StoreyLink passageOf(const BuildingScene& building, const StoreyPassage& from) {
             .width = size[0],
             .length = size[1],
             .door = std::min(size[0], record.has("door") ? record.number("door") : kDoor),
-            .capacity = loadOf(record)};
+            .capacity = from.capacity};
         passage.lift = {.floors = {}, .speed = record.number("speed"), .door = passage.cabin.door};
         for (const std::size_t storey : from.storeys)
             passage.lift.floors.push_back(building.document.storeys[storey].floor);
@@ -199,8 +190,7 @@ std::string StoreyWays::refusal(const StoreyLink& passage, const MoverAbility& a
     }
     if (passage.cabin.door < wide) return "the door of " + passage.id + " is too narrow for it";
     const Rider alone{.id = "", .at = {}, .radius = size_.radius, .mass = ability.mass};
-    if (passage.cabin.capacity > 0 && ability.mass > passage.cabin.capacity)
-        return "it is too heavy for " + passage.id;
+    if (ability.mass > passage.cabin.capacity) return "it is too heavy for " + passage.id;
     return slotIn(passage.cabin, {}, alone) ? "" : passage.id + " is too small for it";
 }
 
