@@ -423,9 +423,12 @@ void SimrunCommand::takeMqtt() {
         if (line_.given(option) && !o.mqtt)
             throw UsageError(std::string(option) + " requires --mqtt HOST:PORT");
     if (!line_.given("--mqtt-prefix")) return;
-    if (mqtt_prefix_.empty() || mqtt_prefix_.find_first_of("+#/ ") != std::string::npos)
+    constexpr const char* kLetters =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    if (mqtt_prefix_.empty() || mqtt_prefix_.find_first_not_of(kLetters) != std::string::npos)
         throw UsageError("--mqtt-prefix: " + excerpt(mqtt_prefix_) +
-                         " is no single level of a topic, wanted a word like ispace");
+                         " is no single level of a topic, wanted letters, digits, _ and -, like "
+                         "ispace");
     o.mqtt->prefix = mqtt_prefix_;
 }
 

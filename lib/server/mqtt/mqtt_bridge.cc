@@ -29,16 +29,12 @@ MqttBridge::MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, s
     serve();
 }
 
-/// Names without the characters that topics reserve.
 std::string MqttBridge::topicOf(std::string_view id, std::string_view key) const {
-    std::string name(id);
-    for (char& c : name)
-        if (c == '+' || c == '#') c = '_';
-    return prefix_ + '/' + name + '/' + std::string(key);
+    return prefix_ + '/' + topicId(id) + '/' + std::string(key);
 }
 
-/// Describes all things of the world and publishes their states.
-void MqttBridge::introduce() {
+/// Describes new things, or all of them after a connection, and removes those that are gone.
+void MqttBridge::introduce(bool all) {
     const World& world = state_->simulation().world();
     changes_ = world.changes();
     std::unordered_map<std::string, std::string> keywords;
@@ -50,19 +46,34 @@ void MqttBridge::introduce() {
             things.push_back({state.id, keywords[state.id], {}});
         things.back().keys.push_back(state.key);
     }
+    Topics topics;
+    std::set<std::string> descriptions;
+    std::vector<MqttMessage> news;
     for (const MqttThing& thing : things) {
-        std::vector<std::string> topics;
-        bool is_new = false;
+        std::vector<std::string> names;
+        bool is_new = all;
         for (const std::string& key : thing.keys) {
-            topics.push_back(topicOf(thing.id, key));
+            names.push_back(topicOf(thing.id, key));
             const bool is_actuator = isActuator(thing.keyword);
-            const bool was_added =
-                topics_.emplace(topics.back(), Topic{thing.id, key, is_actuator}).second;
-            if (was_added && is_actuator) client_->subscribe(topics.back() + "/set");
-            is_new = is_new || was_added;
+            topics.emplace(names.back(), Topic{thing.id, key, is_actuator});
+            const bool was_known = topics_.contains(names.back());
+            if (!was_known && is_actuator) client_->subscribe(names.back() + "/set");
+            is_new = is_new || !was_known;
         }
-        if (is_new) client_->publish(discoveryOf(thing, prefix_, topics));
+        MqttMessage description = discoveryOf(thing, prefix_, names);
+        is_new = is_new || !descriptions_.contains(description.topic);
+        descriptions.insert(description.topic);
+        if (is_new) news.push_back(std::move(description));
     }
+    // An empty retained message removes the one that the broker has.
+    const auto remove = [this](const std::string& topic) { client_->publish({topic, "", true}); };
+    for (const std::string& topic : descriptions_)
+        if (!descriptions.contains(topic)) remove(topic);
+    for (const auto& [topic, of] : topics_)
+        if (!topics.contains(topic)) remove(topic);
+    for (MqttMessage& description : news) client_->publish(std::move(description));
+    topics_ = std::move(topics);
+    descriptions_ = std::move(descriptions);
 }
 
 void MqttBridge::publishAll() {
@@ -75,8 +86,7 @@ void MqttBridge::publish(const RoomState& state) {
 
 void MqttBridge::serve() {
     if (const int now = client_->connections(); std::exchange(connections_, now) != now) {
-        topics_.clear();
-        introduce();
+        introduce(true);
         publishAll();
         client_->publish({statusTopic(prefix_), "online", true});
     }
@@ -135,7 +145,7 @@ void MqttBridge::readLine(std::string_view line) {
 
 void MqttBridge::stepped() {
     session_.stepped();
-    if (changes_ != state_->simulation().world().changes()) introduce();
+    if (changes_ != state_->simulation().world().changes()) introduce(false);
     answer();
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -39,7 +40,8 @@ class MqttBridge {
         std::string id, key;
         bool is_actuator = false;
     };
-    void introduce();
+    using Topics = std::map<std::string, Topic, std::less<>>;
+    void introduce(bool all);
     void publishAll();
     void publish(const RoomState& state);
     void receive(const MqttMessage& message);
@@ -52,7 +54,8 @@ class MqttBridge {
     std::string prefix_;
     Session session_;
     std::deque<std::string> requests_;
-    std::map<std::string, Topic, std::less<>> topics_;  // of all states
+    Topics topics_;                       // of all states
+    std::set<std::string> descriptions_;  // topics of discovery
     int connections_ = 0;
     std::int64_t changes_ = -1;  // of the world when it was introduced
 };

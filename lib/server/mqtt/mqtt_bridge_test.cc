@@ -7,6 +7,7 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -43,16 +44,34 @@ TEST(MqttTopics, PayloadsConvertBothWays) {
 TEST(MqttTopics, DiscoveryKeepsToTheLettersOfTopics) {
     const MqttMessage lamp =
         discoveryOf({"hall/l 1", "lamp", {"on"}}, "ispace", {"ispace/hall/l 1/on"});
-    EXPECT_EQ(lamp.topic, "homeassistant/light/ispace_hall_l_1/config");
+    EXPECT_EQ(lamp.topic, "homeassistant/light/ispace_hall__2fl__201/config");
     EXPECT_TRUE(lamp.retain);
     EXPECT_NE(lamp.payload.find("\"command_topic\":\"ispace/hall/l 1/on/set\""), std::string::npos);
+}
+
+TEST(MqttTopics, DistinctIdsStayDistinct) {
+    EXPECT_EQ(topicId("hall/l.1"), "hall/l.1");
+    EXPECT_EQ(topicId("front_door"), "front_door");
+    std::set<std::string> topics, descriptions;
+    const std::vector<std::string> ids{"a+b", "a#b", "a_b",    "a__b", "a_+b",    "a_5f_b",
+                                       "a.b", "a/b", "a__2eb", "a_",   "a___2eb", "a_.b"};
+    for (const std::string& id : ids) {
+        topics.insert(topicId(id));
+        descriptions.insert(discoveryOf({id, "lamp", {"on"}}, "ispace", {"t"}).topic);
+    }
+    EXPECT_EQ(topics.size(), ids.size());
+    EXPECT_EQ(descriptions.size(), ids.size());
 }
 
 TEST(MqttOptions, AreParsed) {
     EXPECT_EQ(parseBroker("broker.local:1884").host, "broker.local");
     EXPECT_EQ(parseBroker("broker.local:1884").port, 1884);
     EXPECT_EQ(parseBroker("127.0.0.1").port, 1883);
-    for (const char* bad : {"", ":1883", "host:", "host:0", "host:70000", "host:x"})
+    EXPECT_EQ(parseBroker("[::1]:1884").host, "::1");
+    EXPECT_EQ(parseBroker("[::1]:1884").port, 1884);
+    EXPECT_EQ(parseBroker("[::1]").port, 1883);
+    for (const char* bad : {"", ":1883", "host:", "host:0", "host:70000", "host:x", "::1", "[::1",
+                            "[]:1", "[::1]x:1", "[::1]1883"})
         EXPECT_THROW(parseBroker(bad), UsageError) << bad;
 }
 
@@ -159,6 +178,22 @@ TEST_F(BridgeTest, IntroducesNewThings) {
     EXPECT_NE(broker.last("homeassistant/switch/home_b1/config"), "");
     tell("home/b1/on/set", "ON");
     EXPECT_EQ(broker.last("home/b1/on"), "ON");
+}
+
+TEST_F(BridgeTest, RemovesThingsThatAreGone) {
+    ask("DELETE lp");
+    step();
+    for (const char* topic :
+         {"home/lp/on", "home/lp/level", "home/lp/color", "homeassistant/light/home_lp/config"})
+        EXPECT_NE(std::find(broker.published.begin(), broker.published.end(),
+                            MqttMessage{topic, "", true}),
+                  broker.published.end())
+            << topic;
+    EXPECT_EQ(broker.last("home/s1/motion"), "OFF");
+    ask("ADD switch id=lp at=1,1");
+    step();
+    EXPECT_EQ(broker.last("home/lp/on"), "OFF");
+    EXPECT_NE(broker.last("homeassistant/switch/home_lp/config"), "");
 }
 
 }  // namespace

@@ -231,6 +231,8 @@ void MosquittoClient::subscribe(const std::string& topic) {
     bool is_connected = false;
     {
         const std::lock_guard lock(mutex_);
+        if (std::find(subscriptions_.begin(), subscriptions_.end(), topic) != subscriptions_.end())
+            return;
         subscriptions_.push_back(topic);
         is_connected = is_connected_;
     }
@@ -270,12 +272,15 @@ void MosquittoClient::close() {
 
 MqttOptions parseBroker(const std::string& text) {
     MqttOptions options;
-    const std::size_t colon = text.rfind(':');
-    options.host = text.substr(0, colon);
+    const bool is_bracketed = text.starts_with('[');  // an address of IPv6
+    const std::size_t end = is_bracketed ? text.find(']') : 0;
+    const std::size_t colon = end == std::string::npos ? end : text.find(':', end);
+    options.host = is_bracketed ? text.substr(1, end - 1) : text.substr(0, colon);
+    const bool has_rest = is_bracketed && end + 1 != std::min(colon, text.size());
     const std::string port = colon == std::string::npos ? "1883" : text.substr(colon + 1);
     const auto number = parseInteger(port);
     constexpr int kMaxPort = 65535;
-    if (options.host.empty() || !number || *number < 1 || *number > kMaxPort)
+    if (options.host.empty() || has_rest || !number || *number < 1 || *number > kMaxPort)
         throw UsageError(excerpt(text) + " is no broker, wanted HOST:PORT, like 127.0.0.1:1883");
     options.port = static_cast<std::uint16_t>(*number);
     return options;

@@ -41,15 +41,35 @@ constexpr Component kComponents[] = {{"lamp", "light", ""},
                                      {"pir", "binary_sensor", "motion"},
                                      {"contact", "binary_sensor", "door"}};
 
-/// Returns an id as Home Assistant allows it in topics.
-std::string plainId(std::string id) {
-    for (char& c : id)
-        if ((c < 'a' || c > 'z') && (c < 'A' || c > 'Z') && (c < '0' || c > '9') && c != '-')
-            c = '_';
-    return id;
+bool isPlain(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_';
+}
+
+/// Writes characters outside of `allowed` as two underscores and two hexadecimal digits. So is an
+/// underscore before such a character or before another underscore, which makes this reversible.
+template <typename Allowed>
+std::string escapedId(std::string_view id, Allowed allowed) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string out;
+    for (std::size_t i = 0; i < id.size(); ++i) {
+        const bool is_ambiguous =
+            id[i] == '_' && i + 1 < id.size() && (id[i + 1] == '_' || !allowed(id[i + 1]));
+        if (allowed(id[i]) && !is_ambiguous) {
+            out += id[i];
+            continue;
+        }
+        const auto byte = static_cast<unsigned char>(id[i]);
+        out.append("__").append(1, kDigits[byte >> 4U]).append(1, kDigits[byte & 0xfU]);
+    }
+    return out;
 }
 
 }  // namespace
+
+std::string topicId(std::string_view id) {
+    return escapedId(id, [](char c) { return c != '+' && c != '#'; });
+}
 
 std::string payloadOf(std::string_view key, std::string_view value) {
     std::string scaled_value;
@@ -78,7 +98,7 @@ MqttMessage discoveryOf(const MqttThing& thing, const std::string& prefix,
     const Component component =
         found == std::end(kComponents) ? Component{thing.keyword, "sensor", ""} : *found;
     const bool is_commanded = isActuator(thing.keyword);
-    const std::string plain = plainId(prefix + "_" + thing.id);
+    const std::string plain = prefix + '_' + escapedId(thing.id, isPlain);
     JsonWriter json;
     json.beginObject().key("name").value(thing.id).key("unique_id").value(plain);
     if (!component.device_class.empty()) json.key("device_class").value(component.device_class);

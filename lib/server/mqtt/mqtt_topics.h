@@ -13,6 +13,10 @@
 
 namespace ispace {
 
+/// Returns an id as a part of topics: the characters that these reserve are written as two
+/// underscores and two hexadecimal digits. Distinct ids stay distinct.
+std::string topicId(std::string_view id);
+
 /// Converts a state to its payload: ON or OFF, per cent, R,G,B to 255, or the value itself.
 std::string payloadOf(std::string_view key, std::string_view value);
 /// Converts a payload to a value of the record language, which may be invalid.
