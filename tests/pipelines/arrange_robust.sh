@@ -69,7 +69,7 @@ for words in 'rooms:' 'rooms:a.env,' failures:4 failures:x mounting:5cm floods x
     expect_error 2 arrange "${job[@]}" --robust "$words"
 done
 for options in '--robust failures:2' '--robust failures:1 --redundancy 2' '--robust failures:1 --target 90%' \
-    '--robust rooms:moved.env --budget 2' '--crowd 3 --refine' '--crowd -1' '--crowd 3 --robust failures:1' \
+    '--robust rooms:moved.env --budget 2' '--crowd 3 --refine' '--crowd -1' '--crowd 2.7' '--crowd 3 --robust failures:1' \
     '--case worst' '--privacy bed' '--privacy desk1 --refine' '--facing entrance,45deg=90%' '--facing desk1,45deg' \
     '--facing entrance,45deg --crowd 2' '--robust rooms:-' '--robust rooms:moved.env --privacy desk1'; do
     # shellcheck disable=SC2086

@@ -321,10 +321,13 @@ void ArrangeCommand::addRobustOptions() {
     line_.parsed(
         "--crowd", "N",
         [this](const std::string& text) {
+            const auto people = parseInteger(text);
+            if (!people || *people < 0 || *people > kMostPeople)
+                throw UsageError("--crowd: " + excerpt(text) +
+                                 " is no number of people up to 1000");
             options_.how.robust = {.of = RobustChoice::Of::Crowd,
                                    .is_worst = false,
-                                   .people = static_cast<int>(readNumber(
-                                       text, 0, kMostPeople, "a number of people up to 1000"))};
+                                   .people = static_cast<int>(*people)};
         },
         "maximise the expected coverage with N people in the way of sight, at random positions",
         Enters::History);
