@@ -227,16 +227,27 @@ std::string BuildingRun::whereText(std::size_t room) const {
     return "storey=" + storey_id(nearest) + " in=" + in.id + " z=" + formatFixed(z, 3);
 }
 
-std::string BuildingRun::call(std::string_view lift, std::string_view storey) {
+std::optional<std::size_t> BuildingRun::Data::stopNamed(const StoreyLink& lift,
+                                                        std::string_view storey) const {
+    for (std::size_t stop = 0; stop < lift.storeys.size(); ++stop)
+        if (building.document.storeys[lift.storeys[stop]].id == storey) return stop;
+    return std::nullopt;
+}
+
+std::string BuildingRun::stopRefusal(std::string_view lift, std::string_view storey) const {
     const auto which = data_->liftNamed(lift);
     if (!which) return "no lift " + excerpt(lift);
     const StoreyLink& passage = data_->passages[*which];
-    for (std::size_t stop = 0; stop < passage.storeys.size(); ++stop)
-        if (data_->building.document.storeys[passage.storeys[stop]].id == storey) {
-            data_->lifts[*which].call(stop);
-            return "";
-        }
-    return passage.id + " does not stop at " + excerpt(storey);
+    return data_->stopNamed(passage, storey) ? ""
+                                             : passage.id + " does not stop at " + excerpt(storey);
+}
+
+std::string BuildingRun::call(std::string_view lift, std::string_view storey) {
+    std::string refusal = stopRefusal(lift, storey);
+    if (!refusal.empty()) return refusal;
+    const std::size_t which = data_->liftNamed(lift).value();
+    data_->lifts[which].call(data_->stopNamed(data_->passages[which], storey).value());
+    return "";
 }
 
 std::vector<LiftState> BuildingRun::lifts() const {
@@ -277,22 +288,19 @@ TripAnswer BuildingRun::travel(const std::string& mover, std::vector<RoomPoint> 
 
 TripAnswer BuildingRun::ride(const std::string& mover, std::string_view lift,
                              std::string_view storey) {
-    const auto which = data_->liftNamed(lift);
-    if (!which) return {.refusal = "no lift " + excerpt(lift)};
-    const auto found = data_->travellers.find(mover);
-    const StoreyLink& passage = data_->passages[*which];
-    for (std::size_t stop = 0; stop < passage.storeys.size(); ++stop) {
-        const std::size_t at = passage.storeys[stop];
-        if (data_->rooms[at].id != storey) continue;
-        const Landing* const landing = data_->waysOf(found->second).landing(*which, stop);
-        if (landing == nullptr) break;
-        BuildingTrip trip;
-        // It leaves the landing to others.
-        trip.goals = {{at, landing->spots.empty() ? landing->at.position : landing->spots.front()}};
-        trip.only = which;
-        return data_->begin(mover, std::move(trip));
-    }
-    return {.refusal = passage.id + " does not stop at " + excerpt(storey)};
+    if (std::string refusal = stopRefusal(lift, storey); !refusal.empty()) return {refusal};
+    const std::size_t which = data_->liftNamed(lift).value();
+    const StoreyLink& passage = data_->passages[which];
+    const std::size_t stop = data_->stopNamed(passage, storey).value();
+    const Landing* const landing =
+        data_->waysOf(data_->travellers.find(mover)->second).landing(which, stop);
+    if (landing == nullptr) return {passage.id + " has no landing at " + excerpt(storey)};
+    BuildingTrip trip;
+    // It leaves the landing to others.
+    trip.goals = {{passage.storeys[stop],
+                   landing->spots.empty() ? landing->at.position : landing->spots.front()}};
+    trip.only = which;
+    return data_->begin(mover, std::move(trip));
 }
 
 }  // namespace ispace

@@ -54,6 +54,8 @@ class BuildingRun final : public JoinedWorlds {
 
     /// Returns the simulation that leads all others.
     [[nodiscard]] Simulation& simulation();
+    /// Returns the reason why a lift does not go to a storey, or "".
+    [[nodiscard]] std::string stopRefusal(std::string_view lift, std::string_view storey) const;
     /// Returns the worlds in the order of rooms().
     [[nodiscard]] const World& world(std::size_t room) const;
 

@@ -80,6 +80,8 @@ struct BuildingRun::Data {
     [[nodiscard]] RobotStatus statusOf(const Traveller& who) const;
     [[nodiscard]] std::optional<std::size_t> storeyNamed(std::string_view id) const;
     [[nodiscard]] std::optional<std::size_t> liftNamed(std::string_view id) const;
+    [[nodiscard]] std::optional<std::size_t> stopNamed(const StoreyLink& lift,
+                                                       std::string_view storey) const;
     [[nodiscard]] std::vector<double> waits() const;
 
     // Trips.

@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "building/storeys.h"
+#include "passage/building_script.h"
 #include "passage/cabin.h"
 #include "support/test_layout.h"
 
@@ -245,6 +246,37 @@ TEST(BuildingRun, IsTheSameTwice) {
     };
     const std::string first = way();
     EXPECT_TRUE(first == way());
+}
+
+/// Returns the findings of a script, or "" without any.
+std::string scriptFindings(const BuildingRun& run, const std::string& text) {
+    return testing::findings([&] { (void)BuildingScript(text, "s.txt", run); });
+}
+
+TEST(BuildingScript, FindsOrdersThatCannotBeCarriedOut) {
+    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const BuildingRun run(building, optionsOf());
+    const auto found = [&](const std::string& line) { return scriptFindings(run, line); };
+    EXPECT_EQ(found("0 ground/r1 RIDE l1 upper\n1 ground/r1 GOTO upper/4,6\n"), "");
+    EXPECT_NE(found("0 ground/r1 RIDE l9 upper\n").find("s.txt:1:18: error: no lift `l9`"),
+              std::string::npos);
+    EXPECT_NE(found("0 ground/r1 RIDE l1 attic\n").find("l1 does not stop at `attic`"),
+              std::string::npos);
+    EXPECT_NE(found("\n0 ground/r1 SIDESPEED 1\n").find("s.txt:2:13: error: "), std::string::npos);
+    EXPECT_NE(found("0 ground/r1 SPEED 500\n").find("s.txt:1:13: error: "), std::string::npos);
+}
+
+TEST(BuildingScript, MarksAnOrderThatIsRefusedInItsTime) {
+    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    BuildingRun run(building, optionsOf());
+    Simulation& ground = *run.rooms()[0].simulation;
+    ground.events().want(allEventKinds());
+    BuildingScript script("0 ground/r1 GOTO ground/11.9,4\n", "s.txt", run);
+    script.give(run);
+    ASSERT_EQ(ground.events().next(), 1);
+    EXPECT_EQ(ground.events().at(0).other, "ground/r1");
+    EXPECT_EQ(ground.events().at(0).text,
+              "script: ground/r1 has no room at ground/11.9,4: f stands there");
 }
 
 /// The hotel with two lifts that bear two of the four robots each.

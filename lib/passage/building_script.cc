@@ -13,6 +13,17 @@
 
 namespace ispace {
 
+namespace {
+
+/// Returns the reason why the world rejects a command of a mover in this room, or "".
+std::string refusalOf(const BuildingRun& run, std::size_t room, const std::string& mover,
+                      const Command& command) {
+    const World& world = run.world(room);
+    return world.refusal(world.moverNamed(mover).value(), command);
+}
+
+}  // namespace
+
 BuildingScript::BuildingScript(std::string_view text, const std::string& file,
                                const BuildingRun& run) {
     Diagnostics findings;
@@ -48,6 +59,9 @@ BuildingScript::BuildingScript(std::string_view text, const std::string& file,
         if (verb == "RIDE" && words.size() == 5) {
             line.lift = words[3].text;
             line.storey = words[4].text;
+            if (const std::string refusal = run.stopRefusal(line.lift, line.storey);
+                !refusal.empty())
+                fault(3, refusal);
         } else if ((verb == "GOTO" && words.size() > 3) || (verb == "PATH" && has_storey)) {
             RoomPoints goals = parseRoomPoints(words[3].text, run.rooms(), *room);
             if (!goals.fault.empty()) fault(3, goals.fault);
@@ -63,10 +77,13 @@ BuildingScript::BuildingScript(std::string_view text, const std::string& file,
         } else {
             const auto begin = static_cast<std::size_t>(words[2].text.data() - bytes.data());
             const ParsedCommand parsed = parseCommand(bytes.substr(begin));
-            if (parsed.command)
-                line.command = *parsed.command;
-            else
+            if (!parsed.command)
                 fault(2, parsed.error.message);
+            else if (const std::string refusal = refusalOf(run, *room, line.mover, *parsed.command);
+                     !refusal.empty())
+                fault(2, refusal);
+            else
+                line.command = *parsed.command;
         }
         lines_.push_back(std::move(line));
     }
@@ -79,19 +96,25 @@ void BuildingScript::give(BuildingRun& run) {
     const SimTime now = run.world(0).time();
     for (; next_ < lines_.size() && lines_[next_].time <= now; ++next_) {
         const Line& line = lines_[next_];
-        if (!line.lift.empty()) {
-            run.ride(line.mover, line.lift, line.storey);
-        } else if (!line.goals.empty()) {
-            run.travel(line.mover, line.goals, line.speed);
-        } else {
-            World& world = run.rooms()[run.roomOf(line.mover).value()].simulation->world();
-            const std::size_t mover = world.moverNamed(line.mover).value();
-            const bool stops = line.command.verb == Verb::Stop;
-            if (world.refusal(mover, line.command).empty() &&
-                run.endTrip(line.mover, stops ? Outcome::Stopped : Outcome::Replaced).empty())
-                world.command(mover, line.command);
-        }
+        const std::size_t room = run.roomOf(line.mover).value();
+        const std::string refusal = give(line, run, room);
+        if (!refusal.empty())
+            run.rooms()[room].simulation->events().add(EventKind::Mark, "script: " + refusal,
+                                                       line.mover);
     }
+}
+
+std::string BuildingScript::give(const Line& line, BuildingRun& run, std::size_t room) {
+    if (!line.lift.empty()) return run.ride(line.mover, line.lift, line.storey).refusal;
+    if (!line.goals.empty()) return run.travel(line.mover, line.goals, line.speed).refusal;
+    if (std::string refusal = refusalOf(run, room, line.mover, line.command); !refusal.empty())
+        return refusal;
+    const bool stops = line.command.verb == Verb::Stop;
+    std::string busy = run.endTrip(line.mover, stops ? Outcome::Stopped : Outcome::Replaced);
+    if (!busy.empty()) return busy;
+    World& world = run.rooms()[room].simulation->world();
+    world.command(world.moverNamed(line.mover).value(), line.command);
+    return "";
 }
 
 }  // namespace ispace

@@ -15,7 +15,7 @@ namespace ispace {
 ///
 /// Lines as those of readScript(), with the ids across the building, and besides them
 /// `GOTO STOREY/X,Y`, `PATH STOREY/X,Y;…` and `RIDE LIFT STOREY`. A command that cannot be carried
-/// out when its time has come is skipped, as in Simulation.
+/// out when its time has come is skipped; a mark in the events of the room tells the reason.
 class BuildingScript {
   public:
     /// \throws FormatError with all findings (file:line:column)
@@ -32,6 +32,8 @@ class BuildingScript {
         double speed = 0;
         std::string lift, storey;  // of a ride
     };
+    static std::string give(const Line& line, BuildingRun& run, std::size_t room);
+
     std::vector<Line> lines_;
     std::size_t next_ = 0;
 };
