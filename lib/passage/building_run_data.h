@@ -17,6 +17,9 @@
 
 namespace ispace {
 
+/// Metres between two movers on a flight of stairs or waiting.
+constexpr double kFlightGap = 0.2;
+
 /// A robot or a person, wherever it is.
 struct Traveller {
     std::string id;

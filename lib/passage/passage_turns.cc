@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lifts and stairs: turns at their landings, and the ways in, through and out.
+#include <algorithm>
+#include <deque>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "passage/building_run.h"
+#include "passage/building_run_data.h"
+
+namespace ispace {
+
+namespace {
+
+/// Metres between one that leaves a landing and the next.
+constexpr double kClearLanding = 0.3;
+/// Seconds that a mover expects to wait for each one before it.
+constexpr double kTurnWait = 15;
+
+}  // namespace
+
+/// Returns the seconds for which a mover that comes now would wait for each passage.
+std::vector<double> BuildingRun::Data::waits() const {
+    std::vector<double> waits(passages.size());
+    for (std::size_t i = 0; i < passages.size(); ++i) {
+        for (const Stop& stop : stops[i])
+            waits[i] += kTurnWait * static_cast<double>(stop.queue.size());
+        waits[i] += kTurnWait * static_cast<double>(riders[i].size());
+    }
+    // Those on the way to one.
+    for (const auto& [id, trip] : trips)
+        if (trip.state == TripState::Walking && trip.leg < trip.legs.size())
+            waits[trip.legs[trip.leg].passage] += kTurnWait;
+    return waits;
+}
+
+void BuildingRun::Data::advanceLifts() {
+    const SimTime time = rooms.front().world->time();
+    for (std::size_t i = 0; i < passages.size(); ++i)
+        if (passages[i].is_lift) lifts[i].advance(time, mayHoldOpen(i));
+}
+
+/// Returns true if a mover is about to use the open door.
+bool BuildingRun::Data::mayHoldOpen(std::size_t lift) const {
+    const std::size_t stop = lifts[lift].stop();
+    if (!lifts[lift].isOpenAt(stop)) return false;
+    for (const Rider& rider : riders[lift])
+        if (rider.stop == stop) return true;
+    const Stop& here = stops[lift][stop];
+    if (!here.holder.empty()) {
+        const auto trip = trips.find(here.holder);
+        const bool comes = trip != trips.end() && (trip->second.state == TripState::Nearing ||
+                                                   trip->second.state == TripState::Entering);
+        if (comes) return true;
+    }
+    if (here.queue.empty()) return false;
+    const Traveller& first = travellers.find(here.queue.front())->second;
+    return slotIn(passages[lift].cabin, riders[lift],
+                  {.id = first.id,
+                   .at = {},
+                   .radius = first.size.radius,
+                   .mass = first.ability.mass,
+                   .stop = trips.find(first.id)->second.legs[trips.find(first.id)->second.leg].to})
+        .has_value();
+}
+
+/// A mover that has left a passage keeps its turn until it has gone from the landing.
+void BuildingRun::Data::releaseHolders() {
+    for (std::size_t i = 0; i < passages.size(); ++i)
+        for (std::size_t k = 0; k < stops[i].size(); ++k) {
+            std::string& holder = stops[i][k].holder;
+            if (holder.empty()) continue;
+            const Traveller& who = travellers.find(holder)->second;
+            const auto trip = trips.find(holder);
+            const bool uses = trip != trips.end() && (trip->second.state == TripState::Nearing ||
+                                                      trip->second.state == TripState::Entering ||
+                                                      trip->second.state == TripState::Leaving ||
+                                                      trip->second.state == TripState::AtEnd);
+            if (uses) continue;
+            const Landing* const landing = waysOf(who).landing(i, k);
+            const double clear = 2 * who.size.radius + kClearLanding;
+            // One that stays there lets the next ones try.
+            const bool stays = trip == trips.end();
+            if (stays || who.room != landing->storey ||
+                distance(statusOf(who).pose.position, landing->at.position) > clear)
+                holder.clear();
+        }
+}
+
+/// Gives up all turns of a mover.
+void BuildingRun::Data::release(const std::string& id) {
+    for (auto& of_passage : stops)
+        for (Stop& stop : of_passage) {
+            std::erase(stop.queue, id);
+            if (stop.holder == id) stop.holder.clear();
+        }
+}
+
+void BuildingRun::Data::queueUp(Traveller& who, BuildingTrip& trip) {
+    const Leg& leg = trip.legs[trip.leg];
+    stops[leg.passage][leg.from].queue.push_back(who.id);
+    trip.state = TripState::Queueing;
+}
+
+/// Goes to the landing once it is the mover's turn.
+void BuildingRun::Data::waitTurn(Traveller& who, BuildingTrip& trip) {
+    const Leg& leg = trip.legs[trip.leg];
+    const StoreyLink& passage = passages[leg.passage];
+    Stop& stop = stops[leg.passage][leg.from];
+    if (stop.queue.front() != who.id) return;
+    if (passage.is_lift) {
+        Lift& lift = lifts[leg.passage];
+        if (!lift.isOpenAt(leg.from)) return lift.call(leg.from);
+        for (const Rider& rider : riders[leg.passage])
+            if (rider.stop == leg.from) return;
+        const Rider rider{who.id, {}, who.size.radius, who.ability.mass, leg.to};
+        if (!slotIn(passage.cabin, riders[leg.passage], rider)) return;
+    } else {
+        const bool is_up = leg.to > leg.from;
+        const std::size_t flight = is_up ? leg.from : leg.from - 1;
+        if (!mayPass(who, passage, first_room[leg.passage] + flight, is_up)) return;
+    }
+    if (!stop.holder.empty()) return;
+    const StoreyWays& all = waysOf(who);
+    const Landing& landing = *all.landing(leg.passage, leg.from);
+    const std::size_t storey = *rooms[who.room].storey;
+    const WayFinder& finder = all.finder(storey);
+    const Point2 at = statusOf(who).pose.position;
+    const std::vector<Point2> way = finder.wayBetween(at, landing.at.position);
+    if (way.empty()) return finish(who.id, Outcome::Unreached);
+    stop.holder = who.id;
+    trip.state = TripState::Nearing;
+    send(who, trip, way, trip.speed > 0 ? trip.speed : who.ability.speed);
+}
+
+/// Returns true if a mover may enter a flight of stairs at that end.
+bool BuildingRun::Data::mayPass(const Traveller& who, const StoreyLink& passage, std::size_t room,
+                                bool is_up) const {
+    const World& world = *rooms[room].world;
+    const double radius = who.size.radius;
+    for (const Mover& mover : world.movers()) {
+        const double room_for_two = 2 * (radius + mover.model.radius) + 2 * kFlightGap;
+        const auto trip = trips.find(mover.id);
+        const bool goes_up = trip != trips.end() && trip->second.legs[trip->second.leg].to >
+                                                        trip->second.legs[trip->second.leg].from;
+        if (goes_up != is_up && passage.width < room_for_two) return false;
+    }
+    return true;
+}
+
+void BuildingRun::Data::enter(Traveller& who, BuildingTrip& trip) {
+    std::erase(stops[trip.legs[trip.leg].passage][trip.legs[trip.leg].from].queue, who.id);
+    trip.spot.reset();
+    if (passages[trip.legs[trip.leg].passage].is_lift)
+        enterCabin(who, trip);
+    else
+        enterFlight(who, trip);
+}
+
+void BuildingRun::Data::enterCabin(Traveller& who, BuildingTrip& trip) {
+    const Leg& leg = trip.legs[trip.leg];
+    const StoreyLink& passage = passages[leg.passage];
+    const Landing& landing = *waysOf(who).landing(leg.passage, leg.from);
+    Rider rider{who.id, {}, who.size.radius, who.ability.mass, leg.to};
+    const auto slot = slotIn(passage.cabin, riders[leg.passage], rider);
+    const Storey& storey = building.document.storeys[landing.storey];
+    const Pose2 pose = placedIn(storey.building_from_storey, statusOf(who).pose);
+    if (!slot || !lifts[leg.passage].isOpenAt(leg.from) ||
+        !move(who, first_room[leg.passage], pose)) {
+        stops[leg.passage][leg.from].holder.clear();
+        return queueUp(who, trip);
+    }
+    rider.at = *slot;
+    riders[leg.passage].push_back(rider);
+    trip.state = TripState::Entering;
+    const Point2 door = thresholdOf(passage.cabin, who.size.radius);
+    sendStraight(who, trip, {passage.frame * door, passage.frame * *slot});
+}
+
+void BuildingRun::Data::enterFlight(Traveller& who, BuildingTrip& trip) {
+    const Leg& leg = trip.legs[trip.leg];
+    const StoreyLink& passage = passages[leg.passage];
+    const bool is_up = leg.to > leg.from;
+    const std::size_t room = first_room[leg.passage] + (is_up ? leg.from : leg.from - 1);
+    // On the right, where two can pass.
+    const double aside = passage.width < 4 * who.size.radius + 2 * kFlightGap
+                             ? 0
+                             : (is_up ? -1 : 1) * passage.width / 4;
+    const Pose2 begin{{is_up ? 0 : passage.length, aside}, Angle::degrees(is_up ? 0 : 180)};
+    const Pose2 pose = placedIn(passage.frame, begin);
+    if (!mayPass(who, passage, room, is_up) || !move(who, room, pose)) {
+        // It is still at the landing: tries again.
+        stops[leg.passage][leg.from].queue.push_front(who.id);
+        stops[leg.passage][leg.from].holder.clear();
+        trip.state = TripState::Queueing;
+        return;
+    }
+    stops[leg.passage][leg.from].holder.clear();
+    trip.state = TripState::Climbing;
+    climb(who, trip);
+}
+
+/// Walks on to the end of a flight.
+void BuildingRun::Data::climb(Traveller& who, BuildingTrip& trip) {
+    const Leg& leg = trip.legs[trip.leg];
+    const StoreyLink& passage = passages[leg.passage];
+    const bool is_up = leg.to > leg.from;
+    const Point2 at = seenFrom(passage.frame, statusOf(who).pose).position;
+    send(who, trip, {passage.frame * Point2{is_up ? passage.length : 0, at.y}},
+         is_up ? kSpeedUp : kSpeedDown);
+}
+
+/// Leaves the cabin at its stop.
+void BuildingRun::Data::leaveCabin(Traveller& who, BuildingTrip& trip) {
+    const Leg& leg = trip.legs[trip.leg];
+    const StoreyLink& passage = passages[leg.passage];
+    auto& inside = riders[leg.passage];
+    const auto self = std::find_if(inside.begin(), inside.end(),
+                                   [&](const Rider& rider) { return rider.id == who.id; });
+    if (trip.state == TripState::Riding) {
+        Stop& stop = stops[leg.passage][leg.to];
+        if (!lifts[leg.passage].isOpenAt(leg.to)) return lifts[leg.passage].call(leg.to);
+        if (!stop.holder.empty()) return;
+        // The nearest to the door leaves first.
+        for (const Rider& other : inside)
+            if (other.stop == leg.to && other.at.x > self->at.x) return;
+        stop.holder = who.id;
+        trip.state = TripState::Leaving;
+    }
+    const Landing& landing = *waysOf(who).landing(leg.passage, leg.to);
+    const Point2 door = thresholdOf(passage.cabin, who.size.radius);
+    const Point2 out{passage.cabin.length / 2 + landing.lane, 0};
+    sendStraight(who, trip, {passage.frame * door, passage.frame * out});
+}
+
+/// Goes on to the storey once the landing is free.
+void BuildingRun::Data::arrive(Traveller& who, BuildingTrip& trip) {
+    const Leg& leg = trip.legs[trip.leg];
+    const StoreyLink& passage = passages[leg.passage];
+    const Landing& landing = *waysOf(who).landing(leg.passage, leg.to);
+    Stop& stop = stops[leg.passage][leg.to];
+    if (!stop.holder.empty() && stop.holder != who.id) return;
+    Pose2 pose = landing.at;
+    if (passage.is_lift) {
+        const Storey& storey = building.document.storeys[landing.storey];
+        pose = seenFrom(storey.building_from_storey, statusOf(who).pose);
+    } else {
+        pose.heading = pose.heading + Angle::degrees(180);
+    }
+    if (!move(who, landing.storey, pose)) return;
+    stop.holder = who.id;
+    std::erase_if(riders[leg.passage], [&](const Rider& rider) { return rider.id == who.id; });
+    ++trip.leg;
+    trip.state = TripState::Setting;
+}
+
+}  // namespace ispace
