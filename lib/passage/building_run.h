@@ -67,6 +67,7 @@ class BuildingRun final : public JoinedWorlds {
     TripAnswer ride(const std::string& mover, std::string_view lift,
                     std::string_view storey) override;
     std::string endTrip(const std::string& mover, Outcome outcome) override;
+    void abandonTrip(const std::string& mover) override;
     std::string call(std::string_view lift, std::string_view storey) override;
     [[nodiscard]] std::vector<LiftState> lifts() const override;
     [[nodiscard]] std::span<const TripEnd> tripEnds() const override;

@@ -56,6 +56,9 @@ struct BuildingTrip {
     int running = 0;           ///< id of the command under way in its world; 0: none
     int attempts = 0;
     std::optional<Point2> spot;  ///< reserved, in the frame of the storey
+    /// Once it is out of lifts and stairs, it clears the landing and ends so.
+    std::optional<Outcome> ending;
+    std::optional<SimTime> blocked;  ///< since when others occupy its landing
 };
 
 /// A stop of a passage: whose turn it is.
@@ -108,6 +111,16 @@ struct BuildingRun::Data {
     void step(Traveller& who, BuildingTrip& trip);
     void arrive(Traveller& who, BuildingTrip& trip);
     void finish(const std::string& id, Outcome outcome);
+    void giveUp(Traveller& who, BuildingTrip& trip, Outcome outcome);
+    void clearLanding(Traveller& who, BuildingTrip& trip);
+    /// Returns how far from a landing it leaves it to others.
+    [[nodiscard]] static double clearanceOf(const Traveller& who);
+    void turnBack(Traveller& who, BuildingTrip& trip);
+    /// Returns the landing on which a mover stands, or null.
+    [[nodiscard]] const Landing* landingUnder(const Traveller& who) const;
+    /// Returns the first of these spots that is free and not reserved.
+    [[nodiscard]] std::optional<Point2> freeSpot(const Traveller& who,
+                                                 const std::vector<Point2>& spots) const;
     void release(const std::string& id);
     void releaseHolders();
     [[nodiscard]] bool mayHoldOpen(std::size_t lift) const;

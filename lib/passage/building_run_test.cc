@@ -248,6 +248,46 @@ TEST(BuildingRun, IsTheSameTwice) {
     EXPECT_TRUE(first == way());
 }
 
+TEST(BuildingRun, AnAbandonedTripEndsBehindTheLift) {
+    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    BuildingRun run(building, optionsOf());
+    ASSERT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).refusal, "");
+    while (run.roomOf("ground/r1") == 0U && seconds(run.world(0).time()) < 60) step(run);
+    ASSERT_EQ(run.rooms()[*run.roomOf("ground/r1")].id, "l1");
+    run.abandonTrip("ground/r1");
+    const auto end = await(run, "ground/r1", 120);
+    ASSERT_TRUE(end);
+    EXPECT_EQ(end->outcome, Outcome::Stopped);
+    ASSERT_EQ(run.roomOf("ground/r1"), 1U);
+    const double from_door = distance(poseOf(run, "ground/r1").position, {2.1, 4});
+    EXPECT_GT(from_door, 0.9) << "it leaves the landing to others";
+    EXPECT_LT(from_door, 5);
+    // On a storey it ends at once.
+    ASSERT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).refusal, "");
+    run.abandonTrip("ground/r1");
+    EXPECT_EQ(run.tripEnds().back().outcome, Outcome::Stopped);
+}
+
+TEST(BuildingRun, ARiderWhoseLandingIsOccupiedTurnsBack) {
+    const BuildingScene building = buildingOf(
+        "robot id=ground/r1 at=6,4\nrobot id=ground/r2 at=8,4\n"
+        "robot id=upper/parked at=2.6,4\nrobot id=upper/r3 at=8,4\n");
+    BuildingRun run(building, optionsOf());
+    ASSERT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).refusal, "");
+    const auto end = await(run, "ground/r1", 300);
+    ASSERT_TRUE(end) << "it does not wait for ever";
+    EXPECT_EQ(end->outcome, Outcome::Unreached);
+    EXPECT_EQ(run.roomOf("ground/r1"), 0U);
+    // The lift serves others once the landing is free.
+    ASSERT_EQ(run.travel("upper/parked", {{1, {9, 7}}}, 0).refusal, "");
+    ASSERT_TRUE(await(run, "upper/parked", 60));
+    ASSERT_EQ(run.travel("ground/r2", {{1, {9, 2}}}, 0).refusal, "");
+    const auto second = await(run, "ground/r2", 200);
+    ASSERT_TRUE(second);
+    EXPECT_EQ(second->outcome, Outcome::Done);
+    EXPECT_EQ(run.roomOf("ground/r2"), 1U);
+}
+
 /// Returns the findings of a script, or "" without any.
 std::string scriptFindings(const BuildingRun& run, const std::string& text) {
     return testing::findings([&] { (void)BuildingScript(text, "s.txt", run); });

@@ -104,6 +104,12 @@ std::string BuildingRun::endTrip(const std::string& mover, Outcome outcome) {
     return "";
 }
 
+void BuildingRun::abandonTrip(const std::string& mover) {
+    if (endTrip(mover, Outcome::Stopped).empty()) return;
+    const auto found = data_->trips.find(mover);
+    if (found != data_->trips.end()) found->second.ending = Outcome::Stopped;
+}
+
 void BuildingRun::Data::send(Traveller& who, BuildingTrip& trip, std::vector<Point2> way,
                              double speed) {
     World& world = worldOf(who);
@@ -190,26 +196,73 @@ void BuildingRun::Data::setOut(Traveller& who, BuildingTrip& trip) {
     Point2 to = trip.goals[trip.goal].at;
     trip.state = TripState::Walking;
     trip.spot.reset();
+    if (trip.ending) return clearLanding(who, trip);
     if (trip.leg < trip.legs.size()) {
         const Leg& leg = trip.legs[trip.leg];
         const Landing& landing = *all.landing(leg.passage, leg.from);
-        for (const Point2 spot : landing.spots) {
-            const bool is_taken = std::any_of(trips.begin(), trips.end(), [&](const auto& other) {
-                const Traveller& its = travellers.find(other.first)->second;
-                return other.first != who.id && other.second.spot && its.room == who.room &&
-                       distance(*other.second.spot, spot) <
-                           its.size.radius + who.size.radius + kFlightGap;
-            });
-            if (is_taken) continue;
-            trip.spot = spot;
-            break;
-        }
+        trip.spot = freeSpot(who, landing.spots);
         if (!trip.spot) return queueUp(who, trip);
         to = *trip.spot;
     }
     const std::vector<Point2> way = all.finder(storey).wayBetween(at, to);
-    if (way.empty()) return finish(who.id, Outcome::Unreached);
+    if (way.empty()) return giveUp(who, trip, Outcome::Unreached);
     send(who, trip, way, trip.speed > 0 ? trip.speed : who.ability.speed);
+}
+
+std::optional<Point2> BuildingRun::Data::freeSpot(const Traveller& who,
+                                                  const std::vector<Point2>& spots) const {
+    for (const Point2 spot : spots) {
+        const bool is_taken = std::any_of(trips.begin(), trips.end(), [&](const auto& other) {
+            const Traveller& its = travellers.find(other.first)->second;
+            return other.first != who.id && other.second.spot && its.room == who.room &&
+                   distance(*other.second.spot, spot) <
+                       its.size.radius + who.size.radius + kFlightGap;
+        });
+        if (!is_taken) return spot;
+    }
+    return std::nullopt;
+}
+
+const Landing* BuildingRun::Data::landingUnder(const Traveller& who) const {
+    const Point2 at = statusOf(who).pose.position;
+    for (std::size_t i = 0; i < passages.size(); ++i)
+        for (std::size_t k = 0; k < passages[i].storeys.size(); ++k) {
+            const Landing* const landing = waysOf(who).landing(i, k);
+            if (landing != nullptr && landing->storey == rooms[who.room].storey &&
+                distance(at, landing->at.position) < clearanceOf(who))
+                return landing;
+        }
+    return nullptr;
+}
+
+/// Ends a trip that cannot go on, off the landings, where it would block those behind it.
+void BuildingRun::Data::giveUp(Traveller& who, BuildingTrip& trip, Outcome outcome) {
+    if (trip.ending || landingUnder(who) == nullptr)
+        return finish(who.id, trip.ending.value_or(outcome));
+    trip.ending = outcome;
+    trip.attempts = 0;
+    trip.state = TripState::Setting;
+}
+
+/// Goes from the landing to a spot of those that wait, where the trip ends.
+void BuildingRun::Data::clearLanding(Traveller& who, BuildingTrip& trip) {
+    const Landing* const landing = landingUnder(who);
+    trip.legs.clear();
+    trip.leg = 0;
+    if (landing != nullptr) {
+        std::vector<Point2> spots = landing->spots;
+        std::erase_if(spots, [&](Point2 spot) { return !isFree(who.room, spot, who); });
+        trip.spot = freeSpot(who, spots);
+    }
+    const std::vector<Point2> way = trip.spot
+                                        ? waysOf(who)
+                                              .finder(landing->storey)
+                                              .wayBetween(statusOf(who).pose.position, *trip.spot)
+                                        : std::vector<Point2>();
+    if (way.empty()) return finish(who.id, *trip.ending);
+    trip.goals = {{landing->storey, *trip.spot}};
+    trip.goal = 0;
+    send(who, trip, way, who.ability.speed);
 }
 
 /// After a command that came to its end.
@@ -218,7 +271,8 @@ void BuildingRun::Data::step(Traveller& who, BuildingTrip& trip) {
     switch (trip.state) {
         case TripState::Walking:
             if (trip.leg < trip.legs.size()) return queueUp(who, trip);
-            if (++trip.goal == trip.goals.size()) return finish(who.id, Outcome::Done);
+            if (++trip.goal == trip.goals.size())
+                return finish(who.id, trip.ending.value_or(Outcome::Done));
             if (const auto route = routeFrom(who, *rooms[who.room].storey,
                                              statusOf(who).pose.position, trip, trip.goal)) {
                 trip.legs = route->legs;
@@ -226,7 +280,7 @@ void BuildingRun::Data::step(Traveller& who, BuildingTrip& trip) {
                 trip.state = TripState::Setting;
                 return;
             }
-            return finish(who.id, Outcome::Unreached);
+            return giveUp(who, trip, Outcome::Unreached);
         case TripState::Nearing:
             return enter(who, trip);
         case TripState::Entering: {
@@ -246,7 +300,7 @@ void BuildingRun::Data::step(Traveller& who, BuildingTrip& trip) {
 void BuildingRun::Data::tryAgain(Traveller& who, BuildingTrip& trip, Outcome outcome) {
     trip.steps.clear();
     const bool is_on_storey = rooms[who.room].storey.has_value();
-    if (is_on_storey && ++trip.attempts > kMostAttempts) return finish(who.id, outcome);
+    if (is_on_storey && ++trip.attempts > kMostAttempts) return giveUp(who, trip, outcome);
     const bool has_leg = trip.leg < trip.legs.size();
     switch (trip.state) {
         case TripState::Walking:

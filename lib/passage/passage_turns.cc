@@ -17,8 +17,14 @@ namespace {
 constexpr double kClearLanding = 0.3;
 /// Seconds that a mover expects to wait for each one before it.
 constexpr double kTurnWait = 15;
+/// Time for which a rider waits at an occupied landing before it turns back.
+constexpr SimTime kPatience = std::chrono::seconds(30);
 
 }  // namespace
+
+double BuildingRun::Data::clearanceOf(const Traveller& who) {
+    return 2 * who.size.radius + kClearLanding;
+}
 
 /// Returns the seconds for which a mover that comes now would wait for each passage.
 std::vector<double> BuildingRun::Data::waits() const {
@@ -79,11 +85,10 @@ void BuildingRun::Data::releaseHolders() {
                                                       trip->second.state == TripState::AtEnd);
             if (uses) continue;
             const Landing* const landing = waysOf(who).landing(i, k);
-            const double clear = 2 * who.size.radius + kClearLanding;
             // One that stays there lets the next ones try.
             const bool stays = trip == trips.end();
             if (stays || who.room != landing->storey ||
-                distance(statusOf(who).pose.position, landing->at.position) > clear)
+                distance(statusOf(who).pose.position, landing->at.position) > clearanceOf(who))
                 holder.clear();
         }
 }
@@ -240,6 +245,9 @@ void BuildingRun::Data::arrive(Traveller& who, BuildingTrip& trip) {
     const StoreyLink& passage = passages[leg.passage];
     const Landing& landing = *waysOf(who).landing(leg.passage, leg.to);
     Stop& stop = stops[leg.passage][leg.to];
+    const SimTime now = rooms.front().world->time();
+    if (!trip.blocked) trip.blocked = now;
+    if (passage.is_lift && now - *trip.blocked > kPatience) return turnBack(who, trip);
     if (!stop.holder.empty() && stop.holder != who.id) return;
     Pose2 pose = landing.at;
     if (passage.is_lift) {
@@ -251,8 +259,27 @@ void BuildingRun::Data::arrive(Traveller& who, BuildingTrip& trip) {
     if (!move(who, landing.storey, pose)) return;
     stop.holder = who.id;
     std::erase_if(riders[leg.passage], [&](const Rider& rider) { return rider.id == who.id; });
+    trip.blocked.reset();
     ++trip.leg;
     trip.state = TripState::Setting;
+}
+
+/// Goes back into the cabin, to leave it where it came from and give up: the lift serves others.
+void BuildingRun::Data::turnBack(Traveller& who, BuildingTrip& trip) {
+    Leg& leg = trip.legs[trip.leg];
+    std::swap(leg.from, leg.to);
+    trip.blocked.reset();
+    trip.attempts = 0;
+    if (!trip.ending) trip.ending = Outcome::Unreached;
+    const StoreyLink& passage = passages[leg.passage];
+    for (Rider& rider : riders[leg.passage]) {
+        if (rider.id != who.id) continue;
+        rider.stop = leg.to;
+        trip.state = TripState::Entering;
+        sendStraight(who, trip,
+                     {passage.frame * thresholdOf(passage.cabin, who.size.radius),
+                      passage.frame * rider.at});
+    }
 }
 
 }  // namespace ispace

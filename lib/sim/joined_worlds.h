@@ -84,6 +84,8 @@ class JoinedWorlds {
                             std::string_view storey) = 0;
     /// Ends a trip, before another command. \returns the reason why that is impossible now, or ""
     virtual std::string endTrip(const std::string& mover, Outcome outcome) = 0;
+    /// Ends a trip as stopped; in a lift or on stairs once the mover is out and off the landing.
+    virtual void abandonTrip(const std::string& mover) = 0;
     /// Calls a lift. \returns the reason why it does not come, or ""
     virtual std::string call(std::string_view lift, std::string_view storey) = 0;
     [[nodiscard]] virtual std::vector<LiftState> lifts() const = 0;
