@@ -130,7 +130,10 @@ void FoxgloveDialogue::advertiseServices() {
                 .value(std::string(kRosEmptyService) + (side[2] == 'q' ? "_Request" : "_Response"));
             json.key("schemaEncoding").value("ros2msg").key("schema").value("").endObject();
         }
-        json.key("requestSchema").value("").key("responseSchema").value("").endObject();
+        // For clients of before request and response, which call in the first encoding of all.
+        constexpr std::string_view kNoFields = R"({"type":"object","properties":{}})";
+        json.key("requestSchema").value(kNoFields);
+        json.key("responseSchema").value(kNoFields).endObject();
     }
     json.endArray().endObject();
     sendText(json.take());
@@ -242,16 +245,15 @@ void FoxgloveDialogue::addChannels(const Json& request) {
         const std::string topic = textOf(member(one, "topic")),
                           encoding = textOf(member(one, "encoding")),
                           schema = textOf(member(one, "schemaName"));
-        const auto type = rosTypeNamed(schema);
         if (!id || (encoding != kJson && encoding != kCdr)) {
             tell(Level::Error, "a channel needs an id, and the encoding json or cdr");
-        } else if (!type || input(topic, *type) == nullptr) {
-            tell(Level::Warning,
-                 "no messages " + excerpt(schema) + " are read from " + excerpt(topic));
         } else if (channels_.size() >= kMaxChannels) {
             return tell(Level::Error, "too many channels");
         } else {
-            channels_[*id] = {topic, *type, encoding == kJson};
+            const auto type = rosTypeNamed(schema);
+            const bool is_read = type && input(topic, *type) != nullptr;
+            channels_[*id] = is_read ? ClientChannel{topic, type, encoding == kJson}
+                                     : ClientChannel{excerpt(topic), {}, false};
         }
     }
 }
@@ -264,15 +266,18 @@ void FoxgloveDialogue::removeChannels(const Json& request) {
 void FoxgloveDialogue::obeyMessage(std::string_view payload) {
     const auto id = takeNumber(payload);
     const auto channel = id ? channels_.find(*id) : channels_.end();
-    // The reason was told when the channel was advertised.
     if (channel == channels_.end()) return;
-    const auto& [topic, type, is_json] = channel->second;
-    const RosChannel* const to = input(topic, type);
+    const auto [topic, type, is_json] = channel->second;
+    if (!type) {
+        channels_.erase(channel);
+        return tell(Level::Warning, "no messages of this type are read from " + topic);
+    }
+    const RosChannel* const to = input(topic, *type);
     if (to == nullptr) return tell(Level::Error, "the topic " + excerpt(topic) + " is gone");
     if (!is_json) return orders().obey(*to, payload);
     const std::optional<Json> json = parseClientJson(payload);
     if (!json) return tell(Level::Error, "a message to " + topic + " is no JSON");
-    orders().obey(*to, rosMessage(type, *json));
+    orders().obey(*to, rosMessage(*type, *json));
 }
 
 void FoxgloveDialogue::callService(std::string_view payload) {

@@ -33,10 +33,11 @@ class FoxgloveDialogue final : public RosDialogue {
 
   private:
     using Json = nlohmann::json;
-    /// A topic to which the client publishes.
+    /// A topic to which the client may publish. Viewers advertise more than they use, so the first
+    /// message to a topic that is not read draws a warning.
     struct ClientChannel {
         std::string topic;
-        RosType type = RosType::Twist;
+        std::optional<RosType> type;  ///< empty if messages are not read
         bool is_json = false;
     };
     struct Op;

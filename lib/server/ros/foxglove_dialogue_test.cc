@@ -64,6 +64,8 @@ TEST(Foxglove, SpeaksFirst) {
     EXPECT_NE(scan["schema"].get<std::string>().find("MSG: std_msgs/Header"), std::string::npos);
     EXPECT_TRUE(talk.channel("/r1/cmd_vel").is_null()) << "the client publishes it";
     EXPECT_EQ(talk.services.size(), 3U);
+    for (const char* const schema : {"requestSchema", "responseSchema"})
+        EXPECT_EQ(json::parse(talk.services[0].value(schema, ""))["type"], "object") << schema;
 }
 
 TEST(Foxglove, SendsMessagesOfSubscriptions) {
@@ -253,7 +255,7 @@ TEST(Foxglove, HostileMessagesAreAnswered) {
          {"", "{", "[]", "7", "null", R"({"op":5})", R"({"op":"subscribe","subscriptions":[5]})",
           R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})",
           R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":4294967296}]})",
-          R"({"op":"advertise","channels":[{"id":1,"topic":"/tf","encoding":"json"}]})",
+          R"({"op":"advertise","channels":[{"id":1,"topic":"/tf","encoding":"ros1"}]})",
           R"({"op":"advertise","channels":[null]})", R"({"op":"fetchAsset"})"}) {
         talk.dialogue->receive(text, true);
         EXPECT_EQ(talk.ask("status")["op"], "status") << text;
@@ -266,6 +268,22 @@ TEST(Foxglove, HostileMessagesAreAnswered) {
     }
     talk.publish(1234, "{}");
     EXPECT_FALSE(talk.next()) << "channels that were refused are ignored";
+}
+
+TEST(Foxglove, TopicsThatAreNotReadAreToldWithTheFirstMessage) {
+    FoxgloveTalk talk;
+    const std::vector<std::pair<const char*, const char*>> unread = {
+        {"/clicked_point", "geometry_msgs/PointStamped"},
+        {"/r1/cmd_vel", "geometry_msgs/PoseStamped"},
+        {"/r1/odom", "nav_msgs/msg/Odometry"}};
+    for (const auto& [topic, type] : unread) {
+        talk.advertise(5, topic, type);
+        EXPECT_FALSE(talk.next()) << topic;
+        talk.publish(5, "{}");
+        EXPECT_EQ(talk.ask("status")["level"], 1) << topic;
+        talk.publish(5, "{}");
+        EXPECT_FALSE(talk.next()) << topic;
+    }
 }
 
 TEST(Foxglove, ReadersOfNothingHaveToWait) {
