@@ -23,7 +23,7 @@ CUT = """return [...document.querySelectorAll('p, h1, h2, h3, td, th, li, figcap
 
 
 def looks(width):
-    browser = start_browser(width, 900, width < 500)
+    browser = start_browser(width, 900, touch=width < 500)
     from selenium.common.exceptions import TimeoutException  # start_browser() has found it
     try:
         browser.get("file://" + INDEX)

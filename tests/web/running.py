@@ -110,8 +110,8 @@ def pose(run, mover):
             return float(x), float(y)
 
 
-def start_browser(width, height, touch=False):
-    """A headless Chromium with a page of that size, by chromium-driver."""
+def start_browser(width, height, *more, touch=False):
+    """A headless Chromium with a page of that size, and with more options, by chromium-driver."""
     for program in ("chromium", "chromedriver"):
         if shutil.which(program) is None:
             skip(f"no {program} here (Debian: chromium, chromium-driver)")
@@ -124,7 +124,7 @@ def start_browser(width, height, touch=False):
     options.binary_location = shutil.which("chromium")
     # As root, which checks may run as, Chromium has no sandbox.
     for option in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                   "--hide-scrollbars", f"--window-size={width},{height}"):
+                   "--hide-scrollbars", f"--window-size={width},{height}", *more):
         options.add_argument(option)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     browser = webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
