@@ -86,8 +86,8 @@ TEST_F(SimAria, SpeedsAreWholeAndClamped) {
     ArUtil::sleep(1000);
     EXPECT_EQ(robot.getVel(), 124);
     EXPECT_EQ(robot.getRotVel(), -20);
-    EXPECT_EQ(robot.getTransVelMax(), 1600);
-    EXPECT_EQ(robot.getRotVelMax(), 300);
+    EXPECT_EQ(robot.getTransVelMax(), 750);
+    EXPECT_EQ(robot.getRotVelMax(), 100);
     EXPECT_EQ(robot.getTransAccel(), 300);
     EXPECT_EQ(robot.getRotAccel(), 100);
     robot.setTransVelMax(80);

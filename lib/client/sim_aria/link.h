@@ -75,9 +75,12 @@ class Link {
         const double c = ArMath::cos(-start_.heading), s = ArMath::sin(-start_.heading);
         const double x = 1000 * (odometry.pose.x - start_.x),
                      y = 1000 * (odometry.pose.y - start_.y);
-        packet.pose.setPose(c * x - s * y, s * x + c * y, odometry.pose.heading - start_.heading);
+        // A Pioneer counts whole millimetres, and 4096 parts of a turn.
+        const double turn = ArMath::fixAngle(odometry.pose.heading - start_.heading);
+        packet.pose.setPose(std::round(c * x - s * y), std::round(s * x + c * y),
+                            std::round(turn * 4096 / 360) * 360 / 4096);
         packet.vel = std::round(1000 * odometry.speed);
-        packet.rot_vel = odometry.rotspeed;
+        packet.rot_vel = std::round(10 * odometry.rotspeed) / 10;
         packet.stalled = robot_->status().stall;
         // Bumpers are released before a stall.
         if (packet.stalled && !bits_.empty()) packet.bumpers = bumpersHit();

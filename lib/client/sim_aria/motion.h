@@ -14,7 +14,7 @@ namespace sim_aria {
 /// it reaches distances and headings with speeds that decrease towards the goal.
 class Motion {
   public:
-    double max_vel = 1600, max_rot_vel = 300;  ///< mm/s, degrees/s
+    double max_vel = 750, max_rot_vel = 100;   ///< mm/s, degrees/s
     double accel = 300, rot_accel = 100;       ///< mm/s², degrees/s²
     static constexpr double kMoveDone = 40;    ///< mm
     static constexpr double kHeadingDone = 3;  ///< degrees
@@ -85,7 +85,7 @@ class Motion {
     static double approach(double rest, double most, double accel) {
         const double left = std::fabs(rest);
         const double speed = std::min(std::min(most, std::sqrt(accel * left)), left / kSettle);
-        return std::copysign(left < kStill ? 0 : speed, rest);
+        return std::copysign(left < kStill ? 0 : std::round(speed), rest);
     }
     /// Distance travelled along the initial heading.
     double travelled(const ArPose& at) const {

@@ -57,8 +57,8 @@ inline void ArRobot::adoptFigures() {
     myParams.myLasers.clear();
     for (const std::string& id : myLink->lasers()) myParams.myLasers.push_back(myLink->mount(id));
     myMotion = sim_aria::Motion();
-    myMotion.max_vel = myLink->maxVel();
-    myMotion.max_rot_vel = myLink->maxRotVel();
+    myMotion.max_vel = myConfig.getTransVelMax();
+    myMotion.max_rot_vel = myConfig.getRotVelMax();
     myMotion.accel = myLink->accel();
     myMotion.rot_accel = myLink->rotAccel();
 }

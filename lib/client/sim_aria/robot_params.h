@@ -2,6 +2,7 @@
 #ifndef SIM_ARIA_ROBOT_PARAMS_H
 #define SIM_ARIA_ROBOT_PARAMS_H
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -65,8 +66,9 @@ class ArRobotConfigPacketReader {
     int getRotVelTop() const { return ArMath::roundInt(myRotVel); }
     int getTransAccelTop() const { return ArMath::roundInt(myAccel); }
     int getRotAccelTop() const { return ArMath::roundInt(myRotAccel); }
-    int getTransVelMax() const { return getTransVelTop(); }
-    int getRotVelMax() const { return getRotVelTop(); }
+    /// Limits until a program sets others, as a Pioneer's firmware has them.
+    int getTransVelMax() const { return std::min(750, getTransVelTop()); }
+    int getRotVelMax() const { return std::min(100, getRotVelTop()); }
     int getTransAccel() const { return getTransAccelTop(); }
     int getRotAccel() const { return getRotAccelTop(); }
     int getSipCycleTime() const { return 100; }
