@@ -1,370 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/server.h"
 
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include <fcntl.h>
-#include <poll.h>
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
-#include <list>
 #include <optional>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "base/error.h"
-#include "server/client_connection.h"
-#include "server/device/device_port.h"
-#include "server/mqtt/mqtt_bridge.h"
-#include "server/ros/ros_feed.h"
-#include "server/ros/ros_node.h"
 #include "server/ros/ros_site.h"
+#include "server/server_data.h"
 #include "server/web/web_page.h"
-#include "server/web_server.h"
 
 namespace ispace {
-
-namespace {
-
-using asio::ip::tcp;
-using std::chrono::steady_clock;
-
-/// Time slice of the world and of the clients; that of the clients ends early when the world's next
-/// step is due.
-constexpr auto kTurn = std::chrono::milliseconds(2);
-constexpr auto kShortTurn = std::chrono::microseconds(500);
-/// Connections above the limit that receive a closing message.
-constexpr std::size_t kMaxLingering = 64;
-/// Minimum interval between updates about marks and changes between steps.
-constexpr auto kNewsEvery = std::chrono::milliseconds(10);
-constexpr auto kLastFlush = std::chrono::milliseconds(500);
-
-}  // namespace
-
-struct Server::Data {
-    Data(Simulation& the_simulation, const Endpoint& endpoint, const ServerLimits& the_limits,
-         JoinedWorlds* joined)
-        : simulation(the_simulation),
-          limits(the_limits),
-          state(the_simulation, the_limits),
-          acceptor(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }) {
-        if (joined != nullptr) join(*joined);
-        for (ServerState* const each : states())
-            each->makeAside([this] { asio::post(io, [] {}); }, [this] { return isStopped(); });
-    }
-    ~Data() {
-        for (ServerState* const each : states()) each->endAside();
-        closeAll();
-    }
-
-    void join(JoinedWorlds& joined);
-    /// Returns the states of all worlds.
-    [[nodiscard]] std::vector<ServerState*> states();
-    bool collect();
-    bool hasUpdates();
-    [[nodiscard]] bool holdsWorld();
-
-    void welcome(tcp::socket socket);
-    bool makeRoom();
-    [[nodiscard]] RosFeed& feedOf(RosScenery scenery);
-    void stepped();
-    [[nodiscard]] WallTime nextTurn() const;
-    [[nodiscard]] std::chrono::nanoseconds turn() const;
-    void serveClients();
-    void sleepUntil(WallTime time);
-    void relieve();
-    void sweep();
-    [[nodiscard]] bool isStopped();
-    void finishRecord();
-    void end();
-    void closeAll();
-
-    Simulation& simulation;
-    ServerLimits limits;
-    ServerState state;  // of the world, or of the first one
-    std::list<ServerState> others;
-    ServedRooms rooms;
-    bool has_news = false;  // between steps, not sent to all clients yet
-    WallTime next_news{};
-    asio::io_context io{1};  // one thread runs it
-    Acceptor acceptor;
-    asio::steady_timer alarm{io};
-    asio::posix::stream_descriptor stopper{io};
-    std::optional<WallTime> alarm_time;
-    std::vector<std::shared_ptr<ClientConnection>> connections;  // in order of arrival
-    std::atomic<std::size_t> serving = 0;
-    std::optional<RosFeed> feed;
-    std::optional<RosNode> node;
-    std::list<WebServer> webs;
-    DeviceHost host{state};
-    std::list<DevicePort> devices;
-    std::optional<MqttBridge> mqtt;
-};
-
-void Server::Data::join(JoinedWorlds& joined) {
-    rooms.worlds = &joined;
-    rooms.states.push_back(&state);
-    for (const JoinedRoom& room : joined.rooms().subspan(1))
-        rooms.states.push_back(&others.emplace_back(*room.simulation, limits));
-    for (ServerState* const each : rooms.states) each->joinRooms(rooms);
-    joined.onMove([this](const std::string& mover, std::size_t from, std::size_t to) {
-        rooms.states[to]->takeOver(*rooms.states[from], mover);
-    });
-}
-
-std::vector<ServerState*> Server::Data::states() {
-    std::vector<ServerState*> all = {&state};
-    for (ServerState& other : others) all.push_back(&other);
-    return all;
-}
-
-bool Server::Data::collect() {
-    bool has_made = false;
-    for (ServerState* const each : states()) has_made = each->collect() || has_made;
-    return has_made;
-}
-
-bool Server::Data::hasUpdates() {
-    bool has_updates = false;
-    for (ServerState* const each : states()) has_updates = each->hasUpdates() || has_updates;
-    return has_updates;
-}
-
-/// The simulation of the first world has the clock of all.
-bool Server::Data::holdsWorld() {
-    if (others.empty() || !state.mayHold()) return state.holdsWorld();
-    return std::any_of(rooms.states.begin(), rooms.states.end(),
-                       [](const ServerState* each) { return !each->isAtRest(); });
-}
-
-void Server::Data::welcome(tcp::socket socket) {
-    sweep();
-    const bool full = serving >= limits.clients && !makeRoom();
-    if (connections.size() >= limits.clients + kMaxLingering) {
-        // Of closing connections, the oldest has had the most time.
-        const auto told = std::find_if(connections.begin(), connections.end(),
-                                       [](const auto& connection) { return connection->told(); });
-        if (told == connections.end()) return;
-        (*told)->close();
-    }
-    const auto connection = std::make_shared<ClientConnection>(std::move(socket), limits);
-    connections.push_back(connection);
-    if (!full) {
-        connection->serve(state);
-    } else {
-        std::string text = "ERR 429 too many clients (";
-        connection->refuse(
-            text.append(std::to_string(limits.clients)).append("): try again later\n"));
-    }
-    sweep();
-}
-
-/// Ends the connection that has been without a role longest. \returns true if the server has room
-/// now
-bool Server::Data::makeRoom() {
-    const WallTime since = steady_clock::now() - limits.roleless_grace;
-    std::vector<std::shared_ptr<ClientConnection>> idle;
-    for (const auto& connection : connections)
-        if (connection->roleless() && connection->heard() <= since) idle.push_back(connection);
-    std::sort(idle.begin(), idle.end(),
-              [](const auto& a, const auto& b) { return a->heard() < b->heard(); });
-    for (const auto& connection : idle) {
-        connection->makeWay(since);
-        sweep();
-        if (serving < limits.clients) return true;
-    }
-    return false;
-}
-
-/// Returns the feed that all clients of topics share. \param scenery of the first call
-RosFeed& Server::Data::feedOf(RosScenery scenery) {
-    if (!feed) feed.emplace(state, std::move(scenery));
-    return *feed;
-}
-
-void Server::Data::stepped() {
-    // Writing to a thousand clients takes longer than the next step may be late. Only a clock that
-    // waits leaves each client a turn before the next scan. A few are always served: load from
-    // other programs must not cost them a scan.
-    constexpr std::size_t kFew = 32;
-    const bool may_be_late =
-        simulation.clock().kind != Clock::Kind::Real || connections.size() <= kFew;
-    const WallTime end = steady_clock::now() + kTurn / 4;
-    for (const auto& connection : connections)
-        connection->stepped(may_be_late || steady_clock::now() < end);
-    for (DevicePort& device : devices) device.stepped();
-    if (mqtt) mqtt->stepped();
-    for (WebServer& web : webs) web.stepped();
-    if (node) node->stepped();
-    static_cast<void>(hasUpdates());
-    has_news = false;
-    next_news = steady_clock::now() + kNewsEvery;
-}
-
-/// Next time at which a silent client needs service.
-WallTime Server::Data::nextTurn() const {
-    if (state.isOnTheWay()) return steady_clock::now();
-    WallTime next = has_news ? next_news : WallTime::max();
-    bool may_change = false;
-    for (const auto& connection : connections) {
-        if (connection->waitsToChange()) may_change = true;
-        if (limits.watchdog.count() > 0 && connection->watched())
-            next = std::min(next, connection->heard() + limits.watchdog);
-    }
-    for (const DevicePort& device : devices) may_change = may_change || device.waitsToChange();
-    for (const WebServer& web : webs) may_change = may_change || web.waitsToChange();
-    if (node) {
-        may_change = may_change || node->waitsToChange();
-        next = std::min(next, node->nextSend().value_or(next));
-    }
-    may_change = may_change || (mqtt && mqtt->waitsToChange());
-    if (const auto change = state.nextChange(); may_change && change)
-        next = std::min(next, *change);
-    return next;
-}
-
-/// Time slice of the world: a single step if it may have to wait for frames of that step.
-std::chrono::nanoseconds Server::Data::turn() const {
-    const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay() ||
-                          simulation.paused();
-    if (!may_hold || (serving == 0 && webs.empty() && devices.empty() && !node)) return kTurn;
-    const auto has_heavy_sensor = [](Simulation& one) {
-        const auto sensors = one.world().sensors();
-        return std::any_of(sensors.begin(), sensors.end(), isHeavy);
-    };
-    bool has_heavy = has_heavy_sensor(simulation);
-    if (rooms.worlds != nullptr)
-        for (const JoinedRoom& room : rooms.worlds->rooms())
-            has_heavy = has_heavy || has_heavy_sensor(*room.simulation);
-    return has_heavy ? std::chrono::nanoseconds(0) : kTurn;
-}
-
-/// Runs ready handlers, for at most one slice or until the world's next step is due.
-void Server::Data::serveClients() {
-    const WallTime now = steady_clock::now();
-    WallTime end = now + kTurn;
-    if (const auto due = simulation.due()) end = std::min(end, std::max(*due, now + kShortTurn));
-    while (io.poll_one() > 0 && steady_clock::now() < end) continue;
-    const bool has_made = collect();
-    for (const auto& connection : connections)
-        if (has_made || connection->waiting()) connection->proceed();
-    for (WebServer& web : webs) {
-        if (has_made) web.stepped();
-        web.serve();
-    }
-    if (node) {
-        if (has_made) node->stepped();
-        node->serve();
-    }
-    for (DevicePort& device : devices) {
-        device.serve(steady_clock::now());
-        if (has_made) device.stepped();
-    }
-    if (mqtt) mqtt->serve();
-    has_news = hasUpdates() || has_news;
-    if (has_news && steady_clock::now() >= next_news) stepped();
-    if (limits.watchdog.count() > 0) {
-        const WallTime since = steady_clock::now() - limits.watchdog;
-        for (const auto& connection : connections) connection->watch(since);
-    }
-    relieve();
-    sweep();
-}
-
-/// Enforces the limit on unread output by closing the slowest readers. Clients within an equal
-/// share are kept: all others then exceed theirs.
-void Server::Data::relieve() {
-    std::size_t replies = 0;
-    for (const auto& connection : connections) replies += connection->memory();
-    std::size_t stale = state.staleBytes();
-    for (const ServerState& other : others) stale += other.staleBytes();
-    if (replies + stale <= limits.unread) return;
-    const std::size_t share = limits.unread / (limits.clients + kMaxLingering);
-    std::vector<std::shared_ptr<ClientConnection>> slow;
-    for (const auto& connection : connections)
-        if (connection->holds() > share) slow.push_back(connection);
-    std::sort(slow.begin(), slow.end(),
-              [](const auto& a, const auto& b) { return a->waitingSince() < b->waitingSince(); });
-    for (const auto& connection : slow) {
-        stale = state.staleBytes();
-        for (const ServerState& other : others) stale += other.staleBytes();
-        if (replies + stale <= limits.unread) return;
-        replies -= connection->memory();
-        connection->cutOff("ERR 429 too much unread: the slowest readers are disconnected\n");
-        replies += connection->memory();
-    }
-}
-
-/// Sleeps until that time or until a handler has run.
-void Server::Data::sleepUntil(WallTime time) {
-    if (alarm_time != time) {
-        // Once for each time: moving a timer makes a handler ready, which would end the sleep.
-        alarm_time = time;
-        alarm.expires_at(time);
-        alarm.async_wait([](error_code) {});
-    }
-    io.run_one();
-}
-
-/// Removes closed connections.
-void Server::Data::sweep() {
-    std::erase_if(connections, [](const auto& connection) { return connection->closed(); });
-    serving = static_cast<std::size_t>(
-        std::count_if(connections.begin(), connections.end(),
-                      [](const auto& connection) { return connection->serving(); }));
-}
-
-/// Checks for a signal that the loop may not have noticed.
-bool Server::Data::isStopped() {
-    if (!stopper.is_open()) return false;
-    pollfd signal{stopper.native_handle(), POLLIN, 0};
-    return ::poll(&signal, 1, 0) > 0;
-}
-
-/// Writes the last step, with its frames unless a signal has ended the run.
-void Server::Data::finishRecord() {
-    while (!simulation.finishRecord(WallTime::max())) {
-        bool has_come = false;
-        for (ServerState* const each : states()) has_come = each->await() || has_come;
-        if (!has_come) break;
-    }
-}
-
-void Server::Data::end() {
-    acceptor.close();
-    for (const auto& connection : connections) connection->end();
-    for (WebServer& web : webs) web.end();
-    for (DevicePort& device : devices) device.end();
-    if (node) node->end();
-    if (mqtt) mqtt->end();
-    sweep();
-    const auto busy = [this] {
-        return !connections.empty() ||
-               std::any_of(webs.begin(), webs.end(), [](WebServer& web) { return web.busy(); }) ||
-               std::any_of(devices.begin(), devices.end(),
-                           [](DevicePort& device) { return device.busy(); });
-    };
-    const WallTime deadline = steady_clock::now() + kLastFlush;
-    while (busy() && steady_clock::now() < deadline) {
-        io.run_one_until(deadline);
-        sweep();
-    }
-    closeAll();
-}
-
-void Server::Data::closeAll() {
-    for (const auto& connection : connections) connection->close();
-    for (WebServer& web : webs) web.closeAll();
-    for (DevicePort& device : devices) device.closeAll();
-    sweep();
-}
 
 Server::Server(Simulation& simulation, const Endpoint& endpoint, const ServerLimits& limits,
                JoinedWorlds* joined)
@@ -434,18 +86,18 @@ void Server::run() {
     simulation.onStep([&data] { data.stepped(); });
     while (!simulation.finished()) {
         data.serveClients();
-        if (simulation.isDue(steady_clock::now())) data.state.prepareStep();
+        if (simulation.isDue(std::chrono::steady_clock::now())) data.state.prepareStep();
         data.state.changeAsScripted();
         // Last before sleeping: pending requests determine the time to wake.
         std::optional<WallTime> next;
         next = data.holdsWorld() ? simulation.flushRecord()
-                                 : simulation.run(steady_clock::now(), data.turn());
+                                 : simulation.run(std::chrono::steady_clock::now(), data.turn());
         if (simulation.finished()) break;
         if (const WallTime turn = data.nextTurn(); turn < WallTime::max())
             next = std::min(next.value_or(turn), turn);
         if (!next)
             data.io.run_one();
-        else if (*next > steady_clock::now())
+        else if (*next > std::chrono::steady_clock::now())
             data.sleepUntil(*next);
     }
     data.serveClients();

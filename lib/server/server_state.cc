@@ -8,7 +8,7 @@
 
 #include "base/number.h"
 #include "server/session.h"
-#include "server/session_requests.h"
+#include "server/change_request.h"
 #include "sim/run_limits.h"
 
 namespace ispace {

@@ -11,7 +11,7 @@
 #include "scene/room_state.h"
 #include "server/network.h"
 #include "server/session.h"
-#include "server/session_requests.h"
+#include "server/change_request.h"
 
 namespace ispace {
 

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/change_request.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "scene/findings/findings.h"
+#include "scene/placement_schemas.h"
+#include "scene/scene.h"
+#include "server/session.h"
+#include "sim/world_state.h"
+
+namespace ispace {
+
+namespace {
+
+/// Reason why a change is rejected.
+struct Refusal {
+    int code = 400;
+    std::string message;
+};
+
+/// The error's text, without names of options, and without positions unless in a file.
+std::string messageOf(const FormatError& error, std::string_view verb) {
+    constexpr std::size_t kMost = 3;
+    const auto& findings = error.diagnostics();
+    std::string text;
+    for (std::size_t i = 0; i < std::min(kMost, findings.size()); ++i) {
+        if (i > 0) text += "; ";
+        std::string_view message = findings[i].message;
+        const std::size_t space = message.find(' ');
+        if (message.starts_with("--") && space != std::string_view::npos)
+            text.append(verb).append(message.substr(space));
+        else
+            text += message;
+    }
+    if (findings.size() > kMost)
+        text.append("; and ").append(std::to_string(findings.size() - kMost)).append(" more");
+    return text;
+}
+
+/// Globs of one request, and bytes of each: all ids are compared with them.
+void checkGlobs(const std::vector<Edit>& edits) {
+    constexpr std::ptrdiff_t kMost = 8;
+    constexpr std::size_t kMostBytes = 256;
+    for (const Edit& edit : edits)
+        if (edit.ids.isPattern() && edit.ids.text().size() > kMostBytes)
+            throw Refusal{400, excerpt(edit.ids.text()) + " has more than " +
+                                   std::to_string(kMostBytes) + " bytes, which a glob may have"};
+    if (std::count_if(edits.begin(), edits.end(),
+                      [](const Edit& edit) { return edit.ids.isPattern(); }) > kMost)
+        throw Refusal{400, "a request has at most " + std::to_string(kMost) + " globs"};
+}
+
+/// True for records that do not belong to a world.
+bool isMeta(std::string_view keyword) {
+    const Schema* const schema = sceneSchemas().find(keyword);
+    return schema != nullptr && schema->type == RecordType::Meta;
+}
+
+/// The edits that a request asks for.
+std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_view rest) {
+    try {
+        if (words[0] == "ADD") {
+            if (isMeta(words[1]))
+                throw Refusal{400, "a record `" + std::string(words[1]) +
+                                       "` tells of a file: a running world has none"};
+            return {parseEdit(Edit::Kind::Add, rest)};
+        }
+        std::vector<Edit> edits;
+        if (words[0] == "SET")
+            edits.push_back(parseEdit(Edit::Kind::Set, rest));
+        else
+            for (const std::string_view id : words.subspan(1))
+                edits.push_back(parseEdit(Edit::Kind::Delete, id));
+        checkGlobs(edits);
+        return edits;
+    } catch (const UsageError& error) {
+        throw Refusal{400, error.what()};
+    } catch (const FormatError& error) {
+        throw Refusal{400, messageOf(error, words[0])};
+    }
+}
+
+/// The findings about the movers of a change, in one line.
+std::string warningOf(const World& world, const std::vector<std::string>& movers) {
+    constexpr std::size_t kMost = 3;
+    if (movers.empty()) return "";
+    std::vector<std::string> warnings;
+    const auto is_moved = [&movers](const std::string& id) {
+        return std::find(movers.begin(), movers.end(), id) != movers.end();
+    };
+    for (const Finding& finding :
+         checkScene(world.scene(), {.checks = {"outside", "paths"}, .ids = is_moved}))
+        warnings.push_back(finding.message);
+    for (const std::string& id : movers)
+        for (std::string& warning : startWarnings(world, id))
+            warnings.push_back(std::move(warning));
+    if (warnings.size() > kMost) {
+        warnings.resize(kMost);
+        warnings.emplace_back("and more");
+    }
+    return joined(warnings, "; ");
+}
+
+/// A pending change request.
+class Changing {
+  public:
+    Changing(ServerState& state, const std::string& line, const std::string& verb)
+        : state_(&state), line_(line), verb_(verb) {
+        for (const Piece& piece : wordsOf(line_)) words_.push_back(piece.text);
+    }
+    Changing(const Changing&) = delete;
+    Changing& operator=(const Changing&) = delete;
+
+    /// \throws Refusal
+    WorldChange begin();
+    /// Call after the change succeeded or failed: informs all sessions. \returns the answer
+    std::string end(const std::exception_ptr& failure);
+
+  private:
+    [[nodiscard]] const World& world() const { return state_->simulation().world(); }
+    [[nodiscard]] bool is(std::string_view verb) const { return words_[0] == verb; }
+    [[nodiscard]] WorldChange change() const;
+    [[nodiscard]] std::string done() const;
+
+    ServerState* state_;
+    std::string line_, verb_;
+    std::vector<std::string_view> words_;  // of it
+    std::shared_ptr<const ChangeNews> news_;
+};
+
+WorldChange Changing::begin() {
+    WorldChange change = this->change();
+    news_ = change.news;
+    return change;
+}
+
+WorldChange Changing::change() const {
+    WorldEditor& editor = state_->editor();
+    if (is("RESET")) return editor.reset();
+    if (is("LOAD")) {
+        for (const std::string_view name : words_)
+            if (printable(name) != name)
+                throw Refusal{400, "the name of a file holds no control characters"};
+        return editor.load(std::string(words_[1]), words_.size() > 2 ? std::string(words_[2]) : "");
+    }
+    const auto rest = static_cast<std::size_t>(words_[1].data() - line_.data());
+    return editor.edit(editsOf(words_, std::string_view(line_).substr(rest)));
+}
+
+std::string Changing::done() const {
+    const std::string added =
+        is("ADD") && !world().scene().ids.empty() ? world().scene().ids.back() : "";
+    state_->simulation().tellChange(printable(line_), news_->scene_text);
+    std::string out = "OK ";
+    out += verb_.empty() ? words_[0] : verb_;
+    if (!added.empty()) out.append(" id=").append(added);
+    out.append(" t=").append(formatMilliseconds(world().time()));
+    const std::vector<std::string> movers =
+        added.empty() ? news_->movers : std::vector<std::string>{added};
+    if (const std::string warning = warningOf(world(), movers); !warning.empty())
+        out.append(" warning=").append(warning);
+    return out += '\n';
+}
+
+std::string Changing::end(const std::exception_ptr& failure) {
+    try {
+        if (failure) std::rethrow_exception(failure);
+        return done();
+    } catch (const Refusal& refusal) {
+        return errorLine(refusal.code, {refusal.message});
+    } catch (const UnknownRecord& unknown) {
+        return errorLine(404, {unknownThing("record", unknown.id, world().scene().ids)});
+    } catch (const BadEdit& bad) {
+        return errorLine(400, {messageOf(bad, words_[0])});
+    } catch (const FormatError& bad) {
+        return errorLine(409, {is("LOAD") ? bad.what() : messageOf(bad, words_[0])});
+    } catch (const UsageError& bad) {
+        return errorLine(400, {bad.what()});
+    } catch (const std::system_error& bad) {
+        return errorLine(404, {bad.what()});
+    } catch (const std::bad_alloc&) {
+        return errorLineOf(std::current_exception());
+    } catch (const std::length_error&) {
+        return errorLineOf(std::current_exception());
+    }
+}
+
+}  // namespace
+
+std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line,
+                                                      const std::string& verb) {
+    const auto changing = std::make_shared<Changing>(state, line, verb);
+    const auto asked = std::make_shared<ServerState::Asked>();
+    const auto end = [changing, asked](const std::exception_ptr& failure) {
+        asked->bytes = std::make_shared<const std::string>(changing->end(failure));
+    };
+    const WallTime began = std::chrono::steady_clock::now();
+    try {
+        state.change(changing->begin(), end);
+    } catch (const Refusal&) {
+        end(std::current_exception());
+        state.changes().spend(began, std::chrono::steady_clock::now());
+    }
+    return asked;
+}
+
+}  // namespace ispace

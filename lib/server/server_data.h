@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The state of a Server. Private to lib/server.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <list>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "server/client_connection.h"
+#include "server/device/device_port.h"
+#include "server/mqtt/mqtt_bridge.h"
+#include "server/ros/ros_feed.h"
+#include "server/ros/ros_node.h"
+#include "server/server.h"
+#include "server/web_server.h"
+
+namespace ispace {
+
+struct Server::Data {
+    Data(Simulation& the_simulation, const Endpoint& endpoint, const ServerLimits& the_limits,
+         JoinedWorlds* joined)
+        : simulation(the_simulation),
+          limits(the_limits),
+          state(the_simulation, the_limits),
+          acceptor(io, endpoint,
+                   [this](asio::ip::tcp::socket socket) { welcome(std::move(socket)); }) {
+        if (joined != nullptr) join(*joined);
+        for (ServerState* const each : states())
+            each->makeAside([this] { asio::post(io, [] {}); }, [this] { return isStopped(); });
+    }
+    ~Data() {
+        for (ServerState* const each : states()) each->endAside();
+        closeAll();
+    }
+
+    void join(JoinedWorlds& joined);
+    /// Returns the states of all worlds.
+    [[nodiscard]] std::vector<ServerState*> states();
+    bool collect();
+    bool hasUpdates();
+    [[nodiscard]] bool holdsWorld();
+
+    void welcome(asio::ip::tcp::socket socket);
+    bool makeRoom();
+    [[nodiscard]] RosFeed& feedOf(RosScenery scenery);
+    void stepped();
+    [[nodiscard]] WallTime nextTurn() const;
+    [[nodiscard]] std::chrono::nanoseconds turn() const;
+    void serveClients();
+    void sleepUntil(WallTime time);
+    void relieve();
+    void sweep();
+    [[nodiscard]] bool isStopped();
+    void finishRecord();
+    void end();
+    void closeAll();
+
+    Simulation& simulation;
+    ServerLimits limits;
+    ServerState state;  // of the world, or of the first one
+    std::list<ServerState> others;
+    ServedRooms rooms;
+    bool has_news = false;  // between steps, not sent to all clients yet
+    WallTime next_news{};
+    asio::io_context io{1};  // one thread runs it
+    Acceptor acceptor;
+    asio::steady_timer alarm{io};
+    asio::posix::stream_descriptor stopper{io};
+    std::optional<WallTime> alarm_time;
+    std::vector<std::shared_ptr<ClientConnection>> connections;  // in order of arrival
+    std::atomic<std::size_t> serving = 0;
+    std::optional<RosFeed> feed;
+    std::optional<RosNode> node;
+    std::list<WebServer> webs;
+    DeviceHost host{state};
+    std::list<DevicePort> devices;
+    std::optional<MqttBridge> mqtt;
+};
+
+}  // namespace ispace
