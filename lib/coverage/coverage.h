@@ -66,7 +66,7 @@ struct PictureMetrics {
 
 struct SensorMetrics {
     std::string id, model;  ///< model is "" for a sensor without one
-    const SensorKind* kind = &kLaserKind;
+    const SensorKind* kind = &Laser::kKind;
     std::optional<double> slice_area = {};  ///< eq. (4.4), m2; of lasers
     Metric area = {};      ///< of its region, m2; of a receiver the region that it hears
     Metric marginal = {};  ///< area lost if this sensor is removed, m2
@@ -149,7 +149,7 @@ struct CoveredSet {
 
 /// The view of one sensor.
 struct SensorView {
-    const SensorKind* kind = &kLaserKind;
+    const SensorKind* kind = &Laser::kKind;
     std::size_t index = 0;  ///< in Scene::sensors
     std::string id, model;
     Pose3 pose;

@@ -200,7 +200,7 @@ void applyCalibration(Record& camera, std::string_view yaml, const std::string& 
 void loadCalibrations(Document& document, const std::string& operand) {
     Diagnostics findings;
     for (Record& record : document.records) {
-        if (record.keyword() != kCameraKind.keyword || !record.has("calibration")) continue;
+        if (record.keyword() != Camera::kKind.keyword || !record.has("calibration")) continue;
         const std::string path = sideFilePath(operand, record.text("calibration"));
         const auto fail = [&](const std::string& what) {
             findings.add(

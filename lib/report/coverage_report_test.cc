@@ -27,7 +27,7 @@ CoverageReport sampleReport() {
     first.area = {.grid = 3.25, .exact = 3.375};
     first.marginal = {.grid = 1.25, .exact = 1.5};
     first.overlap = {.grid = 2, .exact = 1.875};
-    SensorMetrics second{.id = "t", .model = "", .kind = &kRangerKind};
+    SensorMetrics second{.id = "t", .model = "", .kind = &Ranger::kKind};
     second.area.grid = 12;
     second.marginal.grid = 0;
     second.overlap.grid = 12;

@@ -392,18 +392,12 @@ bool contains(Kinds kinds, std::string_view keyword) {
 }
 
 UsageError unknownSensor(const std::string& model, Kinds kinds, const DeviceCatalogue& devices) {
-    if (const Record* const other = devices.find(model)) {
-        std::string wanted;
-        for (const std::string_view kind : kinds)
-            wanted.append(wanted.empty() ? "" : " or ").append(kind);
-        return UsageError("`" + model + "` is a device of kind " + other->keyword() + ", and " +
-                          wanted + " is wanted");
-    }
-    const std::vector<std::string> known = knownSensors(kinds, devices);
-    std::string list;
-    for (const std::string_view kind : kinds) list.append(list.empty() ? "" : ", ").append(kind);
-    return UsageError("unknown sensor `" + model + "`" + didYouMean(model, known) + " (" + list +
-                      ", or a device: scan --list-models names all)");
+    if (const Record* const other = devices.find(model))
+        return UsageError("`" + model + "` is a device of kind " + other->keyword() +
+                          ", which this option does not take");
+    return UsageError("unknown sensor `" + model + "`" +
+                      didYouMean(model, knownSensors(kinds, devices)) +
+                      " (a bare kind of ispace-3dm(5), or a device: scan --list-models names all)");
 }
 
 Record recordFor(const std::string& model, Kinds kinds, const Schemas& schemas,

@@ -164,8 +164,7 @@ class Resolver {
     void addSensor(std::size_t i, const SensorKind& kind) {
         const Record& record = records_[i];
         SensorModel model = kind.read(record, deviceOf(record, devices_));
-        if (auto* const contact = std::get_if<Contact>(&model))
-            contact->is_open = isOpen(record, contact->door);
+        if (kind.look_up != nullptr) kind.look_up(model, record, {records_, ids_});
         const auto place = placeOf(record);
         if (!place) {
             if (kind.is_arranged) out_.pending.push_back({ids_[i], record, std::move(model)});
@@ -174,18 +173,6 @@ class Resolver {
         out_.placed.push_back({i, place->pose, out_.sensors.size(), place->mount});
         out_.sensors.push_back(
             {ids_[i], std::move(model), place->pose, place->mount, place->person});
-    }
-
-    /// Returns the state of a contact's door.
-    [[nodiscard]] bool isOpen(const Record& contact, const std::string& door) const {
-        std::vector<std::string> doors;
-        for (std::size_t i = 0; i < records_.size(); ++i) {
-            if (records_[i].keyword() != "door") continue;
-            if (ids_[i] == door) return records_[i].flag("open");
-            doors.push_back(ids_[i]);
-        }
-        throw FormatError(contact.finding(
-            "door", "`door`: no door has the id `" + door + '`' + didYouMean(door, doors)));
     }
 
     /// Computes the pose of a sensor; empty if it is pending.

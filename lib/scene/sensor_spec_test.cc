@@ -56,10 +56,12 @@ TEST(SensorSpec, ErrorsNameWhatIsWrong) {
     EXPECT_NE(errorOf("desk"), "") << "furniture is no sensor";
     EXPECT_NE(errorOf("result"), "");
     EXPECT_EQ(errorOf("robot"),
-              "unknown sensor `robot` (laser, or a device: scan --list-models names all)");
+              "unknown sensor `robot` (a bare kind of ispace-3dm(5), or a device: scan "
+              "--list-models names all)");
     EXPECT_EQ(errorOf("pioneer-2dx"),
-              "`pioneer-2dx` is a device of kind robot, and laser is wanted");
-    EXPECT_EQ(errorOf("sr-3000"), "`sr-3000` is a device of kind ranger, and laser is wanted");
+              "`pioneer-2dx` is a device of kind robot, which this option does not take");
+    EXPECT_EQ(errorOf("sr-3000"),
+              "`sr-3000` is a device of kind ranger, which this option does not take");
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 
 namespace ispace {
 
+struct ReadingKind;
+
 /// One picture of a ranger: for each pixel, row by row, the multiple of its ray() at which the ray
 /// hits a surface. For a pinhole it is the depth along the axis, for a spherical ranger the
 /// distance. +infinity is no return.
@@ -18,6 +20,7 @@ struct DepthFrame {
     int frame = 0;
     Pose3 pose;
     std::vector<float> depths;
+    static const ReadingKind kKind;
 };
 
 /// Computes a ranger's picture at `pose`, with its limits, its ambiguity and, if requested, its

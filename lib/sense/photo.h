@@ -13,6 +13,8 @@
 
 namespace ispace {
 
+struct ReadingKind;
+
 /// One picture of a camera, row by row from the top.
 struct Photo {
     double time = 0;
@@ -22,6 +24,7 @@ struct Photo {
     /// As in Rendering; empty if not requested. Depths outside the camera's range are +infinity.
     std::vector<std::uint16_t> labels;
     std::vector<float> depths;
+    static const ReadingKind kKind;
 };
 
 struct PhotoOptions {

@@ -11,6 +11,8 @@
 
 namespace ispace {
 
+struct ReadingKind;
+
 /// One reading of a passive infrared sensor.
 struct PirState {
     double time = 0;  ///< seconds
@@ -18,6 +20,7 @@ struct PirState {
     Pose3 pose;
     bool motion = false;  ///< its output
     double held = 0;      ///< seconds for which the output stays on from `time`
+    static const ReadingKind kKind;
 };
 
 /// Detects people who move in the sight of the PIR sensor `sensor` at `pose`: sightingsOf()

@@ -12,6 +12,8 @@
 
 namespace ispace {
 
+struct ReadingKind;
+
 /// A mover as a radar reports it, in the radar's frame.
 struct Detection {
     double range = 0;  ///< metres, along the line of sight to its surface
@@ -25,6 +27,7 @@ struct RadarFrame {
     int frame = 0;
     Pose3 pose;
     std::vector<Detection> detections;  ///< the nearest first
+    static const ReadingKind kKind;
 };
 
 /// Detects the movers that the radar `sensor` sees move from `pose`.

@@ -4,6 +4,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <type_traits>
 
 namespace ispace {
 
@@ -37,52 +38,39 @@ std::vector<Scan> scansOf(const Laser& laser, const ReadingJob& job) {
     return scans;
 }
 
-}  // namespace
+DepthFrame readingOf(const Ranger& /*ranger*/, const Moment& now) {
+    DepthFrame depths = castDepth(now.mesh(), now.bodies, now.sensor, now.pose, now.frame,
+                                  {now.options.noise_seed});
+    depths.time = now.time;
+    return depths;
+}
 
-namespace {
+Burst readingOf(const Tag& /*tag*/, const Moment& now) {
+    Sensor tag = now.sensor;
+    tag.pose = now.pose;
+    return castBurst(now.mesh(), now.bodies, tag, now.receivers, now.frame, now.time,
+                     {now.options.celsius, now.options.noise_seed});
+}
 
-struct AtOnce {
-    const Sensor& sensor;
-    const Pose3& pose;
-    int frame;
-    double time;
-    const RayWorld& mesh;
-    const MovingBodies& bodies;
-    std::span<const Sensor> receivers;
-    const TakerOptions& options;
+RadarFrame readingOf(const Radar& /*radar*/, const Moment& now) {
+    RadarFrame seen = castRadar(now.mesh(), now.bodies, now.options.velocities, now.sensor,
+                                now.pose, now.frame, now.options.noise_seed);
+    seen.time = now.time;
+    return seen;
+}
 
-    Reading operator()(const Ranger& /*ranger*/) const {
-        DepthFrame depths = castDepth(mesh, bodies, sensor, pose, frame, {options.noise_seed});
-        depths.time = time;
-        return depths;
-    }
-    Reading operator()(const Tag& /*tag*/) const {
-        Sensor tag = sensor;
-        tag.pose = pose;
-        return castBurst(mesh, bodies, tag, receivers, frame, time,
-                         {options.celsius, options.noise_seed});
-    }
-    Reading operator()(const Radar& /*radar*/) const {
-        RadarFrame seen =
-            castRadar(mesh, bodies, options.velocities, sensor, pose, frame, options.noise_seed);
-        seen.time = time;
-        return seen;
-    }
-    Reading operator()(const Pir& /*pir*/) const {
-        PirState state =
-            castPir(mesh, bodies, options.velocities, sensor, pose, frame, options.noise_seed);
-        state.time = time;
-        return state;
-    }
-    Reading operator()(const Contact& contact) const {
-        return ContactState{time, frame, pose, contact.is_open};
-    }
-    // Lasers take time, cameras need light, receivers hear tags, mats and gates have no rays.
-    template <typename Model>
-    Reading operator()(const Model& /*model*/) const {
-        return {};
-    }
-};
+PirState readingOf(const Pir& /*pir*/, const Moment& now) {
+    PirState state = castPir(now.mesh(), now.bodies, now.options.velocities, now.sensor, now.pose,
+                             now.frame, now.options.noise_seed);
+    state.time = now.time;
+    return state;
+}
+
+ContactState readingOf(const Contact& contact, const Moment& now) {
+    return {now.time, now.frame, now.pose, contact.is_open};
+}
+
+void follow(const PirState& before, PirState& now) { holdOutput(before, now); }
 
 }  // namespace
 
@@ -98,9 +86,13 @@ ReadingValue valueOf(Reading reading) {
 }
 
 void carryOn(const ReadingValue& before, ReadingValue& now) {
-    const auto* const last = std::get_if<PirState>(&before);
-    if (auto* const state = std::get_if<PirState>(&now); state != nullptr && last != nullptr)
-        holdOutput(*last, *state);
+    std::visit(
+        [&before](auto& value) {
+            const auto* const last = std::get_if<std::remove_reference_t<decltype(value)>>(&before);
+            if constexpr (requires { follow(value, value); })
+                if (last != nullptr) follow(*last, value);
+        },
+        now);
 }
 
 bool isReadAtOnce(const SensorModel& model) {
@@ -108,11 +100,16 @@ bool isReadAtOnce(const SensorModel& model) {
            !std::holds_alternative<Camera>(model) && !std::holds_alternative<Receiver>(model);
 }
 
-Reading readAtOnce(const Sensor& sensor, const Pose3& pose, int frame, double time,
-                   const RayWorld& mesh, const MovingBodies& bodies,
-                   std::span<const Sensor> receivers, const TakerOptions& options) {
-    return std::visit(AtOnce{sensor, pose, frame, time, mesh, bodies, receivers, options},
-                      sensor.model);
+Reading readAtOnce(const Moment& moment) {
+    return std::visit(
+        [&moment](const auto& model) -> Reading {
+            // Lasers take time, cameras need light, receivers hear tags, movers press mats.
+            if constexpr (requires { readingOf(model, moment); })
+                return readingOf(model, moment);
+            else
+                return {};
+        },
+        moment.sensor.model);
 }
 
 struct ReadingSampler::Data {
@@ -179,9 +176,8 @@ Reading ReadingSampler::take(const ReadingJob& job) {
         photo.time = job.time;
         return photo;
     }
-    return readAtOnce(sensor, pose, job.frame, job.time,
-                      data_->worlds.mesh(kindOf(sensor.model).stopped_by), data_->bodies,
-                      data_->sensors.receivers, options);
+    return readAtOnce({sensor, pose, job.frame, job.time, data_->worlds, data_->bodies,
+                       data_->sensors.receivers, options});
 }
 
 }  // namespace ispace

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sense/depth.h"
+#include "sense/moment.h"
 #include "sense/photo.h"
 #include "sense/pir_state.h"
 #include "sense/radar_frame.h"
@@ -20,6 +21,8 @@
 #include "sense/ultrasound.h"
 
 namespace ispace {
+
+struct ReadingKind;
 
 /// A requested reading.
 struct ReadingJob {
@@ -35,6 +38,7 @@ struct ReadingJob {
 /// Movers on a mat: people with a leg on it, robots with the body over it; edges count.
 struct MatState {
     std::vector<std::string> on;  ///< robots first, in the order of the scene
+    static const ReadingKind kKind;
 };
 
 /// Passages of a gate since the start. A mover passes when its centre crosses the line between the
@@ -44,6 +48,7 @@ struct GateState {
     std::string last;  ///< mover that passed last; "" before the first
     bool last_in = false;
     bool broken = false;  ///< a mover interrupts the beam
+    static const ReadingKind kKind;
 };
 
 /// A contact's door.
@@ -52,40 +57,30 @@ struct ContactState {
     int frame = 0;
     Pose3 pose;
     bool open = false;
+    static const ReadingKind kKind;
 };
 
-/// A reading of a sensor of any kind, of a sweep one scan.
-using ReadingValue = std::variant<Scan, DepthFrame, Photo, Burst, Hearings, MatState, GateState,
-                                  RadarFrame, PirState, ContactState>;
+/// A reading of a sensor of any kind, of a sweep one scan: sorted as the alternatives of
+/// SensorModel.
+using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState,
+                                  ContactState, MatState, GateState>;
 
-/// The scans of a sweep (or a single one), a depth picture, a burst, a picture, detections, or
-/// the state of a PIR sensor or a contact.
+/// The scans of a sweep (or a single one), or the reading of another sensor.
 using Reading =
     std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState, ContactState>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);
 
-/// Carries the state of a sensor with memory on to its next reading: a PIR sensor holds its output.
+/// Carries the state of a sensor with memory on to its next reading, by `follow(before, now)` of
+/// its value: a PIR sensor holds its output.
 void carryOn(const ReadingValue& before, ReadingValue& now);
 
-struct TakerOptions {
-    std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
-    double celsius = 20;                           ///< of the air, for the speed of sound
-    /// Sensors move from job to job: their beams are rotated as a whole; see Beams.
-    bool follows_poses = false;
-    /// Required for cameras; null: no cameras. It outlives the sampler.
-    const Photographer* photographer = nullptr;
-    MoverVelocities velocities = {};  ///< of the movers whose bodies sensors meet
-};
-
-/// Returns true if readAtOnce() reads sensors like this one.
+/// Returns true if readAtOnce() reads sensors like this one by rays in a mesh.
 bool isReadAtOnce(const SensorModel& model);
-/// Reads a ranger, a tag, a radar or a PIR sensor at a pose. \pre isReadAtOnce(sensor.model);
-/// `mesh` are the surfaces that stop its rays
-Reading readAtOnce(const Sensor& sensor, const Pose3& pose, int frame, double time,
-                   const RayWorld& mesh, const MovingBodies& bodies,
-                   std::span<const Sensor> receivers, const TakerOptions& options);
+/// Reads a sensor by its readingOf(), see moment.h. \pre it is no laser and no camera; the surfaces
+/// that stop its rays are prepared if isReadAtOnce(sensor.model)
+Reading readAtOnce(const Moment& moment);
 
 /// Takes readings in any order on any thread; each depends only on its job.
 class ReadingSampler {

@@ -17,6 +17,8 @@
 
 namespace ispace {
 
+struct ReadingKind;
+
 /// True for a laser that scans only the slice at its height: level, and turning about the vertical
 /// if it sweeps.
 bool scansSlice(const Laser& laser, const Pose3& pose);
@@ -99,6 +101,7 @@ struct Scan {
     [[nodiscard]] const Pose3& poseAt(std::size_t beam) const {
         return beam_poses.empty() ? pose : beam_poses[beam];
     }
+    static const ReadingKind kKind;
 };
 
 /// Unit vectors of lasers' beams in the lasers' frames, shared by all lasers with equal beams:

@@ -14,6 +14,8 @@
 
 namespace ispace {
 
+struct ReadingKind;
+
 /// Returns the speed of sound in dry air in m/s: 331.3 + 0.606 T for T degrees Celsius.
 double speedOfSound(double celsius);
 
@@ -68,6 +70,7 @@ struct Burst {
     std::vector<TimeOfFlight> heard;  ///< sorted as the receivers
     std::optional<PositionFix> fix;   ///< of a tag located by times of flight
     std::optional<Point2> simple;     ///< of a tag located by the simple model
+    static const ReadingKind kKind;
 };
 
 /// Signal of one tag at a receiver.
@@ -79,6 +82,7 @@ struct HeardTag {
 /// Signals at a receiver: all tags, in the order of the scene.
 struct Hearings {
     std::vector<HeardTag> tags;
+    static const ReadingKind kKind;
 };
 
 struct UltrasoundOptions {

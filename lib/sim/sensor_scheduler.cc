@@ -238,9 +238,9 @@ void SensorReader::update(std::span<const std::size_t> due, SimTime time, const 
         if (sweeps)
             reading.pose =
                 sweptPose(*laser, reading.pose, static_cast<double>(reading.seq % laser->scans()));
-        if (laser != nullptr || rayCount(sensor.model) == 0) continue;
+        if (laser != nullptr) continue;
         has_others = true;
-        worlds_->prepareMesh(kindOf(sensor.model).stopped_by);
+        if (rayCount(sensor.model) > 0) worlds_->prepareMesh(kindOf(sensor.model).stopped_by);
     }
     updateBodies(movers);
     makeTrailBodies(due);
@@ -310,9 +310,9 @@ void SensorReader::measure(std::size_t sensor, SimTime time) {
 /// neither velocities nor receivers.
 void SensorReader::readNow(const Sensor& sensor, const MovingBodies& bodies,
                            SensorReading& reading) const {
-    ReadingValue value = valueOf(
-        readAtOnce(sensor, reading.pose, frameOf(reading.seq), seconds(reading.time),
-                   worlds_->mesh(kindOf(sensor.model).stopped_by), bodies, receivers_, taking_));
+    ReadingValue value =
+        valueOf(readAtOnce({sensor, reading.pose, frameOf(reading.seq), seconds(reading.time),
+                            *worlds_, bodies, receivers_, taking_}));
     carryOn(reading.value, value);
     reading.value = std::move(value);
 }

@@ -85,9 +85,9 @@ Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
             "--select chooses nothing that is read: receivers hear tags, and sensors "
             "need a place");
     const std::string& file = input.layout ? input.layout_operand : input.environment_operand;
-    throw FormatError({displayName(file), 0, 0,
-                       "no placed " + listOf(manualKeywords(hasReadings)) +
-                           ": give one `at=x,y`, or let arrange place it"});
+    throw FormatError(
+        {displayName(file), 0, 0,
+         "no placed sensor with readings: give one `at=x,y`, or let arrange place it"});
 }
 
 ReadingWork workOf(const ScanCommand& command, const ScanToolOptions& options,

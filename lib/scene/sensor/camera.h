@@ -14,6 +14,8 @@
 
 namespace ispace {
 
+struct SensorKind;
+
 /// The projection of directions to points of the picture.
 enum class Lens {
     Pinhole,  ///< tan of the angle to the axis, with distortion `plumb_bob` (Brown, Conrady)
@@ -97,6 +99,7 @@ struct Camera {
     [[nodiscard]] static bool isNoisy() { return true; }
     /// Returns true if its whole circle is in the picture and it faces straight up or down.
     [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const;
+    static const SensorKind kKind;
     friend bool operator==(const Camera&, const Camera&) = default;
 };
 
@@ -133,8 +136,5 @@ Camera withDensity(Camera camera, double pixels_per_metre);
 
 /// Returns the field of view at a pose, without occlusion.
 FieldOfView fieldOfView(const Camera& camera, const Pose3& pose);
-
-struct SensorKind;
-extern const SensorKind kCameraKind;
 
 }  // namespace ispace

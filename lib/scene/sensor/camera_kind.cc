@@ -342,7 +342,7 @@ Mesh cameraView(const Sensor& sensor, double reach) {
 
 }  // namespace
 
-const SensorKind kCameraKind = {
+const SensorKind Camera::kKind = {
     .keyword = "camera",
     .noun = "camera",
     .help = "camera; bare: fov=45 pixels=640,480 range=0,100",

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/sensor/contact.h"
 
-#include "base/number.h"
+#include "base/error.h"
+#include "base/message.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -25,6 +26,20 @@ void addContactKeys(std::vector<KeySpec>& keys) {
     keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
 }
 
+void lookUpDoor(SensorModel& model, const Record& record, const RoomRecords& room) {
+    Contact& contact = std::get<Contact>(model);
+    std::vector<std::string> doors;
+    for (std::size_t i = 0; i < room.records.size(); ++i) {
+        if (room.records[i].keyword() != "door") continue;
+        doors.push_back(room.ids[i]);
+        if (doors.back() != contact.door) continue;
+        contact.is_open = room.records[i].flag("open");
+        return;
+    }
+    throw FormatError(record.finding("door", "`door`: no door has the id `" + contact.door + '`' +
+                                                 didYouMean(contact.door, doors)));
+}
+
 std::vector<Mesh> contactBody() {
     Mesh box{Material::Sensor, {}, {}};
     addBox(box, {-0.01, -0.04, -0.01}, {0.01, 0.04, 0.01});
@@ -33,7 +48,7 @@ std::vector<Mesh> contactBody() {
 
 }  // namespace
 
-const SensorKind kContactKind = {
+const SensorKind Contact::kKind = {
     .keyword = "contact",
     .noun = "contact",
     .help = "magnetic contact, which reports whether a door is open; bare: rate=10",
@@ -44,6 +59,7 @@ const SensorKind kContactKind = {
     .read = [](const Record& record, const Record* /*device*/) -> SensorModel {
         return contactOf(record);
     },
+    .look_up = lookUpDoor,
     .bearings = [](const SensorModel& /*model*/) { return BearingSpan{}; },
     .perceives = false,
     .is_read = true};

@@ -24,12 +24,11 @@ struct Contact {
     [[nodiscard]] static std::size_t rays() { return 0; }
     [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return false; }
     [[nodiscard]] static bool isNoisy() { return false; }
+    static const SensorKind kKind;
     friend bool operator==(const Contact&, const Contact&) = default;
 };
 
 /// Reads the parameters of a `contact` record, as if its door were shut.
 Contact contactOf(const Record& record);
-
-extern const SensorKind kContactKind;
 
 }  // namespace ispace

@@ -22,7 +22,7 @@ Gate gateOf(const Record& record) {
     return gate;
 }
 
-const SensorKind kMatKind = {.keyword = "mat", .noun = "mat", .perceives = false};
-const SensorKind kGateKind = {.keyword = "gate", .noun = "gate", .perceives = false};
+const SensorKind Mat::kKind = {.keyword = "mat", .noun = "mat", .perceives = false};
+const SensorKind Gate::kKind = {.keyword = "gate", .noun = "gate", .perceives = false};
 
 }  // namespace ispace

@@ -30,6 +30,7 @@ struct FloorSensor {
 /// A pressure mat.
 struct Mat : FloorSensor {
     double half_length = 0, half_width = 0;
+    static const SensorKind kKind;
     friend bool operator==(const Mat&, const Mat&) = default;
 };
 
@@ -43,13 +44,12 @@ struct Gate : FloorSensor {
     [[nodiscard]] Segment2 beam() const {
         return {pose * Point2{0, half_width}, pose * Point2{0, -half_width}};
     }
+    static const SensorKind kKind;
     friend bool operator==(const Gate&, const Gate&) = default;
 };
 
 /// Reads the parameters of a `mat` or a `gate` record, except for the pose.
 Mat matOf(const Record& record);
 Gate gateOf(const Record& record);
-
-extern const SensorKind kMatKind, kGateKind;
 
 }  // namespace ispace

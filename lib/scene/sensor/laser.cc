@@ -278,7 +278,7 @@ DeviceSummary laserSummary(const SensorModel& model) {
 
 }  // namespace
 
-const SensorKind kLaserKind = {
+const SensorKind Laser::kKind = {
     .keyword = "laser",
     .noun = "laser",
     .help = "planar laser range finder; bare: range=0,5 fov=180 step=1",

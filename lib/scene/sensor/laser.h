@@ -10,6 +10,8 @@
 
 namespace ispace {
 
+struct SensorKind;
+
 /// Maximum number of beams of a scan: no scanner has more, but a mistaken unit may ask for more.
 constexpr int kMaxBeams = 1'000'000;
 /// Maximum number of beams of a whole sweep, which is one reading.
@@ -70,6 +72,7 @@ struct Laser {
     [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const {
         return mount.isLevel() && seesAround();
     }
+    static const SensorKind kKind;
     friend bool operator==(const Laser&, const Laser&) = default;
 };
 
@@ -90,8 +93,5 @@ Laser laserOf(const Record& record, const Record* device = nullptr);
 /// Returns `base` with the parameters that a record writes; the model stays.
 /// \throws FormatError as laserOf
 Laser withParameters(Laser base, const Record& record);
-
-struct SensorKind;
-extern const SensorKind kLaserKind;
 
 }  // namespace ispace

@@ -68,7 +68,7 @@ std::vector<Mesh> pirBody() {
 
 }  // namespace
 
-const SensorKind kPirKind = {
+const SensorKind Pir::kKind = {
     .keyword = "pir",
     .noun = "PIR sensor",
     .help =

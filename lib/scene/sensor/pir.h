@@ -30,6 +30,7 @@ struct Pir {
     [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const {
         return fov_x >= Angle::degrees(360) && mount.isLevel();
     }
+    static const SensorKind kKind;
     friend bool operator==(const Pir&, const Pir&) = default;
 };
 
@@ -40,7 +41,5 @@ Pir withParameters(Pir base, const Record& record);
 
 /// Returns the field of view at a pose, without occlusion: intervals of bearings and elevations.
 FieldOfView fieldOfView(const Pir& pir, const Pose3& pose);
-
-extern const SensorKind kPirKind;
 
 }  // namespace ispace

@@ -95,7 +95,7 @@ std::vector<Mesh> body() {
 
 }  // namespace
 
-const SensorKind kRadarKind = {
+const SensorKind Radar::kKind = {
     .keyword = "radar",
     .noun = "radar",
     .help =

@@ -11,6 +11,8 @@
 
 namespace ispace {
 
+struct SensorKind;
+
 /// A millimetre-wave radar that reports movers: frequency-modulated, with antennas in both
 /// directions, such as the modules at 60 GHz. Its own filter removes the echoes of the room.
 struct Radar {
@@ -38,6 +40,7 @@ struct Radar {
     [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const {
         return fov_x >= Angle::degrees(360) && mount.isLevel();
     }
+    static const SensorKind kKind;
     friend bool operator==(const Radar&, const Radar&) = default;
 };
 
@@ -48,8 +51,5 @@ Radar withParameters(Radar base, const Record& record);
 
 /// Returns the field of view at a pose, without occlusion: intervals of bearings and elevations.
 FieldOfView fieldOfView(const Radar& radar, const Pose3& pose);
-
-struct SensorKind;
-extern const SensorKind kRadarKind;
 
 }  // namespace ispace

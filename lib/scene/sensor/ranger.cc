@@ -143,7 +143,7 @@ DeviceSummary rangerSummary(const SensorModel& model) {
 
 }  // namespace
 
-const SensorKind kRangerKind = {
+const SensorKind Ranger::kKind = {
     .keyword = "ranger",
     .noun = "ranger",
     .help = "3-D range camera; bare: range=0,5 fov=47.5,39.6 pixels=176,144",

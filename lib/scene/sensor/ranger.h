@@ -11,6 +11,8 @@
 
 namespace ispace {
 
+struct SensorKind;
+
 /// The ray of each pixel.
 enum class Projection {
     Pinhole,    ///< a lens: equal steps in the picture's plane
@@ -64,6 +66,7 @@ struct Ranger {
         return projection == Projection::Spherical && fov_x >= Angle::degrees(360) &&
                mount.isLevel();
     }
+    static const SensorKind kKind;
     friend bool operator==(const Ranger&, const Ranger&) = default;
 };
 
@@ -78,8 +81,5 @@ constexpr std::size_t kMaxPixels = 1U << 26U;
 
 /// Returns the field of view at a pose, without occlusion.
 FieldOfView fieldOfView(const Ranger& ranger, const Pose3& pose);
-
-struct SensorKind;
-extern const SensorKind kRangerKind;
 
 }  // namespace ispace

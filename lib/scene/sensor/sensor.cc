@@ -2,7 +2,8 @@
 #include "scene/sensor/sensor.h"
 
 #include <algorithm>
-#include <iterator>
+#include <array>
+#include <type_traits>
 
 #include "env/environment.h"
 #include "scene/sensor/sensor_keys.h"
@@ -63,8 +64,15 @@ Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor)
 
 namespace {
 
-static_assert(std::size(kSensorKinds) == std::variant_size_v<SensorModel>);
-static_assert(std::size(kManualOrder) + kFloorKinds == std::size(kSensorKinds));
+/// The rows of the kinds, sorted as the alternatives of SensorModel.
+template <typename Models>
+struct Rows;
+template <typename... Models>
+struct Rows<std::variant<Models...>> {
+    static constexpr std::array<const SensorKind*, sizeof...(Models)> kAll{&Models::kKind...};
+    static constexpr std::size_t kOnFloor = (0U + ... + std::is_base_of_v<FloorSensor, Models>);
+};
+constexpr auto kRows = Rows<SensorModel>::kAll;
 
 Schema schemaOf(const SensorKind& kind) {
     Schema schema{.keyword = std::string(kind.keyword),
@@ -83,7 +91,7 @@ Schema schemaOf(const SensorKind& kind) {
 }  // namespace
 
 std::span<const SensorKind* const> sensorKinds() {
-    return std::span(kSensorKinds).first(std::size(kManualOrder));
+    return std::span(kRows).first(kRows.size() - Rows<SensorModel>::kOnFloor);
 }
 
 const SensorKind* sensorKind(std::string_view keyword) {
@@ -94,7 +102,7 @@ const SensorKind* sensorKind(std::string_view keyword) {
     return found == kinds.end() ? nullptr : *found;
 }
 
-const SensorKind& kindOf(const SensorModel& model) { return *kSensorKinds[model.index()]; }
+const SensorKind& kindOf(const SensorModel& model) { return *kRows[model.index()]; }
 
 std::vector<std::string_view> keywordsOf(bool SensorKind::*flag) {
     std::vector<std::string_view> keywords;
@@ -105,21 +113,21 @@ std::vector<std::string_view> keywordsOf(bool SensorKind::*flag) {
 
 std::vector<std::string> manualKeywords(bool (*is_meant)(const SensorKind& kind)) {
     std::vector<std::string> keywords;
-    for (const SensorKind* kind : kManualOrder)
+    for (const SensorKind* kind : sensorKinds())
         if (is_meant(*kind)) keywords.emplace_back(kind->keyword);
     return keywords;
 }
 
 std::vector<Schema> sensorSchemas() {
     std::vector<Schema> schemas;
-    schemas.reserve(std::size(kManualOrder));
-    for (const SensorKind* kind : kManualOrder) schemas.push_back(schemaOf(*kind));
+    schemas.reserve(sensorKinds().size());
+    for (const SensorKind* kind : sensorKinds()) schemas.push_back(schemaOf(*kind));
     return schemas;
 }
 
 std::vector<Schema> sensorDeviceSchemas() {
     std::vector<Schema> schemas;
-    for (const SensorKind* kind : kManualOrder)
+    for (const SensorKind* kind : sensorKinds())
         if (!kind->device_help.empty())
             schemas.push_back(deviceSchema(std::string(kind->keyword),
                                            std::string(kind->device_help), kind->add_keys));

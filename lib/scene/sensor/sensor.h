@@ -94,8 +94,14 @@ struct BearingSpan {
     double range = 0;
 };
 
-/// One kind of sensor, with all its properties that other folders use. A new kind is a source with
-/// such a row, listed in kinds.h.
+/// The records of a scene, before they are resolved, and their ids.
+struct RoomRecords {
+    std::span<const Record> records;
+    std::span<const std::string> ids;
+};
+
+/// One kind of sensor, with all its properties that other folders use: kKind of its parameters,
+/// which kinds.h lists.
 struct SensorKind {
     std::string_view keyword;            ///< of its records
     std::string_view noun;               ///< its name in messages
@@ -111,6 +117,8 @@ struct SensorKind {
     /// Reads the parameters of a record: its explicit keys, else the device's (if not null), else
     /// those of a bare one. \throws FormatError with all findings
     SensorModel (*read)(const Record& record, const Record* device) = nullptr;
+    /// Looks up the records that its readings depend on. Null: none. \throws FormatError
+    void (*look_up)(SensorModel& model, const Record& record, const RoomRecords& room) = nullptr;
     DeviceSummary (*summary)(const SensorModel& model) = nullptr;
     /// Builds its field of view as a translucent open surface in its frame, two-sided, up to
     /// `reach`. Null: not drawn.
@@ -139,7 +147,7 @@ const SensorKind* sensorKind(std::string_view keyword);
 const SensorKind& kindOf(const SensorModel& model);
 /// Returns the keywords of the kinds for which `flag` holds, in the order of the table.
 std::vector<std::string_view> keywordsOf(bool SensorKind::*flag);
-/// Returns the keywords of the kinds that `is_meant` selects, in the order of manuals.
+/// Returns the keywords of the kinds that `is_meant` selects, in the order of the table.
 std::vector<std::string> manualKeywords(bool (*is_meant)(const SensorKind& kind));
 
 /// Returns the schemas of all kinds' records and of device files.

@@ -105,7 +105,7 @@ std::vector<Mesh> tagBody() {
 
 }  // namespace
 
-const SensorKind kUltrasoundKind = {
+const SensorKind Receiver::kKind = {
     .keyword = "ultrasound",
     .noun = "receiver",
     .help = "ultrasonic receiver; bare: range=8 fov=120",
@@ -134,23 +134,24 @@ const SensorKind kUltrasoundKind = {
     .is_arranged = true,
     .together = kMinReceivers};
 
-const SensorKind kTagKind = {.keyword = "tag",
-                             .noun = "tag",
-                             .help = "ultrasonic emitter, to be located",
-                             .heading_help = "where it faces, from +x",
-                             .device_help = "an ultrasonic emitter one can buy",
-                             .sign = SensorSign::Diamond,
-                             .add_keys = addTagKeys,
-                             .body = tagBody,
-                             .read = [](const Record& record, const Record* device) -> SensorModel {
-                                 return tagOf(record, device);
-                             },
-                             .summary = [](const SensorModel& model) -> DeviceSummary {
-                                 const Tag& tag = std::get<Tag>(model);
-                                 return {"-", degreesText(tag.fov), "-", formatDouble(tag.rate)};
-                             },
-                             .stopped_by = Surfaces::Solid,
-                             .perceives = false,
-                             .is_read = true};
+const SensorKind Tag::kKind = {
+    .keyword = "tag",
+    .noun = "tag",
+    .help = "ultrasonic emitter, to be located",
+    .heading_help = "where it faces, from +x",
+    .device_help = "an ultrasonic emitter one can buy",
+    .sign = SensorSign::Diamond,
+    .add_keys = addTagKeys,
+    .body = tagBody,
+    .read = [](const Record& record, const Record* device) -> SensorModel {
+        return tagOf(record, device);
+    },
+    .summary = [](const SensorModel& model) -> DeviceSummary {
+        const Tag& tag = std::get<Tag>(model);
+        return {"-", degreesText(tag.fov), "-", formatDouble(tag.rate)};
+    },
+    .stopped_by = Surfaces::Solid,
+    .perceives = false,
+    .is_read = true};
 
 }  // namespace ispace

@@ -12,6 +12,8 @@
 
 namespace ispace {
 
+struct SensorKind;
+
 /// Receivers needed to locate a tag (thesis 3.4.3): floor is covered where this many hear.
 constexpr std::size_t kMinReceivers = 4;
 
@@ -29,6 +31,7 @@ struct Receiver {
     [[nodiscard]] static std::size_t rays() { return 1; }
     [[nodiscard]] bool isNoisy() const { return !noise.isNone(); }
     [[nodiscard]] static bool isOmnidirectional(const Pose3& mount);
+    static const SensorKind kKind;
     friend bool operator==(const Receiver&, const Receiver&) = default;
 };
 
@@ -50,6 +53,7 @@ struct Tag {
     [[nodiscard]] static std::size_t rays() { return 64; }  ///< one for each of some receivers
     [[nodiscard]] bool isNoisy() const { return is_simple; }
     [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return false; }
+    static const SensorKind kKind;
     friend bool operator==(const Tag&, const Tag&) = default;
 };
 
@@ -64,8 +68,5 @@ Tag withParameters(Tag base, const Record& record);
 
 /// Returns the cone of hearing at a pose, without occlusion.
 FieldOfView fieldOfView(const Receiver& receiver, const Pose3& pose);
-
-struct SensorKind;
-extern const SensorKind kUltrasoundKind, kTagKind;
 
 }  // namespace ispace

@@ -46,7 +46,7 @@ constexpr ReadingField kContactFields[] = {
 
 }  // namespace
 
-extern const ReadingKind kContactReadings = {.fields = kContactFields};
-extern const ReadingKind kPirReadings = {.fields = kPirFields};
+const ReadingKind ContactState::kKind = {.fields = kContactFields};
+const ReadingKind PirState::kKind = {.fields = kPirFields};
 
 }  // namespace ispace

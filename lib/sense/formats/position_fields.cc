@@ -209,9 +209,9 @@ constexpr ReadingField kGateFields[] = {
 
 }  // namespace
 
-extern const ReadingKind kTagReadings = {.fields = kTagFields, .topics = kTagTopics};
-extern const ReadingKind kReceiverReadings = {.fields = kReceiverFields};
-extern const ReadingKind kMatReadings = {.fields = kMatFields};
-extern const ReadingKind kGateReadings = {.fields = kGateFields};
+const ReadingKind Burst::kKind = {.fields = kTagFields, .topics = kTagTopics};
+const ReadingKind Hearings::kKind = {.fields = kReceiverFields};
+const ReadingKind MatState::kKind = {.fields = kMatFields};
+const ReadingKind GateState::kKind = {.fields = kGateFields};
 
 }  // namespace ispace

@@ -131,7 +131,7 @@ constexpr std::string_view kDetectionIndex[] = {"detection"};
 
 }  // namespace
 
-extern const ReadingKind kRadarReadings = {
+const ReadingKind RadarFrame::kKind = {
     .fields = kRadarFields,
     .topics = kRadarTopics,
     .indices = kDetectionIndex,

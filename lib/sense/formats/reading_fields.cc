@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/formats/reading_fields.h"
 
+#include <array>
 #include <cmath>
 
 #include "base/message.h"
@@ -10,9 +11,6 @@
 #include "sense/formats/reading_picture.h"
 
 namespace ispace {
-
-extern const ReadingKind kLaserReadings, kRangerReadings, kCameraReadings, kTagReadings,
-    kReceiverReadings, kRadarReadings, kPirReadings, kContactReadings, kMatReadings, kGateReadings;
 
 namespace {
 
@@ -230,15 +228,17 @@ constexpr RosTopic kCameraTopics[] = {
 
 constexpr std::string_view kBeamIndex[] = {"beam"}, kPixelIndices[] = {"column", "row"};
 
-/// Sorted as the alternatives of SensorModel.
-constexpr const ReadingKind* kReadingKinds[] = {
-    &kLaserReadings, &kRangerReadings, &kReceiverReadings, &kTagReadings, &kCameraReadings,
-    &kRadarReadings, &kPirReadings,    &kContactReadings,  &kMatReadings, &kGateReadings};
-static_assert(std::size(kReadingKinds) == std::variant_size_v<SensorModel>);
+/// The rows of the readings, sorted as the alternatives of SensorModel.
+template <typename Values>
+constexpr int kRowsOf = 0;
+template <typename... Values>
+constexpr std::array<const ReadingKind*, sizeof...(Values)> kRowsOf<std::variant<Values...>>{
+    &Values::kKind...};
+static_assert(kRowsOf<ReadingValue>.size() == std::variant_size_v<SensorModel>);
 
 }  // namespace
 
-const ReadingKind kLaserReadings = {
+const ReadingKind Scan::kKind = {
     .fields = kLaserFields,
     .topics = kLaserTopics,
     .indices = kBeamIndex,
@@ -262,7 +262,7 @@ const ReadingKind kLaserReadings = {
         return r.as<Scan>().poseAt(beam);
     }};
 
-const ReadingKind kRangerReadings = {
+const ReadingKind DepthFrame::kKind = {
     .fields = kRangerFields,
     .topics = kRangerTopics,
     .indices = kPixelIndices,
@@ -277,7 +277,7 @@ const ReadingKind kRangerReadings = {
             return cloudOf(sensor.as<Ranger>(), std::get<DepthFrame>(reading), in);
         }};
 
-const ReadingKind kCameraReadings = {.fields = kCameraFields, .topics = kCameraTopics};
+const ReadingKind Photo::kKind = {.fields = kCameraFields, .topics = kCameraTopics};
 
 std::vector<ReadingView> viewsOf(const Sensor& sensor, const Reading& reading,
                                  std::span<const Sensor> receivers) {
@@ -294,7 +294,9 @@ std::vector<ReadingView> viewsOf(const Sensor& sensor, const Reading& reading,
     return views;
 }
 
-const ReadingKind& readingKind(const SensorModel& model) { return *kReadingKinds[model.index()]; }
+const ReadingKind& readingKind(const SensorModel& model) {
+    return *kRowsOf<ReadingValue>[model.index()];
+}
 
 int partsOf(const Sensor& sensor) {
     const ReadingKind& kind = readingKind(sensor.model);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/json_writer.h"
 #include "base/number.h"
@@ -106,11 +107,14 @@ MqttMessage discoveryOf(const MqttThing& thing, const std::string& prefix,
         json.key(std::string(name) + "state_topic").value(topic);
         if (is_commanded) json.key(std::string(name) + "command_topic").value(topic + "/set");
     };
+    bool has_main = false;  // of further keys Home Assistant knows the shares and colours alone
     for (std::size_t i = 0; i < thing.keys.size(); ++i)
-        add(isShare(thing.keys[i])   ? "brightness_"
-            : isColor(thing.keys[i]) ? "rgb_"
-                                     : "",
-            topics[i]);
+        if (isShare(thing.keys[i]))
+            add("brightness_", topics[i]);
+        else if (isColor(thing.keys[i]))
+            add("rgb_", topics[i]);
+        else if (!std::exchange(has_main, true))
+            add("", topics[i]);
     if (std::any_of(thing.keys.begin(), thing.keys.end(), isShare))
         json.key("brightness_scale").value(static_cast<std::int64_t>(kPerCent));
     if (component.component == "cover") {
