@@ -122,6 +122,15 @@ KeySpec pathKey(std::string help) {
     return key;
 }
 
+}  // namespace
+
+KeySpec tagKey() {
+    return {
+        .name = "tag", .type = KeyType::Word, .help = "its RFID tag, which `rfid` readers list"};
+}
+
+namespace {
+
 /// `where`: how the picture lies on the body.
 KeySpec textureKey(const std::string& where) {
     return {.name = "texture",
@@ -331,6 +340,7 @@ void addThings(std::vector<Schema>& out) {
     const std::string round = "length,width[,height], or the diameter";
     const auto other = [&out](std::string keyword, std::string help, std::vector<KeySpec> keys) {
         keys.insert(keys.begin(), {atKey(), headingKey()});
+        keys.push_back(tagKey());
         out.push_back(
             schema(std::move(keyword), RecordType::Other, std::move(help), std::move(keys)));
     };

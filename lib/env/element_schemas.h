@@ -43,6 +43,9 @@ Body screenBody(const Record& record);
 /// Default height of walls and fences, in metres.
 constexpr double kWallHeight = 2.5;
 
+/// Creates the key `tag` of records that carry an RFID tag.
+KeySpec tagKey();
+
 /// Returns the schemas of ispace, inside, zone, floor, wall, fence, pillar, table, desk, chair,
 /// barrier, cube, cylinder and the other elements.
 std::vector<Schema> environmentSchemas();

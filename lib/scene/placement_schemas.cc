@@ -189,6 +189,7 @@ Schema robotSchema() {
     KeySpec mass = positiveKey("mass", Unit::None, "kilograms, for lifts", kMaxMass);
     mass.default_value = 20.0;
     schema.keys.push_back(std::move(mass));
+    schema.keys.push_back(tagKey());
     addCourse(schema.keys);
     return schema;
 }
@@ -207,6 +208,7 @@ Schema humanSchema() {
     KeySpec speed = positiveKey("speed", Unit::Length, "metres a second when walking", 20);
     speed.default_value = 1.2;
     schema.keys.push_back(std::move(speed));
+    schema.keys.push_back(tagKey());
     addCourse(schema.keys);
     return schema;
 }

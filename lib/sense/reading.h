@@ -15,6 +15,7 @@
 #include "sense/photo.h"
 #include "sense/pir_state.h"
 #include "sense/radar_frame.h"
+#include "sense/rfid_tags.h"
 #include "sense/scan.h"
 #include "sense/selection.h"
 #include "sense/trajectory.h"
@@ -63,11 +64,11 @@ struct ContactState {
 /// A reading of a sensor of any kind, of a sweep one scan: sorted as the alternatives of
 /// SensorModel.
 using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState,
-                                  ContactState, MatState, GateState>;
+                                  ContactState, RfidTags, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
-using Reading =
-    std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState, ContactState>;
+using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState,
+                             ContactState, RfidTags>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);

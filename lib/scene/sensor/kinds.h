@@ -11,6 +11,7 @@
 #include "scene/sensor/pir.h"
 #include "scene/sensor/radar.h"
 #include "scene/sensor/ranger.h"
+#include "scene/sensor/rfid.h"
 #include "scene/sensor/ultrasound.h"
 
 namespace ispace {
@@ -19,6 +20,6 @@ namespace ispace {
 /// in this order. Only this header, the sources of the kinds and the computation of readings
 /// distinguish kinds.
 using SensorModel =
-    std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Pir, Contact, Mat, Gate>;
+    std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Pir, Contact, Rfid, Mat, Gate>;
 
 }  // namespace ispace

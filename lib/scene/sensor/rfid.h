@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "geom/pose.h"
+#include "record/record.h"
+#include "scene/sensor/field_of_view.h"
+
+namespace ispace {
+
+struct SensorKind;
+
+/// An RFID tag: the key `tag` of a person, a robot or a thing.
+struct RfidTag {
+    enum class Carrier { Thing, Robot, Person };
+
+    std::string text;
+    Carrier carrier = Carrier::Thing;
+    std::size_t mover = 0;  ///< index among the scene's robots or people
+    Point3 at;              ///< of a thing: above the middle of its top
+    friend bool operator==(const RfidTag&, const RfidTag&) = default;
+};
+
+/// An RFID reader with its antenna, which lists the tags in its field.
+struct Rfid {
+    std::string model;  ///< "" for the bare reader
+    double min_range = 0, max_range = 3;
+    Angle fov_x = Angle::degrees(70), fov_y = Angle::degrees(70);  ///< full angles
+    double rate = 10;                                              ///< rounds of inventory a second
+    double read = 1;            ///< share of the rounds that read a tag in the field, with noise
+    std::vector<RfidTag> tags;  ///< of the scene
+
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    [[nodiscard]] static std::size_t rays() { return 1; }
+    [[nodiscard]] bool isNoisy() const { return read < 1; }
+    [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const {
+        return fov_x >= Angle::degrees(360) && mount.isLevel();
+    }
+    static const SensorKind kKind;
+    friend bool operator==(const Rfid&, const Rfid&) = default;
+};
+
+/// Reads the parameters of an `rfid` record, without tags: its explicit keys, else its model's,
+/// else the bare reader's. \throws FormatError with all findings
+Rfid rfidOf(const Record& record, const Record* device = nullptr);
+Rfid withParameters(Rfid base, const Record& record);
+
+/// Returns the field of the antenna at a pose, without occlusion.
+FieldOfView fieldOfView(const Rfid& rfid, const Pose3& pose);
+
+}  // namespace ispace
