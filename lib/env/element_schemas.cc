@@ -288,6 +288,17 @@ void addAppliances(std::vector<Schema>& out) {
                            .max_count = 3,
                            .lower = 0,
                            .upper = 1}}));
+    out.push_back(schema("speaker", RecordType::Infra,
+                         "a speaker, which microphones hear; it has no body",
+                         {floorAtKey(),
+                          heightKey(1, "height above the floor"),
+                          flagKey("on", "it sounds"),
+                          {.name = "volume",
+                           .type = KeyType::Number,
+                           .help = "sound pressure level at a metre, dB",
+                           .default_value = 70.0,
+                           .lower = 0,
+                           .upper = 200}}));
     out.push_back(
         schema("switch", RecordType::Infra,
                "a switch on a wall, which clients press and watch; it switches no lamp "

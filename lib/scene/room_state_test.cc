@@ -12,15 +12,14 @@ namespace ispace {
 namespace {
 
 const char* const kRoom =
-    "ispace size=6,6\ndoor id=d1 at=0,3\nlamp id=l1 at=1,1 on=yes level=40%\nswitch id=b1\n";
+    "ispace size=6,6\ndoor id=d1 at=0,3\nlamp id=l1 at=1,1 on=yes level=40%\nswitch id=b1\nspeaker "
+    "id=a1\n";
 
 TEST(RoomState, HasARowForEachStateKey) {
     const Scene room = testing::scene(kRoom, "robot id=r1\n");
-    const std::vector<RoomState> expected = {{"d1", "open", "0"},
-                                             {"l1", "on", "1"},
-                                             {"l1", "level", "0.4"},
-                                             {"l1", "color", "1,1,0.97"},
-                                             {"b1", "on", "0"}};
+    const std::vector<RoomState> expected = {
+        {"d1", "open", "0"}, {"l1", "on", "1"}, {"l1", "level", "0.4"}, {"l1", "color", "1,1,0.97"},
+        {"b1", "on", "0"},   {"a1", "on", "0"}, {"a1", "volume", "70"}};
     EXPECT_EQ(roomStates(room), expected);
     EXPECT_TRUE(isActuator("lamp"));
     EXPECT_FALSE(isActuator("robot"));

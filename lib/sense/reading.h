@@ -18,6 +18,7 @@
 #include "sense/rfid_tags.h"
 #include "sense/scan.h"
 #include "sense/selection.h"
+#include "sense/sound_level.h"
 #include "sense/trajectory.h"
 #include "sense/ultrasound.h"
 
@@ -64,11 +65,11 @@ struct ContactState {
 /// A reading of a sensor of any kind, of a sweep one scan: sorted as the alternatives of
 /// SensorModel.
 using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState,
-                                  ContactState, RfidTags, MatState, GateState>;
+                                  ContactState, RfidTags, SoundLevel, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
 using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState,
-                             ContactState, RfidTags>;
+                             ContactState, RfidTags, SoundLevel>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);

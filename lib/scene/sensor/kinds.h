@@ -8,6 +8,7 @@
 #include "scene/sensor/contact.h"
 #include "scene/sensor/floor_sensor.h"
 #include "scene/sensor/laser.h"
+#include "scene/sensor/microphone.h"
 #include "scene/sensor/pir.h"
 #include "scene/sensor/radar.h"
 #include "scene/sensor/ranger.h"
@@ -19,7 +20,7 @@ namespace ispace {
 /// Parameters of a sensor of any kind; those on the floor are last. Reports and manuals list kinds
 /// in this order. Only this header, the sources of the kinds and the computation of readings
 /// distinguish kinds.
-using SensorModel =
-    std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Pir, Contact, Rfid, Mat, Gate>;
+using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Pir, Contact, Rfid,
+                                 Microphone, Mat, Gate>;
 
 }  // namespace ispace

@@ -38,6 +38,7 @@ struct Component {
 };
 constexpr Component kComponents[] = {{"lamp", "light", ""},
                                      {"switch", "switch", ""},
+                                     {"speaker", "switch", ""},
                                      {"door", "cover", "door"},
                                      {"pir", "binary_sensor", "motion"},
                                      {"contact", "binary_sensor", "door"}};

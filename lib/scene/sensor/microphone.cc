@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/sensor/microphone.h"
+
+#include "base/number.h"
+#include "scene/sensor/sensor.h"
+#include "scene/sensor/sensor_keys.h"
+
+namespace ispace {
+
+Microphone withParameters(Microphone base, const Record& record) {
+    Diagnostics findings;
+    if (record.has("floor")) base.floor = record.number("floor");
+    if (record.has("max")) base.max = record.number("max");
+    if (record.has("loss")) base.loss = record.number("loss");
+    if (record.has("sigma")) base.sigma = record.number("sigma");
+    if (record.has("rate")) base.rate = record.number("rate");
+    if (base.floor > base.max)
+        findings.add(record.finding(record.has("floor") ? "floor" : "max",
+                                    "its own noise, " + formatDouble(base.floor) +
+                                        " dB, is louder than its loudest sound, " +
+                                        formatDouble(base.max) + " dB"));
+    findings.throwIfAny();
+    return base;
+}
+
+Microphone microphoneOf(const Record& record, const Record* device) {
+    return parametersOf<Microphone>(record, device);
+}
+
+namespace {
+
+void addMicrophoneKeys(std::vector<KeySpec>& keys) {
+    constexpr double kLoudest = 200;
+    const auto decibels = [&keys](std::string name, std::string help) {
+        keys.push_back({.name = std::move(name),
+                        .type = KeyType::Number,
+                        .help = std::move(help),
+                        .lower = 0,
+                        .upper = kLoudest});
+    };
+    decibels("floor", "level of its own noise, dB");
+    decibels("max", "level of the loudest sound that it tells, dB");
+    decibels("loss", "by which each wall between makes a sound quieter, dB");
+    decibels("sigma", "standard deviation of a level, dB, with --noise");
+    keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
+}
+
+void lookUpSpeakers(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
+    Microphone& microphone = std::get<Microphone>(model);
+    for (const Record& record : room.records) {
+        if (record.keyword() != "speaker" || !record.flag("on")) continue;
+        const Tuple& at = record.tuple("at");
+        microphone.sources.push_back(
+            {{at[0], at[1], record.number("height")}, record.number("volume")});
+    }
+}
+
+std::vector<Mesh> microphoneBody() {
+    Mesh box{Material::Sensor, {}, {}};
+    addBox(box, {-0.02, -0.02, -0.02}, {0, 0.02, 0.02});
+    return {std::move(box)};
+}
+
+}  // namespace
+
+const SensorKind Microphone::kKind = {
+    .keyword = "microphone",
+    .noun = "microphone",
+    .help =
+        "microphone, which reports the level of speakers by their distance and the walls between; "
+        "bare: floor=30 max=120 loss=30 rate=10",
+    .heading_help = "direction of its front, from +x; it hears in all directions",
+    .device_help = "a microphone one can buy",
+    .sign = SensorSign::Square,
+    .add_keys = addMicrophoneKeys,
+    .body = microphoneBody,
+    .read = [](const Record& record, const Record* device) -> SensorModel {
+        return microphoneOf(record, device);
+    },
+    .look_up = lookUpSpeakers,
+    .summary = [](const SensorModel& model) -> DeviceSummary {
+        return {"-", "360", "-", formatDouble(std::get<Microphone>(model).rate)};
+    },
+    .bearings = [](const SensorModel& /*model*/) { return BearingSpan{}; },
+    .stopped_by = Surfaces::Solid,
+    .perceives = false,
+    .is_read = true};
+
+}  // namespace ispace

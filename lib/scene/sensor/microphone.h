@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "geom/pose.h"
+#include "record/record.h"
+
+namespace ispace {
+
+struct SensorKind;
+
+/// A speaker that sounds: a point from which sound spreads evenly.
+struct SoundSource {
+    Point3 at;
+    double volume = 0;  ///< sound pressure level at a metre, dB
+    friend bool operator==(const SoundSource&, const SoundSource&) = default;
+};
+
+/// A microphone that reports the sound pressure level. It hears in all directions.
+struct Microphone {
+    std::string model;                 ///< "" for the bare microphone
+    double floor = 30, max = 120;      ///< dB: its own noise, and the loudest sound that it tells
+    double loss = 30;                  ///< dB that a wall takes
+    double sigma = 0;                  ///< dB, standard deviation of a reading
+    double rate = 10;                  ///< readings a second
+    double max_range = 0;              ///< it covers no floor
+    std::vector<SoundSource> sources;  ///< of the scene
+
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    [[nodiscard]] static std::size_t rays() { return 1; }
+    [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return true; }
+    [[nodiscard]] bool isNoisy() const { return sigma > 0; }
+    static const SensorKind kKind;
+    friend bool operator==(const Microphone&, const Microphone&) = default;
+};
+
+/// Reads the parameters of a `microphone` record, without sources: its explicit keys, else its
+/// model's, else the bare microphone's. \throws FormatError with all findings
+Microphone microphoneOf(const Record& record, const Record* device = nullptr);
+Microphone withParameters(Microphone base, const Record& record);
+
+}  // namespace ispace
