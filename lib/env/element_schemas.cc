@@ -287,7 +287,13 @@ void addAppliances(std::vector<Schema>& out) {
                            .min_count = 3,
                            .max_count = 3,
                            .lower = 0,
-                           .upper = 1}}));
+                           .upper = 1},
+                          {.name = "lumens",
+                           .type = KeyType::Number,
+                           .help = "its full light for light meters, lumens",
+                           .default_value = 3600.0,
+                           .lower = 0,
+                           .upper = 1e6}}));
     out.push_back(schema("speaker", RecordType::Infra,
                          "a speaker, which microphones hear; it has no body",
                          {floorAtKey(),

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sense/depth.h"
+#include "sense/illuminance.h"
 #include "sense/moment.h"
 #include "sense/photo.h"
 #include "sense/pir_state.h"
@@ -64,12 +65,13 @@ struct ContactState {
 
 /// A reading of a sensor of any kind, of a sweep one scan: sorted as the alternatives of
 /// SensorModel.
-using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState,
-                                  ContactState, RfidTags, SoundLevel, MatState, GateState>;
+using ReadingValue =
+    std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState, ContactState,
+                 RfidTags, SoundLevel, Illuminance, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
 using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState,
-                             ContactState, RfidTags, SoundLevel>;
+                             ContactState, RfidTags, SoundLevel, Illuminance>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);

@@ -104,6 +104,7 @@ class Worlds {
     /// Returns the mesh for light, or (Solid) for sound, which clear glass stops.
     /// \pre it was prepared, see at()
     [[nodiscard]] const RayWorld& mesh(Surfaces surfaces = Surfaces::Opaque) const;
+    [[nodiscard]] const Environment& environment() const { return *environment_; }
     /// Prepared meshes, as known to the preparing thread.
     [[nodiscard]] Meshes meshes() const { return {mesh_.has_value(), solid_.has_value()}; }
 

@@ -8,6 +8,7 @@
 #include "scene/sensor/contact.h"
 #include "scene/sensor/floor_sensor.h"
 #include "scene/sensor/laser.h"
+#include "scene/sensor/lux.h"
 #include "scene/sensor/microphone.h"
 #include "scene/sensor/pir.h"
 #include "scene/sensor/radar.h"
@@ -21,6 +22,6 @@ namespace ispace {
 /// in this order. Only this header, the sources of the kinds and the computation of readings
 /// distinguish kinds.
 using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Pir, Contact, Rfid,
-                                 Microphone, Mat, Gate>;
+                                 Microphone, Lux, Mat, Gate>;
 
 }  // namespace ispace

@@ -25,13 +25,17 @@ constexpr double kBrightness = 0.72;
 
 }  // namespace
 
+double Lamps::heightIn(const Environment& environment) {
+    return std::max(1.0, environment.height() - 0.02);
+}
+
 Lamps::Lamps(const Environment& environment, Vec3 shift) {
     const double area = std::max(1.0, environment.indoor().area());
     const Box2 plan = bounds(environment.indoor());
     const double spacing =
         std::max({kMinSpacing, kSpacing * environment.height(), std::sqrt(area / kMaxLamps),
                   std::sqrt(plan.width() * plan.depth() / kMaxPlaces)});
-    height_ = static_cast<float>(std::max(1.0, environment.height() - 0.02));
+    height_ = static_cast<float>(heightIn(environment));
     reach_ = static_cast<float>(4 * spacing);
     addRecords(environment, shift, spacing);
     if (are_records_) {

@@ -33,6 +33,8 @@ class Lamps {
     /// Returns true if the environment has `lamp` records, on or off.
     [[nodiscard]] bool areRecords() const { return are_records_; }
     [[nodiscard]] float height() const { return height_; }
+    /// Returns the height of all lamps of an environment: below the ceiling.
+    static double heightIn(const Environment& environment);
     /// Returns the indices of the lamps that reach a point. Light fades out at their maximum
     /// distance.
     [[nodiscard]] std::span<const std::uint32_t> near(float x, float y) const;

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/sensor/lux.h"
+
+#include "base/number.h"
+#include "scene/sensor/sensor.h"
+#include "scene/sensor/sensor_keys.h"
+
+namespace ispace {
+
+Lux withParameters(Lux base, const Record& record) {
+    if (record.has("max")) base.max = record.number("max");
+    if (record.has("resolution")) base.resolution = record.number("resolution");
+    if (record.has("error")) base.error = record.number("error");
+    if (record.has("rate")) base.rate = record.number("rate");
+    return base;
+}
+
+Lux luxOf(const Record& record, const Record* device) { return parametersOf<Lux>(record, device); }
+
+namespace {
+
+void addLuxKeys(std::vector<KeySpec>& keys) {
+    constexpr double kBrightest = 1e6;
+    keys.push_back(
+        positiveKey("max", Unit::None, "greatest illuminance that it tells, lux", kBrightest));
+    keys.push_back({.name = "resolution",
+                    .type = KeyType::Number,
+                    .help = "least difference that it tells, lux, with --noise",
+                    .lower = 0,
+                    .upper = kBrightest});
+    keys.push_back({.name = "error",
+                    .type = KeyType::Number,
+                    .unit = Unit::Share,
+                    .help = "standard deviation of its constant factor, with --noise",
+                    .lower = 0,
+                    .upper = 1});
+    keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
+}
+
+void lookUpLamps(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
+    Lux& lux = std::get<Lux>(model);
+    for (const Record& record : room.records) {
+        if (record.keyword() != "lamp" || !record.flag("on") || record.number("level") == 0)
+            continue;
+        const Tuple& at = record.tuple("at");
+        lux.lights.push_back({{at[0], at[1]}, record.number("level") * record.number("lumens")});
+    }
+}
+
+std::vector<Mesh> luxBody() {
+    Mesh box{Material::Sensor, {}, {}};
+    addBox(box, {-0.02, -0.02, -0.02}, {0, 0.02, 0.02});
+    return {std::move(box)};
+}
+
+}  // namespace
+
+const SensorKind Lux::kKind = {
+    .keyword = "lux",
+    .noun = "light meter",
+    .help = "light meter, which reports the light of lamps on a spot; bare: max=100000 rate=1",
+    .heading_help = "direction that the spot faces, from +x",
+    .device_help = "a light meter one can buy",
+    .sign = SensorSign::Square,
+    .add_keys = addLuxKeys,
+    .body = luxBody,
+    .read = [](const Record& record, const Record* device) -> SensorModel {
+        return luxOf(record, device);
+    },
+    .look_up = lookUpLamps,
+    .summary = [](const SensorModel& model) -> DeviceSummary {
+        return {"-", "180", "-", formatDouble(std::get<Lux>(model).rate)};
+    },
+    .bearings = [](const SensorModel& /*model*/) { return BearingSpan{}; },
+    .perceives = false,
+    .is_read = true};
+
+}  // namespace ispace

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "geom/pose.h"
+#include "record/record.h"
+
+namespace ispace {
+
+struct SensorKind;
+
+/// A light meter: the illuminance by lamps at a spot that faces along its axis.
+struct Lux {
+    /// A lamp that is on.
+    struct Light {
+        Point2 at;
+        double lumens = 0;
+        friend bool operator==(const Light&, const Light&) = default;
+    };
+
+    std::string model;          ///< "" for the bare meter
+    double max = 100'000;       ///< lux: greatest value that it tells
+    double resolution = 0;      ///< lux, with noise; 0: exact
+    double error = 0;           ///< spread of its constant factor, with noise
+    double rate = 1;            ///< readings a second
+    double max_range = 0;       ///< it covers no floor
+    std::vector<Light> lights;  ///< of the scene
+
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    [[nodiscard]] static std::size_t rays() { return 16; }
+    [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return false; }
+    [[nodiscard]] bool isNoisy() const { return resolution > 0 || error > 0; }
+    static const SensorKind kKind;
+    friend bool operator==(const Lux&, const Lux&) = default;
+};
+
+/// Reads the parameters of a `lux` record, without lights: its explicit keys, else its model's,
+/// else the bare meter's.
+Lux luxOf(const Record& record, const Record* device = nullptr);
+Lux withParameters(Lux base, const Record& record);
+
+}  // namespace ispace

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "sense/moment.h"
+
+namespace ispace {
+
+struct ReadingKind;
+
+/// A reading of a light meter.
+struct Illuminance {
+    double time = 0;  ///< seconds
+    int frame = 0;
+    Pose3 pose;
+    double lux = 0;
+
+    static const ReadingKind kKind;
+};
+
+/// Computes the direct light of the lamps, which pictures show too: square panels under the ceiling
+/// that radiate downwards by Lambert's law. Opaque surfaces and movers cast shadows; a panel may be
+/// hidden in part. Light that surfaces throw back, and daylight, are not in it.
+Illuminance readingOf(const Lux& lux, const Moment& now);
+
+}  // namespace ispace

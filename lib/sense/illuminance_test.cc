@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/illuminance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "support/test_readings.h"
+#include "trace/render/lights.h"
+
+namespace ispace {
+namespace {
+
+/// Returns the illuminance at the first sensor of a room that is 2.5 m high.
+double luxIn(const std::string& room, const std::string& layout, const TakerOptions& options = {},
+             int frame = 0) {
+    const Scene scene = testing::scene("ispace size=8,6,2.5 ceiling=yes\n" + room, layout);
+    return std::get<Illuminance>(testing::readings(scene, options, frame).front()).lux;
+}
+
+constexpr const char* kLamp = "lamp at=0,0 on=yes lumens=3000\n";
+
+/// Integrates the light of a lamp of 3000 lm above a spot that faces up.
+double expectedBelow(double distance) {
+    constexpr int kParts = 400;
+    const double half = static_cast<double>(Lamps::kHalf);
+    double sum = 0;
+    for (int i = 0; i < kParts; ++i)
+        for (int j = 0; j < kParts; ++j) {
+            const double x = half * (2 * (i + 0.5) / kParts - 1);
+            const double y = half * (2 * (j + 0.5) / kParts - 1);
+            const double square = x * x + y * y + distance * distance;
+            sum += distance * distance / (square * square);
+        }
+    return 3000 / std::numbers::pi * sum / (kParts * kParts);
+}
+
+TEST(Illuminance, IsThatOfALambertianPanel) {
+    EXPECT_NEAR(luxIn(kLamp, "lux at=0,0,0.5 tilt=90\n") / expectedBelow(1.98), 1, 5e-3);
+    EXPECT_NEAR(luxIn(kLamp, "lux at=0,0,1.5 tilt=90\n") / expectedBelow(0.98), 1, 1e-2);
+    const double whole = luxIn(kLamp, "lux at=1,0,0.5 tilt=90\n");
+    EXPECT_NEAR(luxIn("lamp at=0,0 on=yes lumens=3000 level=25%\n", "lux at=1,0,0.5 tilt=90\n"),
+                0.25 * whole, 1e-9);
+    EXPECT_NEAR(
+        luxIn(kLamp + std::string("lamp at=2,0 on=yes lumens=3000\n"), "lux at=1,0,0.5 tilt=90\n"),
+        2 * whole, 1e-3);
+    EXPECT_EQ(luxIn("lamp at=0,0 lumens=3000\n", "lux at=0,0,0.5 tilt=90\n"), 0) << "off";
+}
+
+TEST(Illuminance, DependsOnTheFacing) {
+    EXPECT_EQ(luxIn(kLamp, "lux at=0,0,0.5 tilt=-90\n"), 0);
+    EXPECT_EQ(luxIn(kLamp, "lux at=-2,0,1 heading=180\n"), 0);
+    EXPECT_GT(luxIn(kLamp, "lux at=-2,0,1\n"), 10);
+    EXPECT_EQ(luxIn(kLamp, "lux at=0,0,2.49 tilt=90\n"), 0) << "above the lamps";
+}
+
+TEST(Illuminance, FurnitureWallsAndPeopleCastShadows) {
+    EXPECT_EQ(luxIn(kLamp + std::string("table at=0,0\n"), "lux at=0,0.1,0.3 tilt=90\n"), 0);
+    EXPECT_EQ(luxIn(kLamp + std::string("wall from=-1,-3 to=-1,3\n"), "lux at=-2,0,1\n"), 0);
+    EXPECT_EQ(luxIn(kLamp, "lux at=-2,0,1\nhuman at=-1.5,0\n"), 0);
+    EXPECT_EQ(luxIn(kLamp, "lux at=-2,0,1\nhuman at=-1.5,1\n"), luxIn(kLamp, "lux at=-2,0,1\n"));
+}
+
+TEST(Illuminance, HasAConstantFactorAndSteps) {
+    const auto measured = [](int seed, int frame, const std::string& keys) {
+        return luxIn(kLamp, "lux at=0,0,0.5 tilt=90 " + keys + '\n',
+                     {.noise_seed = static_cast<std::uint64_t>(seed)}, frame);
+    };
+    EXPECT_EQ(measured(1, 0, "error=20%"), measured(1, 7, "error=20%"));
+    const double exact = luxIn(kLamp, "lux at=0,0,0.5 tilt=90\n");
+    double squares = 0;
+    constexpr int kSeeds = 100;
+    for (int seed = 0; seed < kSeeds; ++seed)
+        squares += std::pow(measured(seed, 0, "error=20%") / exact - 1, 2);
+    EXPECT_NEAR(std::sqrt(squares / kSeeds), 0.2, 5 * 0.0142);
+    EXPECT_EQ(measured(1, 0, "resolution=50"), 50 * std::round(exact / 50));
+    EXPECT_EQ(measured(1, 0, "max=100"), 100);
+}
+
+TEST(Lux, ReadsItsKeys) {
+    const auto read = [](const std::string& keys) {
+        const Record record = testing::sensorRecord("lux " + keys);
+        return luxOf(record, testing::deviceFor(record));
+    };
+    EXPECT_EQ(read(""), Lux());
+    const Lux lux = read("max=500 resolution=0.5 error=10% rate=4");
+    EXPECT_EQ(lux.max, 500);
+    EXPECT_EQ(lux.resolution, 0.5);
+    EXPECT_EQ(lux.error, 0.1);
+    EXPECT_EQ(lux.rate, 4);
+    EXPECT_EQ(read("model=bh1750fvi").resolution, 1);
+}
+
+}  // namespace
+}  // namespace ispace
