@@ -12,6 +12,7 @@
 
 #include "sense/depth.h"
 #include "sense/illuminance.h"
+#include "sense/inertia.h"
 #include "sense/moment.h"
 #include "sense/photo.h"
 #include "sense/pir_state.h"
@@ -67,11 +68,11 @@ struct ContactState {
 /// SensorModel.
 using ReadingValue =
     std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState, ContactState,
-                 RfidTags, SoundLevel, Illuminance, MatState, GateState>;
+                 RfidTags, SoundLevel, Illuminance, Inertia, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
 using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState,
-                             ContactState, RfidTags, SoundLevel, Illuminance>;
+                             ContactState, RfidTags, SoundLevel, Illuminance, Inertia>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);

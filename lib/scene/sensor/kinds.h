@@ -7,6 +7,7 @@
 #include "scene/sensor/camera.h"
 #include "scene/sensor/contact.h"
 #include "scene/sensor/floor_sensor.h"
+#include "scene/sensor/imu.h"
 #include "scene/sensor/laser.h"
 #include "scene/sensor/lux.h"
 #include "scene/sensor/microphone.h"
@@ -22,6 +23,6 @@ namespace ispace {
 /// in this order. Only this header, the sources of the kinds and the computation of readings
 /// distinguish kinds.
 using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Pir, Contact, Rfid,
-                                 Microphone, Lux, Mat, Gate>;
+                                 Microphone, Lux, Imu, Mat, Gate>;
 
 }  // namespace ispace

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/sensor/imu.h"
+
+#include "base/number.h"
+#include "scene/sensor/sensor.h"
+#include "scene/sensor/sensor_keys.h"
+
+namespace ispace {
+
+Imu withParameters(Imu base, const Record& record) {
+    if (record.has("gyro_bias")) base.gyro.bias = record.number("gyro_bias");
+    if (record.has("gyro_noise")) base.gyro.density = record.number("gyro_noise");
+    if (record.has("accel_bias")) base.accel.bias = record.number("accel_bias");
+    if (record.has("accel_noise")) base.accel.density = record.number("accel_noise");
+    if (record.has("rate")) base.rate = record.number("rate");
+    return base;
+}
+
+Imu imuOf(const Record& record, const Record* device) { return parametersOf<Imu>(record, device); }
+
+namespace {
+
+void addImuKeys(std::vector<KeySpec>& keys) {
+    constexpr double kMostError = 1e4;
+    const auto error = [&keys](std::string name, std::string help) {
+        keys.push_back({.name = std::move(name),
+                        .type = KeyType::Number,
+                        .help = std::move(help),
+                        .lower = 0,
+                        .upper = kMostError});
+    };
+    error("gyro_bias", "spread of the constant error of a rate, degrees a second, with --noise");
+    error("gyro_noise", "density of its white noise, degrees a second and square root of Hz");
+    error("accel_bias", "the same of an acceleration, metres a second a second");
+    error("accel_noise", "the same, metres a second a second and square root of Hz");
+    keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
+}
+
+std::vector<Mesh> imuBody() {
+    Mesh box{Material::Sensor, {}, {}};
+    addBox(box, {-0.02, -0.015, -0.005}, {0.02, 0.015, 0.005});
+    return {std::move(box)};
+}
+
+}  // namespace
+
+const SensorKind Imu::kKind = {
+    .keyword = "imu",
+    .noun = "IMU",
+    .help =
+        "inertial measurement unit, which reports the rates of turning and the accelerations of "
+        "its carrier; bare: rate=100, without noise",
+    .heading_help = "direction of its x axis, from +x",
+    .device_help = "an inertial measurement unit one can buy",
+    .sign = SensorSign::Square,
+    .add_keys = addImuKeys,
+    .body = imuBody,
+    .read = [](const Record& record, const Record* device) -> SensorModel {
+        return imuOf(record, device);
+    },
+    .summary = [](const SensorModel& model) -> DeviceSummary {
+        return {"-", "-", "-", formatDouble(std::get<Imu>(model).rate)};
+    },
+    .bearings = [](const SensorModel& /*model*/) { return BearingSpan{}; },
+    .perceives = false,
+    .is_read = true};
+
+}  // namespace ispace

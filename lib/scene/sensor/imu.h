@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "geom/pose.h"
+#include "record/record.h"
+
+namespace ispace {
+
+struct SensorKind;
+
+/// Errors of three axes: a constant one of each, and white noise.
+struct InertialNoise {
+    double bias = 0;     ///< standard deviation of the constant error
+    double density = 0;  ///< of the white noise, a square root of Hz
+
+    [[nodiscard]] bool isNone() const { return bias == 0 && density == 0; }
+    friend bool operator==(const InertialNoise&, const InertialNoise&) = default;
+};
+
+/// An inertial measurement unit: the rates of turning of a robot or a person, and the accelerations
+/// with gravity.
+struct Imu {
+    std::string model;     ///< "" for the bare unit
+    InertialNoise gyro;    ///< degrees a second
+    InertialNoise accel;   ///< m/s^2
+    double rate = 100;     ///< readings a second
+    double max_range = 0;  ///< it covers no floor
+
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    [[nodiscard]] static std::size_t rays() { return 0; }
+    [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return false; }
+    [[nodiscard]] bool isNoisy() const { return !gyro.isNone() || !accel.isNone(); }
+    static const SensorKind kKind;
+    friend bool operator==(const Imu&, const Imu&) = default;
+};
+
+/// Reads the parameters of an `imu` record: its explicit keys, else its model's, else those of the
+/// bare unit, which has no noise.
+Imu imuOf(const Record& record, const Record* device = nullptr);
+Imu withParameters(Imu base, const Record& record);
+
+}  // namespace ispace
