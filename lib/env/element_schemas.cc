@@ -253,6 +253,8 @@ void addOpenings(std::vector<Schema>& out) {
                   .default_value = "clear",
                   .choices = {"clear", "opaque", "none"}};
     window.push_back(std::move(glass));
+    window.push_back(flagKey("open", "yes: its pane is away"));
+    window.push_back(flagKey("blind", "yes: its blind is shut, and light stops"));
     out.push_back(schema("window", RecordType::Wall, "an opening above a sill, with a pane",
                          std::move(window)));
 }

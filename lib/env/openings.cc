@@ -53,7 +53,10 @@ class Fitter {
             opening.passage = record.flag("open");
             opening.filling = opening.passage ? Filling::None : Filling::Leaf;
             opening.leaf = std::min(wall.thickness, kLeafThickness);
-        } else if (const std::string& glass = record.text("glass"); glass != "none") {
+        } else if (record.flag("blind")) {
+            opening.filling = Filling::OpaquePane;
+        } else if (const std::string& glass = record.text("glass");
+                   glass != "none" && !record.flag("open")) {
             opening.filling = glass == "clear" ? Filling::ClearPane : Filling::OpaquePane;
         }
         return opening;

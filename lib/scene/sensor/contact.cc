@@ -20,7 +20,7 @@ namespace {
 void addContactKeys(std::vector<KeySpec>& keys) {
     keys.push_back({.name = "door",
                     .type = KeyType::Word,
-                    .help = "id of the door that it watches",
+                    .help = "id of the door or window that it watches",
                     .required = true,
                     .role = Role::Reference});
     keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
@@ -30,13 +30,15 @@ void lookUpDoor(SensorModel& model, const Record& record, const RoomRecords& roo
     Contact& contact = std::get<Contact>(model);
     std::vector<std::string> doors;
     for (std::size_t i = 0; i < room.records.size(); ++i) {
-        if (room.records[i].keyword() != "door") continue;
+        const std::string& keyword = room.records[i].keyword();
+        if (keyword != "door" && keyword != "window") continue;
         doors.push_back(room.ids[i]);
         if (doors.back() != contact.door) continue;
         contact.is_open = room.records[i].flag("open");
         return;
     }
-    throw FormatError(record.finding("door", "`door`: no door has the id `" + contact.door + '`' +
+    throw FormatError(record.finding("door", "`door`: no door or window has the id `" +
+                                                 contact.door + '`' +
                                                  didYouMean(contact.door, doors)));
 }
 
@@ -51,7 +53,7 @@ std::vector<Mesh> contactBody() {
 const SensorKind Contact::kKind = {
     .keyword = "contact",
     .noun = "contact",
-    .help = "magnetic contact, which reports whether a door is open; bare: rate=10",
+    .help = "magnetic contact, which reports whether a door or window is open; bare: rate=10",
     .heading_help = "direction of its front, from +x",
     .sign = SensorSign::Square,
     .add_keys = addContactKeys,

@@ -40,6 +40,7 @@ constexpr Component kComponents[] = {{"lamp", "light", ""},
                                      {"switch", "switch", ""},
                                      {"speaker", "switch", ""},
                                      {"door", "cover", "door"},
+                                     {"window", "cover", "window"},
                                      {"pir", "binary_sensor", "motion"},
                                      {"contact", "binary_sensor", "door"}};
 
