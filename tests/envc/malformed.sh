@@ -28,7 +28,7 @@ for file in "$data"/malformed/*; do
     [ "$(wc -l <err)" -eq 1 ] || fail "$file: not one message: $(cat err)"
     grep -qE '^envc: [^ :]+\.[a-z0-9]+:([0-9]+:([0-9]+:)?)? error: .' err ||
         fail "$file: no place in: $(cat err)"
-    cat err >>all.err
+    sed 's/, known: .*//' err >>all.err  # without the list of all keywords, which grows
     count=$((count + 1))
 done
 [ "$count" -ge 50 ] || fail "only $count malformed inputs"
