@@ -46,10 +46,17 @@ BuildingRun::Data::Data(const BuildingScene& the_building, const BuildingRunOpti
     addTravellers();
     Simulation& leader = *rooms.front().simulation;
     for (std::size_t i = 1; i < rooms.size(); ++i) leader.lead(*rooms[i].simulation);
-    leader.beforeStep([this] { advance(); });
+    if (options.replay.empty())
+        leader.beforeStep([this] { advance(); });
+    else
+        replay();
+    leader.beforeStep([this] {
+        if (lift_recorder) lift_recorder->record(rooms.front().world->time(), lifts);
+    });
 }
 
 void BuildingRun::Data::addRoom(Room room, std::shared_ptr<const Scene> scene) {
+    if (!options.replay.empty()) scene = openReplay(room, *scene);
     room.world = std::make_unique<World>(std::move(scene), options.step, options.run);
     const bool leads = rooms.empty();
     room.simulation = std::make_unique<Simulation>(*room.world, std::vector<TimedCommand>(),
@@ -203,6 +210,14 @@ BuildingRun::~BuildingRun() = default;
 Simulation& BuildingRun::simulation() { return *data_->rooms.front().simulation; }
 
 const World& BuildingRun::world(std::size_t room) const { return *data_->rooms[room].world; }
+
+const Replay* BuildingRun::replay(std::size_t room) const {
+    return data_->rooms[room].replay.get();
+}
+
+void BuildingRun::recordLifts(const std::string& file) {
+    data_->lift_recorder.emplace(file, data_->liftNames());
+}
 
 std::span<const JoinedRoom> BuildingRun::rooms() const { return data_->joined; }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -12,7 +13,9 @@
 #include "base/error.h"
 #include "building/building_scene.h"
 #include "passage/lift.h"
+#include "scene/run/run_reader.h"
 #include "sim/joined_worlds.h"
+#include "sim/replay.h"
 #include "sim/simulation.h"
 #include "sim/world.h"
 
@@ -24,7 +27,14 @@ struct BuildingRunOptions {
     RunOptions run = {};
     Clock clock = {};
     std::optional<SimTime> until = {};
+    std::string replay = {};                     ///< folder of a record to be replayed; "": none
+    bool holds = false;                          ///< at its end, see Simulation::replay()
+    std::optional<std::uint64_t> max_work = {};  ///< of the changes in the record, see RunChanges
 };
+
+/// Returns the parameters of a recorded run of a building, of the first storey that has them.
+/// \param folder has the record of each storey \throws as recordedInfo() and RunReader
+RunInfo recordedInfo(const std::string& folder, const StoreyedDocument& building);
 
 /// A building that moves: a world for each storey, for each lift's cabin and for each flight of
 /// stairs, all in lock step.
@@ -42,11 +52,15 @@ struct BuildingRunOptions {
 /// People climb at kSpeedUp and kSpeedDown; a robot only with climbs=yes. A person weighs
 /// kPersonMass (EN 81-20), a robot `mass`. The same building, options and commands give the same
 /// bytes.
+///
+/// In a replay each world follows the record of its own, and lifts follow lifts.csv. \pre then
+/// there are no trips, rides and calls
 class BuildingRun final : public JoinedWorlds {
   public:
     static constexpr double kPersonMass = 75;
 
-    /// \throws FormatError as World does, with the storey
+    /// \throws FormatError as World does, with the storey; as Replay, for records of other steps,
+    /// and if no mover is in any of them
     BuildingRun(const BuildingScene& building, const BuildingRunOptions& options);
     ~BuildingRun() override;
     BuildingRun(const BuildingRun&) = delete;
@@ -58,6 +72,12 @@ class BuildingRun final : public JoinedWorlds {
     [[nodiscard]] std::string stopRefusal(std::string_view lift, std::string_view storey) const;
     /// Returns the worlds in the order of rooms().
     [[nodiscard]] const World& world(std::size_t room) const;
+    /// Returns the replay of a room; null in other runs.
+    [[nodiscard]] const Replay* replay(std::size_t room) const;
+    /// Records the lifts from now on. \throws as LineFile, then each step as a write
+    void recordLifts(const std::string& file);
+    /// Name of that file in a record.
+    static constexpr const char* kLiftFile = "lifts.csv";
 
     [[nodiscard]] std::span<const JoinedRoom> rooms() const override;
     [[nodiscard]] std::optional<std::size_t> roomOf(std::string_view mover) const override;

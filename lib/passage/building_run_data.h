@@ -12,6 +12,7 @@
 
 #include "passage/building_run.h"
 #include "passage/cabin.h"
+#include "passage/lift_record.h"
 #include "passage/storey_ways.h"
 #include "scene/scene.h"
 
@@ -75,6 +76,7 @@ struct BuildingRun::Data {
         std::optional<std::size_t> storey;    // of a storey
         std::size_t passage = 0, flight = 0;  // of a cabin or a flight
         std::unique_ptr<World> world = {};
+        std::unique_ptr<Replay> replay = {};
         std::unique_ptr<Simulation> simulation = {};
     };
 
@@ -89,6 +91,13 @@ struct BuildingRun::Data {
     [[nodiscard]] std::optional<std::size_t> stopNamed(const StoreyLink& lift,
                                                        std::string_view storey) const;
     [[nodiscard]] std::vector<double> waits() const;
+    [[nodiscard]] std::vector<LiftNames> liftNames() const;
+
+    // Replays.
+    void replay();
+    std::shared_ptr<const Scene> openReplay(Room& room, const Scene& scene) const;
+    void showLifts(SimTime time);
+    void locate();
 
     // Trips.
     TripAnswer begin(const std::string& mover, BuildingTrip trip);
@@ -153,6 +162,8 @@ struct BuildingRun::Data {
     std::map<std::string, BuildingTrip, std::less<>> trips;
     std::vector<TripEnd> ends, new_ends;
     std::vector<Observer> observers;
+    std::optional<LiftRecorder> lift_recorder;
+    std::optional<LiftReader> lift_reader;  // of a replay
 };
 
 }  // namespace ispace

@@ -36,27 +36,29 @@ double doorTime(double width) { return width / 2 / Lift::kLeafSpeed; }
 
 void Lift::call(std::size_t stop) {
     assert(stop < model_.floors.size());
-    if (std::find(calls_.begin(), calls_.end(), stop) == calls_.end()) calls_.push_back(stop);
+    if (std::find(state_.calls.begin(), state_.calls.end(), stop) == state_.calls.end())
+        state_.calls.push_back(stop);
 }
 
 void Lift::begin(Phase phase, SimTime time, SimTime length) {
-    phase_ = phase;
-    since_ = time;
+    state_.phase = phase;
+    state_.since = time;
     until_ = time + length;
 }
 
 void Lift::advance(SimTime time, bool held) {
     const SimTime door = timeOf(doorTime(model_.door));
-    const auto serve = [this] { std::erase(calls_, stop_); };
-    switch (phase_) {
+    const auto serve = [this] { std::erase(state_.calls, state_.stop); };
+    switch (state_.phase) {
         case Phase::Waiting:
-            if (calls_.empty()) break;
-            next_ = calls_.front();
-            if (next_ == stop_) {
+            if (state_.calls.empty()) break;
+            state_.next = state_.calls.front();
+            if (state_.next == state_.stop) {
                 serve();
                 begin(Phase::Opening, time, door);
             } else {
-                const double way = std::abs(model_.floors[next_] - model_.floors[stop_]);
+                const double way =
+                    std::abs(model_.floors[state_.next] - model_.floors[state_.stop]);
                 begin(Phase::Riding, time, timeOf(liftRide(way, model_.speed)));
             }
             break;
@@ -72,7 +74,7 @@ void Lift::advance(SimTime time, bool held) {
             break;
         case Phase::Riding:
             if (time < until_) break;
-            stop_ = next_;
+            state_.stop = state_.next;
             serve();
             begin(Phase::Opening, time, door);
             break;
@@ -80,16 +82,16 @@ void Lift::advance(SimTime time, bool held) {
 }
 
 double Lift::height(SimTime time) const {
-    const double from = model_.floors[stop_];
-    if (phase_ != Phase::Riding) return from;
-    const double way = model_.floors[next_] - from;
-    const double gone = liftWay(std::abs(way), model_.speed, seconds(time - since_));
+    const double from = model_.floors[state_.stop];
+    if (state_.phase != Phase::Riding) return from;
+    const double way = model_.floors[state_.next] - from;
+    const double gone = liftWay(std::abs(way), model_.speed, seconds(time - state_.since));
     return from + std::copysign(gone, way);
 }
 
 double Lift::opening(SimTime time) const {
-    const double share = std::clamp(seconds(time - since_) / doorTime(model_.door), 0.0, 1.0);
-    switch (phase_) {
+    const double share = std::clamp(seconds(time - state_.since) / doorTime(model_.door), 0.0, 1.0);
+    switch (state_.phase) {
         case Phase::Opening:
             return share;
         case Phase::Open:

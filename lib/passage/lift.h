@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
+#include <utility>
 #include <vector>
 
 #include "sim/sim_time.h"
@@ -33,6 +33,16 @@ class Lift {
 
     enum class Phase { Waiting, Opening, Open, Closing, Riding };
 
+    /// From which all that it shows follows.
+    struct State {
+        Phase phase = Phase::Waiting;
+        std::size_t stop = 0;            ///< at which it is, or from which it rides
+        std::size_t next = 0;            ///< to which it rides
+        SimTime since{};                 ///< beginning of the phase
+        std::vector<std::size_t> calls;  ///< stops, in the order in which it serves them
+        friend bool operator==(const State&, const State&) = default;
+    };
+
     /// Stands at the lowest stop, closed.
     explicit Lift(LiftModel model) : model_(std::move(model)) {}
 
@@ -42,14 +52,16 @@ class Lift {
     /// Advances to a time. \param held the doors stay open
     void advance(SimTime time, bool held);
 
-    [[nodiscard]] Phase phase() const { return phase_; }
-    /// Returns the stop at which it is, or from which it rides.
-    [[nodiscard]] std::size_t stop() const { return stop_; }
+    [[nodiscard]] const State& state() const { return state_; }
+    /// Shows a recorded state. advance() must not follow. \pre its stops exist
+    void show(State state) { state_ = std::move(state); }
+    [[nodiscard]] Phase phase() const { return state_.phase; }
+    [[nodiscard]] std::size_t stop() const { return state_.stop; }
     /// Returns true if the doors are open at that stop.
     [[nodiscard]] bool isOpenAt(std::size_t stop) const {
-        return phase_ == Phase::Open && stop_ == stop;
+        return state_.phase == Phase::Open && state_.stop == stop;
     }
-    [[nodiscard]] const std::deque<std::size_t>& calls() const { return calls_; }
+    [[nodiscard]] const std::vector<std::size_t>& calls() const { return state_.calls; }
     /// Returns the height of its floor at a time, in metres.
     [[nodiscard]] double height(SimTime time) const;
     /// Returns the share of the door's width that is open at a time.
@@ -60,10 +72,8 @@ class Lift {
     void begin(Phase phase, SimTime time, SimTime length);
 
     LiftModel model_;
-    Phase phase_ = Phase::Waiting;
-    std::size_t stop_ = 0, next_ = 0;
-    SimTime since_{}, until_{};  // of the phase
-    std::deque<std::size_t> calls_;
+    State state_;
+    SimTime until_{};  // end of the phase
 };
 
 /// Returns the seconds of a ride over a distance: with constant acceleration to the speed and back,

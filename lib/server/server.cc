@@ -90,8 +90,9 @@ void Server::run() {
         data.state.changeAsScripted();
         // Last before sleeping: pending requests determine the time to wake.
         std::optional<WallTime> next;
-        next = data.holdsWorld() ? simulation.flushRecord()
-                                 : simulation.run(std::chrono::steady_clock::now(), data.turn());
+        next = data.state.holdsWorld()
+                   ? simulation.flushRecord()
+                   : simulation.run(std::chrono::steady_clock::now(), data.turn());
         if (simulation.finished()) break;
         if (const WallTime turn = data.nextTurn(); turn < WallTime::max())
             next = std::min(next.value_or(turn), turn);

@@ -55,13 +55,6 @@ bool Server::Data::hasUpdates() {
     return has_updates;
 }
 
-/// The simulation of the first world has the clock of all.
-bool Server::Data::holdsWorld() {
-    if (others.empty() || !state.mayHold()) return state.holdsWorld();
-    return std::any_of(rooms.states.begin(), rooms.states.end(),
-                       [](const ServerState* each) { return !each->isAtRest(); });
-}
-
 void Server::Data::welcome(tcp::socket socket) {
     sweep();
     const bool full = serving >= limits.clients && !makeRoom();

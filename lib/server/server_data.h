@@ -49,7 +49,6 @@ struct Server::Data {
     [[nodiscard]] std::vector<ServerState*> states();
     bool collect();
     bool hasUpdates();
-    [[nodiscard]] bool holdsWorld();
 
     void welcome(asio::ip::tcp::socket socket);
     bool makeRoom();

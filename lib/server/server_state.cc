@@ -160,8 +160,14 @@ bool ServerState::mayHold() const {
            simulation_->paused();
 }
 
+bool ServerState::areAllAtRest() const {
+    if (rooms_ == nullptr) return isAtRest();
+    return std::all_of(rooms_->states.begin(), rooms_->states.end(),
+                       [](const ServerState* each) { return each->isAtRest(); });
+}
+
 bool ServerState::holdsWorld() const {
-    return simulation_->isChangeDue() || scripted_ || (mayHold() && !isAtRest());
+    return simulation_->isChangeDue() || scripted_ || (mayHold() && !areAllAtRest());
 }
 
 void ServerState::runInBackground(BackgroundWorker::Job job) {
@@ -220,16 +226,15 @@ bool ServerState::goOnSeeking() {
 bool ServerState::prepare(std::optional<SimTime> to) {
     // A change drops readings of the last step that are not recorded yet: these come first.
     const WallTime now = std::chrono::steady_clock::now();
-    if (!to && !(simulation_->world().readSome(now) && simulation_->finishRecord(now)))
-        return false;
+    if (!to && !(simulation_->readSome(now) && simulation_->finishRecord(now))) return false;
     auto work = simulation_->preparation(to);
     if (!work) return false;
     is_changing_ = true;
-    build({std::move(work), [this](const std::exception_ptr& failure) {
+    build({std::move(work), [this, to](const std::exception_ptr& failure) {
                is_changing_ = false;
                try {
                    if (failure) std::rethrow_exception(failure);
-                   endLater(simulation_->adoptPrepared());
+                   endLater(simulation_->adoptPrepared(to));
                } catch (const std::exception& error) {
                    if (!seek_) throw;
                    seek_->failure = error.what();

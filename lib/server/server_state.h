@@ -165,13 +165,13 @@ class ServerState {
     /// thrown, or null; `end` may rethrow it. \pre mayChangeNow()
     void change(WorldChange change, std::function<void(const std::exception_ptr& failure)> end);
     /// Moves a replay to another time, one part now and the rest in collect().
-    /// \pre isAtRest(), Simulation::maySeek()
+    /// \pre areAllAtRest(), Simulation::maySeek()
     std::shared_ptr<const Seek> seek(SimTime to);
     /// True if collect() can continue a seek at once.
     [[nodiscard]] bool isOnTheWay() const { return seek_ && !is_changing_; }
     /// Prepares the next step of a replay, in a background thread after makeAside().
     void prepareStep() {
-        if (isAtRest()) prepare({});
+        if (areAllAtRest()) prepare({});
     }
     /// True if clients may have updates since the last call: a change or a mark.
     [[nodiscard]] bool hasUpdates();
@@ -209,6 +209,8 @@ class ServerState {
     }
     /// True if no picture, change or seek of the current world is under way.
     [[nodiscard]] bool isAtRest() const { return !isMaking() && !is_changing_ && !seek_; }
+    /// Likewise in all worlds of the run.
+    [[nodiscard]] bool areAllAtRest() const;
     /// True if clients may expect steps to wait for them: not with the clock Real.
     [[nodiscard]] bool mayHold() const;
     /// Makes the changes of the script that are due, in order; not while another is under way. One

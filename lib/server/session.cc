@@ -206,7 +206,7 @@ void Session::goOn() {
 void Session::silent() {
     sync();
     if (!drives()) return;
-    if (rooms() != nullptr) rooms()->worlds->endTrip(id_, Outcome::Stopped);
+    if (rooms() != nullptr) rooms()->worlds->abandonTrip(id_);
     world().command(subject_, {Verb::Stop, 0});
     sendCompletions();
 }
@@ -347,7 +347,7 @@ void Session::lose() {
 /// Releases the client's robot or person.
 void Session::leave() {
     if (drives()) {
-        if (rooms() != nullptr) rooms()->worlds->endTrip(id_, Outcome::Stopped);
+        if (rooms() != nullptr) rooms()->worlds->abandonTrip(id_);
         state_->release(id_, hold_);
     }
     state_->steps().drop(std::exchange(steps_, nullptr));

@@ -139,6 +139,7 @@ class Session {
     void sync();
     void lose();
     bool mayAskFor(std::string_view verb);
+    bool mayMove();
     void leave();
     void sendCompletions();
     void tellEvents();
@@ -147,7 +148,7 @@ class Session {
     void hold(Words words, Condition until);
     void goOn();
     [[nodiscard]] bool mayChange() const;
-    [[nodiscard]] bool maySeek() const { return state_->isAtRest(); }
+    [[nodiscard]] bool maySeek() const { return state_->areAllAtRest(); }
     [[nodiscard]] bool hasCome() const { return !coming_; }
     [[nodiscard]] bool sendsPendingScan(Words words);
     void sendReading(std::size_t sensor, const ReplyForm& form);

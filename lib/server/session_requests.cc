@@ -81,10 +81,7 @@ void Session::command(Words words) {
         const bool range = parsed.error.kind == CommandError::Kind::Range;
         return error(range ? 416 : 400, {parsed.error.message});
     }
-    if (state_->simulation().isReplay())
-        return error(405,
-                     {"this run is a replay: robots and people go as recorded; take STATUS and "
-                      "SCAN, or run the scene without --replay"});
+    if (!mayMove()) return;
     const std::string refusal = world().refusal(subject_, *parsed.command);
     if (!refusal.empty()) return error(416, {refusal});
     if (rooms() != nullptr) {

@@ -109,6 +109,14 @@ bool Session::isTrip(Words words) const {
            words[1].find('/') != std::string_view::npos;
 }
 
+/// Answers with an error if movers and lifts follow a record.
+bool Session::mayMove() {
+    if (!state_->simulation().isReplay()) return true;
+    error(405, {"this run is a replay: robots and people go as recorded; take STATUS and "
+                "SCAN, or run the scene without --replay"});
+    return false;
+}
+
 void Session::goTo(Words words) {
     if (rooms() == nullptr)
         return error(405, {words[0], " is for the runs of buildings: PATH leads over points"});
@@ -116,6 +124,7 @@ void Session::goTo(Words words) {
 }
 
 void Session::startTrip(Words words) {
+    if (!mayMove()) return;
     JoinedWorlds& worlds = *rooms()->worlds;
     const auto& states = rooms()->states;
     const auto room = std::find(states.begin(), states.end(), state_) - states.begin();
@@ -151,11 +160,13 @@ void Session::answerTrip(std::string_view verb, const TripAnswer& answer) {
 
 void Session::ride(Words words) {
     if (rooms() == nullptr) return error(405, {"RIDE is for the runs of buildings"});
+    if (!mayMove()) return;
     answerTrip(words[0], rooms()->worlds->ride(id_, words[1], words[2]));
 }
 
 void Session::call(Words words) {
     if (rooms() == nullptr) return error(405, {"CALL is for the runs of buildings"});
+    if (!mayMove()) return;
     const std::string refusal = rooms()->worlds->call(words[1], words[2]);
     if (!refusal.empty()) return error(404, {refusal});
     out_.append("OK CALL t=").append(formatMilliseconds(world().time())).append("\n");

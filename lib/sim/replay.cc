@@ -16,11 +16,6 @@ namespace ispace {
 
 namespace {
 
-SimTime timeOf(double seconds) {
-    constexpr double kNanoseconds = 1e9;
-    return SimTime(std::llround(seconds * kNanoseconds));
-}
-
 RobotStatus statusOf(const RunState& state) {
     return {.pose = state.pose,
             .speed = state.speed,
@@ -34,21 +29,35 @@ RobotStatus statusOf(const RunState& state) {
 
 }  // namespace
 
-Replay::Replay(const std::string& folder) : folder_(folder), reader_(folder) {
-    if (!reader_.next())
+SimTime recordedTime(double seconds) {
+    constexpr double kNanoseconds = 1e9;
+    return SimTime(std::llround(seconds * kNanoseconds));
+}
+
+Replay::Replay(const std::string& folder) : Replay(folder, std::optional<SimTime>()) {}
+
+Replay::Replay(const std::string& folder, SimTime step) : Replay(folder, std::optional(step)) {}
+
+Replay::Replay(const std::string& folder, std::optional<SimTime> joined_step)
+    : folder_(folder), is_joined_(joined_step), reader_(folder) {
+    const bool has_moment = reader_.next();
+    if (!has_moment && !is_joined_)
         throw FormatError({reader_.name(), 0, 0, "holds no moment of a run: nobody moved in it"});
-    if (const auto change = recordedChange(folder)) changed_ = timeOf(*change);
-    const SimTime begin = timeOf(reader_.time());
+    if (const auto change = recordedChange(folder)) changed_ = recordedTime(*change);
+    const SimTime begin = has_moment ? recordedTime(reader_.time()) : SimTime(0);
     const auto info = recordedInfo(folder);
     info_ = info.value_or(RunInfo());
     // A record without a moment of the start began without movers.
-    is_late_ = begin > SimTime(0) && info && isEmptyAt(SimTime(0));
+    is_late_ = is_joined_ ? !has_moment || begin > SimTime(0)
+                          : begin > SimTime(0) && info && isEmptyAt(SimTime(0));
     if (!is_late_) start_.assign(reader_.states().begin(), reader_.states().end());
-    is_ahead_ = is_late_ || reader_.next();
+    is_ahead_ = has_moment && (is_late_ || reader_.next());
     if (info)
-        step_ = timeOf(info->step);
+        step_ = recordedTime(info->step);
+    else if (is_joined_)
+        step_ = *joined_step;
     else if (is_ahead_)
-        step_ = timeOf(reader_.time()) - begin;
+        step_ = recordedTime(reader_.time()) - begin;
     else
         step_ = std::chrono::milliseconds(5);
     if ((begin != SimTime(0) && !is_late_) || step_ < World::kShortestStep ||
@@ -83,7 +92,8 @@ void Replay::placeAtStart(Scene& scene) const {
 /// Returns true if the record may lack the moment at a time because the world had no movers. A
 /// change takes effect before the next step.
 bool Replay::isEmptyAt(SimTime time) const {
-    const SimTime next = timeOf(reader_.time());
+    const SimTime next = recordedTime(reader_.time());
+    if (is_joined_ && !is_ahead_) return true;
     return changed_ && *changed_ <= next && time < next;
 }
 
@@ -94,7 +104,8 @@ std::function<void()> Replay::preparation(const World& world, std::optional<SimT
         };
     if (to && *to < world.time() + step_) return nullptr;
     const double before = seconds(world.time() + step_);
-    if (!is_ahead_ || !run_changes_ || !run_changes_->isDue(before)) return nullptr;
+    const bool may_change = is_ahead_ || is_joined_;
+    if (!may_change || !run_changes_ || !run_changes_->isDue(before)) return nullptr;
     std::unordered_map<std::string_view, Pose2> places;
     for (std::size_t i = 0; i < world.movers().size(); ++i)
         places.emplace(world.movers()[i].id, world.status(i).pose);
@@ -117,6 +128,7 @@ std::function<void()> Replay::preparation(const World& world, std::optional<SimT
 }
 
 std::shared_ptr<const void> Replay::adopt(World& world) {
+    if (!prepared_) return nullptr;
     const Prepared prepared = std::exchange(prepared_, std::nullopt).value();
     if (prepared.rewinds) return rewind(world, prepared.next);
     if (!prepared.step) return nullptr;
@@ -164,9 +176,9 @@ void Replay::collide(const World& world) {
 bool Replay::step(World& world) { return step(world, true); }
 
 bool Replay::step(World& world, bool reads) {
-    if (!is_ahead_) return false;
-    const SimTime time = timeOf(reader_.time());
+    if (!is_ahead_ && !is_joined_) return false;
     const SimTime now = world.time() + step_;
+    const SimTime time = is_ahead_ ? recordedTime(reader_.time()) : now;
     const bool is_empty = isEmptyAt(now) && (time - now) % step_ == SimTime(0);
     if (time != now && !is_empty)
         throw FormatError(
@@ -213,19 +225,26 @@ void Replay::seek(World& world, SimTime time) {
     while (!seekSome(world, time, std::chrono::steady_clock::time_point::max()));
 }
 
-bool Replay::seekSome(World& world, SimTime time, std::chrono::steady_clock::time_point until) {
+bool Replay::stepTowards(World& world, SimTime time) {
     // Every sensor is read once in its turn before that time; the first scan of a spinning laser
     // after it may lack its beginning, and the next one is late.
-    double settle = 0;
-    for (const Sensor& sensor : world.sensors()) {
-        const auto* laser = sensor.tryAs<Laser>();
-        const int periods = laser != nullptr && laser->duration() > 0 ? 4 : 1;
-        settle = std::max(settle, periods * (1 / periodRate(sensor) + 2 * seconds(step_)));
+    if (settled_changes_ != world.changes()) {
+        settled_changes_ = world.changes();
+        settle_ = 0;
+        for (const Sensor& sensor : world.sensors()) {
+            const auto* laser = sensor.tryAs<Laser>();
+            const int periods = laser != nullptr && laser->duration() > 0 ? 4 : 1;
+            settle_ = std::max(settle_, periods * (1 / periodRate(sensor) + 2 * seconds(step_)));
+        }
     }
+    return step(world, seconds(time - world.time()) <= settle_);
+}
+
+bool Replay::seekSome(World& world, SimTime time, std::chrono::steady_clock::time_point until) {
     if (time < world.time()) return false;
     while (world.time() + step_ <= time) {
         if (preparation(world) != nullptr) return false;
-        if (!step(world, seconds(time - world.time()) <= settle)) break;
+        if (!stepTowards(world, time)) break;
         if (std::chrono::steady_clock::now() >= until) return false;
     }
     return true;

@@ -24,6 +24,10 @@ class Replay {
     /// Opens the record in a folder and reads its first moment.
     /// \throws std::system_error, FormatError as RunReader, and if it is empty
     explicit Replay(const std::string& folder);
+    /// Opens the record of one of several worlds in lock step, between which movers go: it may lack
+    /// moments, also all, and step() goes on after its last one. \param step of a record without
+    /// info.csv \throws likewise
+    Replay(const std::string& folder, SimTime step);
 
     /// Returns the time from one moment to the next.
     [[nodiscard]] SimTime stepLength() const { return step_; }
@@ -34,7 +38,7 @@ class Replay {
     /// Sets all movers to the first poses of the record. \throws FormatError for a mover that the
     /// scene lacks
     void placeAtStart(Scene& scene) const;
-    /// Returns true if step() takes no more.
+    /// Returns true after the last moment of the record.
     [[nodiscard]] bool atEnd() const { return !is_ahead_; }
     /// Takes the next step of a world that has taken as many steps; false, without a step, at the
     /// end of the record. Collisions are those of events.csv; without it, a mover that begins to
@@ -66,6 +70,9 @@ class Replay {
     /// seek() in parts: until that wall time, or until a preparation is required.
     /// \returns true if the world is there
     bool seekSome(World& world, SimTime time, std::chrono::steady_clock::time_point until);
+    /// Takes one step of a seek to a time that is not before the next step. \pre no preparation is
+    /// required \throws as step()
+    bool stepTowards(World& world, SimTime time);
     /// Returns the end of the record, if known.
     [[nodiscard]] std::optional<SimTime> end() const;
     /// Returns the time of the first change that clients made to the world of the run.
@@ -74,6 +81,7 @@ class Replay {
     [[nodiscard]] bool isCut() const { return reader_.isCut(); }
 
   private:
+    Replay(const std::string& folder, std::optional<SimTime> joined_step);
     bool step(World& world, bool reads);
     /// A scene that is ready to be adopted.
     struct Prepared {
@@ -88,6 +96,7 @@ class Replay {
     [[nodiscard]] bool isEmptyAt(SimTime time) const;
 
     std::string folder_;
+    bool is_joined_;  // one of several worlds
     RunReader reader_;
     RunInfo info_;
     SimTime step_{};
@@ -103,7 +112,12 @@ class Replay {
     std::vector<RunCollision> recorded_;              // their ids
     std::vector<std::optional<std::size_t>> movers_;  // index of each in the record
     std::int64_t changes_ = -1;                       // of the world, when movers_ was computed
+    double settle_ = 0;  // seconds before the end of a seek from which sensors are read
+    std::int64_t settled_changes_ = -1;  // of the world, when it was computed
 };
+
+/// Converts the seconds of a record.
+SimTime recordedTime(double seconds);
 
 /// Returns the motion of a mover with this status, without goals.
 Motion motionOf(const RobotStatus& status);

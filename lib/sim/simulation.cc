@@ -95,7 +95,7 @@ void Simulation::allow(std::int64_t count) {
 
 void Simulation::endIfReached() {
     if (world_->time() >= until_) finished_ = true;
-    if (replay_ == nullptr || !replay_->atEnd()) return;
+    if (is_led_ || !isReplayed()) return;
     owed_ = 0;
     (holds_ ? paused_ : finished_) = true;
 }
@@ -137,13 +137,81 @@ void Simulation::replay(Replay& replay, bool holds) {
     endIfReached();
 }
 
+bool Simulation::isReplayed() const {
+    return replay_ != nullptr && replay_->atEnd() &&
+           std::all_of(followers_.begin(), followers_.end(),
+                       [](const Simulation* other) { return other->isReplayed(); });
+}
+
+bool Simulation::maySeek() const {
+    const auto may_seek = [](const Simulation* one) {
+        return one->replay_ != nullptr && one->recorder_ == nullptr && !one->is_in_order_;
+    };
+    return may_seek(this) && std::all_of(followers_.begin(), followers_.end(), may_seek);
+}
+
+std::function<void()> Simulation::preparation(std::optional<SimTime> to) const {
+    if (replay_ == nullptr) return nullptr;
+    if (to) to = std::min(*to, until_);
+    if (followers_.empty()) return replay_->preparation(*world_, to);
+    std::vector<std::function<void()>> parts;
+    const auto add = [&](const Simulation* one) {
+        if (auto part = one->replay_->preparation(*one->world_, to))
+            parts.push_back(std::move(part));
+    };
+    add(this);
+    std::for_each(followers_.begin(), followers_.end(), add);
+    if (parts.empty()) return nullptr;
+    return [parts = std::move(parts)] {
+        for (const auto& part : parts) part();
+    };
+}
+
+std::shared_ptr<const void> Simulation::adoptPrepared(std::optional<SimTime> to) {
+    if (followers_.empty()) return replay_->adopt(*world_);
+    auto old = std::make_shared<std::vector<std::shared_ptr<const void>>>();
+    for (auto work = std::function<void()>([] {}); work; work = preparation(to)) {
+        work();
+        old->push_back(replay_->adopt(*world_));
+        for (Simulation* const other : followers_)
+            old->push_back(other->replay_->adopt(*other->world_));
+    }
+    for (const auto& changer : changers_) changer();
+    return old;
+}
+
+void Simulation::seek(SimTime time) {
+    do {
+        while (const auto work = preparation(time)) {
+            work();
+            adoptPrepared(time);
+        }
+    } while (!seekSome(time, WallTime::max()));
+}
+
+bool Simulation::seekTogether(SimTime time, WallTime until) {
+    if (time < world_->time()) return false;
+    while (world_->time() + world_->stepLength() <= time && !isReplayed()) {
+        if (preparation() != nullptr) return false;
+        replay_->stepTowards(*world_, time);
+        for (Simulation* const other : followers_)
+            other->replay_->stepTowards(*other->world_, time);
+        if (steady_clock::now() >= until) return false;
+    }
+    return true;
+}
+
 bool Simulation::seekSome(SimTime time, WallTime until) {
     assert(maySeek());
-    if (!replay_->seekSome(*world_, std::min(time, until_), until)) return false;
+    time = std::min(time, until_);
+    if (!(followers_.empty() ? replay_->seekSome(*world_, time, until) : seekTogether(time, until)))
+        return false;
     events_.stepped();
+    for (Simulation* const other : followers_) other->events_.stepped();
     endIfReached();
     ahead_.reset();
     if (started_) startAt(steady_clock::now());
+    for (const auto& changer : changers_) changer();
     return true;
 }
 
@@ -156,10 +224,10 @@ void Simulation::step() {
     events_.stepped();
     // Before the next commands: one of motion would clear the stall flag of this step.
     if (recorder_ != nullptr) recorder_->record(*world_);
+    for (Simulation* const other : followers_) other->step();
     endIfReached();
     if (!finished_) giveScripted();
     if (!finished_ && director_) director_->stepped(*this);
-    for (Simulation* const other : followers_) other->step();
     for (const auto& observer : observers_) observer();
 }
 

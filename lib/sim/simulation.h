@@ -80,13 +80,17 @@ class Simulation {
     /// Lets another simulation take a step after each of this one, before observers are called. Its
     /// own clock, pauses and end have no effect. \pre it has the same step and outlives this one's
     /// last, and takes no turns by itself
-    void lead(Simulation& other) { followers_.push_back(&other); }
+    void lead(Simulation& other) {
+        followers_.push_back(&other);
+        other.is_led_ = true;
+    }
 
     /// Records every step from now on. The recorder must outlive the last one.
     void recordWith(Recorder& recorder) { recorder_ = &recorder; }
 
     /// Takes the steps of a record instead of simulating. At its end the run ends; if `holds`, it
-    /// pauses and goes on serving the last moment. \pre the replay outlives the last step
+    /// pauses and goes on serving the last moment. If this one leads others, they have replays,
+    /// too, set before, and the end is that of the last one. \pre the replay outlives the last step
     void replay(Replay& replay, bool holds);
     /// Returns null without a record.
     [[nodiscard]] const Recorder* recorder() const { return recorder_; }
@@ -99,12 +103,10 @@ class Simulation {
     /// Returns true if movers follow a record and ignore commands.
     [[nodiscard]] bool isReplay() const { return replay_ != nullptr; }
     /// Returns true if a replay that holds has reached its end: no steps are left.
-    [[nodiscard]] bool isHeld() const { return holds_ && replay_ != nullptr && replay_->atEnd(); }
+    [[nodiscard]] bool isHeld() const { return holds_ && isReplayed(); }
 
     /// Returns true if seek() may be called: the steps of this replay may be taken in any order.
-    [[nodiscard]] bool maySeek() const {
-        return replay_ != nullptr && recorder_ == nullptr && !is_in_order_;
-    }
+    [[nodiscard]] bool maySeek() const;
     /// Requires the steps of the replay in order, from the first to the last.
     void keepOrder() { is_in_order_ = true; }
     /// Seeks a replay to a time in parts, see Replay::seekSome: call it until it returns true. Drop
@@ -112,11 +114,18 @@ class Simulation {
     bool seekSome(SimTime time, WallTime until);
     /// Returns the preparation that the next step of a replay, or a seek to a time, requires: see
     /// Replay::preparation. run() prepares by itself if its first step requires it.
-    [[nodiscard]] std::function<void()> preparation(std::optional<SimTime> to = {}) const {
-        if (to) to = std::min(*to, until_);
-        return replay_ == nullptr ? nullptr : replay_->preparation(*world_, to);
+    [[nodiscard]] std::function<void()> preparation(std::optional<SimTime> to = {}) const;
+    /// \param to of preparation(). If this one leads others, adopts all changes before that time,
+    /// as a mover goes from one world to another by two.
+    std::shared_ptr<const void> adoptPrepared(std::optional<SimTime> to = {});
+    /// Adds an observer, called after each seek, and when a replay has changed a world.
+    void onReplayChange(std::function<void()> observer) {
+        changers_.push_back(std::move(observer));
     }
-    std::shared_ptr<const void> adoptPrepared() { return replay_->adopt(*world_); }
+    /// Seeks a replay to its last step at or before a time, or to its end. \pre maySeek()
+    void seek(SimTime time);
+    /// Reads sensors that are due, until about then. \returns true once all are read
+    bool readSome(WallTime until);
     /// Returns the end of a replay, if known.
     [[nodiscard]] std::optional<SimTime> end() const {
         return replay_ == nullptr ? std::nullopt : replay_->end();
@@ -166,11 +175,13 @@ class Simulation {
   private:
     std::optional<WallTime> runDue(WallTime now, std::chrono::nanoseconds budget);
     bool finishStep(WallTime until);
-    bool readSome(WallTime until);
     [[nodiscard]] bool awaitsFrames() const;
     void giveScripted();
     void step();
     void endIfReached();
+    /// Returns true after the last moment of all records.
+    [[nodiscard]] bool isReplayed() const;
+    bool seekTogether(SimTime time, WallTime until);
     /// Aligns simulated time with wall time from here on.
     void startAt(WallTime now);
     /// Returns the wall time of the next step by the clock Real. \pre it is started
@@ -192,8 +203,9 @@ class Simulation {
     bool is_in_order_ = false;  // steps must be taken in order
     Clock clock_;
     SimTime until_;
-    std::vector<std::function<void()>> observers_, preparers_;
+    std::vector<std::function<void()>> observers_, preparers_, changers_;
     std::vector<Simulation*> followers_;  // in lock step
+    bool is_led_ = false;
     bool paused_ = false, finished_ = false;
     std::int64_t owed_ = 0;
     std::optional<WallTime> started_;  // wall time of start_time_

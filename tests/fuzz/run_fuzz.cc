@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records of runs: robots.csv, people.csv, events.csv, odometry.csv, bumpers.csv and info.csv, with
-// lines `---` between; an empty file is a missing one. Replays those that it can read.
+// Records of runs: robots.csv, people.csv, events.csv, odometry.csv, bumpers.csv, info.csv and
+// lifts.csv, with lines `---` between; an empty file is a missing one. Replays those that it can
+// read, also as that of one of several worlds.
 #include <array>
 #include <filesystem>
 
 #include "fuzz.h"
+#include "passage/lift_record.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "scene/run/run_changes.h"
@@ -15,8 +17,8 @@ namespace {
 
 using namespace ispace;
 
-constexpr std::array kNames = {"robots.csv",   "people.csv",  "events.csv",
-                               "odometry.csv", "bumpers.csv", "info.csv"};
+constexpr std::array kNames = {"robots.csv",  "people.csv", "events.csv", "odometry.csv",
+                               "bumpers.csv", "info.csv",   "lifts.csv"};
 
 void writeRecord(std::string_view bytes) {
     const std::vector<std::string_view> files = fuzz::filesOf(bytes);
@@ -37,13 +39,24 @@ void checkMoment(const RunReader& reader, double before) {
         fuzz::require(!bumpers.hit.empty(), "bumpers without one");
 }
 
+void readLifts() {
+    const std::string file = fuzz::scratchFolder() + "/lifts.csv";
+    if (!std::filesystem::exists(file)) return;
+    LiftReader reader(file, {{"l1", {"ground", "upper"}}, {"", {}}, {"l2", {"upper", "attic"}}});
+    constexpr std::array kTimes = {0, 1, 5, 2, 1000};
+    for (const int time : kTimes)
+        for (const Lift::State& state : reader.at(std::chrono::seconds(time))) {
+            fuzz::require(state.stop < 2 && state.next < 2, "a lift at an unknown stop");
+            fuzz::require(state.since <= std::chrono::seconds(time), "a phase of a later time");
+        }
+}
+
 /// The first steps of a replay, in a separate room.
-void replay() {
+void replay(Replay replay) {
     static const Document room = readRecordText(
         "#env 1\nispace size=8,6\nrobot id=r1 at=0,0\nrobot id=r2 at=1,0\nhuman id=h1 at=2,2\n",
         "room.env", sceneSchemas());
     static const Scene start = makeScene(room, nullptr, DeviceCatalogue());
-    Replay replay(fuzz::scratchFolder());
     Scene scene = start;
     replay.placeAtStart(scene);
     World world(scene, replay.stepLength());
@@ -61,11 +74,17 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
         require(change.line > 1, "a change without its line");
     if (const auto info = recordedInfo(scratchFolder()))
         require(info->step > 0 && info->steps >= 0, "a run with negative steps");
+    readLifts();
     if (!std::filesystem::exists(RecordedFiles(scratchFolder()).robots)) return;
     RunReader reader(scratchFolder());
     while (reader.next()) {
         checkMoment(reader, time);
         time = reader.time();
     }
-    replay();
+    try {
+        replay(Replay(scratchFolder()));
+    } catch (const FormatError&) {
+        // As one of several worlds it may lack moments.
+    }
+    replay(Replay(scratchFolder(), std::chrono::milliseconds(5)));
 }

@@ -106,7 +106,7 @@ void run(const SimrunCommand& command, JunitFile& junit) {
         return drawRecord(options, input.scene, titleOf(options, input));
     if (options.noise) warnOfNoNoise(input.scene, !replay, options.common);
     World world(input.scene, replay ? replay->stepLength() : options.step,
-                runOptionsOf(options, replay));
+                runOptionsOf(options, replay ? std::optional(replay->info()) : std::nullopt));
     warn(options.common, "simrun", startWarnings(world));
     if (replay) forward(*replay, world, options.from);
     Script script = scriptOf(options, input, world);
@@ -114,7 +114,7 @@ void run(const SimrunCommand& command, JunitFile& junit) {
     simulation.follow(std::move(script.days));
     if (replay) simulation.replay(*replay, options.holds);
     CollisionLog collisions(world, options.common);
-    FailureLog failures(replay, options.common);
+    FailureLog failures(replay ? &*replay : nullptr, options.common);
     LagLog lag(simulation, options.common);
     simulation.onStep([&lag] { lag.tell(); });
     if (replay)

@@ -3,6 +3,7 @@
 #include "simrun/simrun_building.h"
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,7 +17,9 @@
 #include "cli/outputs.h"
 #include "passage/building_run.h"
 #include "passage/building_script.h"
+#include "record/text.h"
 #include "scene/findings/findings.h"
+#include "scene/run/run_reader.h"
 #include "sim/world_state.h"
 #include "simrun/simrun_ports.h"
 #include "simrun/simrun_run.h"
@@ -35,7 +38,6 @@ void mustBeAboutBuildings(const SimrunOptions& options, const BuildingInput& inp
     refuse(!options.zones.empty(), "--zone");
     refuse(!options.expected.empty(), "--expect");
     refuse(!options.report.empty(), "--report");
-    refuse(!options.replay.empty(), "--replay");
     refuse(options.foxglove.has_value(), "--foxglove");
     refuse(options.rosbridge.has_value(), "--rosbridge");
     refuse(options.ros_domain.has_value(), "--ros2");
@@ -55,35 +57,105 @@ void warnOfScenes(const SimrunOptions& options, const BuildingInput& input) {
         }
 }
 
-/// Records each room into a folder of its name, as a run by itself.
+/// The building in the folder of its record, with the scenes of the run's start.
+constexpr const char* kBuildingFile = "building.yaml";
+
+/// Writes the building with its layout. Storeys keep sharing rooms.
+void writeBuilding(const BuildingScene& building, const History& history,
+                   const std::string& folder) {
+    StoreyedDocument whole = building.document;
+    whole.history = history;
+    std::map<const Scene*, std::shared_ptr<const Document>> rooms;
+    for (std::size_t i = 0; i < whole.storeys.size(); ++i) {
+        std::shared_ptr<const Document>& known = rooms[building.scenes[i].get()];
+        if (!known) {
+            auto room = std::make_shared<Document>(*whole.storeys[i].room);
+            room->records = building.scenes[i]->records;
+            rebaseFiles(room->records, "", folder);
+            known = std::move(room);
+        }
+        whole.storeys[i].room = known;
+    }
+    writeAll(folder + '/' + kBuildingFile, writeBuildingYaml(whole));
+}
+
+/// Records each room into a folder of its name, as a run by itself, and beside them the building
+/// and its lifts.
 std::vector<std::unique_ptr<RunningRecord>> recordsOf(const SimrunOptions& options,
-                                                      BuildingRun& run, const History& history,
-                                                      Server& server) {
+                                                      BuildingRun& run,
+                                                      const BuildingScene& building,
+                                                      const History& history, Server& server) {
     std::vector<std::unique_ptr<RunningRecord>> records;
     if (options.record.empty()) return records;
+    if (std::filesystem::exists(RecordedFiles(options.record).robots))
+        throw UsageError("--record: " + options.record +
+                         " holds the record of one room: give another folder");
     std::filesystem::create_directory(options.record);
     SimrunOptions own = options;
     for (std::size_t i = 0; i < run.rooms().size(); ++i) {
         const JoinedRoom& room = run.rooms()[i];
+        const Replay* const replay = run.replay(i);
         own.record = options.record + '/' + room.id;
         records.push_back(recordOf(*room.simulation, own, room.simulation->world().scene(), history,
-                                   options.noise, server.frameTaker(i)));
+                                   replay != nullptr ? replay->hasOdometry() : options.noise,
+                                   server.frameTaker(i)));
     }
+    writeBuilding(building, history, options.record);
+    run.recordLifts(options.record + '/' + BuildingRun::kLiftFile);
     return records;
+}
+
+std::optional<BuildingInput> readInput(const SimrunOptions& options, const std::string& record) {
+    std::vector<std::string> operands = options.operands;
+    if (operands.empty() && !record.empty()) operands.push_back(record);
+    auto input = readBuildingInput({operands, options.rules, false});
+    if (input && record.empty() && !options.replay.empty())
+        throw UsageError("--replay: " + options.replay +
+                         " is the record of one room: choose its storey with --storey (" +
+                         input->building.document.storeyList() + ')');
+    return input;
+}
+
+BuildingRun runOf(const SimrunOptions& options, const BuildingScene& building) {
+    std::optional<RunInfo> recorded;
+    if (!options.replay.empty()) recorded = recordedInfo(options.replay, building.document);
+    return BuildingRun(building, {.step = recorded ? recordedTime(recorded->step) : options.step,
+                                  .run = runOptionsOf(options, recorded),
+                                  .clock = options.clock,
+                                  .until = options.until,
+                                  .replay = options.replay,
+                                  .holds = options.holds,
+                                  .max_work = options.rules.max_work});
+}
+
+/// Moves a replay to the time from which it is served.
+void forward(BuildingRun& run, SimTime from) {
+    Simulation& simulation = run.simulation();
+    const SimTime step = simulation.world().stepLength();
+    const SimTime first = (from + step - SimTime(1)) / step * step;
+    if (first > SimTime(0)) simulation.seek(first);
+    if (simulation.world().time() < first)
+        throw UsageError("--from: the record ends at t=" +
+                         formatSimTime(simulation.world().time()));
 }
 
 }  // namespace
 
+std::string recordedBuilding(const std::string& folder) {
+    const std::string file = folder + '/' + kBuildingFile;
+    const bool is_one = !folder.empty() && std::filesystem::exists(file) &&
+                        !std::filesystem::exists(RecordedFiles(folder).robots);
+    return is_one ? fileOfRecord(folder, kBuildingFile) : "";
+}
+
 bool runBuilding(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
-    const auto input = readBuildingInput({options.operands, options.rules, false});
+    const auto input = readInput(options, recordedBuilding(options.replay));
     if (!input) return false;
     mustBeAboutBuildings(options, *input);
     warnOfScenes(options, *input);
-    BuildingRun run(input->building, {.step = options.step,
-                                      .run = runOptionsOf(options, std::nullopt),
-                                      .clock = options.clock,
-                                      .until = options.until});
+    BuildingRun run = runOf(options, input->building);
+    forward(run, options.from);
     Simulation& simulation = run.simulation();
     std::optional<BuildingScript> script;
     if (!options.script.empty()) {
@@ -93,12 +165,17 @@ bool runBuilding(const SimrunCommand& command) {
         simulation.beforeStep([&] { script->give(run); });
     }
     std::vector<CollisionLog> collisions;
-    for (const JoinedRoom& room : run.rooms())
-        collisions.emplace_back(room.simulation->world(), options.common);
+    std::vector<FailureLog> failures;
+    for (std::size_t i = 0; i < run.rooms().size(); ++i)
+        if (const Replay* const replay = run.replay(i))
+            failures.emplace_back(replay, options.common);
+        else
+            collisions.emplace_back(run.world(i), options.common);
     LagLog lag(simulation, options.common);
     simulation.onStep([&] {
         lag.tell();
         for (CollisionLog& log : collisions) log.tell();
+        for (FailureLog& log : failures) log.tell();
     });
     // Without a source: clients do not change the rooms of a building.
     Server server(simulation, options.listen, limitsOf(options), &run);
@@ -114,7 +191,7 @@ bool runBuilding(const SimrunCommand& command) {
     }
     History history = input->layout ? input->layout->history : History();
     history.push_back(command.historyLine(input->named));
-    const auto records = recordsOf(options, run, history, server);
+    const auto records = recordsOf(options, run, input->building, history, server);
     const auto progress = progressOf(simulation, options);
     announce(server, addresses);
     if (port_file) port_file->commit();
@@ -123,6 +200,10 @@ bool runBuilding(const SimrunCommand& command) {
     for (std::size_t i = 0; i < records.size(); ++i)
         records[i]->recorder.end(run.rooms()[i].simulation->world());
     report(simulation, options);
+    for (std::size_t i = 0; i < run.rooms().size(); ++i)
+        if (run.replay(i) != nullptr && run.replay(i)->isCut())
+            warn(options.common, "simrun",
+                 run.rooms()[i].id + ": the record ends in the midst of a step, which is left out");
     return true;
 }
 

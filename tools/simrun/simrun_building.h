@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "cli/batch.h"
+#include <string>
+
 #include "simrun/simrun_options.h"
 
 namespace ispace {
 
-/// Runs a building whole if ENV is one and no storey of it is chosen; returns false otherwise.
-/// \throws UsageError for options that a building has not
+/// Returns the building in a folder of its record; "" for a folder without one, as of one room.
+/// \throws as fileOfRecord()
+std::string recordedBuilding(const std::string& folder);
+
+/// Runs a building whole, or replays its record, if ENV is one and no storey of it is chosen;
+/// returns false otherwise. \throws UsageError for options that a building has not
 bool runBuilding(const SimrunCommand& command);
 
 }  // namespace ispace

@@ -27,10 +27,16 @@
 #include "scene/run/run_reader.h"
 #include "scene/scene.h"
 #include "server/network.h"
+#include "simrun/simrun_building.h"
 
 namespace ispace {
 
 SceneInput readInput(const SimrunOptions& options) {
+    if (const std::string building = recordedBuilding(options.replay); !building.empty())
+        throw UsageError(
+            "--replay: " + options.replay +
+            " is the record of a building: give it whole, or that of a room, such as " +
+            options.replay + "/STOREY");
     std::vector<std::string> operands = options.operands;
     if (!options.replay.empty() && operands.empty()) {
         const std::string scene = sceneOfRecord(options.replay);
@@ -80,9 +86,8 @@ Script scriptOf(const SimrunOptions& options, const SceneInput& input, const Wor
     return {readScript(text, file, world), readDayPlan(text, file, world)};
 }
 
-RunOptions runOptionsOf(const SimrunOptions& options, const std::optional<Replay>& replay) {
-    if (replay && !options.noise)
-        return {.seed = replay->info().seed, .sensor_noise = replay->info().noise};
+RunOptions runOptionsOf(const SimrunOptions& options, const std::optional<RunInfo>& replay) {
+    if (replay && !options.noise) return {.seed = replay->seed, .sensor_noise = replay->noise};
     if (replay) return {.seed = options.common.seed, .sensor_noise = true};
     return {.seed = options.common.seed, .noise = options.noise, .sensor_noise = options.noise};
 }

@@ -48,7 +48,7 @@ Script scriptOf(const SimrunOptions& options, const SceneInput& input, const Wor
 
 /// Returns options of a run or a replay; a replay keeps the noise of its record unless an option
 /// sets another.
-RunOptions runOptionsOf(const SimrunOptions& options, const std::optional<Replay>& replay);
+RunOptions runOptionsOf(const SimrunOptions& options, const std::optional<RunInfo>& replay);
 
 /// Creates the progress bar of a run that ends at a given time.
 std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions& options);
@@ -126,8 +126,9 @@ void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options)
 /// Reports once that a change of a recorded run cannot be repeated.
 class FailureLog {
   public:
-    FailureLog(const std::optional<Replay>& replay, const CommonOptions& options)
-        : replay_(replay ? &*replay : nullptr), options_(&options) {}
+    /// \param replay null: tells of no change
+    FailureLog(const Replay* replay, const CommonOptions& options)
+        : replay_(replay), options_(&options) {}
     void tell();
 
   private:

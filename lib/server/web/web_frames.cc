@@ -227,7 +227,7 @@ WebFrames::Text WebFrames::scene() {
 
 std::string WebFrames::stateText() const {
     const World& world = simulation_->world();
-    const Clock& clock = simulation_->clock();
+    const Clock& clock = leader_->clock();
     std::string out = ",\"scene\":";
     append(out, world.changes());
     out.append(",\"t\":").append(formatMilliseconds(world.time())).append(",\"steps\":");
@@ -237,9 +237,9 @@ std::string WebFrames::stateText() const {
                : clock.kind == Clock::Kind::Fast ? "fast"
                                                  : "step");
     out.append("\",\"rate\":").append(formatDouble(clock.rate));
-    out.append(",\"paused\":").append(simulation_->paused() ? "true" : "false");
-    out.append(",\"replay\":").append(simulation_->isReplay() ? "true" : "false");
-    out.append(",\"over\":").append(simulation_->isHeld() ? "true" : "false");
+    out.append(",\"paused\":").append(leader_->paused() ? "true" : "false");
+    out.append(",\"replay\":").append(leader_->isReplay() ? "true" : "false");
+    out.append(",\"over\":").append(leader_->isHeld() ? "true" : "false");
     out.append(",\"movers\":[");
     for (std::size_t i = 0; i < world.movers().size(); ++i) {
         const RobotStatus status = world.status(i);

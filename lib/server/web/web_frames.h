@@ -26,9 +26,10 @@ class WebFrames {
   public:
     using Text = std::shared_ptr<const std::string>;
 
+    /// \param leader has the clock of the simulation, and may be that itself
     /// \param title of the page, e.g. base name of ENV
-    WebFrames(const Simulation& simulation, std::string title)
-        : simulation_(&simulation), title_(std::move(title)) {}
+    WebFrames(const Simulation& simulation, const Simulation& leader, std::string title)
+        : simulation_(&simulation), leader_(&leader), title_(std::move(title)) {}
 
     /// Builds a new frame if the world has changed, at most some 30 a second, and fewer if they
     /// take much of the world's time.
@@ -51,7 +52,7 @@ class WebFrames {
     [[nodiscard]] std::string withReadings(bool all);
     [[nodiscard]] bool isNew(std::size_t sensor) const;
 
-    const Simulation* simulation_;
+    const Simulation *simulation_, *leader_;
     std::string title_;
     WallTime next_look_{};
     std::int64_t number_ = 0;

@@ -23,7 +23,8 @@ bool has(const std::string& text, const std::string& piece) {
 /// A world that a browser looks at, a second apart.
 struct Watched : TestWorld {
     explicit Watched(const std::string& more = "")
-        : TestWorld({Clock::Kind::Step, 1}, {}, "", more), frames(simulation, "room.env") {}
+        : TestWorld({Clock::Kind::Step, 1}, {}, "", more),
+          frames(simulation, simulation, "room.env") {}
 
     void step(int count = 1) {
         simulation.allow(count);
@@ -53,6 +54,14 @@ TEST(WebFrames, TellWhereEverythingIs) {
                     "{\"id\":\"l1\",\"pose\":[-3000,-2000,0,0,0],\"first\":-2,\"step\":2,"
                     "\"max\":7.002,\"r\":[-1,7000,-1]}"))
         << frame;
+}
+
+TEST(WebFrames, TellTheClockOfTheLeadingSimulation) {
+    Watched world;
+    Simulation led(world.world, {}, {Clock::Kind::Fast, 1}, {});
+    WebFrames frames(led, world.simulation, "upper");
+    frames.look(WallTime{} + std::chrono::hours(1));
+    EXPECT_TRUE(has(*frames.frame(0), "\"clock\":\"step\",\"rate\":1,\"paused\":true"));
 }
 
 TEST(WebFrames, HaveMatsAndGates) {

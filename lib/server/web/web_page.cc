@@ -148,14 +148,14 @@ void PageDialogue::finish() {
 WebPage::WebPage(ServerState& state, const std::string& title) {
     const ServedRooms* const rooms = state.rooms();
     if (rooms == nullptr) {
-        rooms_.push_back({&state, WebFrames(state.simulation(), title)});
+        rooms_.push_back({&state, WebFrames(state.simulation(), state.simulation(), title)});
         return;
     }
     for (std::size_t i = 0; i < rooms->states.size(); ++i) {
         ServerState& one = *rooms->states[i];
         const std::string& id = rooms->worlds->rooms()[i].id;
-        rooms_.push_back(
-            {&one, WebFrames(one.simulation(), std::string(title).append(", ").append(id))});
+        rooms_.push_back({&one, WebFrames(one.simulation(), state.simulation(),
+                                          std::string(title).append(", ").append(id))});
     }
 }
 

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Replays of a building's run: each world follows its own record.
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "passage/building_run.h"
+#include "passage/building_run_data.h"
+#include "scene/run/run_changes.h"
+#include "scene/run/run_reader.h"
+#include "sim/replay.h"
+
+namespace ispace {
+
+RunInfo recordedInfo(const std::string& folder, const StoreyedDocument& building) {
+    for (const Storey& storey : building.storeys)
+        if (const auto info = recordedInfo(folder + '/' + storey.id)) return *info;
+    // As after a killed run.
+    for (const Storey& storey : building.storeys) {
+        RunReader reader(folder + '/' + storey.id);
+        if (reader.next() && reader.time() == 0 && reader.next()) return {.step = reader.time()};
+    }
+    throw FormatError({folder, 0, 0, "holds no moment of a run: nobody moved in it"});
+}
+
+std::vector<LiftNames> BuildingRun::Data::liftNames() const {
+    std::vector<LiftNames> names(passages.size());
+    for (std::size_t i = 0; i < passages.size(); ++i) {
+        if (!passages[i].is_lift) continue;
+        names[i].id = passages[i].id;
+        for (const std::size_t storey : passages[i].storeys)
+            names[i].storeys.push_back(building.document.storeys[storey].id);
+    }
+    return names;
+}
+
+/// Opens the record of a room. Returns its scene with all movers at the beginning of the record.
+std::shared_ptr<const Scene> BuildingRun::Data::openReplay(Room& room, const Scene& scene) const {
+    const std::string folder = options.replay + '/' + room.id;
+    room.replay = std::make_unique<Replay>(folder, options.step);
+    if (room.replay->stepLength() != options.step)
+        throw FormatError({folder, 0, 0,
+                           "has steps of " + formatSimTime(room.replay->stepLength()) +
+                               " s, where other rooms of the run have " +
+                               formatSimTime(options.step) + " s"});
+    auto own = std::make_shared<Scene>(scene);
+    if (room.replay->changedAt())
+        room.replay->makeChanges(
+            {folder, *own, building.devices,
+             [folder](const std::string& file) -> Scene {
+                 throw FormatError(
+                     {folder, 0, 0, "loads " + file + ", as no run of a building does"});
+             },
+             options.max_work});
+    room.replay->placeAtStart(*own);
+    return own;
+}
+
+void BuildingRun::Data::replay() {
+    lift_reader.emplace(options.replay + '/' + kLiftFile, liftNames());
+    if (std::all_of(rooms.begin(), rooms.end(),
+                    [](const Room& room) { return room.replay->atEnd(); }))
+        throw FormatError({options.replay, 0, 0, "holds no moment of a run: nobody moved in it"});
+    for (std::size_t i = 1; i < rooms.size(); ++i)
+        rooms[i].simulation->replay(*rooms[i].replay, false);
+    Simulation& leader = *rooms.front().simulation;
+    leader.replay(*rooms.front().replay, options.holds);
+    leader.beforeStep(
+        [this] { showLifts(rooms.front().world->time() + rooms.front().world->stepLength()); });
+    leader.onStep([this] { locate(); });
+    leader.onReplayChange([this] {
+        locate();
+        showLifts(rooms.front().world->time());
+    });
+}
+
+void BuildingRun::Data::showLifts(SimTime time) {
+    const std::vector<Lift::State>& states = lift_reader->at(time);
+    for (std::size_t i = 0; i < lifts.size(); ++i)
+        if (passages[i].is_lift) lifts[i].show(states[i]);
+}
+
+/// Finds movers that have gone to another room. One that is in no room, as at the end of a killed
+/// run's record, keeps that from which it went.
+void BuildingRun::Data::locate() {
+    for (auto& [id, who] : travellers) {
+        if (rooms[who.room].world->moverNamed(id)) continue;
+        const auto now = std::find_if(rooms.begin(), rooms.end(), [&id = id](const Room& room) {
+            return room.world->moverNamed(id).has_value();
+        });
+        if (now == rooms.end()) continue;
+        const std::size_t from =
+            std::exchange(who.room, static_cast<std::size_t>(now - rooms.begin()));
+        for (const Observer& observer : observers) observer(id, from, who.room);
+    }
+}
+
+}  // namespace ispace
