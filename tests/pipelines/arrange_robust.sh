@@ -15,7 +15,10 @@ sed 's/^desk.*/screen id=s at=0,0 size=0.1,3,2/' room.env >moved.env
 job=(room.env --sensor laser,range=4,fov=200:2 --candidates 1,1,8 --cell 10cm)
 
 # Rooms: the worst of them, as coverage measures the layout there.
-arrange "${job[@]}" --robust rooms:moved.env -o worst.3dm 2>report
+arrange "${job[@]}" --robust rooms:moved.env -o worst.3dm --report worst.html 2>report
+for case in room.env moved.env 'worst of all' mean; do
+    has "<th scope=\"row\">$case</th><td class=\"r\">[0-9.]*%" <worst.html || fail "no row of $case in the page"
+done
 has 'in room.env [0-9.]*%, moved.env [0-9.]*%; worst [0-9.]*%, mean [0-9.]*%' <report || fail "no cases: $(cat report)"
 has -- '--robust rooms:moved.env' <worst.3dm || fail "no cases in the history"
 share() { sed -n "s/.*$1 \([0-9.]*\)%.*/\1/p" report | head -1; }
@@ -34,7 +37,9 @@ arrange "${job[@]}" --robust rooms:moved.env -j 1 -q -o again.3dm
 cmp -s worst.3dm again.3dm || fail "another layout with one thread"
 
 # Failures: the worst one, as coverage finds it. None is the plain search.
-arrange "${job[@]}" --robust failures:1 -o failing.3dm 2>report
+arrange "${job[@]}" --robust failures:1 -o failing.3dm --report failing.html 2>report
+has '<th scope="row">worst of all: without laser[12]</th><td class="r">[0-9.]*%' <failing.html || fail "no case in the page"
+has 'checks one' <failing.html && fail "an option of coverage in a page of arrange"
 has 'without laser[12], the worst failure, [0-9.]*%; mean over all failures' <report || fail "no failure: $(cat report)"
 coverage room.env failing.3dm --cell 10cm --failures 1 --json >failing.json
 python3 - "$(share "the worst failure,")" failing.json <<'END' || fail "another failure: $(cat report)"
@@ -48,7 +53,8 @@ arrange "${job[@]}" -q | grep -v '^#\|result' >plain
 cmp -s none plain || fail "another layout without failures"
 
 arrange "${job[@]}" --robust mounting:5cm,3deg -q -o mounted.3dm
-arrange "${job[@]}" --crowd 3 --seed 2 2>report >crowd.3dm
+arrange "${job[@]}" --crowd 3 --seed 2 --report crowd.html 2>report >crowd.3dm
+has '<th scope="row">worst of 16 crowds</th>' <crowd.html || fail "no crowds in the page"
 has 'in 16 crowds of 3 people; worst [0-9.]*%, mean [0-9.]*%' <report || fail "no crowds: $(cat report)"
 
 # Privacy and faces: coverage passes the layouts.

@@ -17,6 +17,25 @@ namespace ispace {
 
 namespace {
 
+/// Lists the values of a robust layout by case, or in the worst of them, and in the mean.
+PageTable casesOf(const RobustChoice& robust, const RobustValues& values) {
+    PageTable table{"values in the cases of the search", "lr", {"case", "value"}, {}};
+    std::string worst = "worst of all";
+    if (robust.of == RobustChoice::Of::Rooms)
+        for (std::size_t i = 0; i < values.names.size(); ++i)
+            table.rows.push_back({values.names[i], percentText(values.shares[i])});
+    if (robust.of == RobustChoice::Of::Failures) {
+        for (const std::string& id : values.failed)
+            worst += (&id == &values.failed.front() ? ": without " : " and ") + id;
+    } else if (robust.of != RobustChoice::Of::Rooms) {
+        worst = "worst of " + std::to_string(values.shares.size()) +
+                (robust.of == RobustChoice::Of::Crowd ? " crowds" : " mountings");
+    }
+    table.rows.push_back({std::move(worst), percentText(values.worst)});
+    table.rows.push_back({"mean", percentText(values.mean)});
+    return table;
+}
+
 /// Returns the lines that arrange prints, and the curve as a table.
 PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
                      const Arrangement& arrangement) {
@@ -33,6 +52,7 @@ PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
         if (!line.empty()) section.blocks.push_back(PageText{std::string(line)});
         begin = end + 1;
     }
+    if (arrangement.robust) section.blocks.push_back(casesOf(work.how.robust, *arrangement.robust));
     if (!arrangement.alternatives.empty()) {
         PageTable others{"layouts that differ by a metre or 30 degrees in some sensor",
                          "lrrr",
@@ -110,6 +130,9 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
     page.parts = parts;
     if (work.input.environment_operand != "-") page.name = baseName(work.input.environment_operand);
     page.more.push_back(resultOf(options, work, arrangement));
+    if (work.how.target)
+        page.requirements.push_back({percentText(*work.how.target), arrangement.is_reached,
+                                     "the sensors cover " + percentText(arrangement.coverage)});
     const ReportPage pages = coveragePage(page);
     return suffixOf(options.report_file) == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }

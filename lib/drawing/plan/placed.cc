@@ -112,18 +112,31 @@ std::optional<Point2> LabelPlacer::placeLabel(Point2 page, Angle heading, double
     const double half_width = width / 2 + 0.15 * em_, half_height = 0.55 * size;
     std::optional<Point2> best;
     double least = crowd ? 1 : 100;  // cost above which the label is skipped
-    for (std::size_t i = 0; i < kTurns.size(); ++i) {
-        const Vec2 away = unitVector(heading + Angle::degrees(kTurns[i]));
-        const Point2 middle{page.x + away.x * (0.6 * em_ + half_width),
-                            page.y - away.y * (0.6 * em_ + half_height)};
-        const Box2 box = boxAround(middle, half_width, half_height);
-        if (const double cost = costOf(box) + static_cast<double>(i) / 10; cost < least) {
-            least = cost;
-            best = middle;
+    for (const double ring : {0.6, 2.0, 3.5, 5.0}) {
+        for (std::size_t i = 0; i < kTurns.size(); ++i) {
+            const Vec2 away = unitVector(heading + Angle::degrees(kTurns[i]));
+            const Point2 middle{page.x + away.x * (ring * em_ + half_width),
+                                page.y - away.y * (ring * em_ + half_height)};
+            const Box2 box = boxAround(middle, half_width, half_height);
+            if (const double cost = costOf(box) + static_cast<double>(i) / 10; cost < least) {
+                least = cost;
+                best = middle;
+            }
         }
+        if (best || crowd) break;
     }
     if (best) labels_.push_back(boxAround(*best, half_width, half_height));
     return best;
+}
+
+void drawMarkLabel(Picture& picture, Point2 mark, Point2 middle, const std::string& text,
+                   const TextStyle& style) {
+    const Box2 box = boxAround(middle, textWidth(text, style) / 2, style.size / 2);
+    const Point2 edge{std::clamp(mark.x, box.low.x, box.high.x),
+                      std::clamp(mark.y, box.low.y, box.high.y)};
+    if (distance(mark, edge) > 1.5 * style.size)
+        picture.line(mark, edge, {style.color, style.size / 16});
+    picture.text({middle.x, middle.y + 0.36 * style.size}, text, style);
 }
 
 bool LabelPlacer::take(const Box2& box) {
@@ -268,8 +281,8 @@ void PlanDrawing::drawSensors() {
 }
 
 void PlanDrawing::drawNames() {
-    picture_.pushView(style_.view);
     picture_.pushLayer("labels");
+    picture_.pushView(style_.view);
     std::size_t zones = 0;
     for (const Element& element : scene_.environment.elements())
         if (element.record.keyword() == "zone") drawZoneName(element, zones++);
@@ -281,8 +294,8 @@ void PlanDrawing::drawNames() {
             textWidth(thing.element->id, style) <= 0.96 * style_.view.scale * thing.box.width())
             picture_.text({middle.x, middle.y - metres(0.25)}, thing.element->id, style);
     }
-    drawPlacedNames();
     picture_.pop();
+    drawPlacedNames();
     picture_.pop();
 }
 
@@ -313,7 +326,7 @@ void PlanDrawing::drawPlacedNames() {
     LabelPlacer places(page, style_.em);
     for (const PlacedRecord& placed : scene_.placed) {
         const bool has_arrow = looksAside(scene_.records[placed.record], placed.pose);
-        places.addMark(picture_.toPage(placed.pose.position.onFloor()),
+        places.addMark(style_.view * placed.pose.position.onFloor(),
                        has_arrow ? headingOf(placed.pose) : std::nullopt);
     }
     TextStyle style{0.85 * style_.em, true, Align::Center, {}, kWhite.faded(0.85)};
@@ -323,13 +336,10 @@ void PlanDrawing::drawPlacedNames() {
         style.color = isPerson(record)      ? kPerson
                       : movesItself(record) ? kRobot
                                             : mixed(kSensor, kInk, 0.5);
-        const Point2 page_place = picture_.toPage(placed.pose.position.onFloor());
+        const Point2 page_place = style_.view * placed.pose.position.onFloor();
         if (const auto middle = places.placeLabel(page_place, placed.pose.heading,
-                                                  textWidth(id, style), style.size, false)) {
-            picture_.pushView({1, {}, {middle->x, middle->y + 0.36 * style.size}});
-            picture_.text({}, id, style);
-            picture_.pop();
-        }
+                                                  textWidth(id, style), style.size, false))
+            drawMarkLabel(picture_, page_place, *middle, id, style);
     }
 }
 

@@ -62,6 +62,10 @@ std::optional<Angle> headingOf(const Pose3& pose);
 /// Draws a mark at a point of the page.
 void drawSensorMark(Picture& picture, Point2 page, const SensorMark& mark, double radius);
 
+/// Writes a label about its middle, with a line from its mark if it lies away from it.
+void drawMarkLabel(Picture& picture, Point2 mark, Point2 middle, const std::string& text,
+                   const TextStyle& style);
+
 /// Finds positions of signs and labels where they cover little, in page units.
 class LabelPlacer {
   public:
@@ -72,8 +76,9 @@ class LabelPlacer {
     /// Finds the position of a sign of this radius: at the point, or the nearest free one around
     /// it.
     Point2 placeSign(Point2 page, double radius);
-    /// Finds the middle of a mark's label; empty if it would cover another label, or another mark
-    /// in a crowd. Of the positions around the mark, those behind the heading are preferred.
+    /// Finds the middle of a mark's label: beside the mark, preferably behind the heading, or up
+    /// to 5 em away if other labels are there. Empty if none is free; in a crowd labels lie beside
+    /// their marks only, and cover no mark.
     std::optional<Point2> placeLabel(Point2 page, Angle heading, double width, double size,
                                      bool crowd);
     /// Reserves a box and returns true if it is free.

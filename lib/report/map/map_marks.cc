@@ -123,7 +123,7 @@ void drawIds(Picture& picture, const MapPicture& map, const Box2& frame, LabelPl
         const std::string id = fitText(sensors[i].id, 10 * size, style);
         const Angle heading = markOf(map, i).heading.value_or(Angle());
         if (const auto middle = places.placeLabel(page, heading, textWidth(id, style), size, crowd))
-            picture.text({middle->x, middle->y + 0.36 * size}, id, style);
+            drawMarkLabel(picture, page, *middle, id, style);
     }
 }
 

@@ -95,7 +95,7 @@ PageSection summaryOf(const CoveragePageInput& input) {
                                    2) +
                        " s."
                  : "sight was never lost.")});
-    if (input.requirements.empty() && input.parts.run == nullptr)
+    if (input.requirements.empty() && input.parts.run == nullptr && input.more.empty())
         section.blocks.push_back(
             PageText{"No requirement was given; --require 90% checks one.", Tone::Small});
     for (const JudgedRequirement& one : input.requirements)

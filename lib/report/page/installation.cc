@@ -18,6 +18,8 @@ namespace ispace {
 
 namespace {
 
+constexpr double kEm = 2.6;  // text size of the plan, millimetres
+
 /// The faces of walls at a height, with the index of each one's element.
 struct WallFaces {
     std::vector<Segment2> lines;
@@ -151,6 +153,32 @@ std::string taskOf(const Scene& scene, const Coverage& coverage, std::size_t sen
     return "-";
 }
 
+/// Draws a dashed line with its length where it hides no mark and no other text.
+void drawDistance(Picture& picture, Point2 at, Point2 foot, const std::string& text,
+                  LabelPlacer& labels) {
+    const TextStyle style{0.8 * kEm, false, Align::Center, palette::kInk,
+                          palette::kWhite.faded(0.85)};
+    const Stroke dashes{palette::kInk, 0.18, {1, 0.6}};
+    const double width = textWidth(text, style), way = distance(at, foot);
+    for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8}) {
+        const Point2 middle = at + share * (foot - at);
+        // Text is no longer than the line that it stands for.
+        if (way < width / 2 || !labels.take({{middle.x - width / 2, middle.y - style.size / 2},
+                                             {middle.x + width / 2, middle.y + style.size / 2}}))
+            continue;
+        // No line strikes the text through.
+        const Vec2 along = (1 / way) * (foot - at);
+        const double gap =
+            std::min(std::abs(along.x) > 0 ? 0.6 * width / std::abs(along.x) : way,
+                     std::abs(along.y) > 0 ? 0.6 * style.size / std::abs(along.y) : way);
+        if (gap < share * way) picture.line(at, middle - gap * along, dashes);
+        if (gap < (1 - share) * way) picture.line(middle + gap * along, foot, dashes);
+        picture.text({middle.x, middle.y + 0.36 * style.size}, text, style);
+        return;
+    }
+    picture.line(at, foot, dashes);
+}
+
 }  // namespace
 
 std::string deviceText(const Sensor& sensor) {
@@ -237,7 +265,7 @@ PageTable materialTable(const Scene& scene) {
 }
 
 PageFigure installationPlan(const Scene& scene, const std::vector<Installation>& installations) {
-    constexpr double kWide = 176, kHigh = 225, kEm = 2.6, kRim = 4, kBelow = 8;
+    constexpr double kWide = 176, kHigh = 225, kRim = 4, kBelow = 8;
     const Box2 box = planBox(scene);
     const double denominator =
         usualScale(1000 * std::max(box.width() / (kWide - 2 * kRim),
@@ -255,35 +283,15 @@ PageFigure installationPlan(const Scene& scene, const std::vector<Installation>&
     plan.drawZones();
     const Color ink = palette::kSensor;
     LabelPlacer labels({{1, 1}, {kWide - 1, picture.height() - kBelow}}, kEm);
+    for (const Installation& one : installations) {
+        const Pose3& pose = scene.sensors[one.sensor].pose;
+        labels.addMark(view * pose.position.onFloor(), headingOf(pose));
+    }
     picture.pushLayer("distances");
-    const TextStyle small{0.8 * kEm, false, Align::Center, palette::kInk,
-                          palette::kWhite.faded(0.85)};
     for (const Installation& one : installations) {
         const Point2 at = view * scene.sensors[one.sensor].pose.position.onFloor();
-        for (const WallDistance& wall : one.walls) {
-            const Point2 foot = view * wall.foot;
-            const Point2 middle = at + 0.5 * (foot - at);
-            const std::string text = metresText(wall.distance);
-            const double width = textWidth(text, small), way = distance(at, foot);
-            const Stroke dashes{palette::kInk, 0.18, {1, 0.6}};
-            // The mark would hide the text of a short distance.
-            if (way < width / 2 ||
-                !labels.take({{middle.x - width / 2, middle.y - small.size / 2},
-                              {middle.x + width / 2, middle.y + small.size / 2}})) {
-                picture.line(at, foot, dashes);
-                continue;
-            }
-            // No line strikes the text through.
-            const Vec2 along = (1 / way) * (foot - at);
-            const double gap =
-                std::min(std::abs(along.x) > 0 ? 0.6 * width / std::abs(along.x) : way,
-                         std::abs(along.y) > 0 ? 0.6 * small.size / std::abs(along.y) : way);
-            if (2 * gap < way) {
-                picture.line(at, middle - gap * along, dashes);
-                picture.line(middle + gap * along, foot, dashes);
-            }
-            picture.text({middle.x, middle.y + 0.36 * small.size}, text, small);
-        }
+        for (const WallDistance& wall : one.walls)
+            drawDistance(picture, at, view * wall.foot, metresText(wall.distance), labels);
     }
     picture.pop();
     picture.pushLayer("sensors");
@@ -292,7 +300,6 @@ PageFigure installationPlan(const Scene& scene, const std::vector<Installation>&
         const Point2 at = view * sensor.pose.position.onFloor();
         drawSensorMark(picture, at, {kindOf(sensor.model).sign, headingOf(sensor.pose), ink},
                        0.36 * kEm);
-        labels.addMark(at, headingOf(sensor.pose));
     }
     const TextStyle style{kEm, true, Align::Center, palette::kInk, palette::kWhite.faded(0.85)};
     for (const Installation& one : installations) {
@@ -302,7 +309,7 @@ PageFigure installationPlan(const Scene& scene, const std::vector<Installation>&
         if (const auto middle =
                 labels.placeLabel(at, headingOf(sensor.pose).value_or(Angle()),
                                   textWidth(id, style), kEm, installations.size() > 40))
-            picture.text({middle->x, middle->y + 0.36 * kEm}, id, style);
+            drawMarkLabel(picture, at, *middle, id, style);
     }
     picture.pop();
     drawScaleBar(picture, {kRim, picture.height() - 2}, 40, scale, kEm,

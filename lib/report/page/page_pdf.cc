@@ -14,6 +14,7 @@ constexpr double kWidth = 210, kHeight = 297, kMargin = 16, kColumn = kWidth - 2
 constexpr double kBody = 3.5, kSmall = 3, kTitle = 6.2, kHeading = 4.7, kLeast = 2.3;
 constexpr double kLine = 1.42;  // of a text's size
 
+constexpr TextStyle kCaption{kSmall, false, Align::Left, palette::kFaintInk, {}};
 constexpr Color kGood = Color::rgb(0x116329), kBad = Color::rgb(0xA40E26);
 
 /// Breaks text into lines of this width, at blanks, or within words that are wider.
@@ -133,10 +134,15 @@ class PdfWriter {
 
     std::string write() {
         sheets_.text(page_.title, {kTitle, true, Align::Left, palette::kInk, {}});
-        sheets_.text(page_.subtitle, {kSmall, false, Align::Left, palette::kFaintInk, {}});
+        sheets_.text(page_.subtitle, kCaption);
         for (const PageSection& section : page_.sections) {
-            // A heading stays with the lines below it.
-            sheets_.need(5 * kHeading);
+            // A heading stays with the block below it.
+            constexpr double kAbove = 1 + kLine + 0.3;
+            sheets_.need(kAbove * kHeading +
+                         (section.blocks.empty()
+                              ? 0
+                              : std::visit([](const auto& one) { return leastHeight(one); },
+                                           section.blocks.front())));
             sheets_.skip(kHeading);
             sheets_.text(section.title, {kHeading, true, Align::Left, palette::kInk, {}});
             sheets_.skip(0.3 * kHeading);
@@ -154,6 +160,34 @@ class PdfWriter {
     }
 
   private:
+    /// The height of the part of a block that must not be broken; at least that part.
+    static double leastHeight(const PageTable& table) {
+        return kLine * (kSmall * static_cast<double>(captionOf(table.caption, kColumn).size()) +
+                        4 * columnsOf(table).size);
+    }
+    static double leastHeight(const PageText& /*text*/) { return 2 * kLine * kBody; }
+    static double leastHeight(const PageCode& /*code*/) { return 2 * kLine * kLeast; }
+    static double leastHeight(const PageFigure& figure) {
+        return figure.is_for_screen ? 0
+                                    : scaleOf(figure) * figure.picture.height() + belowOf(figure);
+    }
+    static double leastHeight(const PageMap& map) { return leastHeight(map.paper); }
+
+    static std::vector<std::string> captionOf(const std::string& text, double width) {
+        return brokenLines(text, width, kCaption);
+    }
+    /// The height of a figure's caption.
+    static double belowOf(const PageFigure& figure) {
+        const auto lines = captionOf(figure.caption, figure.width * kColumn).size();
+        return kLine * kSmall * static_cast<double>(lines) + 3;
+    }
+    static double scaleOf(const PageFigure& figure) {
+        const Picture& picture = figure.picture;
+        const double scale = std::min(figure.width * kColumn / picture.width(),
+                                      (Sheets::maxHeight() - belowOf(figure)) / picture.height());
+        return picture.unit() == PageUnit::Millimetre ? std::min(1.0, scale) : scale;
+    }
+
     void add(const PageText& text) {
         const bool is_small = text.tone == Tone::Small;
         sheets_.text(text.text,
@@ -177,8 +211,8 @@ class PdfWriter {
 
     void add(const PageTable& table) {
         const Columns columns = columnsOf(table);
-        sheets_.need(4 * kLine * columns.size);
-        sheets_.text(table.caption, {kSmall, false, Align::Left, palette::kFaintInk, {}});
+        sheets_.need(leastHeight(table));
+        sheets_.text(table.caption, kCaption);
         addRow(table, columns, table.heads, palette::kFaintInk);
         for (std::size_t k = 0; k < table.rows.size(); ++k) {
             if (sheets_.y() + 2 * kLine * columns.size > kHeight - kMargin) {
@@ -231,22 +265,16 @@ class PdfWriter {
     /// Figures stand beside each other as long as their widths fit.
     void add(const PageFigure& figure) {
         if (figure.is_for_screen) return;
-        const TextStyle style{kSmall, false, Align::Left, palette::kFaintInk, {}};
         const double width = figure.width * kColumn;
-        const std::vector<std::string> caption = brokenLines(figure.caption, width, style);
-        const double below = kLine * kSmall * static_cast<double>(caption.size()) + 3;
         const Picture& picture = figure.picture;
-        double scale =
-            std::min(width / picture.width(), (Sheets::maxHeight() - below) / picture.height());
-        if (picture.unit() == PageUnit::Millimetre) scale = std::min(1.0, scale);
-        const double height = scale * picture.height() + below;
+        const double scale = scaleOf(figure), height = leastHeight(figure);
         if (row_.right + width > kColumn || sheets_.y() + height > kHeight - kMargin) endRow();
         if (row_.height == 0) sheets_.need(height);
         const Point2 corner{kMargin + row_.right, sheets_.y()};
         sheets_.sheet().inset(picture, corner, scale);
         double base = corner.y + scale * picture.height() + 1 + kSmall;
-        for (const std::string& line : caption) {
-            sheets_.sheet().text({corner.x, base}, line, style);
+        for (const std::string& line : captionOf(figure.caption, width)) {
+            sheets_.sheet().text({corner.x, base}, line, kCaption);
             base += kLine * kSmall;
         }
         constexpr double kGap = 3;
