@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/suggestion_report.h"
 
+#include <utility>
+
 #include "base/message.h"
 #include "base/number.h"
 #include "report/coverage_report.h"
@@ -15,12 +17,16 @@ std::string gainText(const Suggestion& suggestion) {
     return text;
 }
 
+std::string commandOf(std::string command, std::span<const Edit> edits) {
+    for (const Edit& edit : edits)
+        command += ' ' + optionOf(edit.kind) + ' ' + shellQuote(edit.text);
+    return command + " -o changed.env";
+}
+
 std::string commandOf(const Suggestion& suggestion, const std::vector<std::string>& operands) {
     std::string command = "envc";
     for (const std::string& operand : operands) command += ' ' + shellQuote(operand);
-    for (const Edit& edit : suggestion.edits)
-        command += ' ' + optionOf(edit.kind) + ' ' + shellQuote(edit.text);
-    return command + " -o changed.env";
+    return commandOf(std::move(command), suggestion.edits);
 }
 
 void writeSuggestions(JsonWriter& json, const Advice& advice) {

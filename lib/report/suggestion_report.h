@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct Advice {
     std::vector<Suggestion> suggestions;
     std::vector<std::string> operands;
 };
+
+/// Returns a command of envc with further edits, which writes the changed scene.
+std::string commandOf(std::string command, std::span<const Edit> edits);
 
 /// Returns the command that writes the changed scene: "envc room.env layout.3dm --rotate l1:35 -o
 /// changed.env".

@@ -37,6 +37,22 @@ findings() {
 
 expect_status 1 envc room.env layout.3dm --check
 findings envc "$out" "$in" "$low" "$robot" "$path" "$todo"
+
+# Each command of --suggest resolves the findings that it tells; the sensor without a position is a sixth.
+expect_status 1 envc room.env layout.3dm --check --suggest 9
+[ "$(sed -n 's/^    //p' out | wc -l)" -eq 5 ] || fail "not five suggestions: $(cat out)"
+while IFS= read -r told && IFS= read -r command; do
+    left=$(expr "$told" : '.* fewer, \([0-9]*\) left$') || fail "no gain: $told"
+    (eval "$command -q") || fail "no such change: $command"
+    expect_status 1 envc changed.env --check
+    now=$(grep -c '^envc: changed.env:.*' err)
+    [ "$now" -eq $((left + 1)) ] || fail "$command leaves $now findings, not $left and one: $(cat err)"
+    rm changed.env
+done < <(grep '^  ' out)
+expect_status 1 envc room.env layout.3dm --check --suggest 1
+[ "$(wc -l <out)" -eq 3 ] || fail "more than one suggestion: $(cat out)"
+expect_error 2 envc room.env layout.3dm --suggest
+
 expect_status 0 scan room.env layout.3dm
 findings scan "$out" "$in" "$low" "$robot" "$todo"
 expect_status 0 scan room.env layout.3dm --select 'o*'

@@ -118,6 +118,11 @@ void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to)
               Enters::Nothing);
     line.flag("--check", options.check,
               "report errors and warnings about the environment and its objects", Enters::Nothing);
+    constexpr int kSuggestions = 5, kMaxSuggestions = 100;
+    line.countOr("--suggest", options.suggestions, kSuggestions, 1, kMaxSuggestions,
+                 "with --check: report up to N moves that resolve findings, each with its gain and "
+                 "its command",
+                 Enters::Nothing);
 }
 
 void addEditOptions(CommandLine& line, std::vector<Edit>& edits) {
@@ -256,6 +261,8 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
     if (options.check && (options.info || options.slice || line.given("--to") ||
                           line.given("--output") || options.common.dependencies.wanted))
         throw UsageError("--check writes nothing: leave --info, --slice, --to, -o and -MD out");
+    if (options.suggestions && !options.check)
+        throw UsageError("--suggest is about the findings of --check: give both");
     if (line.given("--report")) {
         if (isStdout(options.report)) throw UsageError("give --report a file, such as room.html");
         (void)outputFormat({}, options.report, {"html", "pdf"});
@@ -343,6 +350,9 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     if ((options.info || options.list_rooms) && !options.json)
         options.json = outputFormat({}, options.common.output, {"txt", "json"}) == "json";
     options.history_line = line.historyLine(options.inputs);
+    options.changing = "envc";
+    for (const std::string& input : options.inputs) options.changing += ' ' + shellQuote(input);
+    options.changing += line.historyLine({}).substr(std::string_view("envc").size());
     return options;
 }
 

@@ -21,6 +21,8 @@ struct EnvcOptions {
         nullptr;  ///< of the product; null with info, check or list, or for a report alone
     bool info = false, json = false, check = false;
     std::string report;              ///< file of the page for people; "": no file
+    std::optional<int> suggestions;  ///< of a check
+    std::string changing;            ///< the command for more edits: all that made the room
     bool list_rooms = false;         ///< instead of writing the room; format is null then, too
     std::optional<double> slice;     ///< height of the obstacle map, which is the product then
     int width = 1200;                ///< pixels of a PNG

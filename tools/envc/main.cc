@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // envc: compiles rooms and layouts into a model, checks, converts, edits and draws them.
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,7 +22,9 @@
 #include "io/exporters.h"
 #include "io/importers.h"
 #include "report/page/room_page.h"
+#include "report/suggestion_report.h"
 #include "scene/findings/findings.h"
+#include "scene/findings/remedies.h"
 #include "scene/placement_schemas.h"
 
 namespace {
@@ -87,6 +90,20 @@ void rebaseTo(const std::string& output, Document& document) {
                 isStream(output) ? "" : fs::path(output).parent_path().string());
 }
 
+/// Returns remedies as suggestionsText() writes suggestions.
+std::string remediesText(const EnvcOptions& options, std::size_t findings,
+                         const std::vector<Remedy>& remedies) {
+    if (remedies.empty()) return findings == 0 ? "" : "no move of one thing resolves a finding\n";
+    std::string text = "suggestions:\n";
+    for (const Remedy& remedy : remedies) {
+        text += "  " + printable(remedy.text) + ": " + std::to_string(remedy.resolved) +
+                (remedy.resolved == 1 ? " finding" : " findings") + " fewer, " +
+                std::to_string(findings - remedy.resolved) + " left\n";
+        text += "    " + commandOf(options.changing, std::span(&remedy.edit, 1)) + '\n';
+    }
+    return text;
+}
+
 /// Reports the warnings of an import together with the findings of the scene; the former also if
 /// the scene cannot be built. \throws FormatError with all findings
 void check(const EnvcOptions& options, const Document& document, const ImportReport& report,
@@ -101,8 +118,13 @@ void check(const EnvcOptions& options, const Document& document, const ImportRep
         FindingFilter mistakes;
         for (const SceneCheck& check : sceneChecks())
             if (check.name != "unplaced") mistakes.checks.push_back(check.name);
-        for (const Finding& finding : checkScene(scene, mistakes))
-            findings.add(finding.diagnostic());
+        const std::vector<Finding> found = checkScene(scene, mistakes);
+        for (const Finding& finding : found) findings.add(finding.diagnostic());
+        if (options.suggestions) {
+            const auto most = static_cast<std::size_t>(*options.suggestions);
+            writeAll("-", remediesText(options, found.size(),
+                                       remediesOf(scene, found, mistakes, most, devices)));
+        }
     } catch (const FormatError& error) {
         findings.add(error);
     }

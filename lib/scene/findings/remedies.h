@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "record/edit.h"
+#include "scene/devices.h"
+#include "scene/findings/findings.h"
+#include "scene/scene.h"
+
+namespace ispace {
+
+/// A move after which a scene has fewer findings.
+struct Remedy {
+    std::string text;  ///< "move l1 by (-1.05, 0.00) m"
+    Edit edit;
+    std::size_t resolved = 0;  ///< number of findings that it resolves
+};
+
+/// Finds the shortest move, in centimetres, of each record with a finding and a position of its
+/// own: of those by up to 5 m in 16 directions, or into the room by the shortest way. It leaves the
+/// scene with fewer findings; each remedy is a change of the given scene. Skips records without
+/// one. O(moves * scene).
+/// \param findings all of the scene's \param most number of remedies
+std::vector<Remedy> remediesOf(const Scene& scene, std::span<const Finding> findings,
+                               const FindingFilter& filter, std::size_t most,
+                               const DeviceCatalogue& devices);
+
+}  // namespace ispace
