@@ -89,6 +89,7 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
         if (!options.report.empty())
             writeAll(options.report,
                      reportFile(options, input, judge, historyOf(command, input).back()));
+        if (options.suggestions) writeAll("-", suggestionsText(options, input));
         conclude(judge, options, input, junit);
     };
     endingAtOnce([&server] { return server.isBusy(); }, junit, options, serve_and_conclude);

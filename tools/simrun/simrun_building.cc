@@ -38,6 +38,7 @@ void mustBeAboutBuildings(const SimrunOptions& options, const BuildingInput& inp
     refuse(!options.zones.empty(), "--zone");
     refuse(!options.expected.empty(), "--expect");
     refuse(!options.report.empty(), "--report");
+    refuse(options.suggestions.has_value(), "--suggest");
     refuse(options.foxglove.has_value(), "--foxglove");
     refuse(options.rosbridge.has_value(), "--rosbridge");
     refuse(options.ros_domain.has_value(), "--ros2");

@@ -183,6 +183,13 @@ void SimrunCommand::declareRun() {
                "ways of robots and people and the floor that sensors see (.html, .pdf), or as JSON "
                "(.json)",
                Enters::Nothing);
+    constexpr int kSuggestions = 3;  // one of each kind
+    line_.countOr(
+        "--suggest", o.suggestions, kSuggestions, 1, kSuggestions,
+        "with --record: at the end of the run report up to N changes of a sensor, to add, "
+        "turn or move, after which robots and people would have been seen longer, each "
+        "with its gain and its command",
+        Enters::Nothing);
     line_.switchFlag("--record-readings", "--no-record-readings", o.records_readings,
                      "record the readings of sensors (default)",
                      "leave them out: events and states remain", Enters::Nothing);
@@ -248,6 +255,8 @@ void SimrunCommand::declareReplay() {
 
 void SimrunCommand::checkReplay() const {
     const SimrunOptions& o = options_;
+    if (o.suggestions && o.record.empty())
+        throw UsageError("--suggest is about a recorded run: give --record DIR");
     if (line_.given("--report")) {
         if (o.record.empty())
             throw UsageError("--report is about a recorded run: give --record DIR");

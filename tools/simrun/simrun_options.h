@@ -64,6 +64,7 @@ struct SimrunOptions {
     bool noise = false;
     std::string script;                                     ///< "" without; "-" is stdin
     std::string report;                                     ///< page for people; "" without
+    std::optional<int> suggestions;                         ///< at most so many; empty: none
     std::string record;                                     ///< folder; "" without
     std::uint64_t max_recorded = std::uint64_t{16} << 30U;  ///< bytes
     std::string replay;                                     ///< folder; "" without

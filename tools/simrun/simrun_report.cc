@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simrun/simrun_report.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "arrange/suggestion.h"
 #include "base/file.h"
+#include "base/message.h"
+#include "base/number.h"
 #include "base/run_files.h"
 #include "cli/common_options.h"
 #include "coverage/run_coverage.h"
 #include "report/page/coverage_page.h"
+#include "report/suggestion_report.h"
+#include "scene/placement_schemas.h"
 #include "sim/recorder.h"
 #include "trace/ray_world.h"
 
@@ -30,6 +41,70 @@ std::string reportFile(const SimrunOptions& options, const SceneInput& input,
     if (suffix == "json") return coverageJson(coverage.report, {.run = &run});
     const ReportPage pages = coveragePage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
+}
+
+namespace {
+
+/// Returns the share of the time of all movers for which a sensor saw them; empty if none was
+/// there.
+std::optional<double> seenShare(const SimrunOptions& options, const Scene& scene) {
+    RunReader reader(options.record);
+    RunChanges changes = changesOfRun(options.record, scene, options.rules.max_work);
+    const RunCoverage run = measureRun(scene, reader, {}, &changes);
+    if (run.all.time_shares.empty()) return std::nullopt;
+    return 1 - run.all.time_shares.front();
+}
+
+/// A change of a sensor, and the seen share after it.
+struct RunSuggestion {
+    Suggestion change;
+    double seen = 0;
+};
+
+/// Returns the additions, turns and shifts of suggestChanges() that raise the share, the best
+/// first.
+std::vector<RunSuggestion> suggestForRun(const SimrunOptions& options, const Scene& scene,
+                                         double before) {
+    const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
+    SuggestOptions wanted;
+    wanted.most = 7;  // one of each kind
+    Worlds worlds(scene.environment);
+    const Coverage coverage = measureCoverage(scene, worlds, wanted.measure);
+    std::vector<RunSuggestion> found;
+    for (Suggestion& change :
+         suggestChanges(scene, coverage, wanted, shippedDevices(), *progress)) {
+        using Kind = Suggestion::Kind;
+        if (change.kind != Kind::Add && change.kind != Kind::Turn && change.kind != Kind::Shift)
+            continue;
+        const Scene changed =
+            makeScene(edited(scene.records, change.edits, sceneSchemas()), scene, shippedDevices());
+        const std::optional<double> seen = seenShare(options, changed);
+        if (seen && *seen > before) found.push_back({std::move(change), *seen});
+    }
+    std::stable_sort(
+        found.begin(), found.end(),
+        [](const RunSuggestion& a, const RunSuggestion& b) { return a.seen > b.seen; });
+    return found;
+}
+
+}  // namespace
+
+std::string suggestionsText(const SimrunOptions& options, const SceneInput& input) {
+    constexpr double kPoints = 100;
+    for (const std::string& file : Recorder::filesIn(options.record)) completeOutput(file);
+    std::vector<RunSuggestion> found;
+    const std::optional<double> before = seenShare(options, input.scene);
+    if (before) found = suggestForRun(options, input.scene, *before);
+    if (found.empty()) return "no change of one sensor sees more of the run\n";
+    if (const auto most = static_cast<std::size_t>(*options.suggestions); found.size() > most)
+        found.erase(found.begin() + static_cast<std::ptrdiff_t>(most), found.end());
+    std::string text = "suggestions:\n";
+    for (const RunSuggestion& one : found)
+        text += "  " + printable(one.change.text) + ": +" +
+                formatFixed(kPoints * (one.seen - *before), 2) +
+                " points, robots and people are seen for " + percentText(one.seen) +
+                " of their time\n    " + commandOf(one.change, input.named) + '\n';
+    return text;
 }
 
 }  // namespace ispace

@@ -16,4 +16,7 @@ namespace ispace {
 std::string reportFile(const SimrunOptions& options, const SceneInput& input,
                        const ExpectationJudge& judge, const std::string& command);
 
+/// Returns the lines of --suggest, in the form of coverage --suggest. \pre the record is complete
+std::string suggestionsText(const SimrunOptions& options, const SceneInput& input);
+
 }  // namespace ispace

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# simrun --suggest: each command that it prints changes the scene, and coverage --run then reports the share told.
+. "$(dirname "$0")/common.sh"
+command -v python3 >/dev/null || skip "no python3 here"
+
+printf '#env 1\nispace size=10,6,2.5\nwall id=w from=1,-3 to=1,1\n' >room.env
+cat >layout.3dm <<'END'
+#3dm 1
+laser id=l1 at=-4.5,1 heading=150 fov=120 range=6
+human id=h at=-4,2 path=-4,2;4,2;4,-2 speed=1
+END
+expect_status 0 simrun room.env layout.3dm --listen 127.0.0.1:0 --clock fast --until 12 --record run --suggest
+[ "$(grep -c '^    envc room.env layout.3dm --' out)" -ge 2 ] || fail "no two suggestions: $(cat out)"
+while IFS= read -r told && IFS= read -r command; do
+    (eval "$command -q") || fail "no such change: $command"
+    coverage -q changed.env --run run --json >changed.json
+    python3 - "$told" <<'END' || fail "the run is seen differently: $told"
+import json, re, sys
+told = float(re.search(r"seen for ([0-9.]*)% of", sys.argv[1]).group(1)) / 100
+seen = 1 - json.load(open("changed.json"))["run"]["all"]["time_shares"][0]
+sys.exit(abs(told - seen) > 6e-5)
+END
+    rm changed.env
+done < <(grep '^  ' out)
+
+# All is seen already; and without movers there is no run to measure, as for coverage --run.
+printf '#env 1\nispace size=10,6,2.5\n' >hall.env
+printf '#3dm 1\nlaser id=l1 at=-4.5,0 range=20 fov=360\nhuman id=h at=-2,1 path=-2,1;2,1\n' >seen.3dm
+expect_status 0 simrun hall.env seen.3dm --listen 127.0.0.1:0 --clock fast --until 1 --record seen --suggest 1
+grep -qx 'no change of one sensor sees more of the run' out || fail "suggestions for a run that is seen: $(cat out)"
+printf '#3dm 1\nlaser id=l1 at=-4.5,0 range=4\n' >alone.3dm
+expect_status 1 simrun hall.env alone.3dm --listen 127.0.0.1:0 --clock fast --until 1 --record alone --suggest 1
+expect_error 2 simrun room.env layout.3dm --suggest
+expect_error 2 simrun room.env layout.3dm --record run2 --suggest=9
