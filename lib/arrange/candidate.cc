@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "arrange/case_room.h"
+#include "arrange/counted_cells.h"
 #include "arrange/facing_cells.h"
 #include "arrange/sensor_group.h"
 #include "base/error.h"
@@ -60,36 +61,6 @@ struct Sectors {
     }
 };
 
-/// Removes runs of cells without weight.
-class Counted {
-  public:
-    explicit Counted(const CellSet& cells) : next_(cells.size() + 1), end_(cells.size() + 1) {
-        const auto size = static_cast<std::uint32_t>(cells.size());
-        next_[size] = size;
-        for (std::uint32_t i = size; i-- > 0;) next_[i] = cells.test(i) ? i : next_[i + 1];
-        end_[0] = 0;
-        for (std::uint32_t i = 0; i < size; ++i) end_[i + 1] = cells.test(i) ? i + 1 : end_[i];
-    }
-    /// Clips all runs so that they begin and end with counted cells.
-    void keepIn(CellParts& parts) const {
-        std::uint32_t count = 0, begin = 0;
-        for (std::size_t part = 0; part < parts.size(); ++part) {
-            const std::uint32_t end = parts.first[part + 1];
-            for (std::uint32_t i = begin; i < end; ++i) {
-                const CellRun run{next_[parts.runs[i].first], end_[parts.runs[i].end]};
-                if (run.first < run.end) parts.runs[count++] = run;
-            }
-            begin = end;
-            parts.first[part + 1] = count;
-        }
-        parts.runs.resize(count);
-    }
-
-  private:
-    std::vector<std::uint32_t> next_;  // [i]: the first counted cell from i on
-    std::vector<std::uint32_t> end_;   // [i]: the end of the last counted cell before i
-};
-
 /// Copies the parts between sorted limits so that part i begins at limits[i]; the last part stays.
 /// Limits that rounding made equal have an empty part between them.
 void inOrderOf(std::span<const Angle> limits, std::span<const Angle> sorted, const CellParts& seen,
@@ -123,7 +94,8 @@ struct CandidateViews::Data {
     SensorModel device;
     Pose3 mount;
     bool is_round, looks_in_slice;
-    std::optional<Counted> counted = {};
+    std::optional<CountedCells> counted = {};
+    CellWindow window = {};                // of the counted cells
     const RayWorld* beam_world = nullptr;  // of lasers that see by beams; else null
     const SiteErrors* errors = nullptr;    // of mounting; null: none
     const FacingCells* facing = nullptr;   // null: none
@@ -163,7 +135,7 @@ struct CandidateViews::Data {
         for (std::size_t k = 0; k < headings; ++k)
             if (const auto field = fieldOfView(at(site, k))) fields.push_back(*field);
         if (!fields.empty()) {
-            cellsByView(grid, sight.meshFor(device), fields, sight.plane(), parts);
+            cellsByView(grid, sight.meshFor(device), fields, sight.plane(), parts, window);
         } else {  // lasers
             parts.first.resize(1);
             for (std::size_t k = 0; k < headings; ++k) {
@@ -186,8 +158,9 @@ CandidateViews::CandidateViews(const VisibleArea& sight, const Grid& grid,
     : data_(new Data{grid, sight, sight.levelAt(mount.position.z), device, mount,
                      isOmnidirectional(device, mount), scansSlice(Sensor{"", device, mount}),
                      counted != nullptr && counted->count() < counted->size()
-                         ? std::optional<Counted>(*counted)
+                         ? std::optional<CountedCells>(*counted)
                          : std::nullopt}) {
+    if (data_->counted) data_->window = CellWindow::of(grid, *counted);
     data_->errors = errors;
     data_->facing = facing;
     sight.prepare({"", device, mount});

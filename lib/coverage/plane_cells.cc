@@ -44,12 +44,14 @@ struct CellTarget {
 template <typename TargetOf>
 class RowLook {
   public:
-    RowLook(const Grid& grid, const RayWorld& mesh, const Reach& reach, const TargetOf& target_of)
+    RowLook(const Grid& grid, const RayWorld& mesh, const Reach& reach, const TargetOf& target_of,
+            const CellWindow& window)
         : grid_(grid),
           columns_(GridAxis::columnsOf(grid)),
           mesh_(mesh),
           reach_(reach),
-          target_of_(target_of) {}
+          target_of_(target_of),
+          window_(window) {}
 
     /// Appends the cells of a row that each view sees to its runs.
     void add(int row, std::span<std::vector<CellRun>> runs) {
@@ -73,8 +75,10 @@ class RowLook {
         const double y = grid_.rowCenter(row), dy = y - reach_.origin.y;
         if (!(std::fabs(dy) <= reach_.distance)) return;
         const double half = std::sqrt(reach_.distance * reach_.distance - dy * dy);
-        const int first = columns_.firstNotBelow(reach_.origin.x - half);
-        const int end = columns_.firstAbove(reach_.origin.x + half, first);
+        const int in_reach = columns_.firstNotBelow(reach_.origin.x - half);
+        const int first = std::max(in_reach, window_.first_column);
+        const int end =
+            std::min(columns_.firstAbove(reach_.origin.x + half, in_reach), window_.end_column);
         for (int column = first; column < end; ++column) {
             const CellTarget target = target_of_(Point2{grid_.columnCenter(column), y});
             if (target.held == 0) continue;
@@ -95,6 +99,7 @@ class RowLook {
     const RayWorld& mesh_;
     Reach reach_;
     const TargetOf& target_of_;
+    CellWindow window_;
     std::vector<std::uint32_t> cells_;
     std::vector<Point3> targets_;
     std::vector<std::uint64_t> held_;
@@ -104,16 +109,17 @@ class RowLook {
 /// Appends a part for each view. Bands of rows run in parallel.
 template <typename TargetOf>
 void addParts(const Grid& grid, const RayWorld& mesh, const Reach& reach, std::size_t views,
-              const TargetOf& target_of, CellParts& parts) {
+              const TargetOf& target_of, CellParts& parts, const CellWindow& window = {}) {
     constexpr int kCellsOfBand = 1 << 16;
     const int rows = std::max(1, kCellsOfBand / grid.columns);
     const auto bands = static_cast<std::size_t>((grid.rows + rows - 1) / rows);
     std::vector<std::vector<std::vector<CellRun>>> runs(bands);
     const auto look = [&](std::size_t band) {
         runs[band].resize(views);
-        RowLook<TargetOf> row_look(grid, mesh, reach, target_of);
+        RowLook<TargetOf> row_look(grid, mesh, reach, target_of, window);
         const int first = static_cast<int>(band) * rows;
-        for (int row = first; row < std::min(first + rows, grid.rows); ++row)
+        for (int row = std::max(first, window.first_row);
+             row < std::min({first + rows, grid.rows, window.end_row}); ++row)
             row_look.add(row, runs[band]);
     };
     if (bands == 1)
@@ -318,8 +324,21 @@ class ViewTest {
 
 }  // namespace
 
+CellWindow CellWindow::of(const Grid& grid, const CellSet& cells) {
+    CellWindow window{grid.rows, 0, grid.columns, 0};
+    cells.forEach([&](std::size_t cell) {
+        const int row = static_cast<int>(cell) / grid.columns;
+        const int column = static_cast<int>(cell) % grid.columns;
+        window.first_row = std::min(window.first_row, row);
+        window.end_row = std::max(window.end_row, row + 1);
+        window.first_column = std::min(window.first_column, column);
+        window.end_column = std::max(window.end_column, column + 1);
+    });
+    return window;
+}
+
 void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
-                 double height, CellParts& parts) {
+                 double height, CellParts& parts, const CellWindow& window) {
     parts.runs.clear();
     parts.first.assign(1, 0);
     for (std::size_t begin = 0; begin < views.size(); begin += kTogether) {
@@ -335,7 +354,7 @@ void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOf
             const Point3 place{center.x, center.y, height};
             return CellTarget{place, test.holding(place)};
         };
-        addParts(grid, mesh, *reach, some.size(), target_of, parts);
+        addParts(grid, mesh, *reach, some.size(), target_of, parts, window);
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "base/cell_set.h"
@@ -21,9 +22,18 @@ namespace ispace {
 /// between scans.
 CellSet cellsOnPlane(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height);
 
+/// Rows and columns of a grid.
+struct CellWindow {
+    int first_row = 0, end_row = std::numeric_limits<int>::max();
+    int first_column = 0, end_column = std::numeric_limits<int>::max();
+
+    /// Returns the rows and columns from the first to the last that hold a cell of the set.
+    static CellWindow of(const Grid& grid, const CellSet& cells);
+};
+
 /// Computes the cells of several fields of view at one position that differ only in heading: part k
-/// of `parts` is the view k. O(cells in reach * views + rays)
+/// of `parts` is the view k, as far as it lies in the window. O(cells in reach * views + rays)
 void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
-                 double height, CellParts& parts);
+                 double height, CellParts& parts, const CellWindow& window = {});
 
 }  // namespace ispace

@@ -142,6 +142,30 @@ TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
     }
 }
 
+TEST(PlaneCells, AWindowLeavesOutOtherCells) {
+    const Room room("ispace size=12,8,4\ncube at=1,1 size=1,1,1");
+    Worlds worlds(room.scene.environment);
+    const VisibleArea sight(room.scene.environment, 0, &worlds);
+    const Sensor sensor = rangerAt(poseAt({0, 0, 3}, 0, -60), 90, 60, 20);
+    const std::vector<FieldOfView> views = {*fieldOfView(sensor)};
+    const RayWorld& mesh = sight.meshFor(sensor.model);
+    CellParts all, part, none;
+    cellsByView(room.grid, mesh, views, 0, all);
+    CellSet wanted(room.grid.size());
+    for (int row = 12; row < 25; ++row)
+        for (int column = 33; column < 41; ++column) wanted.set(room.grid.cell(column, row));
+    cellsByView(room.grid, mesh, views, 0, part, CellWindow::of(room.grid, wanted));
+    CellSet expected = cellsOf(all, 0, room.grid.size());
+    expected &= wanted;
+    EXPECT_GT(expected.count(), 20U);
+    EXPECT_LT(expected.count(), wanted.count()) << "the cube hides some";
+    EXPECT_EQ(cellsOf(part, 0, room.grid.size()), expected);
+    const CellWindow empty = CellWindow::of(room.grid, CellSet(room.grid.size()));
+    cellsByView(room.grid, mesh, views, 0, none, empty);
+    EXPECT_EQ(none.size(), 1U);
+    EXPECT_TRUE(none.runs.empty());
+}
+
 TEST(PlaneCells, ReceiverHearsACone) {
     const Room room("ispace size=12,8,4", 120, 80);
     for (const double fov : {60.0, 120.0, 180.0, 240.0, 360.0}) {

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/arrange: cells with a weight.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/cell_set.h"
+
+namespace ispace {
+
+/// Removes runs of cells without weight.
+class CountedCells {
+  public:
+    explicit CountedCells(const CellSet& cells) : next_(cells.size() + 1), end_(cells.size() + 1) {
+        const auto size = static_cast<std::uint32_t>(cells.size());
+        next_[size] = size;
+        for (std::uint32_t i = size; i-- > 0;) next_[i] = cells.test(i) ? i : next_[i + 1];
+        end_[0] = 0;
+        for (std::uint32_t i = 0; i < size; ++i) end_[i + 1] = cells.test(i) ? i + 1 : end_[i];
+    }
+    /// Clips all runs so that they begin and end with counted cells.
+    void keepIn(CellParts& parts) const {
+        std::uint32_t count = 0, begin = 0;
+        for (std::size_t part = 0; part < parts.size(); ++part) {
+            const std::uint32_t end = parts.first[part + 1];
+            for (std::uint32_t i = begin; i < end; ++i) {
+                const CellRun run{next_[parts.runs[i].first], end_[parts.runs[i].end]};
+                if (run.first < run.end) parts.runs[count++] = run;
+            }
+            begin = end;
+            parts.first[part + 1] = count;
+        }
+        parts.runs.resize(count);
+    }
+
+  private:
+    std::vector<std::uint32_t> next_;  // [i]: the first counted cell from i on
+    std::vector<std::uint32_t> end_;   // [i]: the end of the last counted cell before i
+};
+
+}  // namespace ispace
