@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/number.h"
 #include "bench_scenes.h"
 #include "io/glb/glb_read.h"
@@ -125,6 +126,7 @@ void registerFile(const std::string& name, const std::string& file, double area)
 int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+    keepFreedMemory();  // as envc does
     for (const std::size_t walls : {1000U, 10000U, 100000U}) {
         const bench::Building plan = bench::building(walls);
         const std::string name = "walls-" + std::to_string(walls);

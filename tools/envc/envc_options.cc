@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "envc/envc_options.h"
 
-#include <malloc.h>
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <string_view>
 #include <system_error>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
@@ -64,12 +63,7 @@ void keepMemory(const std::vector<std::string>& inputs) {
         std::error_code error;
         if (const std::uintmax_t size = fs::file_size(input, error); !error) bytes += size;
     }
-    if (bytes < kLarge) return;
-#ifdef __GLIBC__
-    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);
-    mallopt(M_TOP_PAD, 64 << 20);
-#endif
+    if (bytes >= kLarge) keepFreedMemory();
 }
 
 namespace {

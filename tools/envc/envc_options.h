@@ -44,8 +44,7 @@ std::string besideOf(const EnvcOptions& options);
 void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document,
                   const FoundRooms* found);
 
-/// For large inputs: freed memory is reused instead of returned to the system, which would have to
-/// clear it anew. Large rooms allocate and free a few hundred megabytes.
+/// Calls keepFreedMemory() for large inputs.
 void keepMemory(const std::vector<std::string>& inputs);
 
 }  // namespace ispace

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "geom/planar_map.h"
 #include "geom/point_map.h"
 #include "geom/predicates.h"
@@ -139,44 +141,77 @@ void dropRepeatedPoints(std::vector<PlanPath>& paths) {
 class EndMover {
   public:
     EndMover(const std::vector<PlanPath>& paths, double reach)
-        : pieces_(pathPieces(paths)), search_(pieces_), reach_(reach) {
-        for (const PlanPath& path : paths)
-            for (const Point2 p : path.points) ++uses_[p];
+        : pieces_(pathPieces(paths)), reach_(reach) {
+        parallelInvoke(
+            pieces_.size() > kManyPieces,
+            [&] {
+                for (const PlanPath& path : paths)
+                    for (const Point2 p : path.points) ++uses_[p];
+            },
+            [this] { index(); });
+    }
+
+    /// Moves the ends of open paths, which are those of the constructor.
+    void move(std::vector<PlanPath>& paths) const {
+        parallelChunks(grid_ && paths.size() > kManyPieces, paths.size(),
+                       [&](std::size_t first, std::size_t last) {
+                           for (std::size_t i = first; i < last; ++i) {
+                               if (paths[i].closed) continue;
+                               Polygon& points = paths[i].points;
+                               const Point2 front = moved(points.front());
+                               points.back() = moved(points.back());
+                               points.front() = front;
+                           }
+                       });
+    }
+
+  private:
+    static constexpr std::size_t kManyPieces = 10'000;
+    /// Pairs of pieces in the cells of a grid: one with more is crowded, and a tree finds fewer.
+    static constexpr std::size_t kGridPairsPerPiece = 64, kGridPairsAnyway = 1U << 20;
+
+    void index() {
+        grid_.emplace(pieces_, reach_);
+        std::size_t pairs = 0;
+        grid_->forEachCell(
+            [&](std::span<const std::uint32_t> cell) { pairs += cell.size() * cell.size(); });
+        if (pairs <= kGridPairsAnyway + kGridPairsPerPiece * pieces_.size()) return;
+        grid_.reset();
+        tree_.emplace(pieces_);
     }
 
     [[nodiscard]] Point2 moved(Point2 end) const {
         if (*uses_.find(end) > 1) return end;
-        Point2 best = end;
-        double nearest = reach_;
-        for (const std::size_t i : search_.near(end, reach_)) {
-            const Segment2& piece = pieces_[i];
-            if (piece.a == end || piece.b == end) continue;
-            const Point2 foot = nearestPoint(piece, end);
-            const double apart = distance(foot, end);
-            if (apart > nearest) continue;
-            best = wholeMicrometres(foot);
-            nearest = apart;
-        }
-        return best;
+        Nearest best{end, reach_};
+        if (grid_)
+            for (const std::uint32_t i : grid_->near(end)) approach(i, end, best);
+        else
+            for (const std::size_t i : tree_->near(end, reach_)) approach(i, end, best);
+        return best.foot;
     }
 
-  private:
+    struct Nearest {
+        Point2 foot;
+        double apart;
+    };
+
+    /// Of pieces that are equally near, the last one counts.
+    void approach(std::size_t i, Point2 end, Nearest& best) const {
+        const Segment2& piece = pieces_[i];
+        if (piece.a == end || piece.b == end) return;
+        const Vec2 margin{reach_, reach_};
+        if (!bounds(piece).meets({end - margin, end + margin})) return;
+        const Point2 foot = nearestPoint(piece, end);
+        if (const double apart = distance(foot, end); apart <= best.apart)
+            best = {wholeMicrometres(foot), apart};
+    }
+
     std::vector<Segment2> pieces_;
-    NearSegments search_;
+    std::optional<SegmentGrid> grid_;
+    std::optional<NearSegments> tree_;  // instead of a crowded grid
     double reach_;
     PointMap<int> uses_;
 };
-
-void moveEnds(std::vector<PlanPath>& paths, double reach) {
-    const EndMover mover(paths, reach);
-    for (PlanPath& path : paths) {
-        if (path.closed) continue;
-        const Point2 front = mover.moved(path.points.front());
-        const Point2 back = mover.moved(path.points.back());
-        path.points.front() = front;
-        path.points.back() = back;
-    }
-}
 
 /// Adds the path that begins or ends where `path` ends.
 void append(PlanPath& path, const PlanPath& next) {
@@ -275,7 +310,7 @@ std::vector<PlanPath> snapped(std::vector<PlanPath> paths, double snap) {
         for (Point2& p : path.points) p = welder.standing(wholeMicrometres(p));
     dropRepeatedPoints(paths);
     if (snap > 0 && !paths.empty()) {
-        moveEnds(paths, snap);
+        EndMover(paths, snap).move(paths);
         dropRepeatedPoints(paths);
     }
     return paths;

@@ -78,6 +78,23 @@ TEST(PlanLines, EndsMoveOntoLines) {
     EXPECT_EQ(bent[3].points.front(), (Point2{7, 0.006}));
 }
 
+// An even plan is searched by a grid in several threads; a line far away crowds the grid.
+TEST(PlanLines, ManyEndsMoveOntoLinesHoweverTheyAreFound) {
+    for (const bool crowded : {false, true}) {
+        Paths lines;
+        for (int i = 0; i < 6000; ++i) {
+            const double x = 3.0 * i;
+            lines.push_back(open({{x, 0}, {x, 1}}));
+            lines.push_back(open({{x + 0.003, 0.5}, {x + 1, 0.75}}));
+        }
+        if (crowded) lines.push_back(open({{0, 1e5}, {1e5, 1e5}}));
+        Paths wanted = lines;
+        for (std::size_t i = 0; i < 6000; ++i)
+            wanted[2 * i + 1].points.front() = {lines[2 * i].points.front().x, 0.5};
+        EXPECT_EQ(snapped(lines, 0.005), wanted) << crowded;
+    }
+}
+
 TEST(PlanLines, LeastReachIsNone) {
     const Paths far{open({{800'000, 0}, {0, 0}}), open({{5, 0.000001}, {5, 3}})};
     EXPECT_EQ(snapped(far, 1e-300), snapped(far, 0));

@@ -137,11 +137,15 @@ double distanceTo(std::span<const Segment2> lines, Point2 p) {
     return nearest;
 }
 
-bool hasWithin(std::span<const Segment2> lines, const NearSegments& search, Point2 p,
-               double reach) {
-    const std::vector<std::size_t> near = search.near(p, reach);
-    return std::any_of(near.begin(), near.end(),
-                       [&](std::size_t i) { return distance(p, lines[i]) <= reach; });
+/// \param grid of the lines
+bool hasWithin(std::span<const Segment2> lines, const SegmentGrid& grid, Point2 p, double reach) {
+    const Vec2 margin{reach, reach};
+    bool has = false;
+    grid.searchBox({p - margin, p + margin}, [&](std::span<const std::uint32_t> cell) {
+        has = has || std::any_of(cell.begin(), cell.end(),
+                                 [&](std::uint32_t i) { return distance(p, lines[i]) <= reach; });
+    });
+    return has;
 }
 
 }  // namespace
@@ -151,13 +155,13 @@ Point2 clearPoint(const Region& face, std::span<const Segment2> lines) {
     double best_clear = distanceTo(lines, best);
     if (best_clear >= kClear) return best;
     const Box2 box = bounds(face.outline);
-    const NearSegments search(lines);
+    const SegmentGrid grid(lines, 0);
     const auto share = [](int step) { return (step + 0.5) / kClearSteps; };
     for (int i = 0; i < kClearSteps * kClearSteps; ++i) {
         const int row = i / kClearSteps, column = i % kClearSteps;
         const Point2 p{box.low.x + share(column) * box.width(),
                        box.low.y + share(row) * box.depth()};
-        if (hasWithin(lines, search, p, best_clear) || face.locate(p) != Side::Inside) continue;
+        if (hasWithin(lines, grid, p, best_clear) || face.locate(p) != Side::Inside) continue;
         best = p;
         best_clear = distanceTo(lines, p);
     }
