@@ -315,12 +315,18 @@ class DxfImporter {
         : drawing_(drawing), name_(name), bytes_(bytes), schemas_(schemas) {}
 
     /// \param hints whether the drawing may be imported again to report the effect of other options
-    [[nodiscard]] DxfImport import(const ImportOptions& options, bool hints) const {
+    [[nodiscard]] DxfImport import(const ImportOptions& asked, bool hints) const {
+        Budget whole(bytes_, asked.max_work);
+        ImportOptions options = asked;
+        options.max_work.whole = &whole;  // pays for curves and blocks, and for the plan of them
         ImportRecords out(schemas_, name_, options);
         DrawingSource source = scaleOf(options, out);
         source.left_out = drawing_.left_out;
         if (hints)
-            source.area = [this](const ImportOptions& other) { return import(other, false).area; };
+            source.area = [&](ImportOptions other) {
+                other.max_work = asked.max_work;  // as much again
+                return import(other, false).area;
+            };
         MissingBlocks missing;
         const bool is_ours = options.wall_layers.empty() && options.door_layers.empty() &&
                              options.window_layers.empty() && isDrawnRoom(drawing_);

@@ -40,5 +40,25 @@ TEST(LinePlan, CrowdsOfSlantedLinesArePaidFor) {
     EXPECT_NE(refusal(crowd(30), options), "");
 }
 
+// Either fits: 180 000 units for copies of a block, 114 000 for crossings of walls.
+TEST(LinePlan, BlocksAndCrossingsShareOneBudget) {
+    std::string grid;
+    for (int i = 0; i < 70; ++i)
+        grid += line("W", -0.5, 0.1 * i, 10.4, 0.1 * i) + line("W", 0.1 * i, -0.5, 0.1 * i, 10.4);
+    const std::string copies =
+        insert("B", "OTHERS", 0, 0, group(70, 300) + group(71, 300) + group(44, 1));
+    const std::string leaf = block("B", 0, 0, line("0", 0, 0, 1, 1));
+    ImportOptions options;
+    options.wall_layers = {"W"};
+    options.max_work.max = 200'000;
+    EXPECT_EQ(refusal(drawing(grid, leaf, 6), options), "");
+    EXPECT_EQ(refusal(drawing(rectangle("W", 0, 0, 4, 3) + copies, leaf, 6), options), "");
+    const std::string message = refusal(drawing(grid + copies, leaf, 6), options);
+    EXPECT_NE(message.find("crossings of the lines make more than 200000 units of work "
+                           "(`--max-work 400000` allows more)"),
+              std::string::npos)
+        << message;
+}
+
 }  // namespace
 }  // namespace ispace

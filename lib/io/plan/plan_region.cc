@@ -38,8 +38,8 @@ constexpr std::array<double, 3> kSharesInside{0.01, 0.501, 0.99};
 constexpr double kManyCrossings = 20;
 constexpr double kFewCrossings = 200'000;
 
-constexpr double kUnitsPerCrossing = 8;  // of Budget
-constexpr double kUnitsPerRoom = 8;      // that a crossing makes
+constexpr double kUnitsPerCrossing = 24;  // of Budget
+constexpr double kUnitsPerRoom = 8;       // that a crossing makes
 
 Point2 middleOf(const Segment2& s) { return s.a + 0.5 * (s.b - s.a); }
 

@@ -364,8 +364,11 @@ SvgDrawing readDrawing(std::string_view bytes, const std::string& name,
 }
 
 /// \param hints whether the drawing may be imported again to report the effect of other options
-SvgImport importSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
+SvgImport importSvg(std::string_view bytes, const std::string& name, const ImportOptions& asked,
                     const Schemas& schemas, bool hints) {
+    Budget whole(bytes.size(), asked.max_work);
+    ImportOptions options = asked;
+    options.max_work.whole = &whole;  // pays for uses and curves, and for the plan of them
     ImportRecords out(schemas, name, options);
     SvgDrawing drawing = readDrawing(bytes, name, options);
     out.note(drawing.scale);
@@ -377,7 +380,8 @@ SvgImport importSvg(std::string_view bytes, const std::string& name, const Impor
             : options.units,
         drawing.metres_per_unit, bytes.size(), drawing.left_out};
     if (hints)
-        source.area = [&](const ImportOptions& other) {
+        source.area = [&](ImportOptions other) {
+            other.max_work = asked.max_work;  // as much again
             return importSvg(bytes, name, other, schemas, false).area;
         };
     LayerSorter sorter({}, options);
