@@ -225,6 +225,27 @@ TEST(Building, ItsRoomsShareOneBudget) {
     EXPECT_EQ(readBuilding(storeys, name, options).storeys.size(), 4U);
 }
 
+TEST(Building, PaysForFilesThatConfinedProgramsRead) {
+    const TemporaryFolder folder;
+    const std::string ifc =
+        "ISO-10303-21;\nFILE_SCHEMA(('IFC4'));\n" + std::string(8000, ' ') + "\n";
+    std::string storeys = "#env 1\n";
+    for (const char* id : {"a", "b", "c"}) {
+        folder.write(std::string(id) + ".ifc", ifc);
+        storeys += std::string("storey id=") + id + " file=" + id + ".ifc\n";
+    }
+    const std::string name = folder.write("house.env", "");
+    ImportOptions options;
+    options.max_work.max = 1500;
+    const std::string error = errorOf([&] { readBuilding(storeys, name, options); });
+    EXPECT_TRUE(contains(error, "a.ifc: error: truncated")) << error;
+    EXPECT_TRUE(contains(error,
+                         "b.ifc: error: the files of the building take more than 1500 "
+                         "units of work (`--max-work 3000` allows more)"))
+        << error;
+    EXPECT_FALSE(contains(error, "c.ifc")) << error;
+}
+
 TEST(Building, LevelsOfASitePayForAliases) {
     std::string levels;
     for (int i = 0; i < 3; ++i)

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
@@ -160,7 +161,11 @@ struct InputFormat {
     bool is_plan;  ///< rooms are chosen from it, see isPlan()
     bool (*holds)(const Source&);
     Document (*read)(const Source&);
+    bool is_confined = false;  ///< read by a program that bounds its own work
 };
+
+/// Bytes of a confined format that are a unit of the Budget of the building around it.
+constexpr std::size_t kConfinedBytesPerUnit = 8;
 
 template <bool (*kTest)(std::string_view)>
 bool holdsBytes(const Source& source) {
@@ -193,16 +198,16 @@ Document readUpright(const Source& source) {
 }
 constexpr auto* kReadMesh = readUpright<meshDocument>;
 constexpr auto* kReadWalls = readUpright<readMeshWalls>;
+bool isGlbMesh(const Source& source) { return isGlb(source.bytes) && !glbHasRecords(source.bytes); }
 /// Returns true for a mesh that is cut into walls, which is a plan; a model of ours never is.
 bool isCutMesh(const Source& source) {
     if (!source.options.slice_walls || isPointCloud(source.bytes)) return false;
-    const bool is_mesh = (isGlb(source.bytes) && !glbHasRecords(source.bytes)) ||
-                         isMeshFile(source.bytes) || hasMeshSuffix(source.operand);
+    const bool is_mesh =
+        isGlbMesh(source) || isMeshFile(source.bytes) || hasMeshSuffix(source.operand);
     return is_mesh && !isRecordText(source.bytes);
 }
-Document readGlbOrMesh(const Source& source) {
-    return glbHasRecords(source.bytes) ? readGlb(source.bytes, source.operand, source.schemas)
-                                       : kReadMesh(source);
+Document readRecordsOfGlb(const Source& source) {
+    return readGlb(source.bytes, source.operand, source.schemas);
 }
 Document readRecords(const Source& source) {
     return readRecordText(source.bytes, source.operand, source.schemas);
@@ -217,8 +222,9 @@ bool isHouseExpo(const Source& source) {
 
 /// Formats recognised by their first bytes.
 constexpr InputFormat kFormatsByMagic[] = {
-    {true, isCutMesh, kReadWalls},
-    {false, holdsBytes<isGlb>, readGlbOrMesh},
+    {true, isCutMesh, kReadWalls, true},
+    {false, isGlbMesh, kReadMesh, true},
+    {false, holdsBytes<isGlb>, readRecordsOfGlb},
     {false, holdsBytes<isRecordText>, readRecords},
     {true, holdsBytes<isAriaMap>, importPlan<readAriaMap>},
     {true, holdsBytes<isDxf>, importPlan<readDxf>},
@@ -226,10 +232,10 @@ constexpr InputFormat kFormatsByMagic[] = {
     {false, holdsBytes<isGalleryFile>, importPlan<readGalleryFile>},
     {true, holdsBytes<isSvg>, importPlan<readSvg>},
     {true, holdsBytes<isSdf>, importPlan<readSdf>},
-    {true, holdsBytes<isIfc>, importPlan<readIfc>},
+    {true, holdsBytes<isIfc>, importPlan<readIfc>, true},
     {true, holdsBytes<isPicture>, importPlan<readBarePicture>},
     {true, holdsBytes<isPointCloud>, importPlan<readPointCloud>},
-    {false, holdsBytes<isMeshFile>, kReadMesh},
+    {false, holdsBytes<isMeshFile>, kReadMesh, true},
 };
 
 /// Formats recognised within plain text; the last accepts any text.
@@ -240,7 +246,7 @@ constexpr InputFormat kFormatsOfText[] = {
 };
 
 constexpr InputFormat kMeshBySuffix = {
-    false, [](const Source& source) { return hasMeshSuffix(source.operand); }, kReadMesh};
+    false, [](const Source& source) { return hasMeshSuffix(source.operand); }, kReadMesh, true};
 
 const InputFormat* findFormat(std::span<const InputFormat> formats, const Source& source) {
     const auto found = std::find_if(formats.begin(), formats.end(),
@@ -295,6 +301,10 @@ Document parseDocument(std::string_view bytes, const std::string& operand,
     const Source source{withoutBom(bytes), operand, options, schemas};
     const InputFormat* format = formatOf(
         source, [&](int line, const std::string& message) { failFile(operand, message, line); });
+    Budget* building = options.max_work.whole;
+    if (format->is_confined && building != nullptr &&
+        !building->take(bytes.size() / kConfinedBytesPerUnit))
+        failFile(operand, "the files of the building take " + building->excess());
     Document document = format->read(source);
     if (options.load_files) loadFiles(document, operand);
     return document;
