@@ -21,10 +21,10 @@ TEST(EnvironmentSchemas, HasTheKeywordsOfTheHeader) {
         EXPECT_FALSE(schema.help.empty());
     }
     EXPECT_EQ(keywords,
-              (std::set<std::string>{"ispace",   "inside", "zone",  "door",  "window",  "infra",
-                                     "boxes",    "screen", "mesh",  "floor", "wall",    "fence",
-                                     "pillar",   "table",  "desk",  "chair", "barrier", "cube",
-                                     "cylinder", "lamp",   "switch"}));
+              (std::set<std::string>{"ispace",   "inside", "zone",   "door",   "window",  "infra",
+                                     "boxes",    "screen", "mesh",   "floor",  "wall",    "fence",
+                                     "pillar",   "table",  "desk",   "chair",  "barrier", "cube",
+                                     "cylinder", "lamp",   "switch", "speaker"}));
 }
 
 TEST(EnvironmentSchemas, KeysAreWhole) {
