@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -23,6 +24,8 @@
 #include "scene/scene.h"
 
 namespace ispace {
+
+struct PoseCertificate;
 
 /// How candidate sites are proposed; each strategy is a row in arrange/strategy.cc.
 enum class Strategy {
@@ -93,6 +96,7 @@ struct ArrangeOptions {
     std::optional<double> target;  ///< share to reach at minimum cost
     /// Prove over all poses: the number of sensors with a target, else their coverage.
     bool over_poses = false;
+    bool wants_certificate = false;  ///< of that bound of coverage, see PosesBound
     std::optional<double> budget;
     bool wants_curve = false, wants_trace = false, wants_gains = false;
     int alternatives = 0;  ///< number of further layouts, see Arrangement::alternatives
@@ -143,6 +147,7 @@ struct PosesBound {
     double bound = 0;                   ///< the same number of sensors, in any poses, sees no more
     double floor = 0;                   ///< the indoor floor
     std::size_t boxes = 0, tuples = 0;  ///< of poses, whose views were bounded
+    std::shared_ptr<const PoseCertificate> certificate;  ///< if one was wanted
 };
 
 /// The gain of the candidates of one sensor of a layout.

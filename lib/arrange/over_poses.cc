@@ -24,6 +24,8 @@ namespace ispace {
 
 namespace {
 
+constexpr std::size_t kCells = 12'000;  // of a bound of coverage
+
 [[noreturn]] void refusePoses(const std::string& reason) {
     throw UsageError("--proof poses: " + reason);
 }
@@ -133,6 +135,11 @@ Arrangement arrangeOverPoses(const Scene& scene, const std::vector<SensorGroup>&
 
 namespace {
 
+poses::Sector sectorOf(const Laser& laser, const Box2& box) {
+    return {std::min(laser.max_range, std::hypot(box.width(), box.depth())), laser.span().radians(),
+            laser.first.radians()};
+}
+
 /// Layouts near poses of boxes, by refinement.
 class LayoutTrials {
   public:
@@ -211,11 +218,8 @@ void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& prog
     if (arrangement.sensors.empty()) return;
     const std::vector<Region> floor = floorAt(model.scene(), heightOf(model.options()));
     const auto& laser = std::get<Laser>(model.groups().front().model);
-    constexpr std::size_t kCells = 12'000;
     const poses::PoseFloor cells(floor, kCells);
-    const double extent = std::hypot(cells.box().width(), cells.box().depth());
-    const poses::Sector sector{std::min(laser.max_range, extent), laser.span().radians(),
-                               laser.first.radians()};
+    const poses::Sector sector = sectorOf(laser, cells.box());
     LayoutTrials trials(model, floor, arrangement, progress);
     PoseSearchOptions options{.sensors = model.groups().front().most,
                               .found = trials.found(),
@@ -224,6 +228,8 @@ void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& prog
     options.improve = [&](std::span<const poses::PoseBox> boxes) {
         return trials.tryCenters(boxes);
     };
+    PoseCertificate certificate;
+    if (model.options().wants_certificate) options.certificate = &certificate;
     const PoseBound found = boundOverPoses(cells, sector, options, progress);
     if (trials.isMoved())
         for (std::size_t i = 0; i < arrangement.sensors.size(); ++i)
@@ -231,9 +237,49 @@ void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& prog
     arrangement.refined_after = std::max(arrangement.refined_after, trials.found());
     const double bound = std::min(found.bound, trials.total());
     arrangement.poses_bound =
-        PosesBound{trials.found(), bound, trials.total(), found.boxes, found.tuples};
+        PosesBound{trials.found(), bound, trials.total(), found.boxes, found.tuples, nullptr};
+    if (options.certificate != nullptr)
+        arrangement.poses_bound->certificate =
+            std::make_shared<const PoseCertificate>(std::move(certificate));
     arrangement.bound = bound / trials.total();
     arrangement.is_complete = arrangement.is_complete && found.is_complete;
+}
+
+CheckedPoses checkPoses(const Scene& scene, const PoseCertificate& certificate,
+                        const std::string& name) {
+    const Laser* first = nullptr;
+    double height = 0;
+    CheckedPoses checked;
+    for (const Sensor& sensor : scene.sensors) {
+        if (!kindOf(sensor.model).perceives) continue;
+        const auto* laser = std::get_if<Laser>(&sensor.model);
+        const Pose3& pose = sensor.pose;
+        if (laser == nullptr || laser->sweep != SweepAxis::None || pose.tilt.radians() != 0 ||
+            pose.roll.radians() != 0)
+            refusePoses("wanted level lasers that do not sweep");
+        if (first == nullptr) {
+            first = laser;
+            height = pose.position.z;
+        }
+        if (laser->max_range != first->max_range || laser->span() != first->span() ||
+            laser->first != first->first || pose.position.z != height)
+            refusePoses("wanted lasers of one kind, at one height");
+        ++checked.sensors;
+    }
+    if (checked.sensors == 0 || checked.sensors > kMostPosed)
+        refusePoses("wanted 1 to " + std::to_string(kMostPosed) + " lasers with a pose, found " +
+                    std::to_string(checked.sensors));
+    const std::vector<Region> floor = floorAt(scene, height);
+    Box2 box;
+    for (const Region& region : floor)
+        for (const Point2 p : region.outline) box.add(p);
+    checked.check = checkCertificate(floor, kCells, sectorOf(*first, box),
+                                     static_cast<int>(checked.sensors), certificate, name);
+    checked.floor = totalArea(floor);
+    Worlds worlds(scene.environment);
+    checked.found =
+        measureCoverage(scene, worlds, {}).report.total_effective_area.exact.value_or(0);
+    return checked;
 }
 
 }  // namespace ispace

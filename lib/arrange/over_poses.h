@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "arrange/arrange.h"
+#include "arrange/poses/certificate.h"
 #include "arrange/sensor_group.h"
 #include "base/error.h"
 #include "scene/scene.h"
@@ -31,5 +33,20 @@ void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
 /// Bounds the coverage of the arranged sensors over all poses (Arrangement::poses_bound), and moves
 /// them if a better layout is found on the way.
 void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& progress);
+
+/// A bound of coverage over all poses that was checked, m2.
+struct CheckedPoses {
+    std::size_t sensors = 0;
+    double found = 0;  ///< seen by the sensors of the scene, by exact area
+    double floor = 0;
+    CertificateCheck check;
+};
+
+/// Checks a certificate for the sensors of a scene: computes all areas anew, by other code than
+/// that of the search.
+/// \throws UsageError unless these are level lasers of one kind, as for mustBeBoundable()
+/// \throws FormatError as checkCertificate()
+CheckedPoses checkPoses(const Scene& scene, const PoseCertificate& certificate,
+                        const std::string& name);
 
 }  // namespace ispace

@@ -97,6 +97,48 @@ TEST(OverPoses, BoundsTheCoverageOfAnyPoses) {
     EXPECT_EQ(layout.records.back().text("proof"), "poses");
 }
 
+TEST(OverPoses, ChecksTheCertificateForALayout) {
+    const Scene scene = roomScene("#env 1\nispace size=5,4\n");
+    ArrangeOptions options = coarse();
+    options.refine = options.over_poses = options.wants_certificate = true;
+    options.search.gap = 0.05;
+    const auto groups = groupsOf(scene, {"laser,range=99,fov=360:1"});
+    const Arrangement found = arranged(scene, groups, options);
+    ASSERT_TRUE(found.poses_bound && found.poses_bound->certificate);
+    const PoseCertificate& certificate = *found.poses_bound->certificate;
+    const CheckedPoses checked =
+        checkPoses(withPlaced(scene, groups, found.sensors), certificate, "c");
+    EXPECT_EQ(checked.sensors, 1U);
+    EXPECT_NEAR(checked.found, found.poses_bound->found, 1e-6);
+    EXPECT_NEAR(checked.floor, 20, 1e-9);
+    EXPECT_GE(checked.check.bound, checked.found);
+    EXPECT_LE(checked.check.bound, certificate.bound * (1 + 1e-9));
+    // The same trees prove less of a larger room.
+    const Scene larger = roomScene("#env 1\nispace size=7,4\n");
+    EXPECT_GT(checkPoses(withPlaced(larger, groups, found.sensors), certificate, "c").check.bound,
+              certificate.bound);
+}
+
+TEST(OverPoses, ChecksLevelLasersOfOneKindAlone) {
+    const auto refusal = [](const std::string& sensors) -> std::string {
+        try {
+            checkPoses(roomScene("#env 1\nispace size=8,6\n" + sensors),
+                       {.bound = 9, .boxes = ".", .pairs = "", .tuples = "."}, "c");
+        } catch (const UsageError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const std::string laser = "laser at=1,1\n";
+    EXPECT_EQ(refusal(laser + laser), "");
+    EXPECT_NE(refusal("").find("1 to 4 lasers"), std::string::npos);
+    EXPECT_NE(refusal(laser + laser + laser + laser + laser).find("1 to 4"), std::string::npos);
+    EXPECT_NE(refusal("camera at=1,1,2\n").find("level lasers"), std::string::npos);
+    EXPECT_NE(refusal("laser at=1,1 tilt=5\n").find("level lasers"), std::string::npos);
+    EXPECT_NE(refusal(laser + "laser at=2,1 range=3\n").find("one kind"), std::string::npos);
+    EXPECT_NE(refusal(laser + "laser at=2,1,1\n").find("one height"), std::string::npos);
+}
+
 TEST(OverPoses, RefusesSensorsThatItCannotBound) {
     const auto refusal = [](const std::string& room, const char* sensor,
                             const ArrangeOptions& options) -> std::string {

@@ -387,6 +387,12 @@ void ArrangeCommand::addFileOptions() {
     line_.file("--export-mps", "FILE", options_.mps_file,
                "write the model for solvers of mixed-integer programs (glpsol, cbc)",
                Enters::Nothing);
+    line_.file("--certificate", "FILE", options_.certificate_file,
+               "write the proof of --proof poses without --target, for --verify", Enters::Nothing);
+    line_.file("--verify", "FILE", options_.verify_file,
+               "check this certificate for the sensors of LAYOUT by other code than that of the "
+               "search; arrange nothing, and exit with 3 if it does not prove its bound",
+               Enters::Nothing);
 }
 
 void ArrangeCommand::addShareOptions() {

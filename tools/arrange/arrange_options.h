@@ -30,7 +30,8 @@ struct ArrangeToolOptions {
     ZoneWords zones;
     std::string places_file;
     std::vector<std::string> robust_rooms;  ///< of --robust rooms:
-    std::string trace_file, curve_file, mps_file, report_file, heat_file;
+    std::string trace_file, curve_file, mps_file, report_file, heat_file, certificate_file;
+    std::string verify_file;           ///< a certificate to check instead of a search
     std::optional<double> time_limit;  ///< seconds
     BatchOptions batch;
     double checkpoint_interval = 5;  ///< seconds, of --resume
@@ -61,6 +62,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void settleRobust();
     void settleCameraRules();
     void settleProofOfCoverage();
+    void settleCertificate();
     void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;
     void settleFiles() const;
     void settleBatch();

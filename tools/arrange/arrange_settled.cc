@@ -32,9 +32,10 @@ Value valueOf(const std::string& word, const Value (&values)[kCount]) {
 
 void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
+    settleCertificate();
     constexpr const char* kSingle[] = {"--curve",        "--trace", "--report",
                                        "--export-mps",   "--share", "--checkpoint-interval",
-                                       "--alternatives", "--heat"};
+                                       "--alternatives", "--heat",  "--certificate"};
     checkBatchOptions(line_, options_.batch, options_.common, options_.operands, kSingle);
     if (!options_.batch.list.empty() && options_.places_file == "-")
         throw UsageError("--places: stdin is not read again for each line of LIST: give a file");
@@ -110,6 +111,24 @@ void ArrangeCommand::settleProofOfCoverage() {
                 "--proof poses bounds what sensors in any poses see of all the floor: leave out " +
                 std::string(option));
     options_.how.refine = true;
+}
+
+void ArrangeCommand::settleCertificate() {
+    ArrangeOptions& how = options_.how;
+    how.wants_certificate = !options_.certificate_file.empty();
+    if (how.wants_certificate && (words_.proof != "poses" || how.target))
+        throw UsageError(
+            "--certificate is about --proof poses without --target, whose result holds witnesses");
+    if (options_.verify_file.empty()) return;
+    constexpr const char* kFiles[] = {"--output", "--certificate",  "--batch", "--merge",
+                                      "--resume", "--alternatives", "--curve", "--trace",
+                                      "--heat",   "--report",       "--shard", "--time-limit"};
+    for (const char* option : kFiles)
+        if (line_.given(option))
+            throw UsageError("--verify writes nothing: leave out " + std::string(option));
+    if (line_.historyLine({}) != "arrange")
+        throw UsageError(
+            "--verify checks a proof for the sensors of a layout: give FILE, ENV and LAYOUT alone");
 }
 
 void ArrangeCommand::settleRobust() {
@@ -216,6 +235,7 @@ void ArrangeCommand::settleFiles() const {
                                      {"--trace", &options_.trace_file},
                                      {"--report", &options_.report_file},
                                      {"--heat", &options_.heat_file},
+                                     {"--certificate", &options_.certificate_file},
                                      {"--export-mps", &options_.mps_file}})
         if (isStdout(*file))
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");

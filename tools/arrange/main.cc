@@ -7,6 +7,8 @@
 #include "arrange/arrange_options.h"
 #include "arrange/arrange_report.h"
 #include "arrange/arrange_run.h"
+#include "arrange/arrange_verify.h"
+#include "arrange/poses/certificate.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
@@ -46,6 +48,9 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
         writeAll(options.report_file,
                  reportFile(options, work, arrangement, layout, command.historyLine(input.named)));
     if (!options.heat_file.empty()) writeHeat(options, work, arrangement);
+    if (const std::string& file = options.certificate_file; !file.empty())
+        if (const auto& bound = arrangement.poses_bound; bound && bound->certificate)
+            writeAll(file, certificateText(*bound->certificate, parts.history));
     if (const std::string& file = options.curve_file; !file.empty())
         writeAll(file, curveFile(arrangement.curve, outputFormat({}, file, curveFormats())));
     for (std::size_t i = 0; i < arrangement.alternatives.size(); ++i)
@@ -137,6 +142,7 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     claimOutput(options.mps_file, "--export-mps");
     claimOutput(options.report_file, "--report");
     claimOutput(options.heat_file, "--heat");
+    claimOutput(options.certificate_file, "--certificate");
     ArrangeWork work = readWork(options);
     for (int i = 0; i < options.how.alternatives; ++i) {
         const std::string file =
@@ -147,7 +153,7 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     claimHeat(options, work);
     for (const std::string* file :
          {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file,
-          &options.report_file, &options.heat_file})
+          &options.report_file, &options.heat_file, &options.certificate_file})
         mustBeWritable(*file);
     warnOfSearch(options, work);
     bool is_done = false;
@@ -207,6 +213,7 @@ void arrangeJob(const ArrangeCommand& command, const BatchJob& job, const Common
 
 void arrangeSensors(const ArrangeCommand& command) {
     const ArrangeToolOptions& options = command.options();
+    if (!options.verify_file.empty()) return verifyCertificate(options);
     if (!options.batch.list.empty())
         return runBatch(
             {"arrange", options.common, options.batch,

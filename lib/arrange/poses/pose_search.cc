@@ -40,6 +40,12 @@ struct PairNode {
 struct Tuple {
     double bound = 0;
     std::array<BoxId, kMostPosed> boxes{};
+    std::uint32_t node = 0;  // of the tree of tuples
+};
+/// A tuple of the tree that becomes a certificate.
+struct TupleNode {
+    std::array<std::uint32_t, 2> halves{};  // 0: left out
+    int which = -1;                         // the box that is halved; -1: none
 };
 struct IsWorse {
     bool operator()(const Tuple& a, const Tuple& b) const {
@@ -81,9 +87,14 @@ class PoseSearcher {
     [[nodiscard]] double cutoff() const { return found_ / (1 - options_.gap); }
     void improve(const Tuple& tuple);
     [[nodiscard]] bool isFull() const {
-        return boxes_.bytes() + queue_.size() * sizeof(Tuple) + pairs_.size() * sizeof(PairNode) >
+        return boxes_.bytes() + queue_.size() * sizeof(Tuple) + pairs_.size() * sizeof(PairNode) +
+                   tree_.size() * sizeof(TupleNode) >
                options_.max_bytes;
     }
+    void addToTree(const Tuple& parent, std::size_t which, std::vector<Tuple>& children);
+    void writeBoxes(BoxId id, std::string& text) const;
+    void writePairs(std::uint32_t id, std::string& text) const;
+    void writeTuples(std::uint32_t id, std::string& text) const;
 
     const PoseFloor& floor_;
     const Sector& sector_;
@@ -94,6 +105,7 @@ class PoseSearcher {
     PoseBoxes boxes_;
     std::vector<PairNode> pairs_;
     std::size_t tuples_ = 0;
+    std::vector<TupleNode> tree_;  // with a certificate alone
     std::priority_queue<Tuple, std::vector<Tuple>, IsWorse> queue_;
     double tried_ = 0;   // best layout of centres of boxes, m2
     double closed_ = 0;  // largest bound of a tuple that was not split further
@@ -290,6 +302,7 @@ void PoseSearcher::searchTuples() {
     Tuple root;
     root.bound = boundOf(root, 0);
     queue_.push(root);
+    tree_.emplace_back();
     for (std::size_t round = 1; !queue_.empty() && queue_.top().bound > cutoff(); ++round) {
         if (progress_.stopped() || isFull()) {
             is_complete_ = false;
@@ -326,7 +339,9 @@ void PoseSearcher::searchTuples() {
         std::vector<Children> made(batch.size());
         tbb::parallel_for(std::size_t{0}, batch.size(),
                           [&](std::size_t i) { made[i] = childrenOf(batch[i], which[i]); });
-        for (const Children& children : made) {
+        for (std::size_t i = 0; i < made.size(); ++i) {
+            Children& children = made[i];
+            if (options_.certificate != nullptr) addToTree(batch[i], which[i], children.tuples);
             if (children.best_value > std::max(tried_ * (1 + kBetter), found_ * kNear)) {
                 tried_ = children.best_value;
                 improve(children.best);
@@ -342,6 +357,55 @@ void PoseSearcher::searchTuples() {
     }
 }
 
+void PoseSearcher::addToTree(const Tuple& parent, std::size_t which, std::vector<Tuple>& children) {
+    tree_[parent.node].which = static_cast<int>(which);
+    for (Tuple& child : children) {
+        child.node = static_cast<std::uint32_t>(tree_.size());
+        const bool is_first = child.boxes[which] == boxes_[parent.boxes[which]].child;
+        tree_[parent.node].halves[is_first ? 0 : 1] = child.node;
+        tree_.emplace_back();
+    }
+}
+
+void PoseSearcher::writeBoxes(BoxId id, std::string& text) const {
+    const BoxNode& node = boxes_[id];
+    if (node.child == 0) {
+        text += '.';
+        return;
+    }
+    const PoseBox& half = boxes_[node.child].box;
+    text += half.span != node.box.span ? 'h' : half.at.width() != node.box.at.width() ? 'x' : 'y';
+    for (BoxId child = node.child; child < node.child + 2; ++child) writeBoxes(child, text);
+}
+
+void PoseSearcher::writePairs(std::uint32_t id, std::string& text) const {
+    const PairNode& pair = pairs_[id];
+    if (!pair.is_split) {
+        text += '.';
+        return;
+    }
+    const std::size_t which = boxes_.widestOf(pair.boxes);
+    text += static_cast<char>('0' + which);
+    const BoxId child = boxes_[pair.boxes[which]].child;
+    std::uint32_t next = pair.child;
+    for (BoxId half = child; half < child + 2; ++half)
+        if (next < pair.child + pair.children && pairs_[next].boxes[which] == half)
+            writePairs(next++, text);
+        else
+            text += '-';
+}
+
+void PoseSearcher::writeTuples(std::uint32_t id, std::string& text) const {
+    const TupleNode& node = tree_[id];
+    text += node.which < 0 ? '.' : static_cast<char>('0' + node.which);
+    if (node.which < 0) return;
+    for (const std::uint32_t half : node.halves)
+        if (half != 0)
+            writeTuples(half, text);
+        else
+            text += '-';
+}
+
 PoseBound PoseSearcher::run() {
     if (boxes_[0].parts.parts.empty()) return {};
     searchSingle();
@@ -349,7 +413,14 @@ PoseBound PoseSearcher::run() {
     if (count_ > 2) searchPairs(0, kPairs);
     searchTuples();
     const double open = queue_.empty() ? 0 : queue_.top().bound;
-    return {std::max({closed_, open, found_}), found_, boxes_.size(), tuples_, is_complete_};
+    const double bound = std::max({closed_, open, found_});
+    if (PoseCertificate* certificate = options_.certificate; certificate != nullptr) {
+        *certificate = {.bound = bound, .boxes = {}, .pairs = {}, .tuples = {}};
+        writeBoxes(0, certificate->boxes);
+        if (!pairs_.empty()) writePairs(0, certificate->pairs);
+        writeTuples(0, certificate->tuples);
+    }
+    return {bound, found_, boxes_.size(), tuples_, is_complete_};
 }
 
 }  // namespace

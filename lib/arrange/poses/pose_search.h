@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "arrange/poses/certificate.h"
 #include "arrange/poses/fat_view.h"
 #include "base/error.h"
 
@@ -21,6 +22,7 @@ struct PoseSearchOptions {
     /// Computes the area, m2, of a layout near these poses; null: layouts are not improved. Called
     /// by one thread.
     std::function<double(std::span<const poses::PoseBox>)> improve = {};
+    PoseCertificate* certificate = nullptr;  ///< receives the proof; null: it is not wanted
 };
 
 struct PoseBound {

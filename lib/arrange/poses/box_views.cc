@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/poses/box_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+namespace ispace::poses {
+
+namespace {
+
+using Convex = std::vector<Point2>;
+
+/// The points q with dot(outwards, q - at) <= 0.
+struct Side2 {
+    Point2 at;
+    Vec2 outwards;
+    [[nodiscard]] double beyond(Point2 q) const { return dot(outwards, q - at); }
+};
+
+/// Divides a convex polygon into its parts inside and outside of a half-plane.
+void divide(const Convex& polygon, const Side2& side, Convex& inside, Convex* outside) {
+    inside.clear();
+    if (outside != nullptr) outside->clear();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Point2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+        const double from = side.beyond(a), to = side.beyond(b);
+        if (from <= 0) inside.push_back(a);
+        if (from >= 0 && outside != nullptr) outside->push_back(a);
+        if ((from < 0 && to > 0) || (from > 0 && to < 0)) {
+            const Point2 cut = a + (from / (from - to)) * (b - a);
+            inside.push_back(cut);
+            if (outside != nullptr) outside->push_back(cut);
+        }
+    }
+    if (inside.size() < 3) inside.clear();
+    if (outside != nullptr && outside->size() < 3) outside->clear();
+}
+
+void keepInside(Convex& polygon, const Side2& side) {
+    if (std::none_of(polygon.begin(), polygon.end(),
+                     [&side](Point2 p) { return side.beyond(p) > 0; }))
+        return;
+    Convex kept;
+    divide(polygon, side, kept, nullptr);
+    polygon.swap(kept);
+}
+
+double areaOf(std::span<const Point2> polygon) {
+    double sum = 0;
+    for (std::size_t i = 2; i < polygon.size(); ++i)
+        sum += cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
+    return sum / 2;
+}
+
+Convex cornersOf(const Box2& box) {
+    return {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
+}
+
+Vec2 wayAt(double angle) { return {std::cos(angle), std::sin(angle)}; }
+
+}  // namespace
+
+/// The view of one box.
+class BoxSight {
+  public:
+    BoxSight(const BoxViews& floor, const PoseBox& box)
+        : floor_(floor), sector_(floor.sector_), areas_(floor.columns_ * floor.rows_) {
+        const Vec2 margin{kWiden, kWiden};
+        source_ = cornersOf({box.at.low - margin, box.at.high + margin});
+        addDisc();
+        addDirections(box);
+    }
+
+    BoxView view();
+
+  private:
+    /// Ends of the edges that a sight line has crossed.
+    struct Way {
+        Convex source;  // part of the box
+        std::vector<Point2> lefts, rights;
+        std::vector<Side2> limits;
+    };
+    static constexpr int kMostSteps = 20'000;  // more: all floor within reach is taken
+
+    [[nodiscard]] Side2 sideAlong(Vec2 outwards) const;
+    void addDisc();
+    void addDirections(const PoseBox& box);
+    /// Adds the part within range and directions; returns false if there is none.
+    bool add(Convex polygon);
+    void follow(std::size_t face, std::size_t edge, const Way& before);
+    static Side2 limitAt(Point2 end, Point2 other, double turn, const Way& way,
+                         const std::vector<Point2>& others);
+
+    const BoxViews& floor_;
+    const Sector& sector_;
+    Convex source_;
+    std::vector<Side2> reach_;       // holds all points in range
+    std::vector<Side2> directions_;  // all points in some direction of the field
+    bool is_cut_out_ = false;        // they hold all others instead
+    std::vector<char> is_start_;
+    std::vector<double> areas_;
+    double area_ = 0;
+    int steps_ = 0;
+};
+
+/// The half-plane that touches the box.
+Side2 BoxSight::sideAlong(Vec2 outwards) const {
+    const auto less = [outwards](Point2 a, Point2 b) { return dot(outwards, a - b) < 0; };
+    return {*std::max_element(source_.begin(), source_.end(), less), outwards};
+}
+
+void BoxSight::addDisc() {
+    constexpr int kSides = 192;
+    for (int i = 0; i < kSides; ++i) {
+        Side2 side = sideAlong(wayAt(2 * std::numbers::pi * i / kSides));
+        side.at = side.at + sector_.range * side.outwards;
+        reach_.push_back(side);
+    }
+}
+
+void BoxSight::addDirections(const PoseBox& box) {
+    constexpr double kTurn = 1e-9;  // more than rounding
+    const double span = sector_.field + box.span + 2 * kTurn;
+    if (sector_.isRound() || span >= 2 * std::numbers::pi) return;
+    const double from = box.from + sector_.first - kTurn;
+    const Vec2 first = wayAt(from), last = wayAt(from + span);
+    directions_ = {sideAlong(-perpendicular(first)), sideAlong(perpendicular(last))};
+    is_cut_out_ = span > std::numbers::pi;
+    if (is_cut_out_) {  // beyond both sides no pose has the direction in its field
+        for (Side2& side : directions_) side.outwards = -side.outwards;
+        return;
+    }
+    for (const Vec2 axis : {Vec2{1, 0}, Vec2{-1, 0}, Vec2{0, 1}, Vec2{0, -1}})
+        if (dot(axis, first) <= 0 && dot(axis, last) <= 0) directions_.push_back(sideAlong(axis));
+}
+
+bool BoxSight::add(Convex polygon) {
+    for (const Side2& side : reach_) keepInside(polygon, side);
+    if (!is_cut_out_)
+        for (const Side2& side : directions_) keepInside(polygon, side);
+    if (polygon.empty()) return false;
+    double area = areaOf(polygon);
+    floor_.addArea(polygon, 1, areas_);
+    if (is_cut_out_) {
+        for (const Side2& side : directions_) keepInside(polygon, side);
+        if (!polygon.empty()) {
+            const double unseen = areaOf(polygon);
+            floor_.addArea(polygon, -1, areas_);
+            if (unseen >= area) return false;
+            area -= unseen;
+        }
+    }
+    area_ += area;
+    return true;
+}
+
+/// Returns the side of a line through an end of an edge on which points beyond the edge lie.
+/// \param other the edge's other end \param turn 1: the end is on the left, -1: on the right
+Side2 BoxSight::limitAt(Point2 end, Point2 other, double turn, const Way& way,
+                        const std::vector<Point2>& others) {
+    constexpr double kClear = 1e-9;  // metres on the near side, and from the end
+    const Vec2 along = (1 / length(end - other)) * (end - other);
+    const Vec2 ahead = -turn * perpendicular(along);
+    // The direction of a line that goes ahead turns further outwards, the larger this is.
+    const auto outwardness = [along](Vec2 line) { return dot(along, line) / length(line); };
+    Vec2 limit = -along;
+    for (const Point2 s : way.source) {
+        const Vec2 line = end - s;
+        if (length(line) < kClear) {
+            limit = along;
+            break;
+        }
+        if (outwardness(line) > outwardness(limit)) limit = line;
+    }
+    for (const Point2 p : others) {
+        const Vec2 line = end - p;
+        if (dot(ahead, line) > kClear && outwardness(line) < outwardness(limit)) limit = line;
+    }
+    return {end, turn * perpendicular(limit)};
+}
+
+/// Follows all sight lines that leave a face by an edge.
+void BoxSight::follow(std::size_t face, std::size_t edge, const Way& before) {
+    const BoxViews::Face& near = floor_.faces_[face];
+    if (near.beyond[edge] < 0) return;
+    const auto beyond = static_cast<std::size_t>(near.beyond[edge]);
+    if (is_start_[beyond] != 0 || ++steps_ > kMostSteps) return;
+    // The near face is to the left of its edge, so ahead its first corner is on the right.
+    const Point2 right = near.at[edge], left = near.at[(edge + 1) % 3];
+    Way way = before;
+    keepInside(way.source, {right, -perpendicular(left - right)});
+    if (way.source.empty()) return;
+    if (way.rights.empty() || !(way.rights.back() == right)) {
+        way.limits.push_back(limitAt(right, left, -1, way, way.lefts));
+        way.rights.push_back(right);
+    }
+    if (way.lefts.empty() || !(way.lefts.back() == left)) {
+        way.limits.push_back(limitAt(left, right, 1, way, way.rights));
+        way.lefts.push_back(left);
+    }
+    const BoxViews::Face& far = floor_.faces_[beyond];
+    Convex piece(far.at.begin(), far.at.end());
+    for (const Side2& side : way.limits) keepInside(piece, side);
+    if (piece.empty() || !add(std::move(piece))) return;
+    for (std::size_t next = 0; next < 3; ++next)
+        if (far.beyond[next] != static_cast<std::int32_t>(face)) follow(beyond, next, way);
+}
+
+BoxView BoxSight::view() {
+    const std::size_t count = floor_.faces_.size();
+    is_start_.assign(count, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto& at = floor_.faces_[i].at;
+        Convex shared = source_;
+        for (std::size_t k = 0; k < 3 && !shared.empty(); ++k)
+            keepInside(shared, {at[k], -perpendicular(at[(k + 1) % 3] - at[k])});
+        is_start_[i] = shared.empty() ? 0 : 1;
+        if (!shared.empty()) add({at.begin(), at.end()});
+    }
+    const Way way{source_, {}, {}, {}};
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t edge = 0; edge < 3 && is_start_[i] != 0; ++edge) follow(i, edge, way);
+    if (steps_ > kMostSteps) {
+        std::fill(areas_.begin(), areas_.end(), 0.0);
+        area_ = 0;
+        for (const BoxViews::Face& face : floor_.faces_) add({face.at.begin(), face.at.end()});
+    }
+    BoxView view;
+    std::vector<std::uint16_t> parts = floor_.partsOf(areas_);
+    const auto is_some = [](std::uint16_t part) { return part != 0; };
+    const auto begin = std::find_if(parts.begin(), parts.end(), is_some);
+    const auto end = std::find_if(parts.rbegin(), parts.rend(), is_some).base();
+    if (begin >= end) return view;
+    view.first = static_cast<std::size_t>(begin - parts.begin());
+    view.parts.assign(begin, end);
+    const BoxView* const self = &view;
+    view.area = std::min({area_, floor_.unionOf({&self, 1}), sector_.area()});
+    return view;
+}
+
+BoxViews::BoxViews(std::span<const Region> regions, std::size_t most, const Sector& sector)
+    : sector_(sector) {
+    std::map<std::pair<std::uint64_t, std::uint64_t>, std::pair<std::size_t, std::size_t>> edges;
+    std::uint64_t first = 0;  // vertex of the region
+    for (const Region& region : regions) {
+        const Triangulation mesh = triangulate(region);
+        for (const Point2 p : mesh.vertices) box_.add(p);
+        for (const auto& corners : mesh.triangles) {
+            const std::size_t own = faces_.size();
+            Face face;
+            for (std::size_t i = 0; i < 3; ++i) face.at[i] = mesh.vertices[corners[i]];
+            faces_.push_back(face);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto a = first + corners[i], b = first + corners[(i + 1) % 3];
+                edges[{a, b}] = {own, i};
+                const auto it = edges.find({b, a});
+                if (it == edges.end()) continue;
+                const auto [other, edge] = it->second;
+                faces_[own].beyond[i] = static_cast<std::int32_t>(other);
+                faces_[other].beyond[edge] = static_cast<std::int32_t>(own);
+            }
+        }
+        first += mesh.vertices.size();
+    }
+    if (box_.empty()) box_ = {{0, 0}, {0, 0}};
+    const double width = std::max(box_.width(), 1e-6), depth = std::max(box_.depth(), 1e-6);
+    const auto count = static_cast<double>(most);
+    side_ = std::max(std::sqrt(width * depth / count), std::max(width, depth) / count);
+    columns_ = static_cast<std::size_t>(width / side_) + 1;
+    rows_ = static_cast<std::size_t>(depth / side_) + 1;
+    std::vector<double> areas(rows_ * columns_);
+    for (const Face& face : faces_) addArea(face.at, 1, areas);
+    most_.assign(areas.size(), kParts);
+    most_ = partsOf(areas);
+}
+
+void BoxViews::addArea(std::span<const Point2> polygon, double sign,
+                       std::vector<double>& areas) const {
+    thread_local Convex rest, strip, cell, above;  // memory is reused
+    rest.clear();
+    for (const Point2 p : polygon)
+        rest.push_back({(p.x - box_.low.x) / side_, (p.y - box_.low.y) / side_});
+    // Cuts along y first, then along x.
+    const auto range = [](const Convex& points, double Point2::*axis, std::size_t count) {
+        const auto less = [axis](Point2 a, Point2 b) { return a.*axis < b.*axis; };
+        const auto [low, high] = std::minmax_element(points.begin(), points.end(), less);
+        const auto last = static_cast<double>(count - 1);
+        return std::pair(
+            static_cast<std::size_t>(std::clamp(std::floor((*low).*axis), 0.0, last)),
+            static_cast<std::size_t>(std::clamp(std::floor((*high).*axis), 0.0, last)));
+    };
+    const auto [bottom, top] = range(rest, &Point2::y, rows_);
+    for (std::size_t row = bottom; row <= top && !rest.empty(); ++row) {
+        if (row < top) {
+            divide(rest, {{0, static_cast<double>(row + 1)}, {0, 1}}, strip, &above);
+            rest.swap(above);
+        } else {
+            strip = rest;
+        }
+        if (strip.empty()) continue;
+        const auto [left, right] = range(strip, &Point2::x, columns_);
+        for (std::size_t column = left; column <= right && !strip.empty(); ++column) {
+            double& area = areas[row * columns_ + column];
+            if (column == right) {
+                area += sign * areaOf(strip);
+                break;
+            }
+            divide(strip, {{static_cast<double>(column + 1), 0}, {1, 0}}, cell, &above);
+            area += sign * areaOf(cell);
+            strip.swap(above);
+        }
+    }
+}
+
+std::vector<std::uint16_t> BoxViews::partsOf(const std::vector<double>& areas) const {
+    constexpr double kNoShare = 1e-9;  // of a cell: rounding
+    std::vector<std::uint16_t> parts(areas.size());
+    for (std::size_t i = 0; i < areas.size(); ++i)
+        if (areas[i] >= kNoShare)
+            parts[i] = static_cast<std::uint16_t>(
+                std::min(std::ceil((areas[i] + kNoShare) * kParts), static_cast<double>(most_[i])));
+    return parts;
+}
+
+BoxView BoxViews::viewOf(const PoseBox& box) const { return BoxSight(*this, box).view(); }
+
+double BoxViews::unionOf(std::span<const BoxView* const> views) const {
+    thread_local std::vector<std::uint16_t> sums;  // memory is reused
+    sums.assign(most_.size(), 0);
+    std::size_t begin = most_.size(), end = 0;
+    for (const BoxView* view : views) {
+        for (std::size_t i = 0; i < view->parts.size(); ++i) {
+            const std::size_t cell = view->first + i;
+            sums[cell] =
+                static_cast<std::uint16_t>(std::min<int>(sums[cell] + view->parts[i], most_[cell]));
+        }
+        begin = std::min(begin, view->first);
+        end = std::max(end, view->first + view->parts.size());
+    }
+    std::uint64_t sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += sums[i];
+    return static_cast<double>(sum) * side_ * side_ / kParts;
+}
+
+}  // namespace ispace::poses

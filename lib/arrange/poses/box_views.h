@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/arrange/poses: views of boxes for the check of certificates, by other code than those
+// of the search.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "arrange/poses/fat_view.h"
+
+namespace ispace::poses {
+
+/// All that some pose of a box sees, as parts of cells.
+struct BoxView {
+    double area = 0;                   ///< m2: bounds the area that any single pose of the box sees
+    std::size_t first = 0;             ///< cell of parts[0]
+    std::vector<std::uint16_t> parts;  ///< none: no pose on the floor sees any
+};
+
+/// A floor as triangles and square cells, and views of boxes of poses on it.
+///
+/// A sight line from the box crosses a sequence of edges between triangles, each from its near side
+/// to its far side. Beyond an edge it passes to the right of all left ends of edges, and to the
+/// left of all right ends. So a point beyond lies to the right of the line from some point of the
+/// box, and of those from all right ends on the near side, through each left end; and so mirrored.
+/// Parts of the box on the far side of an edge see nothing through it.
+class BoxViews {
+  public:
+    /// Parts of a cell; two of them add up within 16 bits.
+    static constexpr int kParts = 32'767;
+
+    /// \param most number of cells that the box around the floor is divided into, at most
+    BoxViews(std::span<const Region> regions, std::size_t most, const Sector& sector);
+
+    [[nodiscard]] const Box2& box() const { return box_; }
+    [[nodiscard]] BoxView viewOf(const PoseBox& box) const;
+    /// Returns the area of a union of views, m2: parts add up, to the floor in a cell at most.
+    [[nodiscard]] double unionOf(std::span<const BoxView* const> views) const;
+
+  private:
+    friend class BoxSight;
+    struct Face {
+        std::array<Point2, 3> at;                        // counter-clockwise
+        std::array<std::int32_t, 3> beyond{-1, -1, -1};  // face behind the edge from corner i
+    };
+    /// Cuts a convex polygon along the lines of cells, and adds the areas of its pieces, in cells.
+    void addArea(std::span<const Point2> polygon, double sign, std::vector<double>& areas) const;
+    [[nodiscard]] std::vector<std::uint16_t> partsOf(const std::vector<double>& areas) const;
+
+    Sector sector_;
+    std::vector<Face> faces_;
+    Box2 box_;
+    double side_ = 1;
+    std::size_t columns_ = 1, rows_ = 1;
+    std::vector<std::uint16_t> most_;  // parts that are floor
+};
+
+}  // namespace ispace::poses

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/poses/certificate.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::string_view kMagic = "#certificate 1", kBound = "bound ";
+constexpr std::size_t kWidth = 100;  // of a line of a tree
+
+struct Tree {
+    std::string_view name, nodes;  // characters that it may hold
+    std::string PoseCertificate::*text;
+};
+constexpr Tree kTrees[] = {{"boxes", "xyh.", &PoseCertificate::boxes},
+                           {"pairs", "01.-", &PoseCertificate::pairs},
+                           {"tuples", "0123.-", &PoseCertificate::tuples}};
+
+/// Reads lines, which it counts.
+class CertificateLines {
+  public:
+    CertificateLines(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
+
+    [[nodiscard]] bool atEnd() const { return rest_.empty(); }
+    [[nodiscard]] std::string_view peek() const { return rest_.substr(0, rest_.find('\n')); }
+    std::string_view next() {
+        const std::string_view line = peek();
+        rest_.remove_prefix(std::min(line.size() + 1, rest_.size()));
+        ++number_;
+        return line;
+    }
+    [[noreturn]] void refuse(const std::string& message) const {
+        throw FormatError({name_, number_, 0, message});
+    }
+
+  private:
+    std::string_view rest_;
+    const std::string& name_;
+    int number_ = 0;
+};
+
+}  // namespace
+
+std::string certificateText(const PoseCertificate& certificate,
+                            const std::vector<std::string>& history) {
+    std::string text(kMagic);
+    text += '\n';
+    for (const std::string& line : history) text.append("# ").append(line) += '\n';
+    text.append(kBound).append(formatDouble(certificate.bound)) += '\n';
+    for (const Tree& tree : kTrees) {
+        text.append(tree.name) += '\n';
+        const std::string& nodes = certificate.*tree.text;
+        for (std::size_t i = 0; i < nodes.size(); i += kWidth)
+            text.append(nodes, i, kWidth) += '\n';
+    }
+    return text;
+}
+
+PoseCertificate readCertificate(std::string_view text, const std::string& name) {
+    CertificateLines lines(text, name);
+    if (lines.next() != kMagic)
+        lines.refuse("not a certificate of this version: wanted " + std::string(kMagic));
+    while (lines.peek().starts_with('#')) lines.next();
+    const std::string_view first = lines.next();
+    const auto bound =
+        first.starts_with(kBound) ? parseDouble(first.substr(kBound.size())) : std::nullopt;
+    if (!bound || *bound < 0) lines.refuse("wanted `bound AREA` in square metres");
+    PoseCertificate certificate{.bound = *bound, .boxes = {}, .pairs = {}, .tuples = {}};
+    for (const Tree& tree : kTrees) {
+        if (lines.next() != tree.name) lines.refuse("wanted `" + std::string(tree.name) + '`');
+        std::string& nodes = certificate.*tree.text;
+        const auto is_next = [&] {
+            return std::any_of(std::begin(kTrees), std::end(kTrees),
+                               [&](const Tree& other) { return lines.peek() == other.name; });
+        };
+        while (!lines.atEnd() && !is_next()) {
+            const std::string_view line = lines.next();
+            if (const auto wrong = line.find_first_not_of(tree.nodes); wrong != line.npos)
+                lines.refuse("`" + printable(line.substr(wrong, 1)) + "` is no node of " +
+                             std::string(tree.name) + ", which are " + std::string(tree.nodes));
+            nodes += line;
+        }
+    }
+    if (!lines.atEnd()) lines.refuse("more than three trees");
+    return certificate;
+}
+
+}  // namespace ispace

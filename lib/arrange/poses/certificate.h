@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lib/arrange/poses: the proof of a bound over all poses as a file, and its check. The check uses
+// geom and base, and of the search only Sector and PoseBox.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "arrange/poses/fat_view.h"
+#include "geom/polygon.h"
+
+namespace ispace {
+
+/// The proof of boundOverPoses() that equal sensors see at most `bound`. Each tree is a character
+/// for each node, in pre-order: a node that is split, its first half, its second half.
+struct PoseCertificate {
+    double bound = 0;  ///< m2
+    /// All poses: a box is halved along `x`, along `y` or in its headings (`h`), or whole (`.`).
+    std::string boxes;
+    /// Pairs of boxes, which bound two sensors; empty: none. Box `0` or `1` of the pair is halved;
+    /// a pair is bounded as a whole (`.`) or left out (`-`), as its poses are out of the order of
+    /// the tree of boxes or one of them sees no floor.
+    std::string pairs;
+    /// Tuples of boxes, one for each sensor, likewise.
+    std::string tuples;
+};
+
+/// Writes a certificate, with the history of the layout.
+std::string certificateText(const PoseCertificate& certificate,
+                            const std::vector<std::string>& history);
+
+/// \throws FormatError
+PoseCertificate readCertificate(std::string_view text, const std::string& name);
+
+struct CertificateCheck {
+    double bound = 0;  ///< m2: no poses of the sensors see more; valid whatever the trees are
+    std::size_t boxes = 0, pairs = 0, tuples = 0;
+};
+
+/// Computes the bound that the trees of a certificate prove, all views anew by BoxViews: in cells
+/// of the size of the search, but finer parts, so that it does not exceed that of the search but by
+/// rounding.
+/// \param most number of cells, as for PoseFloor \param name of the certificate, for errors
+/// \throws FormatError for trees that leave out poses
+CertificateCheck checkCertificate(std::span<const Region> floor, std::size_t most,
+                                  const poses::Sector& sector, int sensors,
+                                  const PoseCertificate& certificate, const std::string& name);
+
+}  // namespace ispace

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <numbers>
+#include <utility>
+
+#include "arrange/poses/box_views.h"
+#include "arrange/poses/certificate.h"
+#include "arrange/poses/pose_search.h"
+#include "base/error.h"
+
+namespace ispace {
+
+namespace {
+
+using poses::BoxView;
+using poses::BoxViews;
+using poses::PoseBox;
+using poses::Sector;
+
+using Boxes = std::array<std::uint32_t, kMostPosed>;
+
+class CertificateChecker {
+  public:
+    CertificateChecker(const BoxViews& views, const Sector& sector, int sensors,
+                       const PoseCertificate& certificate, const std::string& name)
+        : views_(views),
+          sector_(sector),
+          count_(static_cast<std::size_t>(sensors)),
+          certificate_(certificate),
+          name_(name) {}
+
+    CertificateCheck check();
+
+  private:
+    /// A box; its second half follows the subtree of the first, which is the next box.
+    struct Box {
+        PoseBox box;
+        std::uint32_t second = 0;  // 0: whole
+        std::uint32_t end = 0;     // of its subtree
+        double most = 0;           // bounds the area that a single pose of it sees
+        bool is_used = false;      // by a pair or a tuple
+        BoxView view = {};
+    };
+    /// Boxes of several sensors, in the order of the tree of boxes.
+    struct Group {
+        Boxes boxes{};
+        std::uint32_t end = 0;  // of its subtree; the next group is its first half
+        double most = 0;
+        bool is_whole = false;
+    };
+
+    [[noreturn]] void refuse(const std::string& message) const {
+        throw FormatError({name_, 0, 0, message});
+    }
+    char nextOf(const std::string& tree, std::size_t& at, const char* name) const;
+    void readBox(const PoseBox& box, int depth);
+    void readGroup(const std::string& tree, std::size_t& at, const char* name, Boxes boxes,
+                   std::size_t size, std::vector<Group>& groups);
+    [[nodiscard]] bool isOutOfOrder(const Boxes& boxes, std::size_t size) const;
+    void computeViews();
+    void boundPairs();
+    [[nodiscard]] double mostOf(std::uint32_t first, std::uint32_t second) const;
+    [[nodiscard]] double boundOf(const Boxes& boxes) const;
+    [[nodiscard]] double unionOf(const Boxes& boxes, unsigned chosen) const;
+
+    const BoxViews& views_;
+    const Sector& sector_;
+    std::size_t count_;
+    const PoseCertificate& certificate_;
+    const std::string& name_;
+    std::size_t at_ = 0;  // in the tree of boxes
+    std::vector<Box> boxes_;
+    std::vector<Group> pairs_, tuples_;
+    std::vector<std::uint32_t> blind_;  // boxes that were left out: their poses must see no floor
+};
+
+char CertificateChecker::nextOf(const std::string& tree, std::size_t& at, const char* name) const {
+    if (at == tree.size()) refuse(std::string("the tree of ") + name + " ends early");
+    return tree[at++];
+}
+
+void CertificateChecker::readBox(const PoseBox& box, int depth) {
+    constexpr int kDeepest = 64;
+    const char node = nextOf(certificate_.boxes, at_, "boxes");
+    const auto own = static_cast<std::uint32_t>(boxes_.size());
+    boxes_.push_back({.box = box});
+    if (node != '.') {
+        if (depth == kDeepest) refuse("a box is divided more than 64 times");
+        PoseBox first = box, second = box;
+        if (node == 'x') {
+            first.at.high.x = second.at.low.x = box.at.center().x;
+        } else if (node == 'y') {
+            first.at.high.y = second.at.low.y = box.at.center().y;
+        } else {
+            first.span = second.span = box.span / 2;
+            second.from += first.span;
+        }
+        readBox(first, depth + 1);
+        boxes_[own].second = static_cast<std::uint32_t>(boxes_.size());
+        readBox(second, depth + 1);
+    }
+    boxes_[own].end = static_cast<std::uint32_t>(boxes_.size());
+}
+
+/// Poses of equal sensors may be assumed in the order of boxes.
+bool CertificateChecker::isOutOfOrder(const Boxes& boxes, std::size_t size) const {
+    for (std::size_t i = 0; i < size; ++i)
+        for (std::size_t k = i + 1; k < size; ++k)
+            if (boxes_[boxes[k]].end <= boxes[i]) return true;
+    return false;
+}
+
+void CertificateChecker::readGroup(const std::string& tree, std::size_t& at, const char* name,
+                                   Boxes boxes, std::size_t size, std::vector<Group>& groups) {
+    const char node = nextOf(tree, at, name);
+    const std::size_t own = groups.size();
+    if (node == '-') refuse(std::string("the tree of ") + name + " leaves out all poses");
+    groups.push_back({.boxes = boxes});
+    if (node == '.') {
+        groups[own].is_whole = true;
+        for (std::size_t i = 0; i < size; ++i) boxes_[boxes[i]].is_used = true;
+    } else {
+        const auto which = static_cast<std::size_t>(node - '0');
+        if (which >= size) refuse(std::string("no sensor ") + node + " in a tree of " + name);
+        const std::uint32_t halved = boxes[which], second = boxes_[halved].second;
+        if (second == 0) refuse(std::string("the tree of ") + name + " halves a whole box");
+        for (const std::uint32_t half : {halved + 1, second}) {
+            boxes[which] = half;
+            if (at < tree.size() && tree[at] == '-') {
+                ++at;
+                if (!isOutOfOrder(boxes, size)) blind_.push_back(half);
+            } else {
+                readGroup(tree, at, name, boxes, size, groups);
+            }
+        }
+    }
+    groups[own].end = static_cast<std::uint32_t>(groups.size());
+}
+
+void CertificateChecker::computeViews() {
+    for (const std::uint32_t id : blind_) boxes_[id].is_used = true;
+    tbb::parallel_for(std::size_t{0}, boxes_.size(), [this](std::size_t i) {
+        Box& box = boxes_[i];
+        if (box.second != 0 && !box.is_used) return;
+        box.view = views_.viewOf(box.box);
+        box.most = box.view.area;
+        if (!box.is_used) box.view = {};
+    });
+    // A sensor that sees no floor may be moved anywhere else.
+    for (const std::uint32_t id : blind_)
+        if (!boxes_[id].view.parts.empty()) refuse("a tree leaves out poses that see floor");
+    for (std::size_t i = boxes_.size(); i-- > 0;) {
+        Box& box = boxes_[i];
+        if (box.second == 0) continue;
+        const double halves = std::max(boxes_[i + 1].most, boxes_[box.second].most);
+        box.most = box.is_used ? std::min(box.most, halves) : halves;
+    }
+}
+
+double CertificateChecker::unionOf(const Boxes& boxes, unsigned chosen) const {
+    std::array<const BoxView*, kMostPosed> views{};
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < kMostPosed; ++i)
+        if ((chosen >> i & 1U) != 0) views[size++] = &boxes_[boxes[i]].view;
+    return views_.unionOf({views.data(), size});
+}
+
+void CertificateChecker::boundPairs() {
+    tbb::parallel_for(std::size_t{0}, pairs_.size(), [this](std::size_t i) {
+        Group& pair = pairs_[i];
+        if (pair.is_whole)
+            pair.most = std::min(boxes_[pair.boxes[0]].most + boxes_[pair.boxes[1]].most,
+                                 unionOf(pair.boxes, 3));
+    });
+    for (std::size_t i = pairs_.size(); i-- > 0;)
+        for (std::uint32_t half = static_cast<std::uint32_t>(i) + 1; half < pairs_[i].end;
+             half = pairs_[half].end)
+            pairs_[i].most = std::max(pairs_[i].most, pairs_[half].most);
+}
+
+/// Bounds the area that poses of two boxes see together, by the pairs that they share poses with.
+double CertificateChecker::mostOf(std::uint32_t first, std::uint32_t second) const {
+    const std::uint32_t ids[] = {first, second};
+    double most = 0;
+    for (std::uint32_t i = 0; i < pairs_.size();) {
+        const Group& pair = pairs_[i];
+        bool is_apart = pair.most <= most, is_within = true;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::uint32_t own = pair.boxes[k], own_end = boxes_[own].end;
+            const std::uint32_t other = ids[k], end = boxes_[other].end;
+            is_apart = is_apart || own_end <= other || end <= own;
+            is_within = is_within && other <= own && own_end <= end;
+        }
+        if (is_apart) {
+            i = pair.end;
+        } else if (pair.is_whole || is_within) {
+            most = pair.most;
+            i = pair.end;
+        } else {
+            ++i;
+        }
+    }
+    return most;
+}
+
+/// A sensor adds no more than the largest single view in its box, and floor that one of n sensors
+/// sees is in n - 1 of the pairs of them.
+double CertificateChecker::boundOf(const Boxes& boxes) const {
+    double all = 0;
+    for (std::size_t i = 0; i < count_; ++i) all += boxes_[boxes[i]].most;
+    double bound = all, sum = 0;
+    for (std::size_t i = 0; i < count_ && bound > certificate_.bound; ++i)
+        for (std::size_t k = i + 1; k < count_; ++k) {
+            const double both = boxes_[boxes[i]].most + boxes_[boxes[k]].most;
+            double pair = std::min(both, unionOf(boxes, 1U << i | 1U << k));
+            if (!pairs_.empty()) pair = std::min(pair, mostOf(boxes[i], boxes[k]));
+            sum += pair;
+            bound = std::min(bound, all - both + pair);
+            if (i + 2 == count_) bound = std::min(bound, sum / static_cast<double>(count_ - 1));
+        }
+    for (unsigned chosen = 1; chosen < 1U << count_ && bound > certificate_.bound; ++chosen) {
+        if (std::popcount(chosen) < 3) continue;
+        double rest = 0;
+        for (std::size_t i = 0; i < count_; ++i)
+            if ((chosen >> i & 1U) == 0) rest += boxes_[boxes[i]].most;
+        bound = std::min(bound, rest + unionOf(boxes, chosen));
+    }
+    return bound;
+}
+
+CertificateCheck CertificateChecker::check() {
+    readBox({views_.box(), 0, sector_.isRound() ? 0 : 2 * std::numbers::pi}, 0);
+    if (at_ != certificate_.boxes.size()) refuse("more than one tree of boxes");
+    std::size_t at = 0;
+    if (!certificate_.pairs.empty()) readGroup(certificate_.pairs, at, "pairs", {}, 2, pairs_);
+    if (at != certificate_.pairs.size()) refuse("more than one tree of pairs");
+    at = 0;
+    readGroup(certificate_.tuples, at, "tuples", {}, count_, tuples_);
+    if (at != certificate_.tuples.size()) refuse("more than one tree of tuples");
+    computeViews();
+    boundPairs();
+    std::vector<double> bounds(tuples_.size());
+    tbb::parallel_for(std::size_t{0}, tuples_.size(), [&](std::size_t i) {
+        if (tuples_[i].is_whole) bounds[i] = boundOf(tuples_[i].boxes);
+    });
+    return {*std::max_element(bounds.begin(), bounds.end()), boxes_.size(), pairs_.size(),
+            tuples_.size()};
+}
+
+}  // namespace
+
+CertificateCheck checkCertificate(std::span<const Region> floor, std::size_t most,
+                                  const Sector& sector, int sensors,
+                                  const PoseCertificate& certificate, const std::string& name) {
+    const BoxViews views(floor, most, sector);
+    return CertificateChecker(views, sector, sensors, certificate, name).check();
+}
+
+}  // namespace ispace

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "arrange/poses/box_views.h"
+#include "arrange/poses/certificate.h"
+#include "arrange/poses/pose_search.h"
+#include "geom/visibility/visibility.h"
+
+namespace ispace {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr std::size_t kCells = 1200;
+
+using poses::BoxViews;
+using poses::PoseBox;
+using poses::PoseFloor;
+using poses::Sector;
+
+/// Ends a search after this number of queries.
+class Rounds final : public Progress {
+  public:
+    explicit Rounds(int count) : left_(count) {}
+    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
+    void advance(std::int64_t /*count*/) override {}
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return --left_ < 0; }
+
+  private:
+    mutable int left_;
+};
+
+/// Two rooms with a door between them, and a pillar in the second.
+Region withPillar() {
+    return {{{0, 0},
+             {6, 0},
+             {6, 2},
+             {6.2, 2},
+             {6.2, 0},
+             {11, 0},
+             {11, 5},
+             {6.2, 5},
+             {6.2, 3},
+             {6, 3},
+             {6, 5},
+             {0, 5}},
+            {{{8, 2}, {8, 3}, {9, 3}, {9, 2}}}};
+}
+
+/// A gallery of many reflex corners, in which portals lie at all angles.
+Region comb() {
+    Polygon outline = {{0, 0}, {12, 0}, {12, 1.5}};
+    for (int tooth = 5; tooth >= 0; --tooth) {
+        const double x = 2.0 * tooth;
+        outline.insert(
+            outline.end(),
+            {{x + 1.7, 1.5}, {x + 0.9 + 0.3 * tooth / 5, 5}, {x + 0.4, 5}, {x + 0.9, 1.5}});
+    }
+    outline.push_back({0, 1.5});
+    return {outline, {}};
+}
+
+PoseCertificate certificateOf(const Region& region, const Sector& sector, int sensors, int rounds) {
+    PoseCertificate certificate;
+    const PoseFloor floor({&region, 1}, kCells);
+    Rounds progress(rounds);
+    const PoseBound bound = boundOverPoses(
+        floor, sector, {.sensors = sensors, .gap = 0.001, .certificate = &certificate}, progress);
+    EXPECT_EQ(bound.bound, certificate.bound);
+    return certificate;
+}
+
+CertificateCheck checked(const Region& region, const Sector& sector, int sensors,
+                         const PoseCertificate& certificate) {
+    return checkCertificate({&region, 1}, kCells, sector, sensors, certificate, "c");
+}
+
+std::string refusalOf(const PoseCertificate& certificate) {
+    try {
+        checked(withPillar(), {3, 2, 0}, 2, certificate);
+    } catch (const FormatError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(CheckCertificate, ConfirmsSearches) {
+    for (const Region& region : {withPillar(), comb()})
+        for (const Sector& sector : {Sector{3, 2, -1}, Sector{2.5, 4, 0}, Sector{30, 2 * kPi, 0}})
+            for (const int sensors : {1, 2, 3})
+                for (const int rounds : {0, 40}) {
+                    const PoseCertificate made = certificateOf(region, sector, sensors, rounds);
+                    const CertificateCheck check = checked(region, sector, sensors, made);
+                    EXPECT_LE(check.bound, made.bound * (1 + 1e-9))
+                        << sector.field << ' ' << sensors << ' ' << rounds;
+                    EXPECT_GT(check.bound, 0);
+                }
+}
+
+TEST(CheckCertificate, TextSurvivesWritingAndReading) {
+    const PoseCertificate made = certificateOf(withPillar(), {3, 2, 0}, 3, 30);
+    const std::string text = certificateText(made, {"arrange a.env", "more"});
+    const PoseCertificate again = readCertificate(text, "c");
+    EXPECT_EQ(again.bound, made.bound);
+    EXPECT_EQ(again.boxes, made.boxes);
+    EXPECT_EQ(again.pairs, made.pairs);
+    EXPECT_EQ(again.tuples, made.tuples);
+    EXPECT_EQ(certificateText(again, {"arrange a.env", "more"}), text);
+}
+
+TEST(CheckCertificate, RefusesTextThatIsNone) {
+    const auto refusal = [](const std::string& text) -> std::string {
+        try {
+            readCertificate(text, "c");
+        } catch (const FormatError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const std::string head = "#certificate 1\nbound 3\n";
+    EXPECT_EQ(refusal(head + "boxes\n.\npairs\ntuples\n.\n"), "");
+    EXPECT_NE(refusal("").find("wanted #certificate 1"), std::string::npos);
+    EXPECT_NE(refusal("#certificate 2\n").find("c:1: "), std::string::npos);
+    EXPECT_NE(refusal("#certificate 1\nbound -1\n").find("wanted `bound AREA`"), std::string::npos);
+    EXPECT_NE(refusal("#certificate 1\nbound nan\n").find("c:2: "), std::string::npos);
+    EXPECT_NE(refusal(head).find("wanted `boxes`"), std::string::npos);
+    EXPECT_NE(refusal(head + "boxes\nx..\n").find("wanted `pairs`"), std::string::npos);
+    EXPECT_NE(refusal(head + "boxes\n3\n").find("`3` is no node of boxes"), std::string::npos);
+    EXPECT_NE(refusal(head + "boxes\n.\npairs\ntuples\n.\nboxes\n").find("more than three"),
+              std::string::npos);
+}
+
+TEST(CheckCertificate, RefusesTreesThatLeaveOutPoses) {
+    const PoseCertificate made = certificateOf(withPillar(), {3, 2, 0}, 2, 20);
+    EXPECT_EQ(refusalOf(made), "");
+    PoseCertificate cut = made;
+    cut.tuples.pop_back();
+    EXPECT_NE(refusalOf(cut).find("tuples ends early"), std::string::npos);
+    cut = made;
+    cut.boxes.pop_back();
+    EXPECT_NE(refusalOf(cut).find("boxes ends early"), std::string::npos);
+    cut = made;
+    cut.tuples += '.';
+    EXPECT_NE(refusalOf(cut).find("more than one tree"), std::string::npos);
+    EXPECT_NE(refusalOf({3, "x..", "", "-"}).find("leaves out all"), std::string::npos);
+    EXPECT_NE(refusalOf({3, "x..", "", "0-."}).find("see floor"), std::string::npos);
+    EXPECT_NE(refusalOf({3, "x..", "", "2.."}).find("no sensor 2"), std::string::npos);
+    EXPECT_NE(refusalOf({3, "x..", "", "00..."}).find("halves a whole box"), std::string::npos);
+    EXPECT_NE(refusalOf({3, "x..", "0-.", "."}).find("see floor"), std::string::npos);
+    EXPECT_NE(refusalOf({3, std::string(70, 'x') + std::string(71, '.'), "", "."}).find("64 times"),
+              std::string::npos);
+}
+
+TEST(CheckCertificate, EachDroppedLeafIsNoticed) {
+    // The second laser is never in an earlier half than the first, so one tuple may be left out.
+    const PoseCertificate whole{9, "xy..y..", "01..1-.", "01..1-."};
+    EXPECT_EQ(refusalOf(whole), "");
+    for (std::string PoseCertificate::*tree : {&PoseCertificate::pairs, &PoseCertificate::tuples})
+        for (std::size_t i = 0; i < (whole.*tree).size(); ++i) {
+            if ((whole.*tree)[i] != '.') continue;
+            PoseCertificate cut = whole;
+            (cut.*tree)[i] = '-';
+            EXPECT_NE(refusalOf(cut).find("see floor"), std::string::npos) << i;
+        }
+}
+
+TEST(CheckCertificate, ALowerClaimIsNotConfirmed) {
+    const Sector sector{3, 2, 0};
+    PoseCertificate made = certificateOf(withPillar(), sector, 2, 60);
+    made.bound *= 0.97;
+    EXPECT_GT(checked(withPillar(), sector, 2, made).bound, made.bound);
+    // Nor does the proof for two sensors hold for three, or for a longer range.
+    EXPECT_GT(checked(withPillar(), sector, 3, made).bound, made.bound);
+    EXPECT_GT(checked(withPillar(), {4, 2, 0}, 2, made).bound, made.bound);
+}
+
+/// Poses of the box see no more than its view, by exact area, and by cell.
+void expectHolds(const Region& region, const Sector& sector, const PoseBox& box,
+                 std::mt19937& random) {
+    std::vector<Segment2> walls;
+    region.forEachEdge([&](const Segment2& edge) { walls.push_back(edge); });
+    const VisibilityMap map(walls);
+    const BoxViews views({&region, 1}, kCells, sector);
+    const poses::BoxView view = views.viewOf(box);
+    std::uniform_real_distribution<double> share(0, 1);
+    for (int i = 0; i < 30; ++i) {
+        const Point2 p{box.at.low.x + share(random) * box.at.width(),
+                       box.at.low.y + share(random) * box.at.depth()};
+        if (region.locate(p) != Side::Inside) continue;
+        const double heading = box.from + share(random) * box.span;
+        const VisibleRegion seen = sectorOf(map.query(p, sector.range), Angle::radians(heading),
+                                            Angle::radians(sector.field));
+        Polygon outline;
+        if (!seen.is_whole) outline.push_back(p);
+        for (const VisibilityEdge& edge : seen.edges) {
+            outline.push_back(edge.from);
+            outline.push_back(edge.to);
+        }
+        EXPECT_LE(std::abs(signedArea(outline)), view.area + 1e-9);
+        const poses::BoxView single = views.viewOf({{p, p}, heading, 0});
+        for (std::size_t k = 0; k < single.parts.size(); ++k) {
+            const std::size_t cell = single.first + k;
+            const bool is_in = cell >= view.first && cell < view.first + view.parts.size();
+            EXPECT_LE(single.parts[k], is_in ? view.parts[cell - view.first] : 0);
+        }
+    }
+}
+
+TEST(BoxViews, HoldTheViewsOfTheirPoses) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> x(0, 11), y(0, 5), turn(0, 2 * kPi), size(0, 2);
+    for (const Region& region : {withPillar(), comb()})
+        for (int i = 0; i < 40; ++i) {
+            const Point2 low{x(random), y(random)};
+            const PoseBox box{
+                {low, {low.x + size(random), low.y + size(random)}}, turn(random), size(random)};
+            const Sector sector{1 + 2 * size(random), i % 3 == 0 ? 2 * kPi : 0.5 + turn(random) / 2,
+                                0};
+            expectHolds(region, sector, box, random);
+        }
+}
+
+TEST(BoxViews, AreNoLargerThanThoseOfTheSearch) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> x(0, 11), y(0, 5), turn(0, 2 * kPi), size(0, 2);
+    for (const Region& region : {withPillar(), comb()}) {
+        const PoseFloor floor({&region, 1}, kCells);
+        for (int i = 0; i < 100; ++i) {
+            const Point2 low{x(random), y(random)};
+            const PoseBox box{
+                {low, {low.x + size(random), low.y + size(random)}}, turn(random), size(random)};
+            const Sector sector{1 + 2 * size(random), i % 3 == 0 ? 2 * kPi : 0.5 + turn(random) / 2,
+                                0};
+            const double searched = fatViewOf(floor, sector, box).area;
+            const double own = BoxViews({&region, 1}, kCells, sector).viewOf(box).area;
+            EXPECT_LE(own, searched * (1 + 1e-9) + 1e-9) << i;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ispace

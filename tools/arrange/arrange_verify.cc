@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/arrange_verify.h"
+
+#include <algorithm>
+#include <string>
+
+#include "arrange/over_poses.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "cli/operands.h"
+#include "cli/outputs.h"
+#include "report/coverage_report.h"
+
+namespace ispace {
+
+void verifyCertificate(const ArrangeToolOptions& options) {
+    constexpr int kDecimals = 3;
+    constexpr double kRounding = 1e-9;
+    const std::string& file = options.verify_file;
+    std::vector<std::string> streams = options.operands;
+    streams.push_back(file);
+    mustReadStdinOnce(streams);
+    limitThreads(options.common.threads);
+    const PoseCertificate certificate =
+        readCertificate(isStream(file) ? readStdin() : readAll(file), file);
+    const SceneInput input = readScene({options.operands, options.rules, false});
+    warnOfImport(options.common, "arrange", input);
+    const CheckedPoses checked = checkPoses(input.scene, certificate, file);
+    const auto text = [](double area) { return formatFixed(area, kDecimals) + " m2"; };
+    if (checked.check.bound > certificate.bound * (1 + kRounding))
+        throw UnmetError(printable(file) + ": the trees prove at most " +
+                         text(checked.check.bound) + ", not the " + text(certificate.bound) +
+                         " that it states");
+    const double bound = std::min(checked.check.bound, checked.floor);
+    const double gap = bound > 0 ? std::max(0.0, (bound - checked.found) / bound) : 0;
+    tell(options.common, "arrange",
+         "the layout sees " + text(checked.found) + "; in any poses " +
+             std::to_string(checked.sensors) + (checked.sensors == 1 ? " laser" : " lasers") +
+             " see at most " + text(bound) + " of " + text(checked.floor) + " (gap " +
+             percentText(gap) + "): verified (boxes: " + std::to_string(checked.check.boxes) +
+             ", tuples: " + std::to_string(checked.check.tuples) + ")");
+}
+
+}  // namespace ispace
