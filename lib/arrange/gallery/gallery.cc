@@ -102,12 +102,23 @@ void GallerySolver::addFirstWitnesses() {
     std::vector<Point2> points;
     for (const Region& region : floor_.regions())
         for (const Polygon& curve : curvesOf(region)) proposeAlong(curve, points);
-    for (const Point2 p : points)
+    for (const Point2 p : points) {
         if (isInFloor(p)) addWitness(p);
+        if (progress_.stopped()) return;
+    }
 }
 
 void GallerySolver::raiseBound() {
-    const std::vector<WitnessSet> sets = gallery::largestWitnessSets(floor_, witnesses_);
+    const auto known = gallery::largestWitnessSets(floor_, witnesses_, progress_);
+    if (!known) {
+        // One guard is needed to see any witness.
+        if (cover_.bound == 0 && !witnesses_.empty()) {
+            cover_.bound = 1;
+            cover_.witnesses = {unscaled(witnesses_.front().view.viewpoint())};
+        }
+        return;
+    }
+    const std::vector<WitnessSet>& sets = *known;
     SetCover problem;
     problem.rows = witnesses_.size();
     for (const WitnessSet& set : sets) problem.columns.push_back(set.witnesses);
@@ -135,7 +146,7 @@ void GallerySolver::raiseBound() {
                           set.points.begin() + static_cast<std::ptrdiff_t>(count));
     }
     std::erase_if(candidates, [&](const auto& vertex) { return !isInFloor(vertex.at); });
-    search_.addCandidates(candidates);
+    search_.addCandidates(candidates, &progress_);
 }
 
 void GallerySolver::take(const GuardSearch::Found& found) {

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -148,7 +149,8 @@ TEST(WitnessSets, HoldTheWitnessesOfEachPoint) {
                 witnesses.push_back({gallery::StarView(view, floor.walls()), *windows});
         }
         ASSERT_GT(witnesses.size(), 20U);
-        const auto sets = gallery::largestWitnessSets(floor, witnesses);
+        SilentProgress progress;
+        const auto sets = gallery::largestWitnessSets(floor, witnesses, progress).value();
         std::uniform_real_distribution<double> at(-gallery::kScaledExtent, gallery::kScaledExtent);
         for (int i = 0; i < 2000; ++i) {
             const Point2 p{at(random), at(random)};
@@ -177,19 +179,30 @@ TEST(Gallery, SameForAnyNumberOfThreads) {
     EXPECT_EQ(one.witnesses, two.witnesses);
 }
 
+/// Says stop after this number of queries.
+class StopAfter final : public Progress {
+  public:
+    explicit StopAfter(int queries) : left_(queries) {}
+    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
+    void advance(std::int64_t /*count*/) override {}
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return left_-- <= 0; }
+
+  private:
+    mutable std::atomic<int> left_;
+};
+
 TEST(Gallery, StoppedKeepsAnHonestInterval) {
-    class Stopped final : public Progress {
-      public:
-        void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
-        void advance(std::int64_t /*count*/) override {}
-        void end() override {}
-        [[nodiscard]] bool stopped() const override { return true; }
-    } progress;
     const std::vector<Region> floor{{comb(6), {}}};
-    const GalleryCover cover = guardGallery(floor, progress);
-    EXPECT_GE(cover.guards.size(), 6U);
-    EXPECT_LE(cover.bound, 6U);
-    EXPECT_LE(cover.missed, kMissedShare * floor[0].area());
+    for (const int queries : {0, 1, 5, 20, 40, 60, 100, 200}) {
+        StopAfter progress(queries);
+        const GalleryCover cover = guardGallery(floor, progress);
+        EXPECT_GE(cover.guards.size(), 6U) << queries;
+        EXPECT_GE(cover.bound, 1U) << queries;
+        EXPECT_LE(cover.bound, 6U) << queries;
+        EXPECT_FALSE(cover.witnesses.empty()) << queries;
+        EXPECT_LE(cover.missed, kMissedShare * floor[0].area());
+    }
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ GuardCandidate candidateAt(const Floor& floor, const WindowVertex& vertex) {
 
 }  // namespace
 
-void GuardSearch::addCandidates(std::span<const WindowVertex> points) {
+void GuardSearch::addCandidates(std::span<const WindowVertex> points, const Progress* progress) {
     const auto less = [](Point2 a, Point2 b) { return lexLess(a, b); };
     std::set<Point2, decltype(less)> known(less);
     for (const GuardCandidate& candidate : candidates_) known.insert(candidate.view.viewpoint());
@@ -39,11 +39,13 @@ void GuardSearch::addCandidates(std::span<const WindowVertex> points) {
     std::vector<std::optional<GuardCandidate>> made(fresh.size());
     std::vector<std::vector<std::uint32_t>> seen(fresh.size());
     tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
+        if (progress != nullptr && progress->stopped()) return;
         made[i] = candidateAt(floor_, fresh[i]);
         for (std::uint32_t row = 0; row < rows_.size(); ++row)
             if (sees(*made[i], rows_[row])) seen[i].push_back(row);
     });
     for (std::size_t i = 0; i < fresh.size(); ++i) {
+        if (!made[i]) continue;
         candidates_.push_back(std::move(*made[i]));
         seen_.push_back(std::move(seen[i]));
     }
@@ -136,7 +138,7 @@ void GuardSearch::complete(Found& found) {
         std::vector<WindowVertex> here;
         here.reserve(open.size());
         for (const Point2 p : open) here.push_back({p, 0});
-        addCandidates(here);
+        addCandidates(here, nullptr);
         addGreedily(open, found);
         measure(found);
     }

@@ -27,7 +27,8 @@ class GuardSearch {
     explicit GuardSearch(const Floor& floor) : floor_(floor) {}
 
     /// Adds candidates that are not known yet; views are computed in parallel.
-    void addCandidates(std::span<const WindowVertex> points);
+    /// \param progress if it says stop, adds no more of them; null: adds all
+    void addCandidates(std::span<const WindowVertex> points, const Progress* progress);
     /// Adds a point that guards must see; \pre in the interior of what earlier covers missed
     void addRow(Point2 p);
     /// Adds a witness: seen by the candidates within rounding of its view.

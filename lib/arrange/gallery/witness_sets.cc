@@ -179,7 +179,8 @@ std::vector<WitnessSet> largest(std::vector<WitnessSet> sets, std::size_t witnes
 
 }  // namespace
 
-std::vector<WindowVertex> windowVertices(const Floor& floor, std::span<const Witness> witnesses) {
+std::vector<WindowVertex> windowVertices(const Floor& floor, std::span<const Witness> witnesses,
+                                         const Progress& progress) {
     std::vector<WindowVertex> vertices;
     for (const Segment2& wall : floor.walls()) vertices.push_back({wall.a, kRounding});
     std::vector<Window> windows;
@@ -192,6 +193,7 @@ std::vector<WindowVertex> windowVertices(const Floor& floor, std::span<const Wit
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, found.size()), [&](const auto& range) {
         std::vector<std::uint32_t> stamps(windows.size(), static_cast<std::uint32_t>(-1));
         for (std::size_t block = range.begin(); block < range.end(); ++block) {
+            if (progress.stopped()) return;
             const std::size_t end = std::min(windows.size(), (block + 1) * kBlock);
             for (std::size_t i = block * kBlock; i < end; ++i)
                 grid.forEachLater(static_cast<std::uint32_t>(i), stamps, [&](std::uint32_t j) {
@@ -203,17 +205,21 @@ std::vector<WindowVertex> windowVertices(const Floor& floor, std::span<const Wit
     return vertices;
 }
 
-std::vector<WitnessSet> largestWitnessSets(const Floor& floor, std::span<const Witness> witnesses) {
-    const std::vector<WindowVertex> vertices = windowVertices(floor, witnesses);
+std::optional<std::vector<WitnessSet>> largestWitnessSets(const Floor& floor,
+                                                          std::span<const Witness> witnesses,
+                                                          const Progress& progress) {
+    const std::vector<WindowVertex> vertices = windowVertices(floor, witnesses, progress);
     std::vector<std::vector<std::uint32_t>> seen(vertices.size());
     constexpr std::size_t kGrain = 256;
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, vertices.size(), kGrain), [&](const auto& range) {
+            if (progress.stopped()) return;
             for (std::size_t i = range.begin(); i < range.end(); ++i)
                 for (std::uint32_t w = 0; w < witnesses.size(); ++w)
                     if (witnesses[w].view.mayHold(vertices[i].at, vertices[i].error + kOneLine))
                         seen[i].push_back(w);
         });
+    if (progress.stopped()) return std::nullopt;
     return largest(distinct(std::move(seen), vertices), witnesses.size());
 }
 

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "arrange/gallery/star_view.h"
+#include "base/error.h"
 
 namespace ispace::gallery {
 
@@ -35,10 +37,13 @@ struct WitnessSet {
 /// The region of a witness is closed, so the vertices of a face see all that its points see:
 /// ends of walls, ends of windows and crossings of windows suffice. The set of a vertex holds all
 /// witnesses whose region comes within the error of the vertex, so it may be too large, never too
-/// small. O(windows + crossings * witnesses)
-std::vector<WitnessSet> largestWitnessSets(const Floor& floor, std::span<const Witness> witnesses);
+/// small. O(windows + crossings * witnesses); nullopt if progress says stop before all are known.
+std::optional<std::vector<WitnessSet>> largestWitnessSets(const Floor& floor,
+                                                          std::span<const Witness> witnesses,
+                                                          const Progress& progress);
 
-/// Finds the vertices of the arrangement of windows and walls.
-std::vector<WindowVertex> windowVertices(const Floor& floor, std::span<const Witness> witnesses);
+/// Finds the vertices of the arrangement of windows and walls; some of them if progress says stop.
+std::vector<WindowVertex> windowVertices(const Floor& floor, std::span<const Witness> witnesses,
+                                         const Progress& progress);
 
 }  // namespace ispace::gallery
