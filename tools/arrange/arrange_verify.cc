@@ -37,9 +37,10 @@ void verifyCertificate(const ArrangeToolOptions& options) {
     const double gap = bound > 0 ? std::max(0.0, (bound - checked.found) / bound) : 0;
     tell(options.common, "arrange",
          "the layout sees " + text(checked.found) + "; in any poses " +
-             std::to_string(checked.sensors) + (checked.sensors == 1 ? " laser" : " lasers") +
-             " see at most " + text(bound) + " of " + text(checked.floor) + " (gap " +
-             percentText(gap) + "): verified (boxes: " + std::to_string(checked.check.boxes) +
+             std::to_string(checked.sensors) +
+             (checked.sensors == 1 ? " laser sees" : " lasers see") + " at most " + text(bound) +
+             " of " + text(checked.floor) + " (gap " + percentText(gap) +
+             "): verified (boxes: " + std::to_string(checked.check.boxes) +
              ", tuples: " + std::to_string(checked.check.tuples) + ")");
 }
 
