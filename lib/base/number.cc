@@ -340,8 +340,10 @@ std::string formatDouble(double value) {
 
 void appendDouble(std::string& out, double value) {
     std::array<char, kBuffer> buffer;
-    out.append(buffer.data(), writeShortest<unsigned __int128>(
-                                  buffer.data(), value, std::bit_cast<std::uint64_t>(value)));
+    const char* const end =
+        writeShortest<unsigned __int128>(buffer.data(), value, std::bit_cast<std::uint64_t>(value));
+    // Not by iterators, for which the library is slower.
+    out.append(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
 }
 
 std::string formatFloat(float value) {
@@ -352,7 +354,8 @@ std::string formatFloat(float value) {
 
 void appendFloat(std::string& out, float value) {
     std::array<char, kBuffer> buffer;
-    out.append(buffer.data(), writeFloat(buffer.data(), value));
+    const char* const end = writeFloat(buffer.data(), value);
+    out.append(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
 }
 
 char* writeFloat(char* to, float value) {
